@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# OpenVDB as one imported target, vps_external::openvdb: its own find module prints warnings and needs
+# modules that a consumer's CMake path may not have.
+if(NOT TARGET vps_external::openvdb)
+  find_path(VPS_OPENVDB_INCLUDE openvdb/openvdb.h)
+  find_library(VPS_OPENVDB_LIBRARY openvdb)
+  if(NOT VPS_OPENVDB_INCLUDE OR NOT VPS_OPENVDB_LIBRARY)
+    message(FATAL_ERROR "OpenVDB not found; on Debian: apt-get install libopenvdb-dev libtbb-dev")
+  endif()
+  add_library(vps_external::openvdb INTERFACE IMPORTED)
+  set_target_properties(vps_external::openvdb PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${VPS_OPENVDB_INCLUDE}"
+    INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${VPS_OPENVDB_INCLUDE}"
+    INTERFACE_LINK_LIBRARIES "${VPS_OPENVDB_LIBRARY};TBB::tbb")
+  if(EXISTS "${VPS_OPENVDB_INCLUDE}/Imath")
+    set_property(TARGET vps_external::openvdb APPEND PROPERTY INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${VPS_OPENVDB_INCLUDE}/Imath")
+    set_property(TARGET vps_external::openvdb APPEND PROPERTY INTERFACE_INCLUDE_DIRECTORIES "${VPS_OPENVDB_INCLUDE}/Imath")
+  endif()
+endif()

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one exception of loading: which file, which part, what was found, what would help.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace vps {
+
+/// Thrown while loading files, meshes and settings; never in the haptic path. what() is one line for a person:
+/// "gear.stl: part 'hub': vertex 17 is not a number; export it again".
+class LoadError : public std::runtime_error {
+ public:
+  LoadError(const std::string& file, const std::string& part, const std::string& found_and_remedy)
+      : std::runtime_error((file.empty() ? std::string() : file + ": ") +
+                           (part.empty() ? std::string() : "part '" + part + "': ") + found_and_remedy) {}
+};
+
+}  // namespace vps

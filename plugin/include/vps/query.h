@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pointshell against voxmap at a pose: who touches, how deep, and the wrench of it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vps/pointshell.h"
+#include "vps/status.h"
+#include "vps/voxmap.h"
+#include "vps/wrench.h"
+
+namespace vps {
+
+/// One point of the shell near the surface of the map.
+struct Contact {
+  Vec3 p_M = Vec3::Zero();   ///< the shell's point, in the map's frame
+  Vec3 n_M = Vec3::Zero();   ///< unit, out of the map's part: the way that frees the point
+  double distance_m = 0;     ///< signed: negative when inside (depth = -distance_m)
+  double area_m2 = 0;        ///< surface the point stands for
+  std::uint32_t id = 0;      ///< index of the point in its shell; the same from step to step
+  std::uint16_t owner = 0;   ///< which part of a cooked map it is against
+};
+
+struct QueryOptions {
+  double cutoff_m = 0;              ///< report points with distance_m <= cutoff_m (> 0: also near ones)
+  bool is_exhaustive = false;       ///< visit every point, without culling: the reference for tests
+  Gradient gradient = Gradient::Continuous;
+};
+
+/// Room for contacts, sized once. When full, further contacts are counted in `left_out` and Status is Truncated.
+struct ContactSet {
+  std::vector<Contact> contacts;  ///< capacity is the limit; never grown by a query
+  std::size_t left_out = 0;
+  explicit ContactSet(std::size_t capacity = 0) { contacts.reserve(capacity); }
+};
+
+struct QueryResult {
+  Status status = Status::Ok;
+  std::size_t points_tested = 0;
+  double min_distance_m = 0;      ///< least signed distance of any point; exact up to the band, else a lower bound
+  bool is_beyond_band = false;    ///< min_distance_m is only a lower bound
+};
+
+/// Finds all points of the shell within options.cutoff_m of the map, in ascending id. Never throws, allocates, locks.
+/// The culled answer is the exhaustive one, exactly. BadPose (no contacts) if X_MP is not finite.
+/// O(points near contact). Source: McNeely et al. 1999 and the paper, section 4.1.
+QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP, const QueryOptions& options,
+                          ContactSet& out) noexcept;
+
+/// Least signed distance of the shell to the map, bounded by the band; branch and bound over the spheres.
+QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP) noexcept;
+
+/// Penalty wrench of a contact set: F = sum of k A d n over touching points (paper, section 4.1, with the point's
+/// area as weight, so that it converges under refinement).
+/// @param k_N_per_m3  stiffness per area, >= 0
+/// @param p_MO        the point the wrench is about, in M
+/// @return wrench on the shell's part about O, in M [N m, N]
+Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept;
+
+}  // namespace vps

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a function of the haptic path returns instead of throwing.
+#pragma once
+
+namespace vps {
+
+enum class Status {
+  Ok,
+  BadPose,     ///< a pose or velocity was not finite; the answer is zero
+  Truncated,   ///< a buffer was full; the answer is valid but incomplete, and a counter says by how much
+  BeyondBand,  ///< everything is farther than the narrow band; distances are bounds
+  Fault,       ///< the device or peer failed; zero wrench until re-armed
+};
+
+inline const char* toText(Status status) {
+  switch (status) {
+    case Status::Ok: return "ok";
+    case Status::BadPose: return "bad pose";
+    case Status::Truncated: return "truncated";
+    case Status::BeyondBand: return "beyond band";
+    case Status::Fault: return "fault";
+  }
+  return "unknown";
+}
+
+}  // namespace vps

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The voxmap: a part's signed distance on a sparse grid, sampled millions of times a second.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vps/mesh.h"
+#include "vps/progress.h"
+
+namespace vps {
+
+struct VoxMapSettings {
+  double voxel_m = 0.25e-3;   ///< grid step h
+  double band_voxels = 4;     ///< half width of the narrow band in voxels, >= 3 (nodal gradients need it)
+};
+
+/// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force never jumps from
+/// cell to cell, and is only nearly the derivative of an energy. `Trilinear` is the exact derivative of the
+/// interpolated distance, and turns abruptly at cell borders. Cost and error: plugin/README.md.
+enum class Gradient { Continuous, Trilinear };
+
+/// Signed distance [m] to a part's surface in frame M, negative inside: exact at the grid's nodes within the band,
+/// trilinear between them. Beyond the band the distance saturates at +-band_m() with the right sign, and
+/// lowerBound() gives a coarse bound that still tells far from near. Immutable once built; sampling is thread-safe,
+/// and never allocates or throws.
+class VoxMap {
+ public:
+  static constexpr int kBrick = 8;  ///< nodes per brick edge; a brick's own cells use its neighbours' nodes
+
+  [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
+  [[nodiscard]] double band_m() const noexcept { return band_m_; }
+  /// Box of the part's surface, in M (without the band).
+  [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  [[nodiscard]] std::size_t brickCount() const noexcept;
+  [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+  /// Trilinear signed distance [m] at p_M, saturated at +-band_m().
+  [[nodiscard]] double distance(const Vec3& p_M) const noexcept;
+  /// Unit outward normal (direction of growing distance); zero where the band gives none.
+  [[nodiscard]] Vec3 normal(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
+  /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away it
+  /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
+  [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
+  /// True if p_M is inside by the coarse sign; meaningful beyond the band, where distance() has saturated.
+  [[nodiscard]] bool isInsideCoarse(const Vec3& p_M) const noexcept;
+  /// Index of the part (order of merging, 0 first) whose surface is nearest at p_M's nearest node.
+  [[nodiscard]] std::uint16_t owner(const Vec3& p_M) const noexcept;
+
+ private:
+  friend class VoxMapBuilder;
+  friend class VoxMapFile;
+  double voxel_m_ = 0, band_m_ = 0;
+  Box bounds_;
+  /// The builder's and sampler's layout lives here; documented where it is defined (src/voxmap_layout.h).
+  struct Layout;
+  std::shared_ptr<const Layout> layout_;
+};
+
+/// Builds the map of one mesh: exact distance to its triangles at every node within the band, sign by
+/// pseudonormals. O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size
+/// that is not positive, or a grid that would not fit in memory (says which voxel size would).
+VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
+                   const Progress& progress = {});
+
+/// A part to be fused into one map, at its pose in the map's frame.
+struct PlacedMesh {
+  const Mesh* mesh = nullptr;
+  Pose X_MP;
+};
+
+/// "Cooks" mounted parts into one voxmap (paper, section 5): the union, min over the parts' own exact distances
+/// on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells the parts apart.
+VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings, const Progress& progress = {});
+
+/// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new part.
+VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
+
+/// Writes/reads an ordinary OpenVDB level set ("surface", float, narrow band); opens in Houdini and Blender.
+/// Throws LoadError on a file that is missing, damaged, or not a uniform level set. Writing goes to a temporary
+/// name first: an existing file is replaced whole or not at all.
+void saveVdb(const VoxMap& map, const std::string& file);
+VoxMap loadVdb(const std::string& file);
+
+}  // namespace vps

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene as it stands in its file: parts, poses, device, operator, fidelity, procedure. Documented in
+// scenes/README.md; nothing here is live.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vps/coupling_law.h"
+#include "vps/fidelity.h"
+#include "vps/part.h"
+
+namespace vps {
+
+struct ScenePart {
+  Part part;
+  Pose X_WP;                   ///< as designed: the pose in the CAD file, or the scene file's
+  bool is_fixed = false;       ///< never moves; in place from the start
+  bool allow_overlap = false;  ///< may start inside another (interference fits)
+  std::string file;            ///< where it came from, for messages
+};
+
+/// One step of the procedure: bring `part` from its start to its target by contact.
+struct SceneStep {
+  std::size_t part = 0;
+  Pose X_WP_start;
+  Pose X_WP_target;
+  std::vector<Pose> way_points;       ///< poses of the part that the operator passes, between start and target
+  double tolerance_m = 0.1e-3;        ///< greatest distance of the part's origin from its target
+  double tolerance_rad = 0.01;
+  double clearance_m = 0;             ///< radial clearance of the fit, as stated in the file; 0: not stated
+  double timeout_s = 20;
+};
+
+/// The hand and its habits. Values and sources: device/data/operator.toml.
+struct OperatorSettings {
+  std::uint64_t seed = 1;
+  double aim_error_m = 0.3e-3;        ///< standard deviation of the aim across the path
+  double aim_error_rad = 0.005;
+  double speed_m_s = 0.05;            ///< average along the path
+  double press_N = 5;                 ///< force the hand presses home with
+  double force_limit_N = 15;          ///< the hand backs off above this
+};
+
+struct DeviceSettings {
+  std::string kind = "dual_arm";      ///< dual_arm, or a name that `vps device --list` shows
+  std::string data;                   ///< parameter file; empty: the built-in dual arm
+  double scale = 1;                   ///< scene metres per device metre
+  bool has_quantised_encoders = true;
+};
+
+struct RecordSettings {
+  double csv_rate_hz = 1000;
+};
+
+struct Scene {
+  std::string file;
+  std::string name;
+  std::vector<ScenePart> parts;
+  std::vector<SceneStep> steps;
+  Vec3 gravity_W = Vec3(0, 0, -9.81);
+  Fidelity fidelity;
+  CouplingGains coupling;
+  DeviceSettings device;
+  OperatorSettings hand;
+  RecordSettings record;
+  double release_s = 2;               ///< a mounted part stays dynamic this long before it is cooked
+};
+
+/// Reads a scene file and the CAD it names. Throws LoadError with file, line and key, and what would help.
+Scene loadScene(const std::string& file);
+
+}  // namespace vps

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What viewers, recorders and the network see of one instant. Nobody else reads live state.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "vps/pose.h"
+#include "vps/wrench.h"
+
+namespace vps {
+
+enum class BodyRole {
+  Waiting,   ///< not yet in the procedure: drawn only in the overview of the finished assembly
+  InHand,    ///< coupled to the device
+  Released,  ///< let go, still dynamic
+  Mounted,   ///< cooked into the fixed field
+};
+
+struct BodySnapshot {
+  std::size_t part = 0;  ///< index into Scene::parts
+  Pose X_WP;
+  BodyRole role = BodyRole::Waiting;
+};
+
+/// A contact as a picture needs it.
+struct ContactMark {
+  Vec3 p_W = Vec3::Zero();
+  Vec3 n_W = Vec3::Zero();
+  double depth_m = 0;
+};
+
+struct Snapshot {
+  double time_s = 0;
+  int step = -1;                    ///< index into Scene::steps, -1 outside of a step
+  std::vector<BodySnapshot> bodies;
+  bool has_target = false;          ///< the translucent hint of the paper's section 5
+  std::size_t target_part = 0;
+  Pose X_WP_target;
+  bool has_hand = false;
+  Pose X_W_Proxy;                   ///< where the device's handle is, in the scene
+  Wrench F_hand_W;                  ///< force and torque on the hand
+  std::vector<ContactMark> contacts;
+};
+
+}  // namespace vps
