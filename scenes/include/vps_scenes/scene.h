@@ -29,7 +29,7 @@ struct SceneStep {
   std::vector<Pose> way_points;       ///< poses of the part that the operator passes, between start and target
   double tolerance_m = 0.1e-3;        ///< greatest distance of the part's origin from its target
   double tolerance_rad = 0.01;
-  double clearance_m = 0;             ///< radial clearance of the fit, as stated in the file; 0: not stated
+  double clearance_m = 0;             ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
   double timeout_s = 20;
 };
 
