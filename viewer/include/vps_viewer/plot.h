@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plots by gnuplot, which runs as a program of its own and is fed by a pipe.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vps_scenes/result.h"
+
+namespace vps {
+
+struct Series {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+  bool has_markers = false;
+};
+
+struct Plot {
+  std::string title, x_label, y_label;  ///< labels carry the unit: "force [N]"
+  std::vector<Series> series;
+  bool is_log_x = false, is_log_y = false;
+};
+
+/// What a plot came to. A plot is never worth a run: nothing here throws.
+struct PlotOutcome {
+  bool is_written = false;
+  std::string why_not;  ///< for a person: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
+  explicit operator bool() const { return is_written; }
+};
+
+/// Is there a gnuplot to run?
+bool hasGnuplot();
+
+/// Forces and torques on the hand over time, as figure 9 of the paper: impacts marked, phases shaded, steps
+/// named. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
+/// @param step_names by index of step; missing ones are numbered
+/// @param step       plot only this step; -1: all
+PlotOutcome plotForces(const std::vector<TraceRow>& trace, const std::string& file,
+                       const std::vector<std::string>& step_names = {}, int step = -1);
+
+/// Any lines over a common axis; file + ".png" and file + ".svg".
+PlotOutcome plotSeries(const Plot& plot, const std::string& file);
+
+/// Times at which a contact begins after at least quiet_s without one: the impacts that plotForces() marks.
+std::vector<double> impactTimes(const std::vector<TraceRow>& trace, double quiet_s = 0.01);
+
+}  // namespace vps
