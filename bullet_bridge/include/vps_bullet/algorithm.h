@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bullet's narrow phase for pairs with a VpsShape: candidates from the voxmaps, a few contacts for the
+// solver.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+
+#include <memory>
+
+#include "vps_bullet/install.h"
+
+namespace vps {
+
+struct VpsPairState;
+struct VpsContext;
+
+/// Contact of two VpsShapes, or of a VpsShape and one of Bullet's plane, box, sphere, capsule and cylinder.
+///
+///   1. query: points of each side that can touch the other within the step (speculative contact: distance
+///   may be > 0)
+///   2. reduce to contact_limit contacts that keep depth, extent and directions, preferring last step's
+///   3. correct them by the exact surfaces
+///   4. write them into as many manifolds of four as needed, each with the impulses it had last step
+///
+/// Manifold points are written directly: addContactPoint would merge neighbours nearer than the breaking
+/// threshold. gContactAddedCallback and the contact-stiffness flags are served all the same.
+/// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map).
+class VpsAlgorithm : public btActivatingCollisionAlgorithm {
+ public:
+  VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+               const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
+               bool is_closest_query);
+  ~VpsAlgorithm() override;
+
+  void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                        const btDispatcherInfo& info, btManifoldResult* result) override;
+  /// CCD never runs on concave shapes; speculative contacts take its place.
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+ private:
+  // Behind a pointer: Bullet's algorithm pool has elements of a fixed size that it does not check in Release.
+  std::unique_ptr<VpsPairState> state_;
+};
+
+}  // namespace vps

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A part as a Bullet collision shape: voxmap and pointshell for contact, triangles for rays and pictures.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+
+#include <memory>
+#include <vector>
+
+#include "vps/mesh.h"
+#include "vps/mesh_distance.h"
+#include "vps/part.h"
+#include "vps/pointshell.h"
+#include "vps/voxmap.h"
+
+namespace vps {
+
+/// A body's mass and the frame Bullet wants it in: origin at the centre of mass, axes principal.
+struct BodyFrame {
+  double mass_kg = 0;
+  Vec3 inertia_kg_m2 = Vec3::Zero();  ///< principal moments, about the axes of B
+  Pose X_PB;                          ///< body frame in the part's frame
+};
+
+/// Throws LoadError for a volume or density that is not positive (an open or inside-out mesh gives such).
+BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
+
+/// The exact surface of one part in the models' frame M.
+struct VpsSurface {
+  std::shared_ptr<const MeshDistance> distance;
+  Pose X_MP;
+};
+
+/// What a shape is made of, all in one frame M. Any may be missing: without a map others cannot be tested
+/// against it, without a shell it cannot be tested against others, without triangles rays miss it.
+struct VpsModels {
+  std::shared_ptr<const VoxMap> map;
+  std::shared_ptr<const PointShell> shell;
+  std::shared_ptr<const Mesh> mesh;
+  /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts;
+  /// these correct the distance and normal of the few that reach the solver, which removes the field's
+  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: the field's word is taken.
+  std::vector<VpsSurface> surfaces;
+};
+
+/// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
+VpsModels makeModels(const Part& part);
+
+/// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
+/// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;
+/// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. May be dynamic, unlike Bullet's mesh
+/// shapes. Shared by any number of bodies. Margin is 0 and scale 1; setting others has no effect and says so
+/// once.
+class VpsShape : public btConcaveShape {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  /// @param X_SM  the models' frame in the shape's; for a dynamic body of a part it is
+  /// BodyFrame::X_PB.inverse().
+  explicit VpsShape(VpsModels models, const Pose& X_SM = {});
+  ~VpsShape() override;
+
+  /// Replaces the models (a cooked body that got one more part). Only between steps; if the box grew, follow
+  /// it with btCollisionWorld::updateSingleAabb for each static body of this shape.
+  void setModels(VpsModels models);
+  [[nodiscard]] const VpsModels& models() const { return models_; }
+  [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
+  /// Grows with every setModels, so that nobody keeps an impulse of a point that is gone.
+  [[nodiscard]] unsigned revision() const { return revision_; }
+  /// Box of all models in the shape's frame.
+  [[nodiscard]] const Box& bounds() const { return bounds_S_; }
+
+  void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
+  /// Of the solid mesh about the shape's origin, its diagonal (exact when X_SM comes from makeBodyFrame).
+  void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
+                           const btVector3& max) const override;
+  void setLocalScaling(const btVector3& scaling) override;
+  const btVector3& getLocalScaling() const override;
+  void setMargin(btScalar margin) override;
+  btScalar getMargin() const override { return 0; }
+  const char* getName() const override { return "VpsShape"; }
+
+ private:
+  class TriangleTree;
+  VpsModels models_;
+  Pose X_SM_;
+  Box bounds_S_;
+  unsigned revision_ = 0;
+  std::unique_ptr<const TriangleTree> triangles_;
+};
+
+}  // namespace vps
