@@ -10,6 +10,7 @@ enum class Status {
   Truncated,   ///< a buffer was full; the answer is valid but incomplete, and a counter says by how much
   BeyondBand,  ///< everything is farther than the narrow band; distances are bounds
   Fault,       ///< the device or peer failed; zero wrench until re-armed
+  Singular,    ///< a mechanism stands where no answer exists; the answer is zero
 };
 
 inline const char* toText(Status status) {
@@ -19,6 +20,7 @@ inline const char* toText(Status status) {
     case Status::Truncated: return "truncated";
     case Status::BeyondBand: return "beyond band";
     case Status::Fault: return "fault";
+    case Status::Singular: return "singular";
   }
   return "unknown";
 }

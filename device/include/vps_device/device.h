@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What every haptic device is to us: a handle whose pose is read and on which a wrench is set.
+#pragma once
+
+#include <string_view>
+
+#include "vps/pose.h"
+#include "vps/status.h"
+#include "vps/wrench.h"
+
+namespace vps {
+
+/// The handle H in the device's base frame D at one instant. V_DH: velocity of H's origin, in D.
+struct DeviceSample {
+  Pose X_DH;
+  Twist V_DH;
+  double time_s = 0;
+  Status status = Status::Ok;  ///< anything but Ok: do not use the pose
+};
+
+/// What a device can do; the coupling's gains follow from it. Zero means not known.
+struct DeviceLimits {
+  double continuous_force_N = 0;
+  double peak_force_N = 0;
+  double continuous_torque_Nm = 0;
+  double peak_torque_Nm = 0;
+  Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
+  Vec3 workspace_max_D = Vec3::Zero();
+  double rate_hz = 1000;        ///< read-write cycles per second
+  double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, any direction
+  double damping_Nms_per_rad = 0;
+  double coulomb_N = 0;  ///< least dry friction over the workspace
+  double coulomb_Nm = 0;
+  double resolution_m = 0;  ///< greatest error of a position read
+  double resolution_rad = 0;
+};
+
+/// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  /// The newest pose. Status other than Ok when the device is lost or singular.
+  virtual DeviceSample read() noexcept = 0;
+
+  /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates it by itself,
+  /// keeping its direction; a wrench that is not finite counts as zero.
+  virtual void write(const Wrench& F_Ho_D) noexcept = 0;
+
+  [[nodiscard]] virtual DeviceLimits limits() const noexcept = 0;
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+
+ protected:
+  Device() = default;
+  Device(const Device&) = default;
+  Device& operator=(const Device&) = default;
+};
+
+}  // namespace vps

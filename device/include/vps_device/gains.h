@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coupling gains from what the device is and how fast the loop runs.
+#pragma once
+
+#include "vps/coupling_law.h"
+#include "vps_device/device.h"
+
+namespace vps {
+
+struct CouplingTiming {
+  double haptic_rate_hz = 1000;
+  double physics_rate_hz = 1000;  ///< the part's state is held for one step
+  double delay_s = 0;             ///< transport on top: network, driver
+  double scale = 1;               ///< scene metres per device metre
+  double force_scale = 1;         ///< device newtons per scene newton
+};
+
+/// Total delay t_d [s] that a moving part adds: transport and half of the physics hold, plus half of a haptic
+/// period when the physics runs slower (its step is then seen late).
+double couplingDelay_s(const CouplingTiming& timing) noexcept;
+
+/// The stiffest gains that keep the sampled coupling passive on this device, with a margin:
+///   B = b / 5,   K = 0.8 min((b - B) / (T/2 + t_d), 2 b / T, 2 f_c / D)
+/// per kind of motion, springs limited to the device's peak. Translated into the scene by the scales.
+/// Source: [Colgate and Schenkel 1997] with t_d as in DESIGN section 7; [Abbott and Okamura 2005] for f_c and
+/// D. Terms whose device number is not known (zero) drop out.
+CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept;
+
+}  // namespace vps

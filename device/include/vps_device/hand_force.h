@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a hand does to a handle: an impedance about an equilibrium, so that a plant can integrate it
+// implicitly.
+#pragma once
+
+#include "vps/pose.h"
+#include "vps/wrench.h"
+
+namespace vps {
+
+/// Wrench of the hand on the handle about the handle's origin, in frame A (W from an operator, D for a
+/// device):
+///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same with rotation vectors + F.tau,
+/// and the hand's own inertia moves with the handle. k and b symmetric, not negative. Default: no hand.
+struct HandForce {
+  Pose X_eq;  ///< where the hand wants the handle
+  Twist V_eq;
+  Mat3 k_N_per_m = Mat3::Zero();
+  Mat3 b_Ns_per_m = Mat3::Zero();
+  Mat3 k_Nm_per_rad = Mat3::Zero();
+  Mat3 b_Nms_per_rad = Mat3::Zero();
+  Wrench F;            ///< feed-forward
+  double mass_kg = 0;  ///< of hand and forearm, as felt at the handle; its weight is the person's affair
+  double inertia_kgm2 = 0;
+};
+
+/// The wrench of `hand` on a handle at X with velocity V, all in the hand's frame.
+Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept;
+
+}  // namespace vps

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One haptic tick: device -> proxy -> coupling -> safety -> device, and the energy that passes the hand.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vps/coupling_law.h"
+#include "vps_device/device.h"
+#include "vps_device/hand_force.h"
+#include "vps_device/safety.h"
+
+namespace vps {
+
+/// How the device's space lies in the scene: p_W = X_WD (scale p_D). Forces on the hand are force_scale times
+/// the scene's. Powers then differ by scale / force_scale; the ledger is kept at the hand.
+struct WorkspaceMap {
+  Pose X_WD;
+  double scale = 1;        ///< scene metres per device metre, > 0
+  double force_scale = 1;  ///< device newtons per scene newton, > 0
+
+  [[nodiscard]] Pose toScene(const Pose& X_DH) const noexcept;
+  [[nodiscard]] Pose toDevice(const Pose& X_WH) const noexcept;
+  [[nodiscard]] Twist toScene(const Twist& V_D) const noexcept;
+  [[nodiscard]] Twist toDevice(const Twist& V_W) const noexcept;
+  [[nodiscard]] Wrench toScene(const Wrench& F_D) const noexcept;
+  [[nodiscard]] Wrench toDevice(const Wrench& F_W) const noexcept;
+};
+
+/// How the hand holds the part: the grasp frame G moves with the handle by an offset that is fixed when
+/// grasping, so that grasping anywhere, at any attitude, gives no force. Handle turns turn G about its own
+/// origin:
+///   p_WG = p_WH + offset_W,   R_WG = R_WH R_HG,   hence equal twists, and wrenches pass unchanged.
+struct Grasp {
+  Vec3 offset_W = Vec3::Zero();
+  Mat3 R_HG = Mat3::Identity();
+
+  static Grasp between(const Pose& X_WH, const Pose& X_WG) noexcept;
+  [[nodiscard]] Pose toGrasp(const Pose& X_WH) const noexcept;
+  [[nodiscard]] Pose toHandle(const Pose& X_WG) const noexcept;
+};
+
+/// Energy at the hand [J]. The device's work on the hand is held force times handle displacement.
+struct HandLedger {
+  double to_hand_J = 0;     ///< sum of the positive works
+  double from_hand_J = 0;   ///< sum of the negative works, as a positive number
+  double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
+  double injected_J =
+      0;  ///< greatest over time of: net work - dissipation - fall in stored energy - actuator work
+  double balance_J = 0;  ///< the same, now
+};
+
+struct LoopSettings {
+  CouplingGains gains;
+  WorkspaceMap map;
+  SafetyLimits safety;
+  double period_s = 1e-3;
+  bool extrapolates_part =
+      false;  ///< advance the part by its velocity since its time stamp, up to hold_limit_s
+  double hold_limit_s = 2e-3;
+  double injected_bound_J =
+      1e-3;  ///< above this the passivity controller adds damping. assumed: 5 N over 0.2 mm
+  double passivity_damping_Ns_per_m = 0;  ///< at most b - K T/2; see deriveGains
+  double passivity_damping_Nms_per_rad = 0;
+};
+
+/// What one tick did.
+struct TickReport {
+  double time_s = 0;
+  Status status = Status::Ok;
+  Pose X_WG;  ///< proxy
+  Twist V_WG;
+  Wrench F_hand_W;  ///< on the hand, after safety, in W about the handle's origin
+  Wrench F_hand_D;  ///< the same as written to the device
+};
+
+/// Owned by the haptic thread (or the lockstep driver). tick() never throws, allocates, locks or waits.
+class HapticLoop {
+ public:
+  /// device and port outlive the loop.
+  HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings);
+
+  /// Takes hold of a part whose grasp frame is at X_WG now: no force arises by it. The physics side must
+  /// publish is_coupled on the port before any force flows.
+  void grasp(const Pose& X_WG) noexcept;
+  /// Lets go: the proxy stays published, uncoupled.
+  void release() noexcept;
+  /// Clears a safety fault and, if a part is held, re-grasps it where the physics side last saw it.
+  void rearm() noexcept;
+
+  /// One tick. Status of the device, or Fault while safety holds the force at zero.
+  const TickReport& tick() noexcept;
+
+  /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
+  /// put in by others than the hand so far. Call once per physics step; from the loop's thread. scale-free:
+  /// in scene joules.
+  void noteStored(double stored_J, double actuator_J) noexcept;
+
+  [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
+  [[nodiscard]] const TickReport& last() const noexcept { return report_; }
+  [[nodiscard]] const HandLedger& ledger() const noexcept { return ledger_; }
+  [[nodiscard]] const SafetyState& safety() const noexcept { return guard_.state(); }
+  [[nodiscard]] const LoopSettings& settings() const noexcept { return settings_; }
+  /// Ticks that ended with each Status, indexed by its value.
+  [[nodiscard]] std::uint64_t count(Status status) const noexcept;
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
+
+  /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D: what
+  /// joins a VirtualOperator to a SimulatedDualArm.
+  [[nodiscard]] Pose toGrasp(const Pose& X_DH) const noexcept;
+  [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
+
+ private:
+  [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
+  void account(const DeviceSample& sample) noexcept;
+
+  static constexpr std::size_t kStatusCount = 8;
+
+  Device* device_;
+  CouplingPort* port_;
+  LoopSettings settings_;
+  DeviceLimits limits_;
+  SafetyGuard guard_;
+  Grasp grasp_;
+  bool is_holding_ = false;
+  TickReport report_;
+  HandLedger ledger_;
+  Pose X_DH_before_;
+  bool has_before_ = false;
+  Wrench F_held_D_;
+  double net_J_ = 0, stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0;
+  bool has_stored_ = false;
+  std::uint64_t ticks_ = 0;
+  std::array<std::uint64_t, kStatusCount> counts_{};
+};
+
+}  // namespace vps

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The last word before hardware: nothing passes that is not finite, too strong, too sudden, or from a lost
+// device.
+#pragma once
+
+#include <cstdint>
+
+#include "vps_device/device.h"
+
+namespace vps {
+
+struct SafetyLimits {
+  double force_N = 30;
+  double torque_Nm = 2.5;
+  double slew_N_per_s =
+      15000;  ///< assumed: full force in 2 ms; a coupling of 3 kN/m struck at 1 m/s needs a fifth
+  double slew_Nm_per_s = 1250;
+  double jump_m = 0.02;  ///< greatest step between samples. assumed: 20 m/s at 1 kHz is no hand
+  double jump_rad = 0.3;
+  double rearm_s = 0.2;  ///< force returns over this time after re-arming. assumed: slower than a startle
+};
+
+enum class SafetyFault { None, BadWrench, BadPose, Jump, DeviceLost };
+const char* toText(SafetyFault fault) noexcept;
+
+struct SafetyState {
+  SafetyFault fault = SafetyFault::None;  ///< latched until rearm()
+  std::uint64_t faults = 0;               ///< how often it tripped
+  std::uint64_t limited = 0;              ///< ticks with force or torque cut back
+  std::uint64_t slewed = 0;               ///< ticks with the change cut back
+};
+
+class SafetyGuard {
+ public:
+  explicit SafetyGuard(const SafetyLimits& limits = {}) : limits_(limits) {}
+
+  /// What may go to the motors: finite, |f| and |tau| within limits (both scaled alike, keeping direction),
+  /// changing no faster than the slew limits. After a fault: zero until rearm(). A fault drops force at once.
+  Wrench guard(const DeviceSample& sample, const Wrench& wanted, double dt_s) noexcept;
+
+  /// Clears a fault; force returns over rearm_s.
+  void rearm() noexcept;
+
+  [[nodiscard]] const SafetyState& state() const noexcept { return state_; }
+
+ private:
+  void trip(SafetyFault fault) noexcept;
+
+  SafetyLimits limits_;
+  SafetyState state_;
+  Wrench last_;
+  Pose X_last_;
+  bool has_pose_ = false;
+  double ramp_ = 1;
+};
+
+}  // namespace vps
