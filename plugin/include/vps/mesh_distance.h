@@ -43,6 +43,9 @@ class MeshDistance {
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
 
  private:
+  void computeNormals();
+  void buildTree();
+
   struct Node {
     Vec3 min, max;
     std::uint32_t first = 0;  ///< first triangle in order_, or index of the left child
