@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/coupling_law.h"
+
+namespace vps {
+namespace {
+
+/// v, shortened to at most `limit`, its direction kept: the pull never turns because it is strong.
+Vec3 limited(const Vec3& v, double limit) {
+  const double length = v.norm();
+  return length > limit ? Vec3(v * (limit / length)) : v;
+}
+
+}  // namespace
+
+Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
+                      const CouplingState& part) noexcept {
+  if (!proxy.X_W.isFinite() || !part.X_W.isFinite()) return {};  // a rotation vector of NaN has no meaning
+  const Vec3 p_error_W = proxy.X_W.p - part.X_W.p;
+  const Vec3 r_error_W = rotationVector(proxy.X_W.R * part.X_W.R.transpose());
+
+  Wrench F_part_W;
+  F_part_W.f =
+      limited(gains.k_N_per_m * p_error_W, gains.max_force_N) + gains.b_Ns_per_m * (proxy.V_W.v - part.V_W.v);
+  F_part_W.tau = limited(gains.k_Nm_per_rad * r_error_W, gains.max_torque_Nm) +
+                 gains.b_Nms_per_rad * (proxy.V_W.w - part.V_W.w);
+  // One look at the result catches velocities and gains that are not finite, and overflow.
+  return F_part_W.isFinite() ? F_part_W : Wrench{};
+}
+
+}  // namespace vps

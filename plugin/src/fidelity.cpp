@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/fidelity.h"
+
+#include <string>
+
+#include "vps/load_error.h"
+
+namespace vps {
+
+// All values are assumed: the paper gives none of these knobs. The grid step is half the point spacing, so
+// that a point's patch covers a few cells; `vps trade` measures what a scene really needs.
+Fidelity fidelityPreset(std::string_view name) {
+  Fidelity f;  // "normal": fits of tens of micrometres on parts of a few centimetres
+  if (name == "normal") return f;
+  if (name == "fast") {  // to look and move around: a quarter of the points, one way of testing
+    f.voxel_m = 0.5e-3;
+    f.spacing_m = 1e-3;
+    f.sides = Sides::One;
+    f.contact_limit = 24;
+    f.solver_iterations = 50;
+    return f;
+  }
+  if (name == "fine") {  // tight fits: a cell small against the curvature of a 10 mm bore (error h^2 / 8r)
+    f.voxel_m = 0.125e-3;
+    f.spacing_m = 0.25e-3;
+    f.contact_limit = 256;
+    f.solver_iterations = 200;
+    return f;
+  }
+  throw LoadError("", "", "fidelity '" + std::string(name) + "' is not known; use fast, normal or fine");
+}
+
+}  // namespace vps
