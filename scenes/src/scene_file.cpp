@@ -113,19 +113,6 @@ bool isMissingReader(const LoadError& error) {
   return std::string_view(error.what()).find("Open CASCADE") != std::string_view::npos;
 }
 
-/// Meshes of a folder in order of their names, for builds without a CAD kernel.
-std::vector<std::string> meshesIn(const std::string& folder) {
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string extension = entry.path().extension().string();
-    for (const char* mesh : {".stl", ".obj", ".ply", ".iv", ".wrl", ".glb", ".gltf"})
-      if (extension == mesh) files.push_back(entry.path().filename().string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 class SceneReader {
  public:
   SceneReader(const toml::table& root, const std::string& file)
@@ -196,10 +183,7 @@ class SceneReader {
       if (!isMissingReader(error)) throw;
       std::fprintf(stderr, "%s; using %s\n", error.what(), fallback.c_str());
     }
-    if (!fs::is_directory(path(fallback))) return addCad("cad_fallback", fallback);
-    const std::vector<std::string> meshes = meshesIn(path(fallback));
-    if (meshes.empty()) top_.fail("cad_fallback", "is '" + fallback + "', a folder without meshes");
-    for (const std::string& mesh : meshes) addCad("cad_fallback", (fs::path(fallback) / mesh).string());
+    addCad("cad_fallback", fallback);
   }
 
   void addCad(std::string_view key, const std::string& file) {
