@@ -5,8 +5,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .ci/install
-[ -f build/release/build.ninja ] || cmake --preset release -DVPS_TESTS=OFF >build-log.tmp 2>&1 ||
-  { cat build-log.tmp; rm -f build-log.tmp; exit 2; }
-rm -f build-log.tmp
+[ -f build/release/build.ninja ] || cmake --preset release -DVPS_TESTS=OFF >/dev/null
 cmake --build build/release --target vps_program
 exec build/release/vps assemble scenes/bearing_block/scene.toml --out out/demo "$@"

@@ -12,15 +12,15 @@ namespace vps {
 
 struct AssembleOptions {
   Progress progress;
-  bool keep_going = true;                    ///< place a part that failed at its target and go on with the next step
-  const std::atomic<bool>* stop = nullptr;   ///< set it to end early; the result then says "stopped"
+  bool keep_going = true;  ///< place a part that failed at its target and go on with the next step
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end early; the result then says "stopped"
 };
 
-/// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's handle, the
-/// handle's proxy pulls the part, contact decides where it goes; it is released, watched for scene.release_s, and
-/// cooked into the fixed voxmap. Simulated time on one thread: the same scene gives the same bits but for wall times.
-/// Throws LoadError for a scene that cannot be run (a part that starts inside another, a mesh that cannot be
-/// modelled). A step that does not reach its target is a result, not an error.
+/// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's
+/// handle, the handle's proxy pulls the part, contact decides where it goes; it is released, watched for
+/// scene.release_s, and cooked into the fixed voxmap. Simulated time on one thread: the same scene gives the
+/// same bits but for wall times. Throws LoadError for a scene that cannot be run (a part that starts inside
+/// another, a mesh that cannot be modelled). A step that does not reach its target is a result, not an error.
 AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
 }  // namespace vps

@@ -13,31 +13,33 @@
 namespace vps {
 
 struct ImportSettings {
-  /// Metres per file unit, for formats that do not say (STL, OBJ, PLY, ...); empty: such a file is refused, with
-  /// words. Formats that know their unit (STEP, IGES, glTF, Inventor with Units) ignore it.
+  /// Metres per file unit, for formats that do not say (STL, OBJ, PLY, ...); empty: such a file is refused,
+  /// with words. Formats that know their unit (STEP, IGES, glTF, Inventor with Units) ignore it.
   std::optional<double> unit_m;
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
-  double angle_rad = 0.35;            ///< greatest turn between neighbouring triangles of a curved face
+  double angle_rad = 0.35;  ///< greatest turn between neighbouring triangles of a curved face
 };
 
 struct ImportedPart {
-  std::string name;                   ///< unique within the file; "<name>_2" and so on where it repeats
-  Mesh mesh;                          ///< welded, in the part's own frame, metres
-  Pose X_WP;                          ///< pose in the assembly
+  std::string name;  ///< unique within the file; "<name>_2" and so on where it repeats
+  Mesh mesh;         ///< welded, in the part's own frame, metres
+  Pose X_WP;         ///< pose in the assembly
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
 };
 
 struct ImportedCad {
   std::string file;
-  std::string format;                 ///< "STEP", "STL", ...
+  std::string format;  ///< "STEP", "STL", ...
   std::vector<ImportedPart> parts;
   std::vector<std::string> warnings;  ///< open edges, flipped facets and the like, one line each
 };
 
 /// Reads STEP and IGES (Open CASCADE), .iv and .wrl (Coin), and whatever assimp reads. Format by content and
-/// extension. Throws LoadError: file missing, cut, empty, unit unknown, format not built in (says which package).
-ImportedCad importCad(const std::string& file, const ImportSettings& settings = {}, const Progress& progress = {});
+/// extension. Throws LoadError: file missing, cut, empty, unit unknown, format not built in (says which
+/// package).
+ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
+                      const Progress& progress = {});
 
 /// Parses "mm", "cm", "m", "um", "inch" to metres per unit; empty if it is none of them.
 std::optional<double> unitFromText(const std::string& text);

@@ -14,25 +14,25 @@ namespace vps {
 /// Wall-clock statistics of something that repeats [microseconds].
 struct TickTimes {
   std::uint64_t count = 0;
-  std::uint64_t missed = 0;   ///< took longer than the period
+  std::uint64_t missed = 0;  ///< took longer than the period
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
 };
 
 struct StepResult {
   std::string part;
   bool completed = false;
-  std::string why_not;              ///< empty when completed
+  std::string why_not;  ///< empty when completed
   double start_s = 0, duration_s = 0;
-  double max_penetration_m = 0;     ///< by exact mesh distance, over the step and the rest after it
+  double max_penetration_m = 0;  ///< by exact mesh distance, over the step and the rest after it
   std::string deepest_against;
   Vec3 deepest_at_W = Vec3::Zero();
   double deepest_time_s = 0;
-  double penetration_limit_m = 0;   ///< min(10 um, clearance / 4)
-  double field_penetration_m = 0;   ///< the same by the voxmap, for comparison
-  double peak_force_N = 0, peak_torque_Nm = 0;   ///< on the hand
+  double penetration_limit_m = 0;               ///< min(10 um, clearance / 4)
+  double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
+  double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
   double final_error_m = 0, final_error_rad = 0;
-  double rest_drift_m = 0;          ///< greatest displacement of any point of the part from 0 to 2 s after release
+  double rest_drift_m = 0;  ///< greatest displacement of any point of the part from 0 to 2 s after release
   double cook_wall_s = 0;
 };
 
@@ -40,17 +40,17 @@ struct StepResult {
 struct TraceRow {
   double time_s = 0;
   int step = -1;
-  int phase = 0;                    ///< 0 reach, 1 insert, 2 press, 3 rest
-  Wrench F_hand_W;                  ///< on the hand
-  Pose X_WP;                        ///< part in hand
+  int phase = 0;    ///< 0 reach, 1 insert, 2 press, 3 rest
+  Wrench F_hand_W;  ///< on the hand
+  Pose X_WP;        ///< part in hand
   Pose X_W_Proxy;
   int contacts = 0;
-  double depth_m = 0;               ///< by the field
+  double depth_m = 0;  ///< by the field
 };
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;            ///< DESIGN.md section 7
+  double injected_J = 0;  ///< DESIGN.md section 7
 };
 
 struct ModelledCost {

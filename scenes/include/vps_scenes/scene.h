@@ -26,27 +26,27 @@ struct SceneStep {
   std::size_t part = 0;
   Pose X_WP_start;
   Pose X_WP_target;
-  std::vector<Pose> way_points;       ///< poses of the part that the operator passes, between start and target
-  double tolerance_m = 0.1e-3;        ///< greatest distance of the part's origin from its target
+  std::vector<Pose> way_points;  ///< poses of the part that the operator passes, between start and target
+  double tolerance_m = 0.1e-3;   ///< greatest distance of the part's origin from its target
   double tolerance_rad = 0.01;
-  double clearance_m = 0;             ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
+  double clearance_m = 0;  ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
   double timeout_s = 20;
 };
 
 /// The hand and its habits. Values and sources: device/data/operator.toml.
 struct OperatorSettings {
   std::uint64_t seed = 1;
-  double aim_error_m = 0.3e-3;        ///< standard deviation of the aim across the path
+  double aim_error_m = 0.3e-3;  ///< standard deviation of the aim across the path
   double aim_error_rad = 0.005;
-  double speed_m_s = 0.05;            ///< average along the path
-  double press_N = 5;                 ///< force the hand presses home with
-  double force_limit_N = 15;          ///< the hand backs off above this
+  double speed_m_s = 0.05;    ///< average along the path
+  double press_N = 5;         ///< force the hand presses home with
+  double force_limit_N = 15;  ///< the hand backs off above this
 };
 
 struct DeviceSettings {
-  std::string kind = "dual_arm";      ///< dual_arm, or a name that `vps device --list` shows
-  std::string data;                   ///< parameter file; empty: the built-in dual arm
-  double scale = 1;                   ///< scene metres per device metre
+  std::string kind = "dual_arm";  ///< dual_arm, or a name that `vps device --list` shows
+  std::string data;               ///< parameter file; empty: the built-in dual arm
+  double scale = 1;               ///< scene metres per device metre
   bool has_quantised_encoders = true;
 };
 
@@ -61,11 +61,13 @@ struct Scene {
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
+  bool has_coupling =
+      false;  ///< `coupling` is the file's; otherwise the device's numbers decide (deriveGains)
   CouplingGains coupling;
   DeviceSettings device;
   OperatorSettings hand;
   RecordSettings record;
-  double release_s = 2;               ///< a mounted part stays dynamic this long before it is cooked
+  double release_s = 2;  ///< a mounted part stays dynamic this long before it is cooked
 };
 
 /// Reads a scene file and the CAD it names. Throws LoadError with file, line and key, and what would help.

@@ -15,7 +15,7 @@ namespace vps {
 struct BodyState {
   std::string name;
   Pose X_WP;
-  Twist V_WP_W;   ///< of the part's origin, in W
+  Twist V_WP_W;  ///< of the part's origin, in W
 };
 
 struct SimulateOptions {
@@ -26,9 +26,9 @@ struct SimulateOptions {
 
 struct SimulateResult {
   std::vector<BodyState> bodies;
-  double max_penetration_m = 0;   ///< deepest contact of the run, by the voxmaps
-  double kinetic_energy_J = 0;    ///< at the end
-  TickTimes step, contact_step;   ///< all steps; those with contact
+  double max_penetration_m = 0;  ///< deepest contact of the run, by the voxmaps
+  double kinetic_energy_J = 0;   ///< at the end
+  TickTimes step, contact_step;  ///< all steps; those with contact
   ModelledCost modelled;
   double build_wall_s = 0;
 };

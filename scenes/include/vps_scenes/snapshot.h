@@ -32,14 +32,14 @@ struct ContactMark {
 
 struct Snapshot {
   double time_s = 0;
-  int step = -1;                    ///< index into Scene::steps, -1 outside of a step
+  int step = -1;  ///< index into Scene::steps, -1 outside of a step
   std::vector<BodySnapshot> bodies;
-  bool has_target = false;          ///< the translucent hint of the paper's section 5
+  bool has_target = false;  ///< the translucent hint of the paper's section 5
   std::size_t target_part = 0;
   Pose X_WP_target;
   bool has_hand = false;
-  Pose X_W_Proxy;                   ///< where the device's handle is, in the scene
-  Wrench F_hand_W;                  ///< force and torque on the hand
+  Pose X_W_Proxy;   ///< where the device's handle is, in the scene
+  Wrench F_hand_W;  ///< force and torque on the hand
   std::vector<ContactMark> contacts;
 };
 

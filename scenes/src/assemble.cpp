@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The procedure of the paper's section 5, step by step, in lockstep.
+#include "vps_scenes/assemble.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "contact_events.h"
+#include "exact_fit.h"
+#include "fit_record.h"
+#include "scene_models.h"
+#include "simulation.h"
+#include "tick_times.h"
+#include "vps/load_error.h"
+#include "vps_device/gains.h"
+#include "vps_device/loop.h"
+#include "vps_device/operator.h"
+#include "vps_device/simulated_dual_arm.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kPenetrationLimit_m = 10e-6;
+constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
+constexpr std::size_t kJudgeStride = 10;
+constexpr double kReturn_s = 1.5;  ///< the hand's way back to the next part
+
+double wallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
+  OperatorHabits habits;
+  habits.seed = hand.seed + step;  // each step aims anew, and does not depend on how long the last one took
+  habits.aim_error_m = hand.aim_error_m;
+  habits.aim_error_rad = hand.aim_error_rad;
+  habits.speed_m_s = hand.speed_m_s;
+  habits.press_N = hand.press_N;
+  habits.force_limit_N = hand.force_limit_N;
+  return habits;
+}
+
+SimulatedDualArmSettings plantSettings(const Scene& scene) {
+  SimulatedDualArmSettings settings;
+  settings.has_quantised_encoders = scene.device.has_quantised_encoders;
+  settings.rate_hz = scene.fidelity.haptic_rate_hz;
+  return settings;
+}
+
+LoopSettings loopSettings(const Scene& scene, const Device& device) {
+  const DeviceLimits limits = device.limits();
+  LoopSettings settings;
+  CouplingTiming timing;
+  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
+  timing.scale = scene.device.scale;
+  settings.gains = scene.has_coupling ? scene.coupling : deriveGains(limits, timing);
+  settings.map.scale = scene.device.scale;
+  settings.safety.force_N = limits.peak_force_N;
+  settings.safety.torque_Nm = limits.peak_torque_Nm;
+  settings.period_s = 1 / scene.fidelity.haptic_rate_hz;
+  return settings;
+}
+
+int ticksPerStep(const Scene& scene) {
+  const double ratio = scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz;
+  const int ticks = static_cast<int>(std::lround(ratio));
+  if (ticks < 1 || std::abs(ratio - ticks) > 1e-9)
+    throw LoadError(scene.file, "",
+                    "the haptic rate is not a whole multiple of the physics rate; choose, say, 1000 Hz "
+                    "for both");
+  return ticks;
+}
+
+/// Greatest displacement of any point of a box that moves from X_a to X_b: a corner's, since it is convex in
+/// the point.
+double greatestDisplacement(const Box& box, const Pose& X_a, const Pose& X_b) {
+  double greatest_m = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p((corner & 1) ? box.max.x() : box.min.x(), (corner & 2) ? box.max.y() : box.min.y(),
+                 (corner & 4) ? box.max.z() : box.min.z());
+    greatest_m = std::max(greatest_m, (X_b * p - X_a * p).norm());
+  }
+  return greatest_m;
+}
+
+/// The energy of the coupling's springs, up to their limits (beyond one the spring's force is constant).
+double springEnergy(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
+  const auto stored = [](double k, double stretch, double limit) {
+    const double elastic = std::min(stretch, limit / k);
+    return 0.5 * k * elastic * elastic + limit * (stretch - elastic);
+  };
+  if (!proxy.is_coupled || !part.is_coupled) return 0;
+  return stored(gains.k_N_per_m, (proxy.X_W.p - part.X_W.p).norm(), gains.max_force_N) +
+         stored(gains.k_Nm_per_rad, rotationVector(proxy.X_W.R * part.X_W.R.transpose()).norm(),
+                gains.max_torque_Nm);
+}
+
+/// One run of a procedure. Lives as long as the run.
+class Procedure {
+ public:
+  Procedure(Scene& scene, const AssembleOptions& options)
+      : scene_(scene),
+        options_(options),
+        simulation_(scene),
+        plant_(plantSettings(scene)),
+        loop_(plant_, port_, loopSettings(scene, plant_)),
+        ticks_per_step_(ticksPerStep(scene)),
+        dt_s_(1 / scene.fidelity.physics_rate_hz),
+        haptic_clock_(1 / scene.fidelity.haptic_rate_hz),
+        physics_clock_(dt_s_),
+        poses_(scene.parts.size()),
+        roles_(scene.parts.size(), BodyRole::Waiting) {
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) poses_[i] = scene.parts[i].X_WP;
+  }
+
+  AssembleResult run();
+
+ private:
+  struct InHand {
+    std::size_t part = 0;
+    Pose X_PG;
+    Pose X_WP_target;
+    double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
+  };
+
+  void mountFixed();
+  void runStep(std::size_t index);
+  void take(const SceneStep& step);
+  void letGo();
+  void rest(StepResult& result, const SceneStep& step);
+  void judgeStep(StepResult& result, const SceneStep& step);
+  void mount(std::size_t part);
+
+  /// One physics step with its haptic ticks. `hand` says what the hand does, given the time since the last
+  /// tick.
+  template <typename Hand>
+  void advance(const Hand& hand);
+  void record(int phase);
+  [[nodiscard]] FitBody fitBody(std::size_t part) const;
+  [[nodiscard]] Snapshot snapshot() const;
+  void tell(std::size_t index, double share) const;
+  [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
+
+  Scene& scene_;
+  const AssembleOptions& options_;
+  Simulation simulation_;
+  SimulatedDualArm plant_;
+  CouplingPort port_;
+  HapticLoop loop_;
+  ExactFit fit_;
+  int ticks_per_step_;
+  double dt_s_;
+  double time_s_ = 0;
+  TickClock haptic_clock_, physics_clock_;
+  std::vector<Pose> poses_;
+  std::vector<BodyRole> roles_;
+  InHand held_;
+  bool is_holding_ = false;
+  int step_ = -1;
+  double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
+  ContactEvents events_;
+  std::vector<FitSample> samples_;
+  double peak_contact_N_ = 0;
+  AssembleResult result_;
+};
+
+AssembleResult Procedure::run() {
+  const double begun_s = wallSeconds();
+  mountFixed();
+  result_.completed = true;
+  for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
+    runStep(i);
+    if (result_.steps.back().completed) continue;
+    result_.completed = false;
+    if (!options_.keep_going) break;
+  }
+  if (result_.steps.size() < scene_.steps.size()) result_.completed = false;
+  step_ = -1;
+  result_.finished = snapshot();
+  result_.haptic = haptic_clock_.summary();
+  result_.physics = physics_clock_.summary();
+  const HandLedger& ledger = loop_.ledger();
+  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
+  result_.modelled = modelledCost(scene_);
+  result_.modelled.bytes += simulation_.fixedBytes();
+  if (simulation_.hasFixed()) {
+    ++result_.modelled.voxmaps;
+    ++result_.modelled.pointshells;
+  }
+  result_.simulated_s = time_s_;
+  result_.run_wall_s = wallSeconds() - begun_s;
+  return std::move(result_);
+}
+
+void Procedure::mountFixed() {
+  for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+    if (scene_.parts[i].is_fixed) mount(i);
+}
+
+void Procedure::mount(std::size_t part) {
+  fit_.mount(fitBody(part), poses_[part]);
+  simulation_.mount(part, poses_[part]);
+  roles_[part] = BodyRole::Mounted;
+}
+
+FitBody Procedure::fitBody(std::size_t part) const {
+  const Part& p = scene_.parts[part].part;
+  return {p.name, p.map, p.shell, simulation_.surface(part)};
+}
+
+void Procedure::take(const SceneStep& step) {
+  const ScenePart& scene_part = scene_.parts[step.part];
+  if (!scene_part.allow_overlap) {
+    const Penetration overlap = fit_.deepest(fitBody(step.part), step.X_WP_start);
+    if (overlap.depth_m > kStartOverlap_m)
+      throw LoadError(scene_.file, scene_part.part.name,
+                      "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
+                          fit_.name(overlap.against) + "'; move its start, or say allow_overlap = true");
+  }
+  simulation_.addBody(step.part, step.X_WP_start);
+  roles_[step.part] = BodyRole::InHand;
+  held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target, 0};
+  held_.held_energy_J = simulation_.mechanicalEnergy();
+  simulation_.grasp(step.part, held_.X_PG, loop_.settings().gains);
+  loop_.grasp(step.X_WP_start * held_.X_PG);
+  is_holding_ = true;
+}
+
+void Procedure::letGo() {
+  // The ledger goes on from what is stored without the springs: letting go gives their energy to nobody.
+  stored_before_J_ += simulation_.mechanicalEnergy() - held_.held_energy_J;
+  simulation_.release();
+  loop_.release();
+  is_holding_ = false;
+  roles_[held_.part] = BodyRole::Released;
+}
+
+template <typename Hand>
+void Procedure::advance(const Hand& hand) {
+  const double tick_s = dt_s_ / ticks_per_step_;
+  for (int i = 0; i < ticks_per_step_; ++i) {
+    haptic_clock_.start();
+    loop_.tick();
+    haptic_clock_.stop();
+    plant_.step(tick_s, hand(tick_s));
+  }
+  physics_clock_.start();
+  const CouplingState& proxy = port_.proxy.read();
+  simulation_.setProxy(proxy);
+  simulation_.step(dt_s_);
+  physics_clock_.stop();
+  time_s_ += dt_s_;
+
+  poses_[held_.part] = simulation_.pose(held_.part);
+  CouplingState part = simulation_.graspState();
+  part.is_coupled = is_holding_;
+  part.time_s = time_s_;
+  port_.part.write(part);
+  if (is_holding_)
+    loop_.noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
+                         springEnergy(loop_.settings().gains, proxy, part),
+                     0);
+}
+
+void Procedure::record(int phase) {
+  const TouchState touch = simulation_.touch();
+  TraceRow row;
+  row.time_s = time_s_;
+  row.step = step_;
+  row.phase = phase;
+  row.F_hand_W = is_holding_ ? loop_.last().F_hand_W : Wrench{};
+  row.X_WP = poses_[held_.part];
+  row.X_W_Proxy = loop_.last().X_WG;
+  row.contacts = touch.contacts;
+  row.depth_m = touch.depth_m;
+  result_.trace.push_back(row);
+  samples_.push_back({time_s_, row.X_WP, touch.depth_m});
+
+  StepResult& step = result_.steps.back();
+  step.field_penetration_m = std::max(step.field_penetration_m, touch.depth_m);
+  if (!is_holding_) return;
+  step.peak_force_N = std::max(step.peak_force_N, row.F_hand_W.f.norm());
+  step.peak_torque_Nm = std::max(step.peak_torque_Nm, row.F_hand_W.tau.norm());
+  const Twist V_WP = simulation_.twist(held_.part);
+  const Vec3 v_WG = V_WP.v + V_WP.w.cross(row.X_WP.R * held_.X_PG.p);
+  events_.add(time_s_, dt_s_, touch.contacts > 0, v_WG.norm());
+  if (touch.force_N > peak_contact_N_ && phase < 2) {
+    peak_contact_N_ = touch.force_N;
+    result_.contact.back() = snapshot();
+  }
+}
+
+void Procedure::runStep(std::size_t index) {
+  const SceneStep& step = scene_.steps[index];
+  const ScenePart& scene_part = scene_.parts[step.part];
+  step_ = static_cast<int>(index);
+  StepResult& result = result_.steps.emplace_back();
+  result.part = scene_part.part.name;
+  result.start_s = time_s_;
+  result.penetration_limit_m =
+      step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
+  samples_.clear();
+  events_ = {};
+  peak_contact_N_ = 0;
+
+  poses_[step.part] = step.X_WP_start;
+  take(step);
+  result_.start.push_back(snapshot());
+  result_.contact.push_back(snapshot());
+
+  VirtualOperator hand(habitsOf(scene_.hand, index));
+  OperatorTask task;
+  task.X_WP_start = step.X_WP_start;
+  task.way_points = step.way_points;
+  task.X_WP_target = step.X_WP_target;
+  task.X_PG = held_.X_PG;
+  task.tolerance_m = step.tolerance_m;
+  task.tolerance_rad = step.tolerance_rad;
+  task.timeout_s = step.timeout_s;
+  task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
+  hand.begin(task, time_s_);
+
+  // The part is still where it was taken when the first tick looks.
+  CouplingState part = simulation_.graspState();
+  part.is_coupled = true;
+  part.time_s = time_s_;
+  port_.part.write(part);
+
+  double tick_time_s = time_s_;
+  const auto impedance = [&](double tick_s) {
+    OperatorView view;
+    view.time_s = tick_time_s;
+    view.X_WG_hand = loop_.toGrasp(plant_.truePose());
+    view.V_WG_hand = loop_.settings().map.toScene(plant_.trueTwist());
+    view.X_WP = poses_[step.part];
+    view.V_WP = simulation_.twist(step.part);
+    view.F_hand_W = loop_.last().F_hand_W;
+    tick_time_s += tick_s;
+    return loop_.toDevice(hand.step(view, tick_s));
+  };
+  const auto is_busy = [&] {
+    return hand.phase() != OperatorPhase::Done && hand.phase() != OperatorPhase::Failed;
+  };
+  while (is_busy() && !isStopped()) {
+    advance(impedance);
+    const OperatorPhase phase = hand.phase();
+    record(phase == OperatorPhase::Press || phase == OperatorPhase::Done ? 2
+           : phase == OperatorPhase::Insert                              ? 1
+                                                                         : 0);
+    tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
+  }
+  events_.close();
+  result.impacts = events_.impacts();
+  result.slides = events_.slides();
+  result.duration_s = time_s_ - result.start_s;
+  result_.end.push_back(snapshot());
+
+  letGo();
+  rest(result, step);
+  tell(index, 0.9);
+  judgeStep(result, step);
+
+  const Pose& X_WP = poses_[step.part];
+  result.final_error_m = (X_WP.p - step.X_WP_target.p).norm();
+  result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
+  const bool is_on_target =
+      result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
+  result.completed = hand.phase() == OperatorPhase::Done && is_on_target;
+  if (!result.completed)
+    result.why_not = isStopped()                           ? "stopped"
+                     : hand.phase() == OperatorPhase::Done ? "moved off its target after it was let go"
+                     : time_s_ - result.start_s > step.timeout_s
+                         ? "the hand gave up: target not reached in time"
+                         : "the hand gave up: target not reached";
+
+  simulation_.removeBody(step.part);
+  if (!result.completed)
+    poses_[step.part] = step.X_WP_target;  // so that the next step has what it is mounted on
+  const double begun_s = wallSeconds();
+  mount(step.part);
+  result.cook_wall_s = wallSeconds() - begun_s;
+}
+
+void Procedure::rest(StepResult& result, const SceneStep& step) {
+  const Box box = bounds(scene_.parts[step.part].part.mesh);
+  const Pose X_WP_released = poses_[step.part];
+
+  // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
+  // workspace.
+  Pose X_DH_back;
+  if (static_cast<std::size_t>(step_) + 1 < scene_.steps.size()) {
+    const SceneStep& next = scene_.steps[static_cast<std::size_t>(step_) + 1];
+    X_DH_back.p = -0.5 * (next.X_WP_target.p - next.X_WP_start.p) / scene_.device.scale;
+  }
+  const Pose X_DH_from = plant_.truePose();
+  const Vec3 turn_rad = rotationVector(X_DH_back.R * X_DH_from.R.transpose());
+  const OperatorHabits habits = habitsOf(scene_.hand, 0);
+  double elapsed_s = 0;
+  const auto going_back = [&](double tick_s) {
+    elapsed_s += tick_s;
+    const double share = minimumJerk(elapsed_s / kReturn_s);
+    HandForce hand;
+    hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad) * X_DH_from.R),
+                     X_DH_from.p + share * (X_DH_back.p - X_DH_from.p));
+    hand.k_N_per_m = habits.k_N_per_m * Mat3::Identity();
+    hand.b_Ns_per_m =
+        2 * habits.damping_ratio * std::sqrt(habits.k_N_per_m * habits.mass_kg) * Mat3::Identity();
+    hand.k_Nm_per_rad = habits.k_Nm_per_rad * Mat3::Identity();
+    hand.b_Nms_per_rad =
+        2 * habits.damping_ratio * std::sqrt(habits.k_Nm_per_rad * habits.inertia_kgm2) * Mat3::Identity();
+    hand.mass_kg = habits.mass_kg;
+    hand.inertia_kgm2 = habits.inertia_kgm2;
+    return hand;
+  };
+  const auto steps = static_cast<long>(std::lround(scene_.release_s / dt_s_));
+  for (long i = 0; i < steps && !isStopped(); ++i) {
+    advance(going_back);
+    record(3);
+    result.rest_drift_m =
+        std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
+  }
+}
+
+void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
+  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, kJudgeStride);
+  result.max_penetration_m = verdict.worst.depth_m;
+  result.deepest_at_W = verdict.worst.p_W;
+  result.deepest_time_s = verdict.time_s;
+  if (verdict.worst.depth_m > 0) result.deepest_against = fit_.name(verdict.worst.against);
+}
+
+Snapshot Procedure::snapshot() const {
+  Snapshot shot;
+  shot.time_s = time_s_;
+  shot.step = step_;
+  for (std::size_t i = 0; i < poses_.size(); ++i) shot.bodies.push_back({i, poses_[i], roles_[i]});
+  if (step_ >= 0) {
+    shot.has_target = true;
+    shot.target_part = held_.part;
+    shot.X_WP_target = held_.X_WP_target;
+    shot.has_hand = is_holding_;
+    shot.X_W_Proxy = loop_.last().X_WG;
+    shot.F_hand_W = loop_.last().F_hand_W;
+    simulation_.contactMarks(shot.contacts);
+  }
+  return shot;
+}
+
+void Procedure::tell(std::size_t index, double share) const {
+  if (!options_.progress) return;
+  const auto count = static_cast<double>(scene_.steps.size());
+  options_.progress("step " + std::to_string(index + 1) + " of " + std::to_string(scene_.steps.size()) +
+                        ": " + scene_.parts[held_.part].part.name,
+                    (static_cast<double>(index) + share) / count);
+}
+
+}  // namespace
+
+AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
+  if (scene.steps.empty())
+    throw LoadError(scene.file, "",
+                    "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+  const double begun_s = wallSeconds();
+  buildModels(scene, options.progress);
+  Procedure procedure(scene, options);
+  const double built_s = wallSeconds() - begun_s;
+  AssembleResult result = procedure.run();
+  result.scene = scene.name;
+  result.build_wall_s = built_s;
+  result.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  result.physics_rate_hz = scene.fidelity.physics_rate_hz;
+  return result;
+}
+
+}  // namespace vps

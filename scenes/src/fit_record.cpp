@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fit_record.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace vps {
+
+namespace {
+
+constexpr std::size_t kSuspects = 100;
+
+}  // namespace
+
+FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
+                 std::size_t stride) {
+  std::set<std::size_t> judged;
+  for (std::size_t i = 0; i < samples.size(); i += stride) judged.insert(i);
+
+  std::vector<std::size_t> by_depth(samples.size());
+  std::iota(by_depth.begin(), by_depth.end(), std::size_t{0});
+  const auto suspects = static_cast<std::ptrdiff_t>(std::min(kSuspects, samples.size()));
+  std::partial_sort(
+      by_depth.begin(), by_depth.begin() + suspects, by_depth.end(), [&](std::size_t a, std::size_t b) {
+        return samples[a].depth_m != samples[b].depth_m ? samples[a].depth_m > samples[b].depth_m : a < b;
+      });
+  judged.insert(by_depth.begin(), by_depth.begin() + suspects);
+
+  FitVerdict verdict;
+  verdict.poses_judged = judged.size();
+  for (const std::size_t i : judged) {
+    const Penetration found = fit.deepest(moving, samples[i].X_WP);
+    if (found.depth_m > verdict.worst.depth_m) {
+      verdict.worst = found;
+      verdict.time_s = samples[i].time_s;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace vps

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/simulate.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "scene_models.h"
+#include "simulation.h"
+#include "tick_times.h"
+#include "vps/load_error.h"
+
+namespace vps {
+
+SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
+  if (!(seconds > 0) || !std::isfinite(seconds))
+    throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
+  const auto begun = std::chrono::steady_clock::now();
+  buildModels(scene, options.progress);
+  Simulation simulation(scene);
+  std::vector<std::size_t> moving;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i)
+    if (scene.parts[i].is_fixed) simulation.mount(i, scene.parts[i].X_WP);
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    if (scene.parts[i].is_fixed) continue;
+    simulation.addBody(i, scene.parts[i].X_WP);
+    moving.push_back(i);
+  }
+  SimulateResult result;
+  result.build_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+
+  const double dt_s = 1 / scene.fidelity.physics_rate_hz;
+  TickClock all(dt_s), touching(dt_s);
+  const auto states = [&] {
+    std::vector<BodyState> bodies;
+    for (const std::size_t i : moving)
+      bodies.push_back({scene.parts[i].part.name, simulation.pose(i), simulation.twist(i)});
+    return bodies;
+  };
+  const auto steps = static_cast<long>(std::lround(seconds / dt_s));
+  for (long i = 0; i < steps; ++i) {
+    const auto step_begun = std::chrono::steady_clock::now();
+    simulation.step(dt_s);
+    const double us =
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - step_begun).count();
+    const TouchState touch = simulation.touch();
+    all.add(us);
+    if (touch.contacts > 0) touching.add(us);
+    result.max_penetration_m = std::max(result.max_penetration_m, touch.depth_m);
+    if (options.trace) options.trace(static_cast<double>(i + 1) * dt_s, states(), touch.depth_m);
+    if (options.progress)
+      options.progress("simulating", static_cast<double>(i + 1) / static_cast<double>(steps));
+  }
+  result.bodies = states();
+  result.kinetic_energy_J = simulation.kineticEnergy();
+  result.step = all.summary();
+  result.contact_step = touching.summary();
+  result.modelled = modelledCost(scene);
+  return result;
+}
+
+}  // namespace vps

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <map>
+
+#include "vps/load_error.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/coupling.h"
+#include "vps_bullet/install.h"
+#include "vps_bullet/shape.h"
+#include "vps_bullet/solver.h"
+
+namespace vps {
+
+namespace {
+
+struct DynamicBody {
+  std::unique_ptr<VpsShape> shape;
+  std::unique_ptr<btRigidBody> body;
+  BodyFrame frame;
+};
+
+struct MountedPart {
+  std::size_t part;
+  Pose X_WP;
+};
+
+VpsBulletSettings bulletSettings(const Fidelity& fidelity) {
+  VpsBulletSettings settings;
+  settings.contact_limit = fidelity.contact_limit;
+  settings.sides = fidelity.sides;
+  settings.gradient = fidelity.gradient;
+  return settings;
+}
+
+}  // namespace
+
+struct Simulation::World {
+  const Scene& scene;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  VpsSolver solver;
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+
+  std::map<std::size_t, VpsModels> models;  // by part; the exact surface is built once
+  std::map<std::size_t, DynamicBody> bodies;
+  std::vector<MountedPart> mounted;
+  std::unique_ptr<VpsShape> fixed_shape;
+  std::unique_ptr<btRigidBody> fixed_body;
+  std::unique_ptr<VpsCoupling> coupling;
+  std::size_t grasped = 0;
+  Pose X_PG;
+
+  explicit World(const Scene& s) : scene(s) {
+    installVps(dispatcher, bulletSettings(scene.fidelity));
+    tuneWorld(world, scene.fidelity.solver_iterations);
+    world.setGravity(toBt(scene.gravity_W));
+  }
+  ~World() {
+    letGo();
+    while (!bodies.empty()) remove(bodies.begin()->first);
+    if (fixed_body) world.removeRigidBody(fixed_body.get());
+    uninstallVps(dispatcher);
+  }
+
+  const VpsModels& modelsOf(std::size_t part) {
+    const auto found = models.find(part);
+    return found != models.end() ? found->second
+                                 : models.emplace(part, makeModels(scene.parts[part].part)).first->second;
+  }
+
+  void letGo() {
+    if (!coupling) return;
+    world.removeConstraint(coupling.get());
+    coupling.reset();
+  }
+
+  void remove(std::size_t part) {
+    const auto found = bodies.find(part);
+    if (found == bodies.end()) return;
+    if (coupling && grasped == part) letGo();
+    world.removeRigidBody(found->second.body.get());
+    bodies.erase(found);
+  }
+
+  void setMaterial(btRigidBody& body, std::size_t part) const {
+    const Material& material = scene.parts[part].part.material;
+    body.setFriction(static_cast<btScalar>(material.friction));
+    body.setRestitution(static_cast<btScalar>(material.restitution));
+  }
+};
+
+Simulation::Simulation(const Scene& scene) : world_(std::make_unique<World>(scene)) {}
+Simulation::~Simulation() = default;
+
+void Simulation::mount(std::size_t part, const Pose& X_WP) {
+  World& w = *world_;
+  w.remove(part);
+  w.mounted.push_back({part, X_WP});
+
+  const Part& added = w.scene.parts[part].part;
+  VoxMapSettings settings;
+  settings.voxel_m = w.scene.fidelity.voxel_m;
+  const PlacedMesh placed{&added.mesh, X_WP};
+  VpsModels models;
+  models.map = std::make_shared<VoxMap>(w.fixed_shape ? mountVoxMap(*w.fixed_shape->models().map, placed)
+                                                      : cookVoxMap({placed}, settings));
+  std::vector<const PointShell*> shells;
+  std::vector<Pose> poses;
+  for (const MountedPart& mounted : w.mounted) {
+    const VpsModels& own = w.modelsOf(mounted.part);
+    shells.push_back(own.shell.get());
+    poses.push_back(mounted.X_WP);
+    models.surfaces.push_back({own.surfaces.front().distance, mounted.X_WP});
+  }
+  models.shell = std::make_shared<PointShell>(mergedShells(shells, poses));
+  Mesh mesh = w.fixed_shape ? *w.fixed_shape->models().mesh : Mesh{};
+  append(mesh, transformed(added.mesh, X_WP));
+  models.mesh = std::make_shared<Mesh>(std::move(mesh));
+
+  if (!w.fixed_shape) {
+    w.fixed_shape = std::make_unique<VpsShape>(std::move(models));
+    w.fixed_body = std::make_unique<btRigidBody>(
+        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.fixed_shape.get()));
+    // One body, one friction in Bullet: the first fixed part's, usually the housing.
+    w.setMaterial(*w.fixed_body, part);
+    w.world.addRigidBody(w.fixed_body.get());
+  } else {
+    w.fixed_shape->setModels(std::move(models));
+    w.world.updateSingleAabb(w.fixed_body.get());
+  }
+}
+
+bool Simulation::hasFixed() const {
+  return world_->fixed_shape != nullptr;
+}
+
+void Simulation::addBody(std::size_t part, const Pose& X_WP) {
+  World& w = *world_;
+  w.remove(part);
+  const ScenePart& scene_part = w.scene.parts[part];
+  DynamicBody added;
+  const MassProperties mass = massProperties(scene_part.part.mesh);
+  if (!(mass.volume_m3 > 0))
+    throw LoadError(
+        scene_part.file, scene_part.part.name,
+        "its volume is not positive, so it has no mass: the mesh is open or inside out; mend it, or mark the "
+        "part as fixed");
+  added.frame = makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
+  added.shape = std::make_unique<VpsShape>(w.modelsOf(part), added.frame.X_PB.inverse());
+  added.body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
+                                               added.shape.get(), toBt(added.frame.inertia_kg_m2)));
+  added.body->setWorldTransform(toBt(X_WP * added.frame.X_PB));
+  added.body->setInterpolationWorldTransform(added.body->getWorldTransform());
+  added.body->setActivationState(DISABLE_DEACTIVATION);
+  w.setMaterial(*added.body, part);
+  w.world.addRigidBody(added.body.get());
+  w.bodies.emplace(part, std::move(added));
+}
+
+void Simulation::removeBody(std::size_t part) {
+  world_->remove(part);
+}
+
+void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains) {
+  World& w = *world_;
+  w.letGo();
+  DynamicBody& held = w.bodies.at(part);
+  w.coupling = std::make_unique<VpsCoupling>(*held.body, held.frame.X_PB.inverse() * X_PG, gains);
+  w.world.addConstraint(w.coupling.get(), true);
+  w.grasped = part;
+  w.X_PG = X_PG;
+}
+
+void Simulation::release() {
+  world_->letGo();
+}
+
+void Simulation::setProxy(const CouplingState& proxy) {
+  if (world_->coupling) world_->coupling->setTarget(proxy);
+}
+
+CouplingState Simulation::graspState() const {
+  return world_->coupling ? world_->coupling->partState() : CouplingState{};
+}
+
+Wrench Simulation::couplingWrench() const {
+  return world_->coupling ? world_->coupling->wrench() : Wrench{};
+}
+
+void Simulation::step(double dt_s) {
+  // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
+  world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
+}
+
+Pose Simulation::pose(std::size_t part) const {
+  const DynamicBody& b = world_->bodies.at(part);
+  return fromBt(b.body->getWorldTransform()) * b.frame.X_PB.inverse();
+}
+
+Twist Simulation::twist(std::size_t part) const {
+  const DynamicBody& b = world_->bodies.at(part);
+  Twist V;
+  V.w = fromBt(b.body->getAngularVelocity());
+  const Vec3 p_BP_W = fromBt(b.body->getWorldTransform()).R * b.frame.X_PB.inverse().p;
+  V.v = fromBt(b.body->getLinearVelocity()) + V.w.cross(p_BP_W);
+  return V;
+}
+
+double Simulation::kineticEnergy() const {
+  double energy_J = 0;
+  for (const auto& [part, b] : world_->bodies) {
+    const Vec3 w_B = fromBt(b.body->getWorldTransform()).R.transpose() * fromBt(b.body->getAngularVelocity());
+    energy_J += 0.5 * b.frame.mass_kg * fromBt(b.body->getLinearVelocity()).squaredNorm() +
+                0.5 * w_B.cwiseProduct(b.frame.inertia_kg_m2).dot(w_B);
+  }
+  return energy_J;
+}
+
+double Simulation::mechanicalEnergy() const {
+  double energy_J = kineticEnergy();
+  for (const auto& [part, b] : world_->bodies)
+    energy_J -= b.frame.mass_kg * world_->scene.gravity_W.dot(fromBt(b.body->getWorldTransform()).p);
+  return energy_J;
+}
+
+double Simulation::mass(std::size_t part) const {
+  return world_->bodies.at(part).frame.mass_kg;
+}
+
+Vec3 Simulation::centreOfMass(std::size_t part) const {
+  return world_->bodies.at(part).frame.X_PB.p;
+}
+
+std::shared_ptr<const MeshDistance> Simulation::surface(std::size_t part) const {
+  return world_->modelsOf(part).surfaces.front().distance;
+}
+
+namespace {
+
+/// Calls visit(point) for every contact point of the last step.
+template <typename Visit>
+void forEachContact(btCollisionDispatcher& dispatcher, const Visit& visit) {
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    for (int j = 0; j < manifold.getNumContacts(); ++j) visit(manifold.getContactPoint(j));
+  }
+}
+
+}  // namespace
+
+TouchState Simulation::touch() const {
+  TouchState state;
+  const double dt_s = 1 / world_->scene.fidelity.physics_rate_hz;
+  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
+    state.depth_m = std::max(state.depth_m, -static_cast<double>(point.getDistance()));
+    if (point.getAppliedImpulse() > 0) ++state.contacts;
+    state.force_N += static_cast<double>(point.getAppliedImpulse()) / dt_s;
+  });
+  return state;
+}
+
+void Simulation::contactMarks(std::vector<ContactMark>& marks) const {
+  marks.clear();
+  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
+    if (point.getAppliedImpulse() <= 0) return;
+    marks.push_back({fromBt(point.getPositionWorldOnB()), fromBt(point.m_normalWorldOnB),
+                     std::max(0.0, -static_cast<double>(point.getDistance()))});
+  });
+}
+
+std::size_t Simulation::fixedBytes() const {
+  if (!world_->fixed_shape) return 0;
+  const VpsModels& models = world_->fixed_shape->models();
+  return models.map->memoryBytes() + models.shell->memoryBytes();
+}
+
+}  // namespace vps

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The Bullet world of a scene: one cooked fixed body, dynamic parts, and the coupling to the device's proxy.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "vps/mesh_distance.h"
+#include "vps_scenes/result.h"
+#include "vps_scenes/scene.h"
+
+namespace vps {
+
+/// What touched in the last step.
+struct TouchState {
+  int contacts = 0;    ///< contacts that carry force
+  double depth_m = 0;  ///< deepest contact as the solver saw it, at the step's start
+  double force_N = 0;  ///< sum of contact force magnitudes
+};
+
+/// Joins plugin, bridge and port; knows no device and no procedure. Not thread-safe. Bullet stays behind the
+/// pointer.
+class Simulation {
+ public:
+  /// Parts must have their models (buildModels()). Bodies are added one by one.
+  explicit Simulation(const Scene& scene);
+  ~Simulation();
+
+  /// Fuses a part into the fixed field at this pose (paper, section 5: "cooked"). From the part's own mesh,
+  /// never from a field already merged. O(the part's surface), and O(all points) for the merged shell.
+  void mount(std::size_t part, const Pose& X_WP);
+  [[nodiscard]] bool hasFixed() const;
+
+  /// Adds a part as a dynamic body at rest. Sleeping off, no damping. Throws LoadError where its mass makes
+  /// no sense.
+  void addBody(std::size_t part, const Pose& X_WP);
+  void removeBody(std::size_t part);
+
+  /// Couples the proxy to the part at grasp frame G; one part at a time.
+  void grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains);
+  void release();
+  /// Where the proxy will be at the end of the coming step.
+  void setProxy(const CouplingState& proxy);
+  /// The part's grasp frame now: what the haptic side couples to.
+  [[nodiscard]] CouplingState graspState() const;
+  /// Wrench of the coupling on the part about its grasp point over the last step, in W.
+  [[nodiscard]] Wrench couplingWrench() const;
+
+  void step(double dt_s);
+
+  [[nodiscard]] Pose pose(std::size_t part) const;
+  /// Velocity of the part's origin, in W.
+  [[nodiscard]] Twist twist(std::size_t part) const;
+  [[nodiscard]] double kineticEnergy() const;
+  /// Kinetic energy and height of all dynamic bodies; its zero is arbitrary but fixed for a set of bodies.
+  [[nodiscard]] double mechanicalEnergy() const;
+  [[nodiscard]] double mass(std::size_t part) const;
+  /// Centre of mass in the part's frame.
+  [[nodiscard]] Vec3 centreOfMass(std::size_t part) const;
+  /// The part's models with its exact surface, shared with the world.
+  [[nodiscard]] std::shared_ptr<const MeshDistance> surface(std::size_t part) const;
+  [[nodiscard]] TouchState touch() const;
+  void contactMarks(std::vector<ContactMark>& marks) const;
+  /// Bytes of the cooked field and its points.
+  [[nodiscard]] std::size_t fixedBytes() const;
+
+ private:
+  struct World;
+  std::unique_ptr<World> world_;
+};
+
+}  // namespace vps
