@@ -23,13 +23,23 @@ struct VoxMapSettings {
 /// interpolated distance, and turns abruptly at cell borders. Cost and error: plugin/README.md.
 enum class Gradient { Continuous, Trilinear };
 
+struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
+
 /// Signed distance [m] to a part's surface in frame M, negative inside: exact at the grid's nodes within the band,
 /// trilinear between them. Beyond the band the distance saturates at +-band_m() with the right sign, and
 /// lowerBound() gives a coarse bound that still tells far from near. Immutable once built; sampling is thread-safe,
 /// and never allocates or throws.
 class VoxMap {
  public:
-  static constexpr int kBrick = 8;  ///< nodes per brick edge; a brick's own cells use its neighbours' nodes
+  static constexpr int kBrick = 8;  ///< grid cells per brick edge
+
+  struct Sample {
+    double distance_m = 0;
+    Vec3 normal = Vec3::Zero();
+  };
+
+  /// An empty map: outside everywhere.
+  VoxMap();
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
   [[nodiscard]] double band_m() const noexcept { return band_m_; }
@@ -42,9 +52,17 @@ class VoxMap {
   [[nodiscard]] double distance(const Vec3& p_M) const noexcept;
   /// Unit outward normal (direction of growing distance); zero where the band gives none.
   [[nodiscard]] Vec3 normal(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
+  /// Both at once, for less than the two apart.
+  [[nodiscard]] Sample sample(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
   /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away it
   /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
   [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
+  /// A value that the signed distance at p_M is not below; negative inside. What a sphere of points needs: every
+  /// distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r, band_m()) - sampleError_m().
+  [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
+  /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel, at the
+  /// middle of a cell where surfaces meet at a corner. (On smooth surfaces it is h^2/8 times curvature.)
+  [[nodiscard]] double sampleError_m() const noexcept { return 0.8661 * voxel_m_; }
   /// True if p_M is inside by the coarse sign; meaningful beyond the band, where distance() has saturated.
   [[nodiscard]] bool isInsideCoarse(const Vec3& p_M) const noexcept;
   /// Index of the part (order of merging, 0 first) whose surface is nearest at p_M's nearest node.
@@ -53,11 +71,10 @@ class VoxMap {
  private:
   friend class VoxMapBuilder;
   friend class VoxMapFile;
+  friend class VoxSampler;
   double voxel_m_ = 0, band_m_ = 0;
   Box bounds_;
-  /// The builder's and sampler's layout lives here; documented where it is defined (src/voxmap_layout.h).
-  struct Layout;
-  std::shared_ptr<const Layout> layout_;
+  std::shared_ptr<const VoxLayout> layout_;  // never null
 };
 
 /// Builds the map of one mesh: exact distance to its triangles at every node within the band, sign by

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sampling a VoxMap, inline: the innermost loop of every query.
+#pragma once
+
+#include <limits>
+
+#include "voxmap_layout.h"
+
+namespace vps {
+
+/// Reads one map. Cheap to make (no reference is counted); the map must outlive it.
+class VoxSampler {
+ public:
+  explicit VoxSampler(const VoxMap& map) noexcept
+      : layout_(*map.layout_),
+        voxel_m_(map.voxel_m_),
+        band_m_(map.band_m_),
+        bounds_(map.bounds_),
+        per_voxel_(map.voxel_m_ > 0 ? 1 / map.voxel_m_ : 0),
+        low_((VoxMap::kBrick * layout_.low).cast<double>()),
+        size_((VoxMap::kBrick * layout_.size).cast<double>()) {}
+
+  /// Where a point lies: the directory's cell, the low node of its grid cell within the brick, and the
+  /// position between nodes. brick is null outside the directory.
+  struct Place {
+    const VoxBrick* brick = nullptr;
+    std::size_t cell = 0;
+    Index3 cell_at, node;
+    Vec3 t;
+  };
+
+  [[nodiscard]] Place place(const Vec3& p_M) const noexcept {
+    const Vec3 x = p_M * per_voxel_ - low_;
+    Place at;
+    // Written so that a NaN fails it. Within, x >= 0: truncation is the floor.
+    if (!((x.array() >= 0).all() && (x.array() < size_.array()).all())) return at;
+    const Index3 whole = x.cast<int>();
+    at.t = x - whole.cast<double>();
+    at.cell_at = Index3(whole.x() >> 3, whole.y() >> 3, whole.z() >> 3);
+    at.node = Index3(whole.x() & 7, whole.y() & 7, whole.z() & 7);
+    at.cell = (static_cast<std::size_t>(at.cell_at.x()) * static_cast<std::size_t>(layout_.size.y()) +
+               static_cast<std::size_t>(at.cell_at.y())) *
+                  static_cast<std::size_t>(layout_.size.z()) +
+              static_cast<std::size_t>(at.cell_at.z());
+    at.brick = layout_.cells[at.cell].brick;
+    return at;
+  }
+
+  /// Trilinear distance [m]; +band outside the directory.
+  [[nodiscard]] double distance(const Place& at) const noexcept {
+    if (at.brick == nullptr) return band_m_;
+    // A constant brick would interpolate to its constant but for rounding; returning it is exact, and quick
+    // where most points are.
+    if (at.brick == layout_.outside()) return band_m_;
+    if (at.brick == layout_.inside()) return -band_m_;
+    const Corners d = corners(at);
+    const double x0 = mix(mix(d[0], d[1], at.t.z()), mix(d[2], d[3], at.t.z()), at.t.y());
+    const double x1 = mix(mix(d[4], d[5], at.t.z()), mix(d[6], d[7], at.t.z()), at.t.y());
+    return mix(x0, x1, at.t.x());
+  }
+
+  /// Unit outward normal at a place, zero in constant bricks and outside.
+  [[nodiscard]] Vec3 normal(const Place& at, Gradient gradient) const noexcept {
+    if (at.brick == nullptr || layout_.isConstant(at.brick)) return Vec3::Zero();
+    const Vec3 g = gradient == Gradient::Trilinear ? trilinearGradient(at) : continuousGradient(at);
+    const double length = g.norm();
+    // Where opposite walls cancel there is no direction; 1e-6 is far below any nodal gradient that is not
+    // noise (true gradients have length 1; here g is in metres over one or two voxels).
+    return length > 1e-6 * voxel_m_ ? Vec3(g / length) : Vec3(Vec3::Zero());
+  }
+
+  /// A value that the signed distance to the surface at p_M is not below (not clamped to the band).
+  [[nodiscard]] double leastDistance(const Vec3& p_M, const Place& at) const noexcept {
+    const double to_box_m = boxDistance(p_M);
+    if (at.brick == nullptr) return to_box_m;
+    double least_m = centerDistance(at) - fromCenter(at);
+    const double field_m = distance(at) - interpolationError(at);
+    if (field_m > -band_m_) least_m = std::max(least_m, field_m);  // else saturated: it tells nothing
+    return to_box_m > 0 ? std::max(to_box_m, least_m) : least_m;
+  }
+
+  /// A value that the signed distance to the surface at p_M is not above; infinite where unknown.
+  [[nodiscard]] double mostDistance(const Place& at) const noexcept {
+    double most_m = std::numeric_limits<double>::infinity();
+    if (at.brick == nullptr || at.brick == layout_.outside()) return most_m;
+    const double center_m = layout_.cells[at.cell].center_m;
+    if (center_m < 0) most_m = center_m * kRoundDown + fromCenter(at);
+    const double field_m = distance(at) + interpolationError(at);
+    return field_m < band_m_ ? std::min(most_m, field_m) : most_m;
+  }
+
+  [[nodiscard]] bool isInside(const Place& at) const noexcept {
+    return at.brick != nullptr && at.brick != layout_.outside() && distance(at) < 0;
+  }
+
+  [[nodiscard]] std::uint16_t owner(const Place& at) const noexcept {
+    if (at.brick == nullptr) return 0;
+    if (at.brick->owners == nullptr) return at.brick->owner;
+    const auto nearest = [&](int axis) { return at.node[axis] + (at.t[axis] >= 0.5 ? 1 : 0); };
+    return at.brick->owners[nodeIndex(nearest(0), nearest(1), nearest(2))];
+  }
+
+ private:
+  using Corners = std::array<double, 8>;  // bits of the index: x y z
+  /// Centre distances were rounded to float: a bound taken from one gives this share of it back.
+  static constexpr double kRoundDown = 1 - 2e-7;
+
+  static double mix(double a, double b, double t) noexcept { return a + t * (b - a); }
+
+  static Corners corners(const Place& at) noexcept {
+    const float* d = &at.brick->distance_m[nodeIndex(at.node.x(), at.node.y(), at.node.z())];
+    constexpr int x = nodeIndex(1, 0, 0), y = nodeIndex(0, 1, 0);
+    return {d[0], d[1], d[y], d[y + 1], d[x], d[x + 1], d[x + y], d[x + y + 1]};
+  }
+
+  /// Derivative of the interpolant, times one voxel.
+  static Vec3 trilinearGradient(const Place& at) noexcept {
+    const Corners d = corners(at);
+    const double x = at.t.x(), y = at.t.y(), z = at.t.z();
+    return {mix(mix(d[4] - d[0], d[5] - d[1], z), mix(d[6] - d[2], d[7] - d[3], z), y),
+            mix(mix(d[2] - d[0], d[3] - d[1], z), mix(d[6] - d[4], d[7] - d[5], z), x),
+            mix(mix(d[1] - d[0], d[3] - d[2], y), mix(d[5] - d[4], d[7] - d[6], y), x)};
+  }
+
+  /// Trilinear interpolation of the nodes' central differences, times two voxels. The 4^3 nodes around a cell
+  /// lie in at most two bricks along each axis.
+  Vec3 continuousGradient(const Place& at) const noexcept {
+    const float* brick[2][2][2];
+    int which[3][4], local[3][4];
+    Index3 neighbour;
+    for (int axis = 0; axis < 3; ++axis) {
+      neighbour[axis] = at.node[axis] == 0 ? -1 : 1;
+      for (int k = 0; k < 4; ++k) {
+        const int node = at.node[axis] + k - 1;  // -1 to 9; 8 is the brick's own border
+        which[axis][k] = node < 0 || node > VoxMap::kBrick;
+        local[axis][k] = node < 0 ? VoxMap::kBrick - 1 : node > VoxMap::kBrick ? 1 : node;
+      }
+    }
+    for (int i = 0; i < 8; ++i) {
+      // A brick with a band always has neighbours: the directory keeps one empty cell around them all.
+      const Index3 cell = at.cell_at + Index3(i & 4 ? neighbour.x() : 0, i & 2 ? neighbour.y() : 0,
+                                              i & 1 ? neighbour.z() : 0);
+      brick[i >> 2][i >> 1 & 1][i & 1] =
+          layout_.cells[layout_.cellIndex(cell + layout_.low)].brick->distance_m.data();
+    }
+    const auto node = [&](int x, int y, int z) -> double {
+      return brick[which[0][x]][which[1][y]][which[2][z]][nodeIndex(local[0][x], local[1][y], local[2][z])];
+    };
+    // Along its own axis a component is the interpolated central difference; over the others plain
+    // interpolation.
+    const double x = at.t.x(), y = at.t.y(), z = at.t.z();
+    const auto slope = [](double a, double b, double c, double d, double t) { return mix(c - a, d - b, t); };
+    double gx[4], gy[4], gz[4];
+    for (int i = 0; i < 4; ++i) {
+      const int a = 1 + (i >> 1), b = 1 + (i & 1);
+      gx[i] = slope(node(0, a, b), node(1, a, b), node(2, a, b), node(3, a, b), x);
+      gy[i] = slope(node(a, 0, b), node(a, 1, b), node(a, 2, b), node(a, 3, b), y);
+      gz[i] = slope(node(a, b, 0), node(a, b, 1), node(a, b, 2), node(a, b, 3), z);
+    }
+    return {mix(mix(gx[0], gx[1], z), mix(gx[2], gx[3], z), y),
+            mix(mix(gy[0], gy[1], z), mix(gy[2], gy[3], z), x),
+            mix(mix(gz[0], gz[1], y), mix(gz[2], gz[3], y), x)};
+  }
+
+  /// How far the interpolant can be from the distance it interpolates. Distance changes by at most the way
+  /// gone, so |sum w_i d(x_i) - d(p)| <= sum w_i |x_i - p| <= sqrt(sum w_i |x_i - p|^2) = h sqrt(sum over
+  /// axes of t (1 - t)).
+  [[nodiscard]] double interpolationError(const Place& at) const noexcept {
+    return voxel_m_ * std::sqrt((at.t.array() * (1 - at.t.array())).sum()) +
+           1e-6 * band_m_;  // and float's rounding
+  }
+
+  [[nodiscard]] double centerDistance(const Place& at) const noexcept {
+    const double center_m = layout_.cells[at.cell].center_m;
+    return center_m - (1 - kRoundDown) * std::abs(center_m);
+  }
+  /// Distance from the place to its directory cell's centre [m].
+  [[nodiscard]] double fromCenter(const Place& at) const noexcept {
+    return voxel_m_ * (at.node.cast<double>() + at.t - Vec3::Constant(VoxMap::kBrick / 2)).norm();
+  }
+  [[nodiscard]] double boxDistance(const Vec3& p_M) const noexcept {
+    return (bounds_.min - p_M).cwiseMax(p_M - bounds_.max).cwiseMax(0.0).norm();
+  }
+
+  const VoxLayout& layout_;
+  double voxel_m_, band_m_;
+  const Box& bounds_;
+  double per_voxel_;
+  Vec3 low_, size_;  // of the directory, in voxels
+};
+
+}  // namespace vps
