@@ -2,9 +2,9 @@
 // Pictures of a Snapshot by OpenGL 4.5, without a display: EGL on Mesa's surfaceless platform.
 //
 // The look: studio light (key, fill, rim and sky), ambient occlusion, a soft shadow on an invisible floor,
-// thin dark lines on sharp edges. The part in hand is orange, its target a blue ghost. Light is added up in
-// linear colour and shown in sRGB. The same input gives the same bits on one machine; different CPUs round a
-// few pixels differently by 1/255, so compare images with a tolerance.
+// thin dark lines on sharp edges. The part in hand is blue, its target a ghost of the same blue. Light is
+// added up in linear colour and shown in sRGB. The same input gives the same bits on one machine; different
+// CPUs round a few pixels differently by 1/255, so compare images with a tolerance.
 #pragma once
 
 #include <array>
@@ -49,6 +49,7 @@ struct DrawOptions {
   bool show_ground = true;
   bool show_hidden_marks = true;  ///< contacts and force shine faintly through the material
   bool highlight_hand = true;     ///< the part in hand in the accent colour instead of its own
+  bool show_legend = true;
   std::optional<CutPlane> cut;
   std::string title;                    ///< first line, top left; UTF-8
   std::string caption;                  ///< smaller lines under it; '\n' starts a new one

@@ -48,6 +48,9 @@ Image loadPng(const std::string& file) {
   if (!stream) throw LoadError(file, "", std::string("cannot be read: ") + std::strerror(errno));
   const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 
+  // libpng is content once it has all pixels; a whole file also has its end mark (type and CRC of IEND).
+  if (bytes.rfind("IEND\xAE\x42\x60\x82") == std::string::npos)
+    throw LoadError(file, "", "not a whole PNG image (its end is missing); save it again");
   png_image png = newPngImage();
   const auto refuse = [&]() {
     const std::string found = png.message;
@@ -65,8 +68,6 @@ Image loadPng(const std::string& file) {
   Image image(static_cast<int>(png.width), static_cast<int>(png.height));
   const png_color white = {255, 255, 255};
   if (!png_image_finish_read(&png, &white, image.rgb.data(), 0, nullptr)) refuse();
-  // libpng only warns where the data end early, and leaves the rows black.
-  if (PNG_IMAGE_FAILED(png) || (png.warning_or_error & PNG_IMAGE_WARNING) != 0) refuse();
   return image;
 }
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An OpenGL 4.5 core context without a window or display.
+#pragma once
+
+#include <string>
+
+namespace vps {
+
+class EglContext {
+ public:
+  /// Throws std::runtime_error that says what to install when no context can be had. Not current after this.
+  EglContext();
+  ~EglContext();
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+
+  /// Current on this thread while it lives; the context that was current before comes back, so that a
+  /// renderer can be used beside a window.
+  class Current {
+   public:
+    explicit Current(const EglContext& context);
+    ~Current();
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+
+   private:
+    void* display_;
+    void *previous_display_, *previous_draw_, *previous_read_, *previous_context_;
+  };
+
+ private:
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+};
+
+}  // namespace vps

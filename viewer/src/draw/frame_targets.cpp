@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/frame_targets.h"
+
+#include <algorithm>
+
+namespace vps {
+namespace {
+
+gl::Framebuffer targetOf(const gl::Texture& texture, const char* what,
+                         const gl::Renderbuffer* depth = nullptr) {
+  gl::Framebuffer target = gl::makeFramebuffer();
+  glNamedFramebufferTexture(target.id(), GL_COLOR_ATTACHMENT0, texture.id(), 0);
+  if (depth != nullptr)
+    glNamedFramebufferRenderbuffer(target.id(), GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth->id());
+  gl::requireComplete(target, what);
+  return target;
+}
+
+/// llvmpipe has 4, GPUs 8 and more; beyond 4 a supersampled picture does not look better.
+int usableSamples() {
+  GLint color = 0, depth = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &color);
+  glGetInternalformativ(GL_RENDERBUFFER, GL_DEPTH32F_STENCIL8, GL_SAMPLES, 1, &depth);
+  return std::clamp(std::min(color, depth), 1, 4);
+}
+
+}  // namespace
+
+FrameTargets::FrameTargets(int width, int height, int factor)
+    : width(width), height(height), factor(factor), samples(usableSamples()) {
+  geometry = gl::makeTexture(GL_RGBA32F, width, height, GL_NEAREST);
+  geometry_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, width, height, 0);
+  geometry_target = targetOf(geometry, "normals", &geometry_depth);
+  occlusion_raw = gl::makeTexture(GL_R8, width, height, GL_NEAREST);
+  occlusion_raw_target = targetOf(occlusion_raw, "occlusion");
+  occlusion = gl::makeTexture(GL_R8, width, height, GL_LINEAR);
+  occlusion_target = targetOf(occlusion, "blurred occlusion");
+
+  const int w = width * factor, h = height * factor;
+  color = gl::makeRenderbuffer(GL_RGBA16F, w, h, samples);
+  depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, w, h, samples);
+  color_target = gl::makeFramebuffer();
+  glNamedFramebufferRenderbuffer(color_target.id(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.id());
+  glNamedFramebufferRenderbuffer(color_target.id(), GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth.id());
+  gl::requireComplete(color_target, "colour");
+  resolved = gl::makeTexture(GL_RGBA16F, w, h, GL_NEAREST);
+  resolved_target = targetOf(resolved, "resolved colour");
+  shown = gl::makeRenderbuffer(GL_RGBA8, width, height, 0);
+  shown_target = gl::makeFramebuffer();
+  glNamedFramebufferRenderbuffer(shown_target.id(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, shown.id());
+  gl::requireComplete(shown_target, "the finished picture");
+}
+
+ShadowTargets::ShadowTargets() {
+  key = gl::makeTexture(GL_DEPTH_COMPONENT32F, kKeySize, kKeySize, GL_LINEAR);
+  glTextureParameteri(key.id(), GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTextureParameteri(key.id(), GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  key_target = gl::makeFramebuffer();
+  glNamedFramebufferTexture(key_target.id(), GL_DEPTH_ATTACHMENT, key.id(), 0);
+  glNamedFramebufferDrawBuffer(key_target.id(), GL_NONE);
+  gl::requireComplete(key_target, "shadows");
+
+  floor_a = gl::makeTexture(GL_RG16F, kFloorSize, kFloorSize, GL_LINEAR);
+  floor_b = gl::makeTexture(GL_RG16F, kFloorSize, kFloorSize, GL_LINEAR);
+  floor_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, kFloorSize, kFloorSize, 0);
+  floor_a_target = targetOf(floor_a, "the floor", &floor_depth);
+  floor_b_target = targetOf(floor_b, "the blurred floor");
+}
+
+}  // namespace vps

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arrows and discs: contacts by depth, and the force on the hand.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "draw/gl_objects.h"
+#include "vps_viewer/renderer.h"
+
+namespace vps {
+
+/// Linear RGB of a contact as deep as `share` of full scale (0 to 1): yellow, orange, red, dark red.
+Eigen::Vector3f depthColor(double share);
+
+inline const Eigen::Vector3f kForceColor(0.28f, 0.02f, 0.35f);  // violet: neither the hand's blue nor a depth
+
+struct Mark {
+  std::array<float, 3> base_C, axis_C;
+  std::array<float, 2> size_m;  ///< length, width
+  std::array<float, 3> color;
+};
+
+/// The marks of a snapshot in the camera frame; arrows for the deepest contacts, discs for all.
+/// @param size_m diameter of what the picture shows
+struct MarkList {
+  std::vector<Mark> arrows, discs;
+};
+MarkList listMarks(const Snapshot& snapshot, const Pose& X_CW, double size_m, const DrawOptions& options);
+
+/// A unit shape along +z that is drawn once for each mark.
+class MarkShape {
+ public:
+  static MarkShape arrow();
+  static MarkShape disc();
+  void draw(const std::vector<Mark>& marks) const;
+
+ private:
+  struct Vertex {
+    std::array<float, 3> p, n;
+  };
+  explicit MarkShape(const std::vector<Vertex>& triangles);
+  /// Surface of revolution about z through (radius, z) pairs.
+  static MarkShape lathe(const std::vector<std::array<double, 2>>& profile);
+  gl::Buffer vertices_;
+  GLsizei vertex_count_ = 0;
+};
+
+}  // namespace vps

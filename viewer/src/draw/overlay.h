@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Title, caption and legend, laid over a finished picture.
+#pragma once
+
+#include "draw/text.h"
+#include "vps_viewer/renderer.h"
+
+namespace vps {
+
+struct LegendColors {
+  Eigen::Vector3f hand, target;  ///< linear RGB
+};
+
+void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& options,
+                 const LegendColors& colors, const Lettering& lettering);
+
+}  // namespace vps

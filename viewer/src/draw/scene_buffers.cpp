@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/scene_buffers.h"
+
+#include <cstddef>
+
+namespace vps {
+
+GpuLines::GpuLines(std::span<const ShadingEdge> segments)
+    : buffer(gl::makeBuffer(segments)),
+      array(gl::makeVertexArray()),
+      count(static_cast<GLsizei>(segments.size())) {
+  gl::addAttribute(array, buffer, 0, 3, offsetof(ShadingEdge, a), sizeof(ShadingEdge), 1);
+  gl::addAttribute(array, buffer, 1, 3, offsetof(ShadingEdge, b), sizeof(ShadingEdge), 1);
+}
+
+GpuMesh::GpuMesh(const Mesh& mesh)
+    : shading(buildShadingMesh(mesh)),
+      vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
+      indices(gl::makeBuffer(std::span<const std::uint32_t>(shading.indices))),
+      array(gl::makeVertexArray()),
+      sharp_edges(shading.sharp_edges),
+      index_count(static_cast<GLsizei>(shading.indices.size())) {
+  gl::addAttribute(array, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
+  gl::addAttribute(array, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
+  glVertexArrayElementBuffer(array.id(), indices.id());
+}
+
+void GpuMesh::draw() const {
+  glBindVertexArray(array.id());
+  glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+Eigen::Matrix4f toMatrix(const Pose& X) {
+  Eigen::Matrix4f m = Eigen::Matrix4f::Identity();
+  m.topLeftCorner<3, 3>() = X.R.cast<float>();
+  m.topRightCorner<3, 1>() = X.p.cast<float>();
+  return m;
+}
+
+std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye) {
+  std::vector<ShadingEdge> edges;
+  const Eigen::Vector3f eye = p_eye.cast<float>();
+  using Map = Eigen::Map<const Eigen::Vector3f>;
+  for (const SmoothEdge& e : mesh.smooth_edges) {
+    const Eigen::Vector3f to_eye = eye - Map(e.edge.a.data());
+    if ((Map(e.n_left.data()).dot(to_eye) > 0) != (Map(e.n_right.data()).dot(to_eye) > 0))
+      edges.push_back(e.edge);
+  }
+  return edges;
+}
+
+}  // namespace vps

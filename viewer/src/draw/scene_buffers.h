@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene's meshes on the graphics side, and the picture's list of what stands where.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "draw/gl_objects.h"
+#include "draw/shading_mesh.h"
+#include "vps_viewer/renderer.h"
+
+namespace vps {
+
+/// Line segments to draw as strips.
+struct GpuLines {
+  gl::Buffer buffer;
+  gl::VertexArray array;
+  GLsizei count = 0;
+  explicit GpuLines(std::span<const ShadingEdge> segments);
+};
+
+struct GpuMesh {
+  ShadingMesh shading;  ///< kept: outlines and sections are found on the CPU for each picture
+  gl::Buffer vertices, indices;
+  gl::VertexArray array;
+  GpuLines sharp_edges;
+  GLsizei index_count = 0;
+  explicit GpuMesh(const Mesh& mesh);
+  void draw() const;
+};
+
+/// One part in one picture.
+struct DrawnBody {
+  const GpuMesh* mesh = nullptr;
+  std::size_t part = 0;
+  Pose X_CP;  ///< mesh centre in the camera frame
+  Eigen::Vector3f color = Eigen::Vector3f::Zero();
+  bool is_cut = false;
+};
+
+Eigen::Matrix4f toMatrix(const Pose& X);
+
+/// Edges where the surface turns away from the eye.
+std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye);
+
+}  // namespace vps
