@@ -26,7 +26,7 @@ struct DualArmParameters {
   // Geometry.
   double handle_m = 0.2;  ///< L, between gimbal centres. assumed: one arm's worst 5 N times L is the worst
                           ///< torque of Table 1, 1 N m
-  double base_m = 0.85;  ///< from D's origin to each base. assumed: nearest gimbal centre stays 0.45 m away
+  double base_m = 0.85;   ///< from D's origin to each base. assumed: nearest gimbal centre stays 0.45 m away
   double reach_min_m = 0.40;  ///< d3. assumed: workspace and any direction of the handle, with 50 mm to spare
   double reach_max_m = 1.35;  ///< d3. assumed: as above
   double plate_max_rad = 0.80;  ///< |t1|, |t2|. assumed: needed for the workspace, with 0.1 rad to spare
@@ -43,8 +43,8 @@ struct DualArmParameters {
   double plate_kgm2 = 0.08;  ///< of plate, link and balance weight, each axis. assumed: 0.15 kg at mid reach
   double link_kg = 0.25;     ///< prismatic link with its tendon drive. assumed: aluminium tube of 1 m
   double rotor_kgm2 = 2e-5;  ///< handle motor with its gear. assumed: a 20 mm motor
-  double plate_damping_Nms = 2.0;  ///< per axis, N m s/rad. assumed: motors with shorted-winding damping,
-                                   ///< chosen so that K = 2 kN/m is passive at 1 kHz
+  double plate_damping_Nms = 2.0;      ///< per axis, N m s/rad. assumed: motors with shorted-winding damping,
+                                       ///< chosen so that K = 2 kN/m is passive at 1 kHz
   double link_damping_Ns_per_m = 2.5;  ///< assumed: as above
   double rotor_damping_Nms = 0.012;    ///< assumed: as above, for 4 N m/rad
   double plate_coulomb_Nm = 0.10;      ///< assumed: capstans, no gears: about 0.1 N at the handle
@@ -54,7 +54,10 @@ struct DualArmParameters {
   double plate_step_rad =
       7.85e-5;                 ///< assumed: 80,000 counts a turn behind the capstan; gives Table 1's 100 um
   double link_step_m = 50e-6;  ///< assumed: finer than what the plates give
-  double rotor_step_rad = 3.07e-3;  ///< assumed: 2048 counts a turn; gives Table 1's 0.005 rad
+  double rotor_step_rad = 5.1e-4;  ///< assumed: 2048 counts a turn of the motor behind a capstan of 6
+  double resolution_m = 100e-6;    ///< at the handle, worst case. sourced: Table 1
+  double resolution_rad =
+      0.001;  ///< within 45 deg of straight. assumed: Table 1's 0.005 is the worst, at q2_max
   // Motors: continuous and peak.
   double plate_torque_Nm = 7.7,
          plate_peak_Nm = 18.5;  ///< assumed: 14 N upward of the pair anywhere in the workspace,

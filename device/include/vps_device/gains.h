@@ -15,8 +15,8 @@ struct CouplingTiming {
   double force_scale = 1;         ///< device newtons per scene newton
 };
 
-/// Total delay t_d [s] that a moving part adds: transport and half of the physics hold, plus half of a haptic
-/// period when the physics runs slower (its step is then seen late).
+/// Delay t_d [s] of a moving part: transport, and one physics step, since the part's state that is read
+/// answers a proxy of up to one step before.
 double couplingDelay_s(const CouplingTiming& timing) noexcept;
 
 /// The stiffest gains that keep the sampled coupling passive on this device, with a margin:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "vps/coupling_law.h"
@@ -112,6 +113,7 @@ class HapticLoop {
 
  private:
   [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
+  [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   void account(const DeviceSample& sample) noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
@@ -128,7 +130,8 @@ class HapticLoop {
   Pose X_DH_before_;
   bool has_before_ = false;
   Wrench F_held_D_;
-  double net_J_ = 0, stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0;
+  double net_scene_J_ = 0, net_start_J_ = 0, dissipated_start_J_ = 0;  // scene joules
+  double stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0, actuator_start_J_ = 0;
   bool has_stored_ = false;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};

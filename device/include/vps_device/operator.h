@@ -31,8 +31,10 @@ struct OperatorHabits {
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
   double inertia_kgm2 = 0.004;
+  double insert_share = 0.5;    ///< of speed_m_s while inserting
+  double lag_rad_s = 40;        ///< natural frequency of the muscles' lag, critically damped
   double see_rate_hz = 60;      ///< the picture's rate
-  double see_delay_s = 0.1;     ///< from light to correction
+  double see_delay_s = 0.1;     ///< from light to correction, at most 1 s
   double see_gain_per_s = 1.5;  ///< integral correction of the seen error
   double see_limit_m = 3e-3;    ///< bound of that correction
   double see_limit_rad = 0.05;
@@ -98,53 +100,70 @@ class VirtualOperator {
 
  private:
   struct Segment {
-    Pose X_from, X_to;  ///< of G
-    double start_s = 0, duration_s = 0;
+    Pose X_from, X_to;  // of G
+    double start_s = 0, duration_s = 1;
   };
   struct Seen {
     double time_s = 0;
-    Pose X_WG;
+    Pose X_WP;
     Twist V_WP;
-    double error_m = 0, error_rad = 0;
   };
 
-  void look(const OperatorView& view) noexcept;
-  void decide(const OperatorView& view) noexcept;
+  void startSegment(const Pose& X_from, const Pose& X_to, double speed_share, double now_s) noexcept;
+  void startInsertion(double now_s) noexcept;
   void enter(OperatorPhase phase, double now_s) noexcept;
-  void startSegment(const Pose& X_from, const Pose& X_to, double now_s) noexcept;
-  void correct(const Pose& X_WG_wanted, double dt_s) noexcept;
-  void retry(const OperatorView& view) noexcept;
-  [[nodiscard]] Pose wanted(const OperatorView& view) const noexcept;
-  [[nodiscard]] Pose limited(const Pose& X_wanted, const OperatorView& view) const noexcept;
+  void look(const OperatorView& view) noexcept;
+  void correct(double dt_s) noexcept;
+  void decide(const OperatorView& view, double dt_s) noexcept;
+  void reach(double now_s) noexcept;
+  void insert(const OperatorView& view, double dt_s) noexcept;
+  void press(double now_s) noexcept;
+  void retry(double now_s) noexcept;
+  void finish(OperatorPhase phase, const OperatorView& view) noexcept;
   void follow(const Pose& X_wanted, double dt_s) noexcept;
+  [[nodiscard]] Pose wanted(double now_s) const noexcept;
+  [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
   [[nodiscard]] HandForce impedance() const noexcept;
-  [[nodiscard]] double along(const Vec3& p_W) const noexcept;
+  [[nodiscard]] Pose seenGrasp() const noexcept { return seen_now_.X_WP * task_.X_PG; }
+  [[nodiscard]] double progressOf(const Pose& X_WG) const noexcept;
+  [[nodiscard]] double shortfall_m() const noexcept;
+  [[nodiscard]] double pushLimit_N() const noexcept;
   [[nodiscard]] bool isOnTarget() const noexcept;
-  [[nodiscard]] double push_N() const noexcept;
+  [[nodiscard]] bool isAtRest() const noexcept;
+  [[nodiscard]] bool isInserting() const noexcept;
 
-  static constexpr std::size_t kSeenCount = 64;
+  static constexpr std::size_t kSeenCount = 64;  // pictures in the delay line
 
   OperatorHabits habits_;
   Random random_;
   OperatorTask task_;
   OperatorPhase phase_ = OperatorPhase::Idle;
-  std::vector<Pose> path_;  ///< of G: start, way points, target
-  std::size_t next_ = 0;    ///< index of the segment's end in path_
+  double begin_s_ = 0, phase_s_ = 0;
+
+  // The plan.
+  std::vector<Pose> path_;  // of G: start, way points, target
+  std::size_t next_ = 0;    // index in path_ of the segment's end
   Segment segment_;
-  Vec3 axis_W_ = Vec3::UnitZ();                               ///< direction of insertion
-  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();        ///< drawn error
-  Vec3 fix_m_ = Vec3::Zero(), fix_rad_ = Vec3::Zero();        ///< correction by sight
-  Vec3 search_m_ = Vec3::Zero(), search_rad_ = Vec3::Zero();  ///< offset of the present retry
-  double begin_s_ = 0, phase_s_ = 0, retreat_until_s_ = 0, last_look_s_ = 0;
-  double progress_along_m_ = 0, progress_s_ = 0;
+  Vec3 axis_W_ = Vec3::UnitZ();                               // direction of insertion
+  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();        // error of aim, drawn once a task
+  Vec3 fix_m_ = Vec3::Zero(), fix_rad_ = Vec3::Zero();        // correction by sight
+  Vec3 search_m_ = Vec3::Zero(), search_rad_ = Vec3::Zero();  // offset of the present retry
+  double push_N_ = 0;                                         // along the axis, beyond the planned pose
+  double retreat_until_s_ = 0, progress_m_ = 0, progress_s_ = 0;
+  bool has_stop_ = true;  // something to press against, until seen otherwise
   int retries_ = 0;
-  Pose X_eq_;  ///< equilibrium after the muscles' lag
-  Twist V_eq_;
-  Pose X_hold_;  ///< where the hand rests when done
+
+  // The hand.
   bool has_view_ = false;
-  std::array<Seen, kSeenCount> seen_{};
-  std::size_t seen_count_ = 0;
-  Seen now_;  ///< what has reached the mind by now
+  Pose X_eq_;  // equilibrium, after the muscles' lag
+  Twist V_eq_;
+  Pose X_hold_;  // where it rests when there is nothing to do
+
+  // The eyes.
+  std::array<Seen, kSeenCount> pictures_{};
+  std::size_t picture_count_ = 0;
+  double next_look_s_ = 0;
+  Seen seen_now_;  // the picture that has reached the mind by now
 };
 
 }  // namespace vps

@@ -32,7 +32,7 @@ class SimulatedDualArm final : public Device {
   /// Wrench -> motor efforts (with the handle's weight) -> limits -> wrench that step() applies.
   void write(const Wrench& F_Ho_D) noexcept override;
 
-  [[nodiscard]] DeviceLimits limits() const noexcept override;
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return limits_; }
   [[nodiscard]] std::string_view name() const noexcept override { return "dual_arm"; }
 
   /// Advances the plant by dt_s with the hand `hand` (in D) on the handle. The hand's spring and damper, and
@@ -52,16 +52,17 @@ class SimulatedDualArm final : public Device {
   [[nodiscard]] unsigned long saturatedWrites() const noexcept { return saturated_; }
 
  private:
-  using Vec6 = Eigen::Matrix<double, 6, 1>;
   using Mat6 = Eigen::Matrix<double, 6, 6>;
   [[nodiscard]] Mat6 inertia(const JointMatrix& J) const noexcept;
 
   SimulatedDualArmSettings settings_;
+  DeviceLimits limits_;
   Pose X_DH_;
   Twist V_DH_;
   double time_s_ = 0;
   Wrench F_applied_, F_hand_;
-  Mat6 inertia_before_ = Mat6::Zero();
+  JointMatrix J_ = JointMatrix::Zero();
+  Mat6 M_before_ = Mat6::Zero();
   JointVector heat_ = JointVector::Zero();  ///< mean square of effort / continuous limit
   JointVector efforts_ = JointVector::Zero();
   double kinetic_J_ = 0, friction_J_ = 0;

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vps {
+
+Pose WorkspaceMap::toScene(const Pose& X_DH) const noexcept {
+  return {Mat3(X_WD.R * X_DH.R), X_WD * Vec3(scale * X_DH.p)};
+}
+Pose WorkspaceMap::toDevice(const Pose& X_WH) const noexcept {
+  const Mat3 R_DW = X_WD.R.transpose();
+  return {Mat3(R_DW * X_WH.R), Vec3(R_DW * (X_WH.p - X_WD.p) / scale)};
+}
+Twist WorkspaceMap::toScene(const Twist& V_D) const noexcept {
+  return {X_WD.R * V_D.w, scale * (X_WD.R * V_D.v)};
+}
+Twist WorkspaceMap::toDevice(const Twist& V_W) const noexcept {
+  return {X_WD.R.transpose() * V_W.w, X_WD.R.transpose() * V_W.v / scale};
+}
+Wrench WorkspaceMap::toScene(const Wrench& F_D) const noexcept {
+  return rotated(X_WD.R, F_D) * (1 / force_scale);
+}
+Wrench WorkspaceMap::toDevice(const Wrench& F_W) const noexcept {
+  return rotated(X_WD.R.transpose(), F_W) * force_scale;
+}
+
+Grasp Grasp::between(const Pose& X_WH, const Pose& X_WG) noexcept {
+  return {X_WG.p - X_WH.p, X_WH.R.transpose() * X_WG.R};
+}
+Pose Grasp::toGrasp(const Pose& X_WH) const noexcept {
+  return {Mat3(X_WH.R * R_HG), Vec3(X_WH.p + offset_W)};
+}
+Pose Grasp::toHandle(const Pose& X_WG) const noexcept {
+  return {Mat3(X_WG.R * R_HG.transpose()), Vec3(X_WG.p - offset_W)};
+}
+
+HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings)
+    : device_(&device),
+      port_(&port),
+      settings_(settings),
+      limits_(device.limits()),
+      guard_(settings.safety) {}
+
+void HapticLoop::grasp(const Pose& X_WG) noexcept {
+  const DeviceSample sample = device_->read();
+  if (sample.status != Status::Ok || !X_WG.isFinite()) return;
+  grasp_ = Grasp::between(settings_.map.toScene(sample.X_DH), X_WG);
+  report_.X_WG = X_WG;
+  is_holding_ = true;
+}
+
+void HapticLoop::release() noexcept {
+  is_holding_ = false;
+}
+
+void HapticLoop::rearm() noexcept {
+  guard_.rearm();
+  has_before_ = false;
+  const CouplingState& part = port_->part.read();
+  if (is_holding_ && part.X_W.isFinite()) grasp(part.X_W);
+}
+
+const TickReport& HapticLoop::tick() noexcept {
+  const DeviceSample sample = device_->read();
+  const bool is_good = sample.status == Status::Ok && sample.X_DH.isFinite() && sample.V_DH.isFinite();
+  CouplingState proxy{report_.X_WG, Twist{}, sample.time_s, is_holding_};
+  Wrench wanted_D;
+  if (is_good) {
+    proxy.X_W = toGrasp(sample.X_DH);
+    proxy.V_W = settings_.map.toScene(sample.V_DH);
+    wanted_D = settings_.map.toDevice(-coupling(proxy)) + passivityDamping(sample.V_DH);
+    account(sample);
+  }
+  report_.F_hand_D = guard_.guard(sample, wanted_D, settings_.period_s);
+  device_->write(report_.F_hand_D);
+  F_held_D_ = report_.F_hand_D;
+
+  // While safety holds the force at zero the proxy stands still: the part rests where it was, and does not
+  // follow a pose that cannot be trusted.
+  const bool is_faulted = guard_.state().fault != SafetyFault::None;
+  if (is_faulted) {
+    proxy.X_W = report_.X_WG;
+    proxy.V_W = {};
+  }
+  port_->proxy.write(proxy);
+  report_.time_s = sample.time_s;
+  report_.status = is_faulted ? Status::Fault : sample.status;
+  report_.X_WG = proxy.X_W;
+  report_.V_WG = proxy.V_W;
+  report_.F_hand_W = rotated(settings_.map.X_WD.R, report_.F_hand_D);
+  ++ticks_;
+  ++counts_[std::min(static_cast<std::size_t>(report_.status), kStatusCount - 1)];
+  return report_;
+}
+
+Wrench HapticLoop::coupling(const CouplingState& proxy) noexcept {
+  // Read also when not holding, so that the port never hands out a part of long ago.
+  const CouplingState& part = port_->part.read();
+  if (!is_holding_ || !part.is_coupled) return {};
+  if (!settings_.extrapolates_part) return couplingWrench(settings_.gains, proxy, part);
+  const double age_s = std::clamp(proxy.time_s - part.time_s, 0.0, settings_.hold_limit_s);
+  CouplingState ahead = part;
+  ahead.X_W.p += age_s * part.V_W.v;
+  ahead.X_W.R = rotationFromVector(age_s * part.V_W.w) * part.X_W.R;
+  return couplingWrench(settings_.gains, proxy, ahead);
+}
+
+Wrench HapticLoop::passivityDamping(const Twist& V_DH) const noexcept {
+  if (!has_stored_ || ledger_.balance_J <= settings_.injected_bound_J) return {};
+  return {-settings_.passivity_damping_Nms_per_rad * V_DH.w, -settings_.passivity_damping_Ns_per_m * V_DH.v};
+}
+
+void HapticLoop::account(const DeviceSample& sample) noexcept {
+  const Pose X_before = X_DH_before_;
+  const bool had_before = has_before_;
+  X_DH_before_ = sample.X_DH;
+  has_before_ = true;
+  if (!had_before) return;
+  const Twist step{rotationVector(sample.X_DH.R * X_before.R.transpose()), Vec3(sample.X_DH.p - X_before.p)};
+  const double work_J = power(F_held_D_, step);
+  (work_J > 0 ? ledger_.to_hand_J : ledger_.from_hand_J) += std::abs(work_J);
+
+  // One encoder step per tick is no real speed: the lower of the raw and the filtered estimate counts.
+  const double dt_s = settings_.period_s;
+  const double v = std::min(step.v.norm() / dt_s, sample.V_DH.v.norm());
+  const double w = std::min(step.w.norm() / dt_s, sample.V_DH.w.norm());
+  ledger_.dissipated_J += dt_s * (limits_.damping_Ns_per_m * v * v + limits_.damping_Nms_per_rad * w * w);
+
+  // Scene joules: scene wrench times scene displacement. Device dissipation stands for as much there as the
+  // translation it brakes.
+  const WorkspaceMap& map = settings_.map;
+  net_scene_J_ += power(map.toScene(F_held_D_), map.toScene(step));
+  const double dissipated_J = ledger_.dissipated_J * map.scale / map.force_scale;
+  if (!has_stored_) return;
+  ledger_.balance_J = (net_scene_J_ - net_start_J_) - (dissipated_J - dissipated_start_J_) -
+                      (stored_start_J_ - stored_J_) - (actuator_J_ - actuator_start_J_);
+  ledger_.injected_J = std::max(ledger_.injected_J, ledger_.balance_J);
+}
+
+void HapticLoop::noteStored(double stored_J, double actuator_J) noexcept {
+  stored_J_ = stored_J;
+  actuator_J_ = actuator_J;
+  if (has_stored_) return;
+  has_stored_ = true;
+  stored_start_J_ = stored_J;
+  actuator_start_J_ = actuator_J;
+  net_start_J_ = net_scene_J_;
+  dissipated_start_J_ = ledger_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
+}
+
+std::uint64_t HapticLoop::count(Status status) const noexcept {
+  return counts_[std::min(static_cast<std::size_t>(status), kStatusCount - 1)];
+}
+
+Pose HapticLoop::toGrasp(const Pose& X_DH) const noexcept {
+  const Pose X_WH = settings_.map.toScene(X_DH);
+  return is_holding_ ? grasp_.toGrasp(X_WH) : X_WH;
+}
+
+HandForce HapticLoop::toDevice(const HandForce& hand_W) const noexcept {
+  const Mat3 R_DW = settings_.map.X_WD.R.transpose();
+  const auto turned = [&R_DW](const Mat3& m) { return Mat3(R_DW * m * R_DW.transpose()); };
+  HandForce hand = hand_W;
+  hand.X_eq = settings_.map.toDevice(is_holding_ ? grasp_.toHandle(hand_W.X_eq) : hand_W.X_eq);
+  hand.V_eq = settings_.map.toDevice(hand_W.V_eq);
+  hand.k_N_per_m = turned(hand_W.k_N_per_m);
+  hand.b_Ns_per_m = turned(hand_W.b_Ns_per_m);
+  hand.k_Nm_per_rad = turned(hand_W.k_Nm_per_rad);
+  hand.b_Nms_per_rad = turned(hand_W.b_Nms_per_rad);
+  hand.F = settings_.map.toDevice(hand_W.F);
+  return hand;
+}
+
+}  // namespace vps
