@@ -103,52 +103,63 @@ void MeshDistance::buildTree() {
   }
 }
 
-MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const noexcept {
-  Closest best;
-  best.distance_m = max_m;
-  if (nodes_.empty()) return best;
+/// Visits triangles near first and calls onNearer(triangle, point) for each that is nearer than all before
+/// and max_m; returns the least squared distance. Skips boxes whose squared distance times box_weight is not
+/// less.
+template <typename Visit>
+double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
   double best2 = max_m * max_m;
-  int feature = 0;
-
+  if (nodes_.empty()) return best2;
   struct Waiting {
     std::uint32_t node;
     double distance2;
   };
+  const auto waitingAt = [&](std::uint32_t node) {
+    return Waiting{node, box_weight * boxDistance2(p, nodes_[node].min, nodes_[node].max)};
+  };
   Waiting stack[kStack];
   int waiting = 0;
-  stack[waiting++] = {0, boxDistance2(p, nodes_[0].min, nodes_[0].max)};
+  stack[waiting++] = waitingAt(0);
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (next.distance2 >= best2) continue;
     const Node& node = nodes_[next.node];
-    if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const auto& t = mesh_.triangles[order_[i]];
-        const TrianglePoint at =
-            closestOnTriangleInline(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
-        const double distance2 = (p - at.q).squaredNorm();
-        if (distance2 < best2) {
-          best2 = distance2;
-          best.q = at.q;
-          best.triangle = order_[i];
-          best.found = true;
-          feature = at.feature;
-        }
-      }
-      continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = mesh_.triangles[order_[i]];
+      const TrianglePoint at =
+          closestOnTriangleInline(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+      const double distance2 = (p - at.q).squaredNorm();
+      if (distance2 >= best2) continue;
+      best2 = distance2;
+      onNearer(order_[i], at);
     }
-    const Node &left = nodes_[node.first], &right = nodes_[node.first + 1];
-    Waiting near = {node.first, boxDistance2(p, left.min, left.max)};
-    Waiting far = {node.first + 1, boxDistance2(p, right.min, right.max)};
+    if (node.count > 0) continue;
+    Waiting near = waitingAt(node.first), far = waitingAt(node.first + 1);
     if (far.distance2 < near.distance2) std::swap(near, far);
     if (far.distance2 < best2) stack[waiting++] = far;
     if (near.distance2 < best2) stack[waiting++] = near;
   }
-  if (best.found) {
-    best.distance_m = std::sqrt(best2);
-    best.normal = featureNormal(best.triangle, feature);
-  }
+  return best2;
+}
+
+MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const noexcept {
+  Closest best;
+  int feature = 0;
+  const double best2 = search(p, max_m, 1, [&](std::uint32_t triangle, const TrianglePoint& at) {
+    best.q = at.q;
+    best.triangle = triangle;
+    best.found = true;
+    feature = at.feature;
+  });
+  best.distance_m = best.found ? std::sqrt(best2) : max_m;
+  if (best.found) best.normal = featureNormal(best.triangle, feature);
   return best;
+}
+
+double MeshDistance::lowerBound(const Vec3& p, double slack, double max_m) const noexcept {
+  // What was skipped is at least best / (1 + slack) away.
+  const double weight = (1 + slack) * (1 + slack);
+  return std::sqrt(search(p, max_m, weight, [](std::uint32_t, const TrianglePoint&) {})) / (1 + slack);
 }
 
 double MeshDistance::signedDistance(const Vec3& p, double max_m) const noexcept {

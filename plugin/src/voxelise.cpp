@@ -3,11 +3,11 @@
 //
 // 1. Gather: for each triangle, the bricks it can reach; turned round into a list of triangles for each
 // brick.
-// 2. Distances: brick by brick, halved down to blocks of 4^3 nodes, each keeping only triangles that can be
-// nearest
-//    to one of its nodes; then node by node, skipping triangles whose bounding rectangle is too far.
+// 2. Distances: a brick is halved into blocks of 4^3, 2^3 nodes and then one, each block keeping only the
+// triangles
+//    that can be nearest to one of its nodes.
 // 3. Bricks: distances and the neighbours' border, and a sign for the nodes beyond the band.
-// 4. Directory: exact distance at every cell's centre, which bounds the distance all around.
+// 4. Directory: a sign and a bound of the distance at every cell's centre.
 //
 // Parallel over triangles, bricks and rows; each result has one writer and a fixed order of its own, so that
 // every number of threads gives the same bits.
@@ -36,23 +36,23 @@ constexpr float kFar = FLT_MAX;
 /// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
 constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
+/// How far the bound at a cell's centre may fall short, as a share: the cell's own size costs more, and an
+/// exact search is slow amid a round part, where everything is equally far.
+constexpr double kCenterSlack = 0.03;
+
 constexpr int ownIndex(int x, int y, int z) {
   return (x * kBrick + y) * kBrick + z;
 }
 
-/// A triangle prepared for many questions: corners, and a rectangle around it in its plane whose distance is
-/// a quick lower bound. Tight for slivers, which a sphere or an axis-aligned box is not.
+/// Corners of a triangle, and a rectangle around it in its plane, whose distance is a quick lower bound:
+/// tight for slivers too, which spheres and axis-aligned boxes are not.
 struct PreparedTriangle {
   Vec3 a, b, c;
-  Vec3 center, u, v, n;  // of the rectangle; u along the longest edge
+  Vec3 center, u, v, n;  // of the rectangle; u along the triangle's longest edge
   double half_u, half_v;
-  std::uint32_t index;
 
-  PreparedTriangle(const Mesh& mesh, std::uint32_t i) : index(i) {
-    const auto& t = mesh.triangles[i];
-    a = mesh.vertices[t[0]];
-    b = mesh.vertices[t[1]];
-    c = mesh.vertices[t[2]];
+  PreparedTriangle(const Mesh& mesh, const std::array<std::uint32_t, 3>& t)
+      : a(mesh.vertices[t[0]]), b(mesh.vertices[t[1]]), c(mesh.vertices[t[2]]) {
     Vec3 longest = b - a, other = c - a;
     if ((c - b).squaredNorm() > longest.squaredNorm()) longest = c - b, other = a - b;
     if ((a - c).squaredNorm() > longest.squaredNorm()) longest = a - c, other = b - c;
@@ -62,11 +62,11 @@ struct PreparedTriangle {
     // Collinear corners: any direction across will do, the rectangle has no width.
     v = height > 1e-12 * longest.norm() ? Vec3(across / height) : Vec3(u.unitOrthogonal());
     n = u.cross(v);
-    Box in_uvn;
-    for (const Vec3& p : {a, b, c}) in_uvn.add(Vec3((p - a).dot(u), (p - a).dot(v), 0));
-    center = a + in_uvn.center().x() * u + in_uvn.center().y() * v;
-    half_u = 0.5 * in_uvn.size().x();
-    half_v = 0.5 * in_uvn.size().y();
+    Box in_uv;
+    for (const Vec3& p : {a, b, c}) in_uv.add(Vec3((p - a).dot(u), (p - a).dot(v), 0));
+    center = a + in_uv.center().x() * u + in_uv.center().y() * v;
+    half_u = 0.5 * in_uv.size().x();
+    half_v = 0.5 * in_uv.size().y();
   }
 
   /// Not more than the squared distance from p, but for rounding.
@@ -77,6 +77,71 @@ struct PreparedTriangle {
     const double dn = r.dot(n);
     return du * du + dv * dv + dn * dn;
   }
+};
+
+/// The rectangles of a list of triangles, by component so that the compiler asks about several at a time; in
+/// voxels from the brick's centre, where float is fine enough: what rounding may take from a bound is in
+/// slack().
+class RectangleList {
+ public:
+  [[nodiscard]] std::size_t size() const { return triangles_.size(); }
+  [[nodiscard]] std::uint32_t triangle(std::size_t i) const { return triangles_[i]; }
+  [[nodiscard]] float slack() const { return slack_; }
+
+  void reset(std::size_t capacity, float slack) {
+    triangles_.clear();
+    slack_ = slack;
+    if (capacity <= stride_) return;
+    stride_ = capacity + capacity / 2;
+    values_.resize(kComponents * stride_);
+    bound2_.resize(stride_);
+  }
+
+  void add(std::uint32_t index, const PreparedTriangle& t, const Vec3& origin, double per_voxel) {
+    const Vec3 center = (t.center - origin) * per_voxel;
+    const double half_u = t.half_u * per_voxel, half_v = t.half_v * per_voxel;
+    const double values[kComponents] = {center.x(), center.y(), center.z(), t.u.x(), t.u.y(),
+                                        t.u.z(),    t.v.x(),    t.v.y(),    t.v.z(), t.n.x(),
+                                        t.n.y(),    t.n.z(),    half_u,     half_v};
+    for (std::size_t k = 0; k < kComponents; ++k)
+      values_[k * stride_ + triangles_.size()] = static_cast<float>(values[k]);
+    triangles_.push_back(index);
+    // A handful of float roundings of numbers this large.
+    slack_ = std::max(slack_, 2e-6f * static_cast<float>(center.norm() + half_u + half_v + kBrick));
+  }
+
+  /// Appends entry i of another list.
+  void copy(const RectangleList& from, std::size_t i) {
+    for (std::size_t k = 0; k < kComponents; ++k)
+      values_[k * stride_ + triangles_.size()] = from.values_[k * from.stride_ + i];
+    triangles_.push_back(from.triangles_[i]);
+  }
+
+  /// Squared distances [voxel^2] from p to all rectangles; kept for lastBound2().
+  std::span<const float> bound2(const Eigen::Vector3f& p) {
+    const std::size_t n = stride_;
+    const float* __restrict v = values_.data();
+    float* __restrict out = bound2_.data();
+    const float px = p.x(), py = p.y(), pz = p.z();
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      const float x = px - v[i], y = py - v[n + i], z = pz - v[2 * n + i];
+      float du = std::abs(x * v[3 * n + i] + y * v[4 * n + i] + z * v[5 * n + i]) - v[12 * n + i];
+      float dv = std::abs(x * v[6 * n + i] + y * v[7 * n + i] + z * v[8 * n + i]) - v[13 * n + i];
+      const float dn = x * v[9 * n + i] + y * v[10 * n + i] + z * v[11 * n + i];
+      du = du > 0 ? du : 0;
+      dv = dv > 0 ? dv : 0;
+      out[i] = du * du + dv * dv + dn * dn;
+    }
+    return lastBound2();
+  }
+  [[nodiscard]] std::span<const float> lastBound2() const { return {bound2_.data(), triangles_.size()}; }
+
+ private:
+  static constexpr std::size_t kComponents = 14;
+  std::vector<std::uint32_t> triangles_;
+  std::vector<float> values_, bound2_;
+  std::size_t stride_ = 0;
+  float slack_ = 0;
 };
 
 /// The triangles that reach each brick, as one list with an offset for each cell of the directory.
@@ -100,23 +165,30 @@ class Voxeliser {
 
  private:
   using OwnNodes = std::array<float, kOwnNodes>;
-  struct Candidate {
-    std::uint32_t triangle;
-    double distance_m;  // from the block's centre
+  struct Nearest {
+    TrianglePoint at;
+    std::uint32_t triangle = UINT32_MAX;
+    double distance_m;
   };
-  struct Scratch;
+  /// One brick being computed; a list for each level of blocks.
+  struct Work {
+    Vec3 center;
+    Index3 low;
+    RectangleList lists[4];
+    OwnNodes* nodes;
+  };
 
   void layOutDirectory();
   void gather();
   void gatherTriangle(std::uint32_t triangle, const Index3& low, const Index3& size,
                       std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
-  void computeNodes(const Index3& cell, std::span<const std::uint32_t> triangles, OwnNodes& nodes,
-                    Scratch& scratch) const;
-  void computeBlock(const Index3& node_low, std::span<const std::uint32_t> candidates, const Index3& offset,
-                    OwnNodes& nodes, Scratch& scratch) const;
+  void computeNodes(std::size_t i, Work& work);
+  void computeBlock(const Index3& low, int level, Work& work) const;
+  Nearest nearest(const Vec3& p, double limit_m, Work& work, int level) const;
+  void collectNodes(std::size_t i, std::array<float, kBrickNodes>& distance_m) const;
   void finishBricks();
-  void finishBrick(std::size_t i, VoxBrick& brick) const;
   void finishDirectory();
+  void floodSigns();
 
   [[nodiscard]] Index3 cellAt(std::size_t index) const {
     const auto ny = static_cast<std::size_t>(layout_->size.y()),
@@ -134,10 +206,6 @@ class Voxeliser {
   std::vector<OwnNodes> own_;         // one for each of gathered_.cells
   std::vector<std::int32_t> own_of_;  // by directory index; -1: none
   std::vector<PreparedTriangle> prepared_;
-};
-
-struct Voxeliser::Scratch {
-  std::vector<Candidate> block;
 };
 
 void Voxeliser::layOutDirectory() {
@@ -179,7 +247,7 @@ void Voxeliser::gatherTriangle(std::uint32_t triangle, const Index3& low, const 
 void Voxeliser::gather() {
   const std::size_t count = mesh_.triangles.size();
   prepared_.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) prepared_.emplace_back(mesh_, i);
+  for (const auto& t : mesh_.triangles) prepared_.emplace_back(mesh_, t);
 
   constexpr std::size_t kGrain = 1024;
   const std::size_t chunks = (count + kGrain - 1) / kGrain;
@@ -214,74 +282,89 @@ void Voxeliser::gather() {
 }
 
 /// Signed distance at a brick's own nodes; kFar beyond the band.
-void Voxeliser::computeNodes(const Index3& cell, std::span<const std::uint32_t> triangles, OwnNodes& nodes,
-                             Scratch& scratch) const {
-  nodes.fill(kFar);
-  const Index3 low = kBrick * cell;
-  for (int block = 0; block < 8; ++block) {
-    const Index3 offset = 4 * Index3(block >> 2, block >> 1 & 1, block & 1);
-    computeBlock(low + offset, triangles, offset, nodes, scratch);
+void Voxeliser::computeNodes(std::size_t i, Work& work) {
+  work.nodes = &own_[i];
+  work.nodes->fill(kFar);
+  work.low = kBrick * cellAt(gathered_.cells[i]);
+  work.center = h_ * (work.low.cast<double>() + Vec3::Constant(0.5 * (kBrick - 1)));
+  const std::size_t count = gathered_.first[i + 1] - gathered_.first[i];
+  work.lists[0].reset(count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t triangle = gathered_.triangles[gathered_.first[i] + k];
+    work.lists[0].add(triangle, prepared_[triangle], work.center, 1 / h_);
   }
+  computeBlock(Index3::Zero(), 0, work);
 }
 
-void Voxeliser::computeBlock(const Index3& node_low, std::span<const std::uint32_t> candidates,
-                             const Index3& offset, OwnNodes& nodes, Scratch& scratch) const {
+/// The nearest triangle of a level's list within limit_m of p, if any.
+Voxeliser::Nearest Voxeliser::nearest(const Vec3& p, double limit_m, Work& work, int level) const {
+  RectangleList& list = work.lists[level];
+  const std::span<const float> bound2 = list.bound2(((p - work.center) / h_).cast<float>());
+  Nearest best;
+  best.distance_m = limit_m;
+  double best2 = limit_m * limit_m;
+  float reach2 = 0;  // skip what is farther than the best, in the list's unit
+  const auto updateReach = [&] {
+    const float reach = static_cast<float>(best.distance_m / h_) * (1 + 1e-5f) + list.slack();
+    reach2 = reach * reach;
+  };
+  const auto attempt = [&](std::size_t i) {
+    const PreparedTriangle& t = prepared_[list.triangle(i)];
+    const TrianglePoint at = closestOnTriangleInline(p, t.a, t.b, t.c);
+    const double distance2 = (p - at.q).squaredNorm();
+    if (distance2 >= best2) return;
+    best2 = distance2;
+    best = {at, list.triangle(i), std::sqrt(distance2)};
+    updateReach();
+  };
+  updateReach();
+  // The one with the least bound first: most often it is the nearest, and the rest is skipped.
+  const auto first =
+      static_cast<std::size_t>(std::min_element(bound2.begin(), bound2.end()) - bound2.begin());
+  if (first == bound2.size() || bound2[first] > reach2) return best;
+  attempt(first);
+  for (std::size_t i = 0; i < bound2.size(); ++i)
+    if (bound2[i] <= reach2 && i != first) attempt(i);
+  return best;
+}
+
+/// A block of (8 >> level)^3 nodes at `low` in the brick.
+void Voxeliser::computeBlock(const Index3& low, int level, Work& work) const {
+  const int size = kBrick >> level;
+  const Vec3 middle = (work.low + low).cast<double>() + Vec3::Constant(0.5 * (size - 1));
+  const Vec3 center = h_ * middle;  // for a single node exactly its position
+  const double radius_m = 0.5 * (size - 1) * std::sqrt(3.0) * h_;
+  const Nearest best = nearest(center, (band_m_ + radius_m) * (1 + 1e-9), work, level);
+  if (best.triangle == UINT32_MAX) return;
+  if (size == 1) {
+    const auto distance_m = static_cast<float>(best.distance_m);
+    if (distance_m >= static_cast<float>(band_m_)) return;
+    const bool is_inside =
+        distance_.featureNormal(best.triangle, best.at.feature).dot(center - best.at.q) < 0;
+    (*work.nodes)[ownIndex(low.x(), low.y(), low.z())] = is_inside ? -distance_m : distance_m;
+    return;
+  }
   // A triangle farther from the centre than the nearest one by the block's diameter is nearest to no node in
   // it.
-  const double radius_m = 1.5 * std::sqrt(3.0) * h_ * (1 + 1e-9);
-  const Vec3 center = h_ * (node_low.cast<double>() + Vec3::Constant(1.5));
-  std::vector<Candidate>& block = scratch.block;
-  block.clear();
-  double limit_m = band_m_ + radius_m;
-  for (const std::uint32_t i : candidates) {
-    const PreparedTriangle& t = prepared_[i];
-    if (t.atLeast2(center) > limit_m * limit_m * (1 + 1e-9)) continue;
-    const double distance_m = (center - closestOnTriangleInline(center, t.a, t.b, t.c).q).norm();
-    if (distance_m > limit_m) continue;
-    limit_m = std::min(limit_m, distance_m + 2 * radius_m);
-    block.push_back({i, distance_m});
-  }
-  // Nearest first: the search below may stop early.
-  std::sort(block.begin(), block.end(), [](const Candidate& a, const Candidate& b) {
-    return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.triangle < b.triangle;
-  });
-
-  for (int x = 0; x < 4; ++x)
-    for (int y = 0; y < 4; ++y)
-      for (int z = 0; z < 4; ++z) {
-        const Vec3 p = nodePosition(node_low + Index3(x, y, z));
-        const double from_center_m = (p - center).norm() * (1 + 1e-9);
-        double best2 = band_m_ * band_m_, best_m = band_m_;
-        TrianglePoint nearest;
-        std::uint32_t triangle = UINT32_MAX;
-        for (const Candidate& candidate : block) {
-          if (candidate.distance_m - from_center_m > best_m) break;
-          const PreparedTriangle& t = prepared_[candidate.triangle];
-          if (t.atLeast2(p) > best2 * (1 + 1e-9)) continue;
-          const TrianglePoint at = closestOnTriangleInline(p, t.a, t.b, t.c);
-          const double distance2 = (p - at.q).squaredNorm();
-          if (distance2 < best2) {
-            best2 = distance2;
-            best_m = std::sqrt(distance2);
-            nearest = at;
-            triangle = candidate.triangle;
-          }
-        }
-        if (triangle == UINT32_MAX) continue;
-        const bool is_inside = distance_.featureNormal(triangle, nearest.feature).dot(p - nearest.q) < 0;
-        const auto distance_m = static_cast<float>(best_m);
-        if (distance_m >= static_cast<float>(band_m_)) continue;
-        nodes[ownIndex(offset.x() + x, offset.y() + y, offset.z() + z)] =
-            is_inside ? -distance_m : distance_m;
-      }
+  const RectangleList& list = work.lists[level];
+  RectangleList& kept = work.lists[level + 1];
+  const std::span<const float> bound2 = work.lists[level].lastBound2();
+  const auto reach =
+      static_cast<float>(std::min(best.distance_m + 2 * radius_m, band_m_ + radius_m) / h_) * (1 + 1e-5f) +
+      list.slack();
+  kept.reset(list.size(), list.slack());
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (bound2[i] <= reach * reach) kept.copy(list, i);
+  for (int child = 0; child < 8; ++child)
+    computeBlock(low + size / 2 * Index3(child >> 2, child >> 1 & 1, child & 1), level + 1, work);
 }
 
 /// Gives far nodes of a brick the band's distance, with the sign of the node beside them: where one of two
 /// neighbours is far, the surface does not pass between, since the band is wider than a voxel.
-void saturate(VoxBrick& brick, float band_m) {
+void saturate(std::array<float, kBrickNodes>& distance_m, float band_m) {
   const auto take = [&](int far, int from) {
-    float& d = brick.distance_m[far];
-    if (d == kFar && brick.distance_m[from] != kFar) d = std::copysign(band_m, brick.distance_m[from]);
+    float& d = distance_m[far];
+    if (d == kFar && distance_m[from] != kFar) d = std::copysign(band_m, distance_m[from]);
   };
   // Up and down along z fills each row that knows a sign; then along y each plane; then along x the brick.
   constexpr int kStride[3] = {nodeIndex(0, 0, 1), nodeIndex(0, 1, 0), nodeIndex(1, 0, 0)};
@@ -295,59 +378,97 @@ void saturate(VoxBrick& brick, float band_m) {
       }
 }
 
-void Voxeliser::finishBrick(std::size_t i, VoxBrick& brick) const {
+/// The nodes of a brick: its own, and the first ones of seven neighbours as its border.
+void Voxeliser::collectNodes(std::size_t i, std::array<float, kBrickNodes>& distance_m) const {
   const Index3 cell = cellAt(gathered_.cells[i]);
-  for (int part = 0; part < 8; ++part) {  // the brick's own nodes, and the first ones of seven neighbours
+  for (int part = 0; part < 8; ++part) {
     const Index3 step(part >> 2, part >> 1 & 1, part & 1);
     const Index3 neighbour = cell + step;
     const std::int32_t own = layout_->holds(neighbour) ? own_of_[layout_->cellIndex(neighbour)] : -1;
     for (int x = 0; x < (step.x() ? 1 : kBrick); ++x)
       for (int y = 0; y < (step.y() ? 1 : kBrick); ++y)
         for (int z = 0; z < (step.z() ? 1 : kBrick); ++z)
-          brick.distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
+          distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
               own < 0 ? kFar : own_[own][ownIndex(x, y, z)];
   }
 }
 
+/// Keeps the bricks that have a node within the band.
 void Voxeliser::finishBricks() {
-  auto pool = std::make_shared<VoxPool>();
   const std::size_t count = gathered_.cells.size();
-  std::vector<VoxBrick> all(count);
-  std::vector<std::uint8_t> has_band(count);
+  std::vector<std::int32_t> slot(count);  // 1 if kept, then its place
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    finishBrick(i, all[i]);
-    has_band[i] =
-        std::any_of(all[i].distance_m.begin(), all[i].distance_m.end(), [](float d) { return d != kFar; });
-    if (has_band[i]) saturate(all[i], static_cast<float>(band_m_));
+    std::array<float, kBrickNodes> nodes;
+    collectNodes(i, nodes);
+    slot[i] = std::any_of(nodes.begin(), nodes.end(), [](float d) { return d != kFar; });
   });
-  std::size_t stored = 0;
-  for (const std::uint8_t has : has_band) stored += has;
-  pool->bricks.reserve(stored);  // cells point into it: it must not move
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!has_band[i]) continue;
-    pool->bricks.push_back(all[i]);
-    layout_->cells[gathered_.cells[i]].brick = &pool->bricks.back();
-  }
+  std::int32_t kept = 0;
+  for (std::int32_t& s : slot) s = s ? kept++ : -1;
+
+  auto pool = std::make_shared<VoxPool>();
+  pool->bricks.resize(static_cast<std::size_t>(kept));
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    if (slot[i] < 0) return;
+    VoxBrick& brick = pool->bricks[slot[i]];
+    collectNodes(i, brick.distance_m);
+    saturate(brick.distance_m, static_cast<float>(band_m_));
+    layout_->cells[gathered_.cells[i]].brick = &brick;
+  });
   layout_->pools = {pool};
 }
 
 void Voxeliser::finishDirectory() {
+  floodSigns();
   const Index3 size = layout_->size;
   tbb::parallel_for(0, size.x() * size.y(), [&](int row) {
     double last_m = 1e300;
     for (int z = 0; z < size.z(); ++z) {
       const Index3 cell = layout_->low + Index3(row / size.y(), row % size.y(), z);
+      VoxCell& entry = layout_->cells[layout_->cellIndex(cell)];
       const Vec3 center = nodePosition(kBrick * cell + Index3::Constant(kBrick / 2));
       // From the centre before, the surface can be farther by the way between at most: a good start for the
       // search.
-      const double limit_m = (last_m + kBrick * h_) * (1 + 1e-9);
-      const double distance_m = distance_.signedDistance(center, limit_m);
-      last_m = std::abs(distance_m);
-      VoxCell& entry = layout_->cells[layout_->cellIndex(cell)];
-      entry.center_m = static_cast<float>(distance_m);
-      if (entry.brick == nullptr) entry.brick = distance_m < 0 ? layout_->inside() : layout_->outside();
+      const double start_m = (last_m * (1 + kCenterSlack) + kBrick * h_) * (1 + 1e-9);
+      last_m = distance_.lowerBound(center, kCenterSlack, start_m);
+      const bool is_inside = layout_->isConstant(entry.brick)
+                                 ? entry.brick == layout_->inside()
+                                 : entry.brick->distance_m[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)] < 0;
+      entry.center_m = static_cast<float>(is_inside ? -last_m : last_m);
     }
   });
+}
+
+/// Fills the directory's empty cells with outside or inside: they meet the surface nowhere, so a sign spreads
+/// from cell to cell. From the rim first, which is outside: a flaw in the mesh then cannot turn the outside
+/// in.
+void Voxeliser::floodSigns() {
+  std::vector<Index3> waiting;
+  const auto fill = [&](const Index3& from, const VoxBrick* with) {
+    waiting.push_back(from);
+    while (!waiting.empty()) {
+      const Index3 cell = waiting.back();
+      waiting.pop_back();
+      if (!layout_->holds(cell)) continue;
+      VoxCell& entry = layout_->cells[layout_->cellIndex(cell)];
+      if (entry.brick != nullptr) continue;
+      entry.brick = with;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) waiting.push_back(cell + step * Index3::Unit(axis));
+    }
+  };
+  fill(layout_->low, layout_->outside());  // the rim is one layer of empty cells, connected
+  for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
+    const VoxBrick* brick = layout_->cells[i].brick;
+    if (brick == nullptr || layout_->isConstant(brick)) continue;
+    // An empty neighbour shares a face with the brick, whose middle node tells the sign.
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int step : {-1, 1}) {
+        Index3 node = Index3::Constant(kBrick / 2);
+        node[axis] = step < 0 ? 0 : kBrick;
+        const bool is_inside = brick->distance_m[nodeIndex(node.x(), node.y(), node.z())] < 0;
+        fill(cellAt(i) + step * Index3::Unit(axis), is_inside ? layout_->inside() : layout_->outside());
+      }
+  }
 }
 
 std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
@@ -360,12 +481,8 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   tell(0.2);
   own_.resize(gathered_.cells.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own_.size()), [&](const auto& range) {
-    Scratch scratch;
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      computeNodes(cellAt(gathered_.cells[i]),
-                   std::span(gathered_.triangles)
-                       .subspan(gathered_.first[i], gathered_.first[i + 1] - gathered_.first[i]),
-                   own_[i], scratch);
+    Work work;
+    for (std::size_t i = range.begin(); i < range.end(); ++i) computeNodes(i, work);
   });
   tell(0.7);
   finishBricks();

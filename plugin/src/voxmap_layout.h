@@ -50,14 +50,14 @@ struct VoxPool {
 /// One entry of the directory.
 struct VoxCell {
   const VoxBrick* brick = nullptr;
-  /// Signed distance [m] of the cell's centre to the surface; where positive perhaps less (a lower bound).
+  /// At the cell's centre: the sign, and a value [m] that the distance to the surface is not below.
   float center_m = 0;
 };
 
 /// What mounting must know of the parts already there.
 struct VoxPartRange {
   Box bounds;   ///< of the part's surface, in M [m]
-  Index3 low;   ///< first cell whose centre distance to the part is exact
+  Index3 low;   ///< first cell of the part's own directory
   Index3 high;  ///< one past the last
 };
 

@@ -69,13 +69,15 @@ class VoxSampler {
     return length > 1e-6 * voxel_m_ ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
 
-  /// A value that the signed distance to the surface at p_M is not below (not clamped to the band).
+  /// A value that the signed distance to the surface at p_M is not below; -band_m where nothing better is
+  /// known.
   [[nodiscard]] double leastDistance(const Vec3& p_M, const Place& at) const noexcept {
+    if (at.brick == nullptr) return leastDistanceOutside(p_M);
+    double least_m = -band_m_;
+    const double center_m = layout_.cells[at.cell].center_m;
+    if (center_m > 0) least_m = std::max(least_m, center_m * kRoundDown - fromCenter(at));
+    least_m = std::max(least_m, distance(at) - interpolationError(at));
     const double to_box_m = boxDistance(p_M);
-    if (at.brick == nullptr) return to_box_m;
-    double least_m = centerDistance(at) - fromCenter(at);
-    const double field_m = distance(at) - interpolationError(at);
-    if (field_m > -band_m_) least_m = std::max(least_m, field_m);  // else saturated: it tells nothing
     return to_box_m > 0 ? std::max(to_box_m, least_m) : least_m;
   }
 
@@ -170,9 +172,17 @@ class VoxSampler {
            1e-6 * band_m_;  // and float's rounding
   }
 
-  [[nodiscard]] double centerDistance(const Place& at) const noexcept {
-    const double center_m = layout_.cells[at.cell].center_m;
-    return center_m - (1 - kRoundDown) * std::abs(center_m);
+  /// The directory is a box that holds the surface. From its nearest point c to p, every point of the surface
+  /// lies at a right angle to cp or behind: distance(p)^2 >= |p - c|^2 + distance(c)^2.
+  [[nodiscard]] double leastDistanceOutside(const Vec3& p_M) const noexcept {
+    if (layout_.cells.empty()) return boxDistance(p_M);
+    const Vec3 low = low_ * voxel_m_, high = (low_ + size_) * voxel_m_;
+    // A hair inside, so that it has a place in spite of rounding.
+    const Vec3 hair = Vec3::Constant(1e-6 * voxel_m_);
+    const Vec3 c = p_M.cwiseMax(low + hair).cwiseMin(high - hair);
+    const Place at = place(c);
+    const double from_c_m = at.brick == nullptr ? boxDistance(c) : std::max(0.0, leastDistance(c, at));
+    return std::sqrt((p_M - c).squaredNorm() + from_c_m * from_c_m) - voxel_m_ * 1e-5;
   }
   /// Distance from the place to its directory cell's centre [m].
   [[nodiscard]] double fromCenter(const Place& at) const noexcept {

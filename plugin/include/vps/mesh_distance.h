@@ -37,6 +37,9 @@ class MeshDistance {
   [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
   /// Negative inside. Clamped to +-max_m; beyond max_m the sign is not computed and the answer is +max_m.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
+  /// A value L with L <= distance <= L (1 + slack), unsigned; quicker than closest() where much is equally far. If
+  /// nothing is nearer than max_m: max_m / (1 + slack).
+  [[nodiscard]] double lowerBound(const Vec3& p, double slack, double max_m = 1e300) const noexcept;
   /// Outward pseudonormal of a triangle's feature (numbered as in TrianglePoint), unit.
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;
 
@@ -45,6 +48,8 @@ class MeshDistance {
  private:
   void computeNormals();
   void buildTree();
+  template <typename Visit>
+  double search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept;
 
   struct Node {
     Vec3 min, max;

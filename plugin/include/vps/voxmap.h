@@ -57,7 +57,7 @@ class VoxMap {
   /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away it
   /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
   [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
-  /// A value that the signed distance at p_M is not below; negative inside. What a sphere of points needs: every
+  /// A value that the signed distance at p_M is not below; -band_m() where that is all that is known. What a sphere of points needs: every
   /// distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r, band_m()) - sampleError_m().
   [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
   /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel, at the
