@@ -42,7 +42,15 @@ PlotOutcome plotForces(const std::vector<TraceRow>& trace, const std::string& fi
 /// Any lines over a common axis; file + ".png" and file + ".svg".
 PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
-/// Times at which a contact begins after at least quiet_s without one: the impacts that plotForces() marks.
-std::vector<double> impactTimes(const std::vector<TraceRow>& trace, double quiet_s = 0.01);
+/// A time during which the part in hand touches something; pauses up to 20 ms belong to it.
+struct ContactEpisode {
+  double start_s = 0, end_s = 0;
+  int step = -1;
+  bool is_slide =
+      false;  ///< the part moved more than 1 mm while it touched; otherwise the episode is an impact
+};
+
+/// What plotForces() marks, by the thresholds that StepResult::impacts and slides are counted with.
+std::vector<ContactEpisode> contactEpisodes(const std::vector<TraceRow>& trace);
 
 }  // namespace vps
