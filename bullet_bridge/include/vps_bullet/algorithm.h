@@ -29,8 +29,7 @@ struct VpsContext;
 class VpsAlgorithm : public btActivatingCollisionAlgorithm {
  public:
   VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
-               const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
-               bool is_closest_query);
+               const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context);
   ~VpsAlgorithm() override;
 
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,

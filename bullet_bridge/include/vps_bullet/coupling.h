@@ -64,31 +64,40 @@ class VpsCoupling : public btTypedConstraint {
 
  private:
   friend class VpsSolver;
-  using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear
+  using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; at the grasp point, in W
   using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-  /// The law at the end of the step as a linear function of the part's grasp velocity V then:
-  /// impulse = c - D V, with D diagonal; which of the two springs is at its limit changes c and D.
+  /// What stays the same during a step.
+  struct Step {
+    bool is_open = true;
+    double dt_s = 0;
+    Vec3 r_W = Vec3::Zero();  ///< from the body's origin to the grasp point
+    Vec6 error, V_target;     ///< pose error now and target velocity
+    Mat6 A;                   ///< inverse inertia seen at the grasp point
+  };
+  /// impulse = c - D V, V the part's grasp velocity at the end of the step. `limited`: bit 0 torque, bit 1
+  /// force.
   struct Law {
     Vec6 c, D;
+    int limited = 0;
   };
-  [[nodiscard]] bool isOpen() const;
-  void updateTarget();
-  void prepare(double dt_s);
-  [[nodiscard]] Law lawAt(const Vec6& V_G) const;
+
+  [[nodiscard]] CouplingState currentTarget() const;
+  [[nodiscard]] Step makeStep(double dt_s) const;
+  /// The law with the springs' limits as they act at V_G; with `unlimited` as if there were none.
+  [[nodiscard]] Law lawAt(const Step& step, const Vec6& V_G, bool unlimited = false) const;
+  /// The impulse that satisfies the law, given the velocity the grasp point would have without it.
+  [[nodiscard]] Vec6 solveImpulse(const Step& step, const Vec6& V_without) const;
+  void setImpulse(const Vec6& impulse, double dt_s);
 
   btRigidBody& part_;
   btRigidBody* proxy_ = nullptr;
   Pose X_AG_, X_BG_;
   CouplingGains gains_;
   CouplingState target_;
-
-  // Of the step under way.
-  double dt_s_ = 0;        ///< 0: not prepared yet
-  Vec3 r_W_;               ///< from the body's origin to the grasp point
-  Vec6 error_, V_target_;  ///< pose error and target velocity
-  Mat6 A_;                 ///< inverse inertia seen at the grasp point
-  Vec6 impulse_;           ///< accumulated, about the grasp point
+  bool is_prepared_ = false;
+  Step step_;
+  Vec6 impulse_ = Vec6::Zero();  ///< accumulated over the step, about the grasp point
   Wrench F_PG_W_;
 };
 

@@ -26,11 +26,16 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// Of the last islands solved by our method: most iterations and worst remaining residual.
+  /// Gauss-Seidel sweeps that the last island solved by our method took; iteration_limit means it was cut
+  /// short.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
 
  private:
   struct Work;
+  /// Copies the island into work_; false if it holds anything our method does not cover.
+  bool gather(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+              int manifold_count, btTypedConstraint** constraints, int constraint_count,
+              const btContactSolverInfo& info);
   VpsSolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_bullet/algorithm.h"
+
+#include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <typeinfo>
+
+#include "candidate.h"
+#include "context.h"
+#include "manifold_writer.h"
+#include "motion.h"
+#include "primitive.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/shape.h"
+
+namespace vps {
+
+// Bullet's pool hands out elements as large as its own largest algorithm, whatever is asked for.
+static_assert(sizeof(VpsAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
+
+struct VpsPairState {
+  std::shared_ptr<VpsContext> context;
+  std::unique_ptr<ManifoldWriter> writer;
+};
+
+namespace {
+
+/// Both bodies of a pair at one instant.
+struct PairView {
+  const btCollisionObjectWrapper* wrapper[2];
+  const VpsShape* vps[2];  // null: a primitive
+  Pose X_WS[2];
+
+  PairView(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
+      : wrapper{body0, body1} {
+    for (int i = 0; i < 2; ++i) {
+      vps[i] = dynamic_cast<const VpsShape*>(wrapper[i]->getCollisionShape());
+      X_WS[i] = fromBt(wrapper[i]->getWorldTransform());
+    }
+  }
+  [[nodiscard]] SideView side(int i) const {
+    return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
+  }
+  [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
+  /// Half the diagonal of the smaller body.
+  [[nodiscard]] double radius_m() const {
+    double radius_m = 1e30;
+    for (const VpsShape* shape : vps)
+      if (shape) radius_m = std::min(radius_m, 0.5 * shape->bounds().size().norm());
+    return std::max(radius_m, 1e-6);
+  }
+  /// Centre of the smaller VpsShape, in W.
+  [[nodiscard]] Vec3 center_W() const {
+    const bool second =
+        !vps[0] || (vps[1] && vps[1]->bounds().size().norm() < vps[0]->bounds().size().norm());
+    const int i = second ? 1 : 0;
+    return X_WS[i] * vps[i]->bounds().center();
+  }
+};
+
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m) {
+  RelativeMotion motion;
+  motion.dt_s = dt_s;
+  motion.slack_m = slack_m;
+  if (dt_s > 0) {
+    const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), dt_s);
+    const Twist V1 = predictedVelocity(*pair.wrapper[1]->getCollisionObject(), dt_s);
+    motion.V = {V0.w - V1.w, V0.v - V1.v};
+    motion.speed_m_s = motion.velocityAt(pair.center_W()).norm() + motion.V.w.norm() * pair.radius_m();
+  }
+  return motion;
+}
+
+// The band bounds how far the fields can see.
+double sight_m(const PairView& pair) {
+  double sight_m = 1e30;
+  for (const VpsShape* shape : pair.vps)
+    if (shape && shape->models().map) sight_m = std::min(sight_m, 0.95 * shape->models().map->band_m());
+  return sight_m;
+}
+
+// All points near the other side, both ways if the settings say so.
+void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out) {
+  std::size_t tested = 0, left_out = 0;
+  const bool both_vps = pair.vps[0] && pair.vps[1];
+  // One-sided: the smaller body's points, since a larger one's may be too far apart to catch it.
+  int only = -1;
+  if (both_vps && context.settings.sides == Sides::One && pair.hasShell(0) && pair.hasShell(1))
+    only = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm() ? 0 : 1;
+  for (int i = 0; i < 2; ++i) {
+    if (!pair.hasShell(i) || (only >= 0 && i != only)) continue;
+    const int j = 1 - i;
+    if (!both_vps)
+      left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
+                                       cutoff_m, context.settings, out, tested);
+    else if (pair.vps[j]->models().map)
+      left_out += collectFromMap(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
+  }
+  context.points_tested += tested;
+  context.left_out += left_out;
+}
+
+// Where both bodies are after a share of the step, moving freely.
+void advance(PairView& pair, const PairView& start, double dt_s) {
+  for (int i = 0; i < 2; ++i) {
+    const Twist V = predictedVelocity(*pair.wrapper[i]->getCollisionObject(), dt_s > 0 ? dt_s : 0);
+    const Mat3 R = rotationFromVector(V.w * dt_s);
+    pair.X_WS[i] = Pose(Mat3(R * start.X_WS[i].R), R * start.X_WS[i].p + V.v * dt_s);
+  }
+}
+
+// Candidates of the step. A body that moves less than the fields can see is looked at once, where it is. A
+// faster one is looked at along its way, so that it cannot pass through; the plane it first meets then holds
+// for the whole step.
+void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsContext& context,
+                    std::vector<Candidate>& out) {
+  const double sight = sight_m(pair);
+  const double travel_m = motion.speed_m_s * motion.dt_s;
+  if (motion.slack_m + travel_m <= sight) {
+    collect(pair, motion.slack_m + travel_m, context, out);
+    return;
+  }
+  const double stride_m = std::max(0.5 * (sight - motion.slack_m), 0.25 * sight);
+  constexpr double kMostStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
+  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStrides)));
+  PairView later = pair;
+  for (int k = 0; k < strides && out.empty(); ++k) {
+    const double t_s = motion.dt_s * k / strides;
+    if (k > 0) advance(later, pair, t_s);
+    collect(later, std::min(motion.slack_m + travel_m / strides, sight), context, out);
+    // Keep what is met in this stride, as planes seen from where the bodies are now.
+    std::erase_if(out, [&](Candidate& c) {
+      const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
+      const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
+      if (c.distance_m - approach_m > motion.slack_m) return true;
+      c.distance_m -= c.n_W.dot(moved);
+      const Pose& X_then = later.X_WS[c.side];
+      c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
+      return false;
+    });
+  }
+}
+
+void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
+                        const btCollisionObject* object0, const btCollisionObject* object1) {
+  // The solver takes the gap off the rebound's speed, which kills a bounce that would happen within the step.
+  // So a point that bounces does so at once: early by less than a step's travel, with the right energy.
+  if (!(btManifoldResult::calculateCombinedRestitution(object0, object1) > 0)) return;
+  for (Candidate& c : candidates)
+    if (c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - 0.2 * motion.dt_s)
+      c.distance_m = 0;
+}
+
+}  // namespace
+
+VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+                           const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                           std::shared_ptr<VpsContext> context)
+    : btActivatingCollisionAlgorithm(info, body0, body1), state_(std::make_unique<VpsPairState>()) {
+  state_->context = std::move(context);
+  state_->writer = std::make_unique<ManifoldWriter>(*m_dispatcher, body0->getCollisionObject(),
+                                                    body1->getCollisionObject());
+}
+
+VpsAlgorithm::~VpsAlgorithm() = default;
+
+void VpsAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  state_->writer->append(manifolds);
+}
+
+void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
+                                    const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
+                                    btManifoldResult* result) {
+  VpsContext& context = *state_->context;
+  const VpsBulletSettings& settings = context.settings;
+  const PairView pair(body0, body1);
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite())
+    return state_->writer->write({}, pair.wrapper, {});
+
+  // A contactTest hands in a result of its own type, and wants points now rather than manifolds for a step.
+  const bool is_query = typeid(*result) != typeid(btManifoldResult);
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
+  RelativeMotion motion;
+  if (is_query) {
+    const double wanted_m = std::max<double>(result->m_closestPointDistanceThreshold, 0);
+    motion.slack_m = std::min(wanted_m, sight_m(pair));
+    collect(pair, motion.slack_m, context, candidates);
+  } else {
+    motion = relativeMotion(pair, info.m_timeStep, settings.slack_m);
+    collectForStep(pair, motion, context, candidates);
+  }
+  ++context.pair_updates;
+
+  const auto drop_unreachable = [&] {
+    std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
+  };
+  // The field may be off by part of a voxel at edges; what it calls a little too far may touch by the exact
+  // surface.
+  drop_unreachable();
+  context.candidates += candidates.size();
+  if (!is_query) state_->writer->recall(candidates);
+  const double radius_m = pair.radius_m();
+  thinOut(candidates, radius_m / 4);
+  if (settings.use_surfaces && pair.vps[0] && pair.vps[1]) {
+    correctBySurfaces(candidates, pair.side(0), pair.side(1));
+    correctBySurfaces(candidates, pair.side(1), pair.side(0));
+    drop_unreachable();
+  }
+  chooseSpread(candidates, static_cast<std::size_t>(settings.contact_limit), radius_m, settings.slack_m);
+  context.contacts += candidates.size();
+  if (is_query) {
+    reportToQuery(candidates, pair.wrapper, *result);
+  } else {
+    prepareRestitution(candidates, motion, body0->getCollisionObject(), body1->getCollisionObject());
+    state_->writer->write(candidates, pair.wrapper, motion);
+  }
+}
+
+}  // namespace vps

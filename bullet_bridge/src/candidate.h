@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contacts on their way from the query to the solver: collected, reduced, corrected.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vps/pose.h"
+#include "vps/query.h"
+#include "vps_bullet/install.h"
+#include "vps_bullet/shape.h"
+
+class btCollisionShape;
+
+namespace vps {
+
+/// A point that can touch within the step.
+struct Candidate {
+  Vec3 p_W = Vec3::Zero();   ///< the shell's point now
+  Vec3 n_W = Vec3::Zero();   ///< unit, from body 1 to body 0
+  double distance_m = 0;     ///< signed gap now
+  double predicted_m = 0;    ///< the gap at the end of the step if nothing held the bodies
+  double impulse_Ns = 0;     ///< normal impulse it had last step
+  bool was_contact = false;  ///< was given to the solver last step
+  std::uint32_t id = 0;      ///< of the point in its shell
+  std::uint16_t owner = 0;   ///< part of the other side's map
+  std::uint8_t side = 0;     ///< whose shell the point is of: body 0 or 1
+
+  [[nodiscard]] std::uint64_t key() const { return (std::uint64_t(side) << 32) | id; }
+};
+
+/// How body 0 moves against body 1 in the step, and what that means for which points matter.
+struct RelativeMotion {
+  Twist V;  ///< velocity of body 0 less that of body 1, about the world's origin, in W
+  double dt_s = 0;
+  double slack_m = 0;
+  double speed_m_s = 0;  ///< no point of the smaller body moves faster against the other
+
+  [[nodiscard]] Vec3 velocityAt(const Vec3& p_W) const { return V.v + V.w.cross(p_W); }
+  /// Sets predicted_m; true if the candidate can touch within the step.
+  bool canTouch(Candidate& c) const;
+};
+
+/// One side of a pair: its shell's points against the other's field.
+struct SideView {
+  const VpsShape* shape = nullptr;  ///< the side with the shell
+  Pose X_WM;                        ///< its models' frame
+  std::uint8_t side = 0;
+};
+
+/// Points of `side` near the other VpsShape's map (of `other`, at its X_WM).
+/// @param cutoff_m   distance to look at, below the map's band
+/// Appends to out. Returns how many did not fit into settings.candidate_limit.
+std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
+                           const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                           std::size_t& points_tested);
+
+/// The same against one of Bullet's primitives at X_WS.
+std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
+                                 double cutoff_m, const VpsBulletSettings& settings,
+                                 std::vector<Candidate>& out, std::size_t& points_tested);
+
+/// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction
+/// of contact survive, and what has survived once is preferred, so that the set does not flicker.
+/// @param cell_m  edge of a cell, a fraction of the smaller body's size
+void thinOut(std::vector<Candidate>& candidates, double cell_m);
+
+/// Replaces the field's distance and normal by the exact surfaces' of the other side (`other.X_WM`).
+/// Candidates of other sides are left alone. The field still decides where the surfaces give no answer.
+void correctBySurfaces(std::vector<Candidate>& candidates, const SideView& side, const SideView& other);
+
+/// Chooses at most `limit`: those that carried load, then the deepest, then the farthest from all chosen so
+/// far, in position (in units of length_m) and direction. Ends in ascending key order, so that equal sets are
+/// equal to the bit.
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double slack_m);
+
+}  // namespace vps

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "candidate.h"
+#include "primitive.h"
+
+namespace vps {
+
+bool RelativeMotion::canTouch(Candidate& c) const {
+  const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
+  c.predicted_m = c.distance_m - approach_m;
+  // Contact turns the free motion: a part that lands on one edge swings its other edge faster than it fell.
+  // So a share of the greatest speed counts in every direction. Half: assumed, it covers a rod struck at one
+  // end.
+  return c.distance_m <= slack_m + std::max(approach_m, 0.5 * speed_m_s * dt_s);
+}
+
+std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
+                           const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                           std::size_t& points_tested) {
+  // One buffer a thread, so that pairs do not each hold megabytes; sized at first use.
+  thread_local ContactSet near(0);
+  near.contacts.clear();
+  near.left_out = 0;
+  near.contacts.reserve(static_cast<std::size_t>(settings.candidate_limit));
+
+  const VpsModels& theirs = other.shape->models();
+  QueryOptions options;
+  options.cutoff_m = cutoff_m;
+  options.gradient = settings.gradient;
+  const QueryResult result = queryContacts(*theirs.map, *side.shape->models().shell,
+                                           other.X_WM.inverse() * side.X_WM, options, near);
+  points_tested += result.points_tested;
+  const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
+  for (const Contact& contact : near.contacts) {
+    if (contact.n_M.squaredNorm() < 0.5)
+      continue;  // deeper than the band: the field does not know the way out
+    Candidate c;
+    c.p_W = other.X_WM * contact.p_M;
+    c.n_W = sign * (other.X_WM.R * contact.n_M);
+    c.distance_m = contact.distance_m;
+    c.id = contact.id;
+    c.owner = contact.owner;
+    c.side = side.side;
+    out.push_back(c);
+  }
+  return near.left_out;
+}
+
+std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
+                                 double cutoff_m, const VpsBulletSettings& settings,
+                                 std::vector<Candidate>& out, std::size_t& points_tested) {
+  const PointShell& shell = *side.shape->models().shell;
+  const Pose X_SM = X_WS.inverse() * side.X_WM;
+  const double sign = side.side == 0 ? 1 : -1;
+  std::size_t left_out = 0;
+  const auto limit = static_cast<std::size_t>(settings.candidate_limit);
+  for (std::size_t i = 0; i < shell.nodes.size();) {
+    const ShellNode& node = shell.nodes[i];
+    if (primitiveDistance(primitive, X_SM * node.center).distance_m - node.radius_m > cutoff_m) {
+      i = node.skip;
+      continue;
+    }
+    ++i;
+    if (!node.is_leaf) continue;
+    points_tested += node.count;
+    for (std::uint32_t id = node.first; id < node.first + node.count; ++id) {
+      const SurfaceDistance at = primitiveDistance(primitive, X_SM * shell.points[id]);
+      if (at.distance_m > cutoff_m) continue;
+      if (out.size() >= limit) {
+        ++left_out;
+        continue;
+      }
+      Candidate c;
+      c.p_W = side.X_WM * shell.points[id];
+      c.n_W = sign * (X_WS.R * at.n);
+      c.distance_m = at.distance_m;
+      c.id = id;
+      c.side = side.side;
+      out.push_back(c);
+    }
+  }
+  return left_out;
+}
+
+}  // namespace vps

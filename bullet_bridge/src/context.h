@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What one installation shares among its pairs.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+#include "vps_bullet/install.h"
+
+namespace vps {
+
+struct VpsContext {
+  VpsBulletSettings settings;
+  // Atomic: a thread-safe Bullet runs pairs side by side.
+  std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
+};
+
+}  // namespace vps

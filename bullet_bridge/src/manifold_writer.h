@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes a pair's contacts into Bullet's manifolds and remembers their impulses by id.
+#pragma once
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <LinearMath/btAlignedObjectArray.h>
+
+#include <span>
+#include <vector>
+
+#include "candidate.h"
+
+class btDispatcher;
+class btCollisionObject;
+class btManifoldResult;
+struct btCollisionObjectWrapper;
+
+namespace vps {
+
+class ManifoldWriter {
+ public:
+  ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
+                 const btCollisionObject* object1);
+  ~ManifoldWriter();
+  ManifoldWriter(const ManifoldWriter&) = delete;
+  ManifoldWriter& operator=(const ManifoldWriter&) = delete;
+
+  /// Marks the candidates that were contacts in the manifolds as they stand, with their impulses.
+  void recall(std::vector<Candidate>& candidates);
+  /// Replaces all contacts. Points that stay keep impulses, lifetime and user data.
+  void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
+             const RelativeMotion& motion);
+  void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;
+
+ private:
+  struct Old {
+    std::uint64_t key;
+    btManifoldPoint point;
+  };
+  void harvest();
+
+  btDispatcher& dispatcher_;
+  const btCollisionObject* objects_[2];
+  std::vector<btPersistentManifold*> manifolds_;
+  std::vector<Old> old_;  // last step's points, ascending by key
+};
+
+/// Hands contacts to a contactTest's result, one by one.
+void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
+                   btManifoldResult& result);
+
+}  // namespace vps

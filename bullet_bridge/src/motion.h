@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a collision object will move in the coming step, before contact.
+#pragma once
+
+#include "vps/pose.h"
+
+class btCollisionObject;
+
+namespace vps {
+
+/// Velocity about the world's origin, in W, that the object would reach by the end of the step without
+/// contact: its own, plus external forces, plus the pull of its VpsCouplings. Zero for static and sleeping
+/// objects.
+Twist predictedVelocity(const btCollisionObject& object, double dt_s);
+
+}  // namespace vps

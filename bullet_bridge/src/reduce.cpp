@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "candidate.h"
+
+namespace vps {
+
+namespace {
+
+// A candidate that was a contact keeps its place against one that is nearer by less than this. Well above the
+// noise of a resting part (1 nm), below any depth that matters. Assumed.
+constexpr double kStickiness_m = 1e-6;
+
+double urgency(const Candidate& c) {
+  return c.predicted_m - (c.was_contact ? kStickiness_m : 0);
+}
+
+bool isMoreUrgent(const Candidate& a, const Candidate& b) {
+  const double ua = urgency(a), ub = urgency(b);
+  return ua != ub ? ua < ub : a.key() < b.key();
+}
+
+// Which of 6 x 2 x 2 cells of the cube's surface a direction falls in.
+std::uint32_t directionCell(const Vec3& n) {
+  int axis = 0;
+  n.cwiseAbs().maxCoeff(&axis);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
+}
+
+std::uint64_t cellOf(const Candidate& c, const Vec3& origin, double cell_m) {
+  const auto at = [&](int axis) {
+    return static_cast<std::uint64_t>(std::clamp((c.p_W[axis] - origin[axis]) / cell_m, 0.0, 65535.0));
+  };
+  return (((at(0) << 16 | at(1)) << 16 | at(2)) << 8) | (directionCell(c.n_W) << 1) | c.side;
+}
+
+}  // namespace
+
+void thinOut(std::vector<Candidate>& candidates, double cell_m) {
+  if (candidates.empty()) return;
+  Vec3 origin = candidates.front().p_W;
+  for (const Candidate& c : candidates) origin = origin.cwiseMin(c.p_W);
+  // The grid stands still in the world, so that a resting part's cells do not shift with its first point.
+  origin = (origin / cell_m).array().floor().matrix() * cell_m;
+
+  struct Cell {
+    std::uint64_t cell;
+    std::uint32_t index;
+  };
+  thread_local std::vector<Cell> cells;
+  cells.clear();
+  for (std::uint32_t i = 0; i < candidates.size(); ++i)
+    cells.push_back({cellOf(candidates[i], origin, cell_m), i});
+  std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) {
+    return a.cell != b.cell ? a.cell < b.cell : isMoreUrgent(candidates[a.index], candidates[b.index]);
+  });
+  thread_local std::vector<Candidate> kept;
+  kept.clear();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool is_best = i == 0 || cells[i].cell != cells[i - 1].cell;
+    const Candidate& c = candidates[cells[i].index];
+    if (is_best || c.was_contact) kept.push_back(c);
+  }
+  candidates.swap(kept);
+}
+
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double slack_m) {
+  const std::size_t count = candidates.size();
+  if (count > limit) {
+    thread_local std::vector<double> nearest2;  // squared distance to the nearest chosen one
+    nearest2.assign(count, std::numeric_limits<double>::infinity());
+    thread_local std::vector<Candidate> chosen;
+    chosen.clear();
+    const auto choose = [&](std::size_t i) {
+      chosen.push_back(candidates[i]);
+      nearest2[i] = -1;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (nearest2[k] < 0) continue;
+        const double d2 = (candidates[k].p_W - candidates[i].p_W).squaredNorm() / (length_m * length_m) +
+                          (candidates[k].n_W - candidates[i].n_W).squaredNorm();
+        nearest2[k] = std::min(nearest2[k], d2);
+      }
+    };
+    // Those that carried load last step: dropping one is a jolt. At most half of the room, so that new ones
+    // get in.
+    for (std::size_t i = 0; i < count && chosen.size() < limit / 2; ++i)
+      if (candidates[i].impulse_Ns > 0) choose(i);
+    // The most urgent.
+    std::size_t deepest = 0;
+    for (std::size_t i = 1; i < count; ++i)
+      if (isMoreUrgent(candidates[i], candidates[deepest])) deepest = i;
+    if (nearest2[deepest] >= 0) choose(deepest);
+    // Extent, weighed against the gap: a contact a slack away is worth as much less as a body's length of
+    // spread.
+    while (chosen.size() < limit) {
+      std::size_t best = count;
+      double best_worth = -std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (nearest2[i] < 0) continue;
+        const double worth = std::sqrt(nearest2[i]) - std::clamp(urgency(candidates[i]) / slack_m, -1.0, 1.0);
+        if (worth > best_worth) {
+          best_worth = worth;
+          best = i;
+        }
+      }
+      choose(best);
+    }
+    candidates.swap(chosen);
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
+}
+
+}  // namespace vps
