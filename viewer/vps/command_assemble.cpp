@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps assemble: the main job.
+#include <cstdio>
+
+#include "commands.h"
+#include "json_out.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "table.h"
+#include "terminal.h"
+#include "vps_scenes/assemble.h"
+#include "vps_viewer/report.h"
+
+namespace vps {
+
+namespace {
+
+bool isWithinLimit(const StepResult& step) {
+  return step.max_penetration_m <= step.penetration_limit_m;
+}
+
+std::string tableOf(const std::vector<StepResult>& steps) {
+  Table table({"<step", "<completed", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
+               "drift [um]"});
+  for (const StepResult& step : steps)
+    table.add({step.part, step.completed ? "yes" : "no", fixed(step.duration_s, 2),
+               fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
+               fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
+               fixed(step.rest_drift_m * 1e6, 2)});
+  return table.text();
+}
+
+std::string csvOf(const std::vector<StepResult>& steps) {
+  std::string out =
+      csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m", "penetration_limit_m",
+               "deepest_against", "field_penetration_m", "peak_force_N", "peak_torque_Nm", "impacts",
+               "slides", "final_error_m", "final_error_rad", "rest_drift_m", "why_not"});
+  for (const StepResult& step : steps)
+    out += csvLine(
+        {step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
+         csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
+         csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N), csvNumber(step.peak_torque_Nm),
+         std::to_string(step.impacts), std::to_string(step.slides), csvNumber(step.final_error_m),
+         csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m), step.why_not});
+  return out;
+}
+
+}  // namespace
+
+int runAssemble(const AssembleArguments& given) {
+  OutputFolder out(given.out);
+  OutputFile json(given.json);
+  ProgressBar bar;
+  Scene scene = loadScene(given.scene);
+  scene.fidelity = fidelityFrom(given.fidelity, scene.fidelity);
+
+  AssembleOptions options;
+  options.progress = bar.progress();
+  options.keep_going = !given.stops_at_failure;
+  options.stop = &stopRequested();
+  const AssembleResult result = assemble(scene, options);
+  throwIfStopped();
+
+  ReportOptions report;
+  report.command = "vps assemble " + given.scene + " --out " + given.out;
+  report.has_pictures = given.has_pictures;
+  bar.progress()("writing the report", 1);
+  const ReportOutcome outcome = writeReport(scene, result, out.partial(), report);
+  throwIfStopped();
+  const std::string json_text = toJson(result);
+  out.write("steps.csv", csvOf(result.steps));
+  out.write("assemble.json", json_text);
+  out.commit();
+  json.write(json_text);
+  bar.clear();
+
+  std::fputs(tableOf(result.steps).c_str(), stdout);
+  bool is_good = result.completed;
+  for (const StepResult& step : result.steps) {
+    if (!step.completed) std::printf("%s: %s\n", step.part.c_str(), step.why_not.c_str());
+    if (isWithinLimit(step)) continue;
+    is_good = false;
+    std::printf("%s: deepest against %s, beyond its limit\n", step.part.c_str(),
+                step.deepest_against.c_str());
+  }
+  for (const std::string& note : outcome.notes) std::fprintf(stderr, "vps: %s\n", note.c_str());
+  std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
+  return is_good ? kGood : kBad;
+}
+
+}  // namespace vps

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps snapshot: a picture of the finished assembly without a display, and how far it is from an earlier one.
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "commands.h"
+#include "json_out.h"
+#include "output.h"
+#include "vps/load_error.h"
+#include "vps_scenes/scene.h"
+#include "vps_viewer/image.h"
+#include "vps_viewer/renderer.h"
+
+namespace vps {
+
+namespace {
+
+/// From the scene to the eye.
+const std::map<std::string, Vec3>& views() {
+  static const std::map<std::string, Vec3> views = {{"iso", Vec3(1, -1.4, 0.9)}, {"front", Vec3(0, -1, 0)},
+                                                    {"back", Vec3(0, 1, 0)},     {"left", Vec3(-1, 0, 0)},
+                                                    {"right", Vec3(1, 0, 0)},    {"top", Vec3(0, 0, 1)},
+                                                    {"bottom", Vec3(0, 0, -1)}};
+  return views;
+}
+
+/// "1280x960"; throws LoadError.
+std::array<int, 2> sizeFromText(const std::string& text) {
+  std::array<int, 2> size{};
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size[0]);
+  const bool has_width = width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_width ? std::from_chars(width.ptr + 1, end, size[1]) : width;
+  // 16384 is the greatest texture that OpenGL drivers commonly take; a quarter leaves room for supersampling.
+  if (!has_width || height.ec != std::errc{} || height.ptr != end || size[0] < 16 || size[1] < 16 ||
+      size[0] > 4096 || size[1] > 4096)
+    throw LoadError("", "", "--size is '" + text + "'; expected WIDTHxHEIGHT, each 16 to 4096");
+  return size;
+}
+
+Snapshot finished(const Scene& scene) {
+  Snapshot snapshot;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i)
+    snapshot.bodies.push_back({i, scene.parts[i].X_WP, BodyRole::Mounted});
+  for (const SceneStep& step : scene.steps) snapshot.bodies[step.part].X_WP = step.X_WP_target;
+  return snapshot;
+}
+
+}  // namespace
+
+std::vector<std::string> viewNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, direction] : views()) names.push_back(name);
+  return names;
+}
+
+int runSnapshot(const SnapshotArguments& given) {
+  if (given.out.empty() && given.compare.empty())
+    throw LoadError("", "", "give -o FILE.png, --compare IMAGE, or both");
+  if (!given.difference.empty() && given.compare.empty())
+    throw LoadError("", "", "--difference needs --compare IMAGE to differ from");
+  DrawOptions options;
+  const auto [width, height] = sizeFromText(given.size);
+  options.width = width;
+  options.height = height;
+  OutputFile out(given.out), difference(given.difference), json(given.json);
+  // Before the work: an image that is missing is a mistake in the call.
+  const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
+
+  const Scene scene = loadScene(given.scene);
+  const RenderScene drawn = drawnMeshes(scene);
+  const Snapshot snapshot = finished(scene);
+  const Box box = snapshotBounds(drawn, snapshot);
+  if (given.has_section) options.cut = CutPlane{.p_W = box.center(), .n_W = -Vec3::UnitY()};
+  Camera camera = frameScene(box, views().at(given.view), 0.5, double(width) / height);
+  if (given.view == "top" || given.view == "bottom") camera.up_W = Vec3::UnitY();
+  const Image image = Renderer(drawn).render(snapshot, camera, options);
+
+  SnapshotAnswer answer{.scene = given.scene, .width = width, .height = height};
+  bool is_equal = true;
+  if (!given.compare.empty()) {
+    const ImageDifference found = compare(image, wanted, given.tolerance);
+    answer.is_compared = true;
+    answer.is_same_size = found.is_same_size;
+    answer.tolerance = given.tolerance;
+    answer.share_beyond = found.is_same_size ? found.share_beyond : 1;
+    answer.greatest_difference = found.greatest;
+    answer.mean_difference = found.mean;
+    is_equal = found.is_same_size && found.share_beyond == 0;
+    if (!found.is_same_size)
+      std::printf("%s is %d x %d, the picture %d x %d\n", given.compare.c_str(), wanted.width, wanted.height,
+                  width, height);
+    else
+      std::printf("%s %s: %.3f %% of the pixels differ by more than %d, the greatest by %d\n",
+                  is_equal ? "as" : "unlike", given.compare.c_str(), 100 * found.share_beyond,
+                  given.tolerance, found.greatest);
+    if (!given.difference.empty() && found.is_same_size) {
+      writeDifference(image, wanted, given.tolerance, difference.partial());
+      difference.commit();
+    }
+  }
+  if (!given.out.empty()) {
+    savePng(image, out.partial());
+    out.commit();
+  }
+  json.write(toJson(answer));
+  return is_equal ? kGood : kBad;
+}
+
+}  // namespace vps

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subcommands of `vps`: what each is told, and the functions that run them. main.cpp fills the arguments;
+// each function returns the exit status 0 or 1, or throws LoadError and the like, which main.cpp turns into a
+// line and 2.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vps/fidelity.h"
+
+namespace vps {
+
+/// Exit status of the program.
+inline constexpr int kGood = 0;      ///< done, and the answer is good
+inline constexpr int kBad = 1;       ///< done, and the parts do not fit, a step failed, a bound was missed
+inline constexpr int kCouldNot = 2;  ///< bad input, said in one line
+
+/// --fidelity, --voxel, --spacing, --points, --sides, as text; empty or 0: not given.
+struct FidelityArguments {
+  std::string preset, voxel, spacing, sides;
+  std::size_t points = 0;
+};
+
+/// `base` with what was given on the command line. Throws LoadError naming the option.
+Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
+
+struct AssembleArguments {
+  std::string scene;
+  std::string out = "out";
+  std::string json;
+  FidelityArguments fidelity;
+  bool has_pictures = true;
+  bool stops_at_failure = false;
+};
+int runAssemble(const AssembleArguments& given);
+
+struct SimulateArguments {
+  std::string scene;
+  double seconds = 1;
+  std::string trace, json;
+  FidelityArguments fidelity;
+};
+int runSimulate(const SimulateArguments& given);
+
+struct QueryArguments {
+  std::string mesh_a, mesh_b;
+  std::string pose, poses;  ///< "x,y,z,qx,qy,qz,qw", or a file of such lines
+  std::string units, json;
+  FidelityArguments fidelity;
+  double stiffness_N_per_m3 = 1e12;
+  int repeats = 0;  ///< timed runs of each pose; 0: as many as make 100 in all
+};
+int runQuery(const QueryArguments& given);
+
+struct ImportArguments {
+  std::string cad, out;
+  std::string units, deflection, json;
+};
+int runImport(const ImportArguments& given);
+
+struct SnapshotArguments {
+  std::string scene;
+  std::string out, compare, difference, json;
+  std::string size = "1280x960";
+  std::string view = "iso";
+  bool has_section = false;
+  int tolerance = 2;
+};
+int runSnapshot(const SnapshotArguments& given);
+
+/// The views that --view knows.
+std::vector<std::string> viewNames();
+
+}  // namespace vps

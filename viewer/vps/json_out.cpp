@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one file that includes nlohmann/json.
+#include "json_out.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vps {
+
+namespace {
+
+// Ordered: keys stand as they are put here, `wall` first.
+using Json = nlohmann::ordered_json;
+
+Json list(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json list(const Quat& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+/// Names come from files and need not be UTF-8; a bad byte becomes U+FFFD instead of an exception.
+std::string text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json shortTimes(const TickTimes& times) {
+  return {{"median", times.p50_us}, {"p99", times.p99_us}, {"max", times.max_us}};
+}
+
+Json loop(double rate_hz, const TickTimes& times) {
+  return {{"rate_hz", rate_hz}, {"ticks", times.count}};
+}
+
+Json loopWall(const TickTimes& times) {
+  return {{"missed", times.missed},
+          {"tick_us",
+           {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p999", times.p999_us}, {"max", times.max_us}}}};
+}
+
+Json modelled(const ModelledCost& cost) {
+  return {{"voxmaps", cost.voxmaps},
+          {"pointshells", cost.pointshells},
+          {"points", cost.points},
+          {"bytes", cost.bytes}};
+}
+
+Json step(const StepResult& step) {
+  return {{"part", step.part},
+          {"completed", step.completed},
+          {"why_not", step.why_not},
+          {"start_s", step.start_s},
+          {"duration_s", step.duration_s},
+          {"max_penetration_m", step.max_penetration_m},
+          {"penetration_limit_m", step.penetration_limit_m},
+          {"deepest_against", step.deepest_against},
+          {"deepest_at_m", list(step.deepest_at_W)},
+          {"deepest_time_s", step.deepest_time_s},
+          {"field_penetration_m", step.field_penetration_m},
+          {"peak_force_N", step.peak_force_N},
+          {"peak_torque_Nm", step.peak_torque_Nm},
+          {"impacts", step.impacts},
+          {"slides", step.slides},
+          {"final_error_m", step.final_error_m},
+          {"final_error_rad", step.final_error_rad},
+          {"rest_drift_m", step.rest_drift_m}};
+}
+
+}  // namespace
+
+std::string toJson(const AssembleResult& result) {
+  Json cook_s = Json::array(), steps = Json::array();
+  for (const StepResult& s : result.steps) {
+    cook_s.push_back(s.cook_wall_s);
+    steps.push_back(step(s));
+  }
+  return text({{"wall",
+                {{"build_s", result.build_wall_s},
+                 {"run_s", result.run_wall_s},
+                 {"cook_s", cook_s},
+                 {"haptic", loopWall(result.haptic)},
+                 {"physics", loopWall(result.physics)}}},
+               {"scene", result.scene},
+               {"completed", result.completed},
+               {"simulated_s", result.simulated_s},
+               {"steps", steps},
+               {"haptic", loop(result.haptic_rate_hz, result.haptic)},
+               {"physics", loop(result.physics_rate_hz, result.physics)},
+               {"energy",
+                {{"to_hand_J", result.energy.to_hand_J},
+                 {"from_hand_J", result.energy.from_hand_J},
+                 {"injected_J", result.energy.injected_J}}},
+               {"modelled", modelled(result.modelled)}});
+}
+
+std::string toJson(const std::string& scene, double seconds, const SimulateResult& result) {
+  Json bodies = Json::array();
+  for (const BodyState& body : result.bodies)
+    bodies.push_back({{"name", body.name},
+                      {"position_m", list(body.X_WP.p)},
+                      {"rotation_xyzw", list(body.X_WP.quaternion())},
+                      {"velocity_m_s", list(body.V_WP_W.v)},
+                      {"angular_velocity_rad_s", list(body.V_WP_W.w)}});
+  return text({{"wall",
+                {{"build_s", result.build_wall_s},
+                 {"step_us", shortTimes(result.step)},
+                 {"contact_step_us", shortTimes(result.contact_step)}}},
+               {"scene", scene},
+               {"seconds", seconds},
+               {"steps", result.step.count},
+               {"contact_steps", result.contact_step.count},
+               {"bodies", bodies},
+               {"max_penetration_m", result.max_penetration_m},
+               {"kinetic_energy_J", result.kinetic_energy_J},
+               {"modelled", modelled(result.modelled)}});
+}
+
+std::string toJson(const QueryAnswer& answer) {
+  Json poses = Json::array();
+  for (const PoseAnswer& pose : answer.poses) {
+    Json entry = {{"position_m", list(pose.X_AB.p)},
+                  {"rotation_xyzw", list(pose.X_AB.quaternion())},
+                  {"min_distance_m", pose.is_beyond ? Json(nullptr) : Json(pose.min_distance_m)},
+                  {"max_depth_m", pose.is_beyond ? 0 : pose.maxDepth_m()},
+                  {"contact_count", pose.contact_count},
+                  {"points_total", answer.points_total},
+                  {"points_tested", pose.points_tested},
+                  {"force_N", list(pose.F_Bo_A.f)},
+                  {"torque_Nm", list(pose.F_Bo_A.tau)}};
+    if (pose.is_beyond) entry["beyond_m"] = pose.min_distance_m;
+    poses.push_back(std::move(entry));
+  }
+  return text({{"wall", {{"build_s", answer.build_wall_s}, {"time_us", shortTimes(answer.time)}}},
+               {"mesh_a", answer.mesh_a},
+               {"mesh_b", answer.mesh_b},
+               {"voxel_m", answer.voxel_m},
+               {"point_spacing_m", answer.point_spacing_m},
+               {"memory_bytes", answer.memory_bytes},
+               {"poses", poses}});
+}
+
+std::string toJson(const ImportAnswer& answer) {
+  Json parts = Json::array();
+  for (const ImportedPartAnswer& part : answer.parts)
+    parts.push_back({{"name", part.name},
+                     {"file", part.file},
+                     {"triangles", part.triangles},
+                     {"closed", part.is_closed},
+                     {"size_m", list(part.size_m)}});
+  return text(
+      {{"cad", answer.cad}, {"format", answer.format}, {"parts", parts}, {"warnings", answer.warnings}});
+}
+
+std::string toJson(const SnapshotAnswer& answer) {
+  Json json = {{"scene", answer.scene}, {"width", answer.width}, {"height", answer.height}};
+  if (answer.is_compared)
+    json["compared"] = {{"same_size", answer.is_same_size},
+                        {"tolerance", answer.tolerance},
+                        {"share_beyond", answer.share_beyond},
+                        {"greatest_difference", answer.greatest_difference},
+                        {"mean_difference", answer.mean_difference}};
+  return text(json);
+}
+
+}  // namespace vps

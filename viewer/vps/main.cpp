@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program `vps`: the command line, and the one place where errors become a line and an exit status.
+// The one file that includes CLI11.
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <new>
+
+#include "commands.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+
+namespace vps {
+
+namespace {
+
+/// Says it in one line, whatever it holds.
+int couldNot(std::string words) {
+  std::replace_if(
+      words.begin(), words.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  words.erase(words.find_last_not_of(' ') + 1);
+  std::fprintf(stderr, "vps: %s\n", words.c_str());
+  return kCouldNot;
+}
+
+using Run = std::function<int()>;
+
+/// The command line and what it chose. Subcommands keep references into the arguments: neither copies nor
+/// moves.
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.set_version_flag("--version", std::string("vps ") + VPS_VERSION);
+    app_.require_subcommand(1);
+    app_.footer(
+        "Exit status: 0 done and good, 1 done but the parts do not fit or a bound was missed, 2 could not.\n"
+        "Lengths carry a unit: 0.2mm, 20um, 0.01m. Example:\n  vps assemble scenes/peg_in_hole/scene.toml "
+        "--out out");
+    addAssemble();
+    addSimulate();
+    addQuery();
+    addImport();
+    addSnapshot();
+    addComing("check", "fit of an assembly as designed: interference, clearance, play",
+              "vps check bearing_block.step");
+    addComing("explain", "what of a scene will be modelled, why, at what cost", "vps explain scene.toml");
+    addComing("trade", "measures speed against accuracy on a scene", "vps trade scene.toml");
+    addComing("view", "opens a window on a scene", "vps view scene.toml");
+    addComing("device", "the device's node", "vps device --list");
+    addComing("render", "the haptic rendering node", "vps render scene.toml");
+    addComing("watch", "the viewer's node", "vps watch");
+    addComing("replay", "runs a recording again, bit for bit", "vps replay run.mcap");
+  }
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::Success& help_or_version) {
+      return app_.exit(help_or_version);
+    } catch (const CLI::ParseError& error) {
+      const auto chosen = app_.get_subcommands();
+      const std::string help =
+          chosen.empty() ? "vps --help" : "vps " + chosen.front()->get_name() + " --help";
+      return couldNot(std::string(error.what()) + "; see " + help);
+    }
+    return run_();
+  }
+
+ private:
+  CLI::App* add(const std::string& name, const std::string& does, const std::string& example, Run run) {
+    CLI::App* command = app_.add_subcommand(name, does);
+    command->footer("Example:\n  " + example);
+    command->callback([this, run = std::move(run)] { run_ = run; });
+    return command;
+  }
+
+  static void addFidelity(CLI::App* command, FidelityArguments& given) {
+    command->add_option("--fidelity", given.preset, "preset: fast, normal, fine");
+    command->add_option("--voxel", given.voxel, "grid step of voxmaps, with unit");
+    command->add_option("--spacing", given.spacing, "distance between shell points, with unit");
+    command->add_option("--sides", given.sides,
+                        "one: moving points against the fixed field; both: the reverse too");
+  }
+
+  static void addJson(CLI::App* command, std::string& json) {
+    command->add_option("--json", json, "write the numbers there")->type_name("FILE");
+  }
+
+  void addAssemble() {
+    CLI::App* command =
+        add("assemble", "runs the assembly procedure by contact; writes report, pictures and data",
+            "vps assemble scenes/bearing_block/scene.toml --out out/demo",
+            [this] { return runAssemble(assemble_); });
+    command->add_option("scene", assemble_.scene, "scene file")->required()->type_name("SCENE");
+    command->add_option("--out", assemble_.out, "folder for the results")
+        ->capture_default_str()
+        ->type_name("DIR");
+    command->add_flag("!--no-pictures", assemble_.has_pictures, "tables, plots and data only");
+    command->add_flag("--stop-at-failure", assemble_.stops_at_failure, "end at the first step that fails");
+    addFidelity(command, assemble_.fidelity);
+    addJson(command, assemble_.json);
+  }
+
+  void addSimulate() {
+    CLI::App* command = add("simulate", "lets a scene's bodies move under gravity, without a hand",
+                            "vps simulate scenes/peg_in_hole/scene.toml --seconds 2 --trace trace.csv",
+                            [this] { return runSimulate(simulate_); });
+    command->add_option("scene", simulate_.scene, "scene file")->required()->type_name("SCENE");
+    command->add_option("--seconds", simulate_.seconds, "simulated time")
+        ->capture_default_str()
+        ->type_name("S");
+    command->add_option("--trace", simulate_.trace, "one CSV row per step")->type_name("FILE");
+    addFidelity(command, simulate_.fidelity);
+    addJson(command, simulate_.json);
+  }
+
+  void addQuery() {
+    CLI::App* command = add(
+        "query", "contact of mesh B with mesh A at given poses of B in A",
+        "vps query hole.stl peg.stl --units mm --pose 0,0,-0.0149,0,0,0,1 --voxel 0.1mm --json contact.json",
+        [this] { return runQuery(query_); });
+    command->add_option("mesh_a", query_.mesh_a, "the fixed mesh")->required()->type_name("MESH_A");
+    command->add_option("mesh_b", query_.mesh_b, "the moving mesh")->required()->type_name("MESH_B");
+    CLI::Option* pose = command->add_option(
+        "--pose", query_.pose, "x,y,z,qx,qy,qz,qw of B in A, metres (left out: as in the files)");
+    command->add_option("--poses", query_.poses, "a file with a pose on each line")
+        ->type_name("FILE")
+        ->excludes(pose);
+    command->add_option("--units", query_.units, "of meshes that do not say: mm, cm, m, um, inch");
+    CLI::Option* points = command->add_option("--points", query_.fidelity.points,
+                                              "about so many shell points, instead of --spacing");
+    command->add_option("--stiffness", query_.stiffness_N_per_m3, "penalty stiffness per area [N/m^3]")
+        ->capture_default_str();
+    command->add_option("--repeats", query_.repeats, "timed runs of each pose (left out: 100 runs in all)")
+        ->check(CLI::Range(1, 1000000));
+    addFidelity(command, query_.fidelity);
+    points->excludes(command->get_option("--spacing"))->check(CLI::Range(1, 100000000));
+    addJson(command, query_.json);
+  }
+
+  void addImport() {
+    CLI::App* command = add("import", "turns a CAD file into a scene: parts, poses, steps proposed",
+                            "vps import assembly.step -o my_scene", [this] { return runImport(import_); });
+    command->add_option("cad", import_.cad, "STEP, IGES, glTF, STL, OBJ, PLY, Inventor, ...")
+        ->required()
+        ->type_name("CAD");
+    command->add_option("-o,--out", import_.out, "folder for scene.toml and meshes")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("--units", import_.units, "of files that do not say: mm, cm, m, um, inch");
+    command->add_option("--deflection", import_.deflection,
+                        "greatest distance of triangles from curved faces, with unit");
+    addJson(command, import_.json);
+  }
+
+  void addSnapshot() {
+    CLI::App* command = add("snapshot", "a picture of a scene's finished assembly, without a display",
+                            "vps snapshot scenes/peg_in_hole/scene.toml -o peg.png --view front --section",
+                            [this] { return runSnapshot(snapshot_); });
+    command->add_option("scene", snapshot_.scene, "scene file")->required()->type_name("SCENE");
+    command->add_option("-o,--out", snapshot_.out, "picture to write")->type_name("FILE.png");
+    command->add_option("--size", snapshot_.size, "width and height in pixels")
+        ->capture_default_str()
+        ->type_name("WxH");
+    command->add_option("--view", snapshot_.view, "where from")
+        ->capture_default_str()
+        ->check(CLI::IsMember(viewNames()));
+    command->add_flag("--section", snapshot_.has_section, "cut away the half in front");
+    command->add_option("--compare", snapshot_.compare, "exit 1 if the picture differs from this one")
+        ->type_name("IMAGE");
+    command
+        ->add_option("--tolerance", snapshot_.tolerance,
+                     "difference of a channel that counts as equal, 0 to 255")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 255));
+    command->add_option("--difference", snapshot_.difference, "picture of the difference to write")
+        ->type_name("FILE.png");
+    addJson(command, snapshot_.json);
+  }
+
+  /// A command that is to come: it is there, says so, and is no success.
+  void addComing(const std::string& name, const std::string& does, const std::string& example) {
+    CLI::App* command = add(name, does + " (not ready)", example, [name, does] {
+      return couldNot(name + " is not ready yet; it is to be: " + does);
+    });
+    command->allow_extras();
+  }
+
+  CLI::App app_{"Voxmap-PointShell contact on CAD parts: assemble, simulate, query, import, show.", "vps"};
+  Run run_;
+  AssembleArguments assemble_;
+  SimulateArguments simulate_;
+  QueryArguments query_;
+  ImportArguments import_;
+  SnapshotArguments snapshot_;
+};
+
+int run(int argc, char** argv) {
+  try {
+    catchStop();
+    return CommandLine().run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return couldNot("not enough memory; use a coarser --voxel and --spacing, or a smaller part");
+  } catch (const std::exception& error) {  // LoadError, Stopped, and what libraries throw
+    return couldNot(error.what());
+  } catch (...) {
+    return couldNot("an error without a name; please report it with the command that gave it");
+  }
+}
+
+}  // namespace
+
+}  // namespace vps
+
+int main(int argc, char** argv) {
+  return vps::run(argc, argv);
+}

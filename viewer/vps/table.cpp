@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace vps {
+
+namespace {
+
+/// Characters a person sees: UTF-8 continuation bytes take no room.
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+Table::Table(std::vector<std::string> heads) {
+  for (std::string& head : heads) {
+    is_left_.push_back(head.starts_with('<'));
+    if (is_left_.back()) head.erase(0, 1);
+  }
+  rows_.push_back(std::move(heads));
+}
+
+void Table::add(std::vector<std::string> cells) {
+  cells.resize(is_left_.size());
+  rows_.push_back(std::move(cells));
+}
+
+std::string Table::text() const {
+  std::vector<std::size_t> widths(is_left_.size(), 0);
+  for (const auto& row : rows_)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+  std::string out;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - width(row[i]), ' ');
+      if (i) line += "  ";
+      line += is_left_[i] ? row[i] + padding : padding + row[i];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string fixed(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string csvLine(const std::vector<std::string>& cells) {
+  std::string out;
+  for (const std::string& cell : cells) {
+    if (&cell != &cells.front()) out += ',';
+    const bool is_quoted = cell.find_first_of(",\"\n\r") != std::string::npos;
+    if (is_quoted) out += '"';
+    for (const char c : cell) out.append(c == '"' ? 2 : 1, c);
+    if (is_quoted) out += '"';
+  }
+  return out += '\n';
+}
+
+std::string csvNumber(double value) {
+  char text[40];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+}  // namespace vps
