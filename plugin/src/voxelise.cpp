@@ -21,6 +21,7 @@
 #include <cstdio>
 #include <span>
 
+#include "triangle_bounds.h"
 #include "triangle_distance.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
@@ -38,111 +39,11 @@ constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
 /// How far the bound at a cell's centre may fall short, as a share: the cell's own size costs more, and an
 /// exact search is slow amid a round part, where everything is equally far.
-constexpr double kCenterSlack = 0.03;
+constexpr double kCenterSlack = 0.1;
 
 constexpr int ownIndex(int x, int y, int z) {
   return (x * kBrick + y) * kBrick + z;
 }
-
-/// Corners of a triangle, and a rectangle around it in its plane, whose distance is a quick lower bound:
-/// tight for slivers too, which spheres and axis-aligned boxes are not.
-struct PreparedTriangle {
-  Vec3 a, b, c;
-  Vec3 center, u, v, n;  // of the rectangle; u along the triangle's longest edge
-  double half_u, half_v;
-
-  PreparedTriangle(const Mesh& mesh, const std::array<std::uint32_t, 3>& t)
-      : a(mesh.vertices[t[0]]), b(mesh.vertices[t[1]]), c(mesh.vertices[t[2]]) {
-    Vec3 longest = b - a, other = c - a;
-    if ((c - b).squaredNorm() > longest.squaredNorm()) longest = c - b, other = a - b;
-    if ((a - c).squaredNorm() > longest.squaredNorm()) longest = a - c, other = b - c;
-    u = longest.normalized();
-    const Vec3 across = other - other.dot(u) * u;
-    const double height = across.norm();
-    // Collinear corners: any direction across will do, the rectangle has no width.
-    v = height > 1e-12 * longest.norm() ? Vec3(across / height) : Vec3(u.unitOrthogonal());
-    n = u.cross(v);
-    Box in_uv;
-    for (const Vec3& p : {a, b, c}) in_uv.add(Vec3((p - a).dot(u), (p - a).dot(v), 0));
-    center = a + in_uv.center().x() * u + in_uv.center().y() * v;
-    half_u = 0.5 * in_uv.size().x();
-    half_v = 0.5 * in_uv.size().y();
-  }
-
-  /// Not more than the squared distance from p, but for rounding.
-  [[nodiscard]] double atLeast2(const Vec3& p) const noexcept {
-    const Vec3 r = p - center;
-    const double du = std::max(std::abs(r.dot(u)) - half_u, 0.0);
-    const double dv = std::max(std::abs(r.dot(v)) - half_v, 0.0);
-    const double dn = r.dot(n);
-    return du * du + dv * dv + dn * dn;
-  }
-};
-
-/// The rectangles of a list of triangles, by component so that the compiler asks about several at a time; in
-/// voxels from the brick's centre, where float is fine enough: what rounding may take from a bound is in
-/// slack().
-class RectangleList {
- public:
-  [[nodiscard]] std::size_t size() const { return triangles_.size(); }
-  [[nodiscard]] std::uint32_t triangle(std::size_t i) const { return triangles_[i]; }
-  [[nodiscard]] float slack() const { return slack_; }
-
-  void reset(std::size_t capacity, float slack) {
-    triangles_.clear();
-    slack_ = slack;
-    if (capacity <= stride_) return;
-    stride_ = capacity + capacity / 2;
-    values_.resize(kComponents * stride_);
-    bound2_.resize(stride_);
-  }
-
-  void add(std::uint32_t index, const PreparedTriangle& t, const Vec3& origin, double per_voxel) {
-    const Vec3 center = (t.center - origin) * per_voxel;
-    const double half_u = t.half_u * per_voxel, half_v = t.half_v * per_voxel;
-    const double values[kComponents] = {center.x(), center.y(), center.z(), t.u.x(), t.u.y(),
-                                        t.u.z(),    t.v.x(),    t.v.y(),    t.v.z(), t.n.x(),
-                                        t.n.y(),    t.n.z(),    half_u,     half_v};
-    for (std::size_t k = 0; k < kComponents; ++k)
-      values_[k * stride_ + triangles_.size()] = static_cast<float>(values[k]);
-    triangles_.push_back(index);
-    // A handful of float roundings of numbers this large.
-    slack_ = std::max(slack_, 2e-6f * static_cast<float>(center.norm() + half_u + half_v + kBrick));
-  }
-
-  /// Appends entry i of another list.
-  void copy(const RectangleList& from, std::size_t i) {
-    for (std::size_t k = 0; k < kComponents; ++k)
-      values_[k * stride_ + triangles_.size()] = from.values_[k * from.stride_ + i];
-    triangles_.push_back(from.triangles_[i]);
-  }
-
-  /// Squared distances [voxel^2] from p to all rectangles; kept for lastBound2().
-  std::span<const float> bound2(const Eigen::Vector3f& p) {
-    const std::size_t n = stride_;
-    const float* __restrict v = values_.data();
-    float* __restrict out = bound2_.data();
-    const float px = p.x(), py = p.y(), pz = p.z();
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      const float x = px - v[i], y = py - v[n + i], z = pz - v[2 * n + i];
-      float du = std::abs(x * v[3 * n + i] + y * v[4 * n + i] + z * v[5 * n + i]) - v[12 * n + i];
-      float dv = std::abs(x * v[6 * n + i] + y * v[7 * n + i] + z * v[8 * n + i]) - v[13 * n + i];
-      const float dn = x * v[9 * n + i] + y * v[10 * n + i] + z * v[11 * n + i];
-      du = du > 0 ? du : 0;
-      dv = dv > 0 ? dv : 0;
-      out[i] = du * du + dv * dv + dn * dn;
-    }
-    return lastBound2();
-  }
-  [[nodiscard]] std::span<const float> lastBound2() const { return {bound2_.data(), triangles_.size()}; }
-
- private:
-  static constexpr std::size_t kComponents = 14;
-  std::vector<std::uint32_t> triangles_;
-  std::vector<float> values_, bound2_;
-  std::size_t stride_ = 0;
-  float slack_ = 0;
-};
 
 /// The triangles that reach each brick, as one list with an offset for each cell of the directory.
 struct Gathered {
@@ -174,7 +75,7 @@ class Voxeliser {
   struct Work {
     Vec3 center;
     Index3 low;
-    RectangleList lists[4];
+    TriangleBounds lists[4];
     OwnNodes* nodes;
   };
 
@@ -205,7 +106,7 @@ class Voxeliser {
   Gathered gathered_;
   std::vector<OwnNodes> own_;         // one for each of gathered_.cells
   std::vector<std::int32_t> own_of_;  // by directory index; -1: none
-  std::vector<PreparedTriangle> prepared_;
+  std::vector<BoundedTriangle> bounded_;
 };
 
 void Voxeliser::layOutDirectory() {
@@ -225,11 +126,11 @@ void Voxeliser::layOutDirectory() {
 /// oblique triangle costs what its surface costs, not its box.
 void Voxeliser::gatherTriangle(std::uint32_t triangle, const Index3& low, const Index3& size,
                                std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const {
-  const PreparedTriangle& t = prepared_[triangle];
+  const BoundedTriangle& t = bounded_[triangle];
   const Vec3 half = 0.5 * kBrick * h_ * size.cast<double>();
   const Vec3 center = kBrick * h_ * low.cast<double>() + half;
   const double reach_m = half.norm() + band_m_;
-  if (t.atLeast2(center) > reach_m * reach_m) return;
+  if (t.bound2(center) > reach_m * reach_m) return;
   if (size.prod() == 1) {
     out.emplace_back(static_cast<std::uint32_t>(layout_->cellIndex(low)), triangle);
     return;
@@ -246,15 +147,15 @@ void Voxeliser::gatherTriangle(std::uint32_t triangle, const Index3& low, const 
 
 void Voxeliser::gather() {
   const std::size_t count = mesh_.triangles.size();
-  prepared_.reserve(count);
-  for (const auto& t : mesh_.triangles) prepared_.emplace_back(mesh_, t);
+  bounded_.reserve(count);
+  for (const auto& t : mesh_.triangles) bounded_.emplace_back(mesh_, t);
 
   constexpr std::size_t kGrain = 1024;
   const std::size_t chunks = (count + kGrain - 1) / kGrain;
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> reached(chunks);  // cell, triangle
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     for (std::size_t i = chunk * kGrain; i < std::min(count, (chunk + 1) * kGrain); ++i) {
-      const PreparedTriangle& t = prepared_[i];
+      const BoundedTriangle& t = bounded_[i];
       const double cell_m = kBrick * h_;
       const Vec3 min = ((t.a.cwiseMin(t.b).cwiseMin(t.c).array() - band_m_) / cell_m).floor();
       const Vec3 max = ((t.a.cwiseMax(t.b).cwiseMax(t.c).array() + band_m_) / cell_m).floor();
@@ -291,15 +192,16 @@ void Voxeliser::computeNodes(std::size_t i, Work& work) {
   work.lists[0].reset(count, 0);
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t triangle = gathered_.triangles[gathered_.first[i] + k];
-    work.lists[0].add(triangle, prepared_[triangle], work.center, 1 / h_);
+    work.lists[0].add(triangle, bounded_[triangle], work.center, 1 / h_, kBrick);
   }
   computeBlock(Index3::Zero(), 0, work);
 }
 
 /// The nearest triangle of a level's list within limit_m of p, if any.
 Voxeliser::Nearest Voxeliser::nearest(const Vec3& p, double limit_m, Work& work, int level) const {
-  RectangleList& list = work.lists[level];
-  const std::span<const float> bound2 = list.bound2(((p - work.center) / h_).cast<float>());
+  TriangleBounds& list = work.lists[level];
+  const std::size_t first = list.ask(((p - work.center) / h_).cast<float>());
+  const std::span<const float> bound2 = list.bounds2();
   Nearest best;
   best.distance_m = limit_m;
   double best2 = limit_m * limit_m;
@@ -309,7 +211,7 @@ Voxeliser::Nearest Voxeliser::nearest(const Vec3& p, double limit_m, Work& work,
     reach2 = reach * reach;
   };
   const auto attempt = [&](std::size_t i) {
-    const PreparedTriangle& t = prepared_[list.triangle(i)];
+    const BoundedTriangle& t = bounded_[list.triangle(i)];
     const TrianglePoint at = closestOnTriangleInline(p, t.a, t.b, t.c);
     const double distance2 = (p - at.q).squaredNorm();
     if (distance2 >= best2) return;
@@ -319,9 +221,7 @@ Voxeliser::Nearest Voxeliser::nearest(const Vec3& p, double limit_m, Work& work,
   };
   updateReach();
   // The one with the least bound first: most often it is the nearest, and the rest is skipped.
-  const auto first =
-      static_cast<std::size_t>(std::min_element(bound2.begin(), bound2.end()) - bound2.begin());
-  if (first == bound2.size() || bound2[first] > reach2) return best;
+  if (bound2.empty() || bound2[first] > reach2) return best;
   attempt(first);
   for (std::size_t i = 0; i < bound2.size(); ++i)
     if (bound2[i] <= reach2 && i != first) attempt(i);
@@ -346,15 +246,15 @@ void Voxeliser::computeBlock(const Index3& low, int level, Work& work) const {
   }
   // A triangle farther from the centre than the nearest one by the block's diameter is nearest to no node in
   // it.
-  const RectangleList& list = work.lists[level];
-  RectangleList& kept = work.lists[level + 1];
-  const std::span<const float> bound2 = work.lists[level].lastBound2();
+  const TriangleBounds& list = work.lists[level];
+  TriangleBounds& kept = work.lists[level + 1];
+  const std::span<const float> bound2 = list.bounds2();
   const auto reach =
       static_cast<float>(std::min(best.distance_m + 2 * radius_m, band_m_ + radius_m) / h_) * (1 + 1e-5f) +
       list.slack();
   kept.reset(list.size(), list.slack());
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (bound2[i] <= reach * reach) kept.copy(list, i);
+    if (bound2[i] <= reach * reach) kept.addFrom(list, i);
   for (int child = 0; child < 8; ++child)
     computeBlock(low + size / 2 * Index3(child >> 2, child >> 1 & 1, child & 1), level + 1, work);
 }
