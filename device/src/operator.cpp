@@ -15,6 +15,8 @@ constexpr double kRamp_s = 0.2;            // of the press, up and down
 constexpr double kPressRate_N_per_s = 10;  // force of a push that meets resistance
 constexpr double kCreep_per_s = 4;         // closes a free shortfall; times the delay of sight well below 1
 constexpr double kRestWait_s = 2;
+constexpr double kFreeShare = 0.6;       // of the tolerance
+constexpr double kResidualShare = 0.15;  // of the press, kept until release so that the part stays seated
 constexpr double kGoldenAngle_rad = 2.399963229728653;  // spreads retries evenly in direction
 constexpr int kSpiral = 12;  // retries before the spiral starts again at its centre
 
@@ -204,10 +206,10 @@ double VirtualOperator::shortfall_m() const noexcept {
   return axis_W_.dot(path_.back().p - seenGrasp().p);
 }
 
-bool VirtualOperator::isOnTarget() const noexcept {
+bool VirtualOperator::isOnTarget(double share) const noexcept {
   const Pose& X = task_.X_WP_target;
-  return (seen_now_.X_WP.p - X.p).norm() <= task_.tolerance_m &&
-         rotationVector(seen_now_.X_WP.R * X.R.transpose()).norm() <= task_.tolerance_rad;
+  return (seen_now_.X_WP.p - X.p).norm() <= share * task_.tolerance_m &&
+         rotationVector(seen_now_.X_WP.R * X.R.transpose()).norm() <= share * task_.tolerance_rad;
 }
 
 bool VirtualOperator::isAtRest() const noexcept {
@@ -250,7 +252,8 @@ void VirtualOperator::insert(const OperatorView& view, double dt_s) noexcept {
     retreat_until_s_ = 0;
     startInsertion(now_s);
   }
-  if (isOnTarget()) return enter(OperatorPhase::Press, now_s);
+  // What nothing stops must be well within, for it may still drift.
+  if (isOnTarget(has_stop_ ? 1 : kFreeShare)) return enter(OperatorPhase::Press, now_s);
 
   const double shortfall = shortfall_m(), limit_N = pushLimit_N();
   if (now_s > segment_.start_s + segment_.duration_s) {
@@ -290,13 +293,13 @@ double VirtualOperator::pushLimit_N() const noexcept {
 void VirtualOperator::press(double now_s) noexcept {
   const double t = now_s - phase_s_, down_s = kRamp_s + habits_.press_s;
   if (!has_stop_) return;
-  if (t < down_s && !isOnTarget()) {
+  if (t < down_s && -shortfall_m() > task_.tolerance_m) {
     // It yields: nothing to press against, so from now on it is only put in place.
     has_stop_ = false;
     return enter(OperatorPhase::Insert, now_s);
   }
   const double ramp = t < down_s ? minimumJerk(t / kRamp_s) : 1 - minimumJerk((t - down_s) / kRamp_s);
-  push_N_ = ramp * habits_.press_N;
+  push_N_ = habits_.press_N * (kResidualShare + (1 - kResidualShare) * ramp);
 }
 
 void VirtualOperator::finish(OperatorPhase phase, const OperatorView& view) noexcept {
@@ -312,6 +315,9 @@ Pose VirtualOperator::limited(const Pose& X_wanted, const Pose& X_hand) const no
   if (phase_ == OperatorPhase::Insert) {
     const double along_m = axis_W_.dot(pull_m);
     pull_m -= axis_W_ * std::max(0.0, along_m - pushLimit_N() / habits_.k_N_per_m);
+  } else if (phase_ == OperatorPhase::Press && has_stop_) {
+    // A stop gives the position, the hand only the force.
+    pull_m += axis_W_ * (push_N_ / habits_.k_N_per_m - axis_W_.dot(pull_m));
   }
   pull_m = shortened(pull_m, habits_.force_limit_N / habits_.k_N_per_m);
   const Vec3 twist_rad = shortened(rotationVector(X_wanted.R * X_hand.R.transpose()),

@@ -15,6 +15,9 @@ constexpr double kGravity_m_s2 = 9.81;
 // Below this joint speed dry friction fades linearly: about 2 mm/s at the handle, slower than a hand can hold
 // still.
 constexpr double kPlateSlip_rad_s = 2e-3, kLinkSlip_m_s = 2e-3, kRotorSlip_rad_s = 2e-2;
+// Beyond it, in the workspace's corners, the gimbal nears its singularity, where the motor no longer brakes
+// all turns.
+constexpr double kTilt_rad = 0.5236;
 // Motors give their peak until the mean square of their effort comes within this of the continuous limit's.
 constexpr double kHeatBlend = 0.1;
 
@@ -60,8 +63,8 @@ void leastFriction(const DualArmParameters& p, DeviceLimits& limits) {
   for (int i = 0; i < 3 * 3 * 3 * 3 * 3; ++i) {
     const auto third = [i](int power) { return i / power % 3 - 1.0; };
     const Vec3 corner(third(1), third(3), third(9));
-    const Pose X_DH(rotationFromVector(Vec3(third(27), 0, third(81)) * 0.7854),
-                    Vec3(0.5 * p.workspace_m.cwiseProduct(corner)));
+    const Vec3 tilt = Vec3(third(27), 0, third(81)).stableNormalized() * kTilt_rad;
+    const Pose X_DH(rotationFromVector(tilt), Vec3(0.5 * p.workspace_m.cwiseProduct(corner)));
     JointMatrix J;
     if (handleJacobian(p, X_DH, J) != Status::Ok) continue;
     const Mat6 B = J.transpose() * damping.asDiagonal() * J, C = J.transpose() * coulomb2.asDiagonal() * J;
@@ -89,6 +92,14 @@ SimulatedDualArm::SimulatedDualArm(const SimulatedDualArmSettings& settings)
   limits_.resolution_rad = settings_.has_quantised_encoders ? p.resolution_rad : 0;
   leastFriction(p, limits_);
   last_.X_DH = X_DH_;
+}
+
+void SimulatedDualArm::moveTo(const Pose& X_DH) noexcept {
+  X_DH_ = X_DH;
+  V_DH_ = {};
+  has_read_ = has_stepped_ = false;
+  last_ = {};
+  last_.X_DH = X_DH;
 }
 
 DeviceSample SimulatedDualArm::read() noexcept {

@@ -27,7 +27,7 @@ struct DeviceLimits {
   Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
   Vec3 workspace_max_D = Vec3::Zero();
   double rate_hz = 1000;        ///< read-write cycles per second
-  double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, any direction
+  double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, handle within 30 deg
   double damping_Nms_per_rad = 0;
   double coulomb_N = 0;  ///< least dry friction over the workspace
   double coulomb_Nm = 0;

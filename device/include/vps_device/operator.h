@@ -25,8 +25,8 @@ struct OperatorHabits {
   double press_N = 5;         ///< presses home with this
   double force_limit_N = 15;  ///< never pulls or pushes its spring beyond this
   double torque_limit_Nm = 0.8;
-  double k_N_per_m = 500;        ///< translation
-  double k_lateral_share = 0.4;  ///< of k across the axis while inserting: relaxed, so that chamfers guide
+  double k_N_per_m = 700;        ///< translation
+  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: relaxed, so that chamfers guide
   double k_Nm_per_rad = 3;
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
@@ -35,13 +35,13 @@ struct OperatorHabits {
   double lag_rad_s = 40;        ///< natural frequency of the muscles' lag, critically damped
   double see_rate_hz = 60;      ///< the picture's rate
   double see_delay_s = 0.1;     ///< from light to correction, at most 1 s
-  double see_gain_per_s = 1.5;  ///< integral correction of the seen error
+  double see_gain_per_s = 2.5;  ///< integral correction of the seen error
   double see_limit_m = 3e-3;    ///< bound of that correction
   double see_limit_rad = 0.05;
   double stuck_s = 0.4;         ///< without progress while pushing: try another way
   double progress_m = 0.05e-3;  ///< what counts as progress in that time
   double back_off_m = 1e-3;
-  double search_m = 0.15e-3;  ///< spiral step of a retry
+  double search_m = 0.06e-3;  ///< spiral step of a retry
   double search_rad = 0.003;
   double press_s = 0.3;
   double rest_m_s = 1e-3;  ///< slower counts as at rest
@@ -128,7 +128,7 @@ class VirtualOperator {
   [[nodiscard]] double progressOf(const Pose& X_WG) const noexcept;
   [[nodiscard]] double shortfall_m() const noexcept;
   [[nodiscard]] double pushLimit_N() const noexcept;
-  [[nodiscard]] bool isOnTarget() const noexcept;
+  [[nodiscard]] bool isOnTarget(double share = 1) const noexcept;
   [[nodiscard]] bool isAtRest() const noexcept;
   [[nodiscard]] bool isInserting() const noexcept;
 

@@ -39,6 +39,9 @@ class SimulatedDualArm final : public Device {
   /// friction, are solved implicitly: stable at any stiffness. dt_s > 0.
   void step(double dt_s, const HandForce& hand) noexcept;
 
+  /// Puts the handle elsewhere, at rest; the next read() starts afresh. For calibration and tests.
+  void moveTo(const Pose& X_DH) noexcept;
+
   /// The truth, for tests and for the operator's own senses; the loop sees only read().
   [[nodiscard]] const Pose& truePose() const noexcept { return X_DH_; }
   [[nodiscard]] const Twist& trueTwist() const noexcept { return V_DH_; }

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/loop.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/no_alloc.h"
+#include "vps_device/gains.h"
+#include "vps_device/random.h"
+#include "vps_device/simulated_dual_arm.h"
+
+namespace vps {
+namespace {
+
+// A device of the test's making: says what it is told, keeps what it is given.
+class Puppet final : public Device {
+ public:
+  DeviceSample read() noexcept override { return sample; }
+  void write(const Wrench& F) noexcept override { written = F; }
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return {}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "puppet"; }
+  DeviceSample sample;
+  Wrench written;
+};
+
+CouplingState partAt(const Pose& X_W) {
+  return {X_W, Twist{}, 0, true};
+}
+
+LoopSettings quick() {
+  LoopSettings settings;
+  settings.safety.slew_N_per_s = settings.safety.slew_Nm_per_s = 1e9;
+  settings.safety.jump_m = settings.safety.jump_rad = 1e9;
+  return settings;
+}
+
+TEST(WorkspaceMap, ThereAndBackIsTheIdentityAndPowerScalesAsStated) {
+  const WorkspaceMap map{Pose(rotationFromVector(Vec3(0.3, 1, -2)), Vec3(1, 2, 3)), 2.5, 0.5};
+  const Pose X(rotationFromVector(Vec3(1, 0.2, 0.3)), Vec3(0.1, -0.2, 0.3));
+  const Pose back = map.toDevice(map.toScene(X));
+  EXPECT_LT((back.p - X.p).norm() + (back.R - X.R).norm(), 1e-14);
+  const Twist V{Vec3::Zero(), Vec3(0.1, 0.2, 0.3)};
+  const Wrench F{Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  EXPECT_NEAR(power(map.toScene(F), map.toScene(V)), power(F, V) * map.scale / map.force_scale, 1e-13);
+}
+
+TEST(HapticLoop, GraspingAnywhereGivesNoForce) {
+  Puppet device;
+  CouplingPort port;
+  LoopSettings settings = quick();
+  settings.map = {Pose(rotationFromVector(Vec3(0.2, 0.1, 1)), Vec3(1, 0, 0)), 1.5, 1};
+  HapticLoop loop(device, port, settings);
+  device.sample.X_DH = Pose(rotationFromVector(Vec3(0.5, 0, 0.2)), Vec3(0.1, 0.1, 0));
+  const Pose X_WG(rotationFromVector(Vec3(0, -1, 2)), Vec3(-3, 4, 5));
+  loop.grasp(X_WG);
+  port.part.write(partAt(X_WG));
+  loop.tick();
+  // A spring of 2000 N/m times a rounding of 1e-15.
+  EXPECT_LT(device.written.f.norm() + device.written.tau.norm(), 1e-10);
+  EXPECT_LT((port.proxy.read().X_W.p - X_WG.p).norm(), 1e-14);
+}
+
+TEST(HapticLoop, ForceOnTheHandPullsTowardsThePartTurnedIntoTheDevice) {
+  Puppet device;
+  CouplingPort port;
+  LoopSettings settings = quick();
+  settings.map.X_WD.R = rotationFromVector(Vec3(0, 0, M_PI / 2));  // device x is scene y
+  HapticLoop loop(device, port, settings);
+  loop.grasp(Pose{});
+  port.part.write(partAt(Pose{}));
+  device.sample.X_DH.p = Vec3(1e-3, 0, 0);
+  const TickReport report = loop.tick();
+  EXPECT_NEAR(report.X_WG.p.y(), 1e-3, 1e-15);
+  EXPECT_NEAR(device.written.f.x(), -settings.gains.k_N_per_m * 1e-3, 1e-9);
+  EXPECT_NEAR(report.F_hand_W.f.y(), -settings.gains.k_N_per_m * 1e-3, 1e-9);
+}
+
+TEST(HapticLoop, NothingIsFeltBeforePhysicsCouplesOrAfterRelease) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, quick());
+  loop.grasp(Pose{});
+  device.sample.X_DH.p = Vec3(1e-3, 0, 0);
+  loop.tick();
+  EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+  port.part.write(partAt(Pose{}));
+  loop.tick();
+  EXPECT_GT(device.written.f.norm(), 1);
+  loop.release();
+  loop.tick();
+  EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+  EXPECT_FALSE(port.proxy.read().is_coupled);
+}
+
+TEST(HapticLoop, LostDeviceStopsForceAndProxyUntilRearmedAndThenRegrasps) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, quick());
+  loop.grasp(Pose{});
+  port.part.write(partAt(Pose{}));
+  device.sample.X_DH.p = Vec3(1e-3, 0, 0);
+  loop.tick();
+  device.sample.status = Status::Fault;
+  device.sample.X_DH.p = Vec3(0.3, 0, 0);
+  EXPECT_EQ(loop.tick().status, Status::Fault);
+  EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+  EXPECT_NEAR(port.proxy.read().X_W.p.x(), 1e-3, 1e-15);
+  device.sample.status = Status::Ok;
+  loop.tick();
+  EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+  loop.rearm();
+  for (int i = 0; i < 500; ++i) loop.tick();
+  EXPECT_LT(device.written.f.norm(), 1e-9);
+  EXPECT_NEAR(loop.last().X_WG.p.x(), 0, 1e-12);
+  EXPECT_EQ(loop.count(Status::Fault), 2u);
+  EXPECT_EQ(loop.count(Status::Ok), loop.ticks() - 2);
+}
+
+TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, quick());
+  const double k = loop.settings().gains.k_N_per_m;
+  loop.grasp(Pose{});
+  port.part.write(partAt(Pose{}));
+  loop.noteStored(0, 0);
+  const double travel_m = 5e-3;
+  const int n = 500;
+  for (int i = 0; i <= 2 * n; ++i) {  // out and back
+    const double x = travel_m * (i <= n ? i : 2 * n - i) / n;
+    device.sample.X_DH.p.x() = x;
+    loop.noteStored(0.5 * k * x * x, 0);
+    loop.tick();
+  }
+  // Held force: each of n steps of h errs by k h^2 / 2, against the hand on the way out and to it on the way
+  // back.
+  const double stored_J = 0.5 * k * travel_m * travel_m, hold_J = 0.5 * k * travel_m * travel_m / n;
+  EXPECT_NEAR(loop.ledger().from_hand_J, stored_J - hold_J, 1e-9);
+  EXPECT_NEAR(loop.ledger().to_hand_J, stored_J + hold_J, 1e-9);
+  EXPECT_NEAR(loop.ledger().injected_J, 2 * hold_J, 1e-9);
+}
+
+TEST(HapticLoop, TickNeverTouchesTheHeap) {
+  SimulatedDualArm arm;
+  CouplingPort port;
+  LoopSettings settings;
+  settings.extrapolates_part = true;
+  HapticLoop loop(arm, port, settings);
+  loop.grasp(Pose{});
+  const vps_test::NoAllocScope guard;
+  for (int i = 0; i < 100; ++i) {
+    port.part.write(partAt(Pose::translation(Vec3(1e-3, 0, 0))));
+    loop.tick();
+    arm.step(1e-3, loop.toDevice(HandForce{}));
+  }
+}
+
+TEST(Gains, FollowTheFormulasAndTheDevice) {
+  DeviceLimits limits;
+  limits.damping_Ns_per_m = 5;
+  limits.damping_Nms_per_rad = 0.01;
+  limits.peak_force_N = 30;
+  limits.peak_torque_Nm = 2.5;
+  const CouplingGains gains = deriveGains(limits, {1000, 1000, 0, 1, 1});
+  EXPECT_NEAR(gains.b_Ns_per_m, 1, 1e-12);
+  EXPECT_NEAR(gains.k_N_per_m, 0.8 * 4 / 1.5e-3, 1e-9);
+  EXPECT_GT(5, gains.k_N_per_m * 1.5e-3 + gains.b_Ns_per_m);  // b > K (T/2 + t_d) + |B|
+  limits.coulomb_N = 0.05;
+  limits.resolution_m = 100e-6;
+  EXPECT_NEAR(deriveGains(limits, {}).k_N_per_m, 0.8 * 2 * 0.05 / 100e-6, 1e-9);
+  EXPECT_NEAR(deriveGains(limits, {1000, 1000, 0, 2, 1}).k_N_per_m, 0.4 * 2 * 0.05 / 100e-6, 1e-9);
+}
+
+// A part of mass m in physics at its own rate: coupled implicitly to the proxy, stopped by a rigid floor at z
+// = 0.
+struct FloorWorld {
+  double mass_kg = 0.3, floor_z = 0;
+  CouplingState part{Pose{}, Twist{}, 0, true};
+
+  void step(const CouplingGains& gains, const CouplingState& proxy, double dt_s) {
+    const double k = gains.k_N_per_m, b = gains.b_Ns_per_m;
+    const Vec3 rhs = mass_kg * part.V_W.v + dt_s * (k * (proxy.X_W.p - part.X_W.p) + b * proxy.V_W.v);
+    part.V_W.v = rhs / (mass_kg + dt_s * b + dt_s * dt_s * k);
+    part.V_W.v.z() = std::max(part.V_W.v.z(), (floor_z - part.X_W.p.z()) / dt_s);
+    part.X_W.p += dt_s * part.V_W.v;
+    part.X_W.R = proxy.X_W.R;
+    part.V_W.w = proxy.V_W.w;
+  }
+};
+
+struct Press {
+  double depth_m, force_N, ripple_N, injected_J, speed_m_s;
+};
+
+// Presses the part on the floor with 5 N of the hand's spring; ripple is over the last half second.
+Press pressOnFloor(CouplingGains gains, int haptic_per_physics, double hand_k) {
+  SimulatedDualArmSettings device;
+  device.rate_hz = 1000.0 * haptic_per_physics;
+  SimulatedDualArm arm(device);
+  CouplingPort port;
+  LoopSettings settings;
+  settings.gains = gains;
+  settings.period_s = 1 / device.rate_hz;
+  HapticLoop loop(arm, port, settings);
+  FloorWorld world;
+  world.part.X_W = Pose::translation(Vec3(0, 0, 5e-3));
+  loop.grasp(world.part.X_W);
+  HandForce hand;
+  hand.mass_kg = 0.3;  // a loose grip: the least damped case
+  hand.inertia_kgm2 = 1e-3;
+  hand.k_N_per_m = hand_k * Mat3::Identity();
+  hand.b_Ns_per_m = 0.2 * std::sqrt(hand_k * hand.mass_kg) * Mat3::Identity();
+  hand.k_Nm_per_rad = Mat3::Identity();
+  hand.b_Nms_per_rad = 0.02 * Mat3::Identity();
+  double low_N = 1e9, high_N = -1e9;
+  for (int ms = 0; ms < 2000; ++ms) {
+    port.part.write(world.part);
+    const double down_m = -5.0 / hand_k;
+    hand.X_eq = Pose::translation(Vec3(0, 0, 5e-3 + (down_m - 5e-3) * std::min(1.0, ms / 500.0)));
+    for (int i = 0; i < haptic_per_physics; ++i) {
+      loop.tick();
+      arm.step(settings.period_s, loop.toDevice(hand));
+      if (ms < 1500) continue;
+      low_N = std::min(low_N, loop.last().F_hand_W.f.z());
+      high_N = std::max(high_N, loop.last().F_hand_W.f.z());
+    }
+    world.step(gains, port.proxy.read(), 1e-3);
+  }
+  return {-loop.last().X_WG.p.z(), 0.5 * (low_N + high_N), high_N - low_N, loop.ledger().injected_J,
+          arm.trueTwist().v.norm()};
+}
+
+TEST(Coupling, DerivedGainsPressSteadilyOnARigidFloor) {
+  for (const int haptic_per_physics : {1, 4}) {
+    for (const double hand_k : {100.0, 500.0, 2000.0}) {
+      const DeviceLimits limits = SimulatedDualArm().limits();
+      const CouplingGains gains = deriveGains(limits, {1000.0 * haptic_per_physics, 1000, 0, 1, 1});
+      EXPECT_GT(gains.k_N_per_m, 1500);
+      EXPECT_LT(gains.k_N_per_m, 5000);
+      const Press press = pressOnFloor(gains, haptic_per_physics, hand_k);
+      const double force_N = 5 * gains.k_N_per_m / (gains.k_N_per_m + hand_k);  // two springs in series
+      // Dry friction of up to 0.35 N may hold its share; one encoder error of 0.1 mm moves the reading.
+      EXPECT_NEAR(press.force_N, force_N, 0.35 + 1e-4 * gains.k_N_per_m) << hand_k;
+      EXPECT_LT(press.ripple_N, 1e-4 * gains.k_N_per_m) << hand_k;
+      EXPECT_LT(press.speed_m_s, 2e-3) << hand_k;
+    }
+  }
+}
+
+TEST(Coupling, TenTimesTheDerivedStiffnessRings) {
+  CouplingGains gains = deriveGains(SimulatedDualArm().limits(), {1000, 1000, 0, 1, 1});
+  gains.k_N_per_m *= 10;
+  EXPECT_GT(pressOnFloor(gains, 1, 100).ripple_N, 1);
+}
+
+}  // namespace
+}  // namespace vps

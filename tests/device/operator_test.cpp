@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/operator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "support/no_alloc.h"
+#include "vps_device/gains.h"
+#include "vps_device/loop.h"
+#include "vps_device/simulated_dual_arm.h"
+
+namespace vps {
+namespace {
+
+// A peg and a hole without geometry: the peg's tip may pass the mouth (z = 0) only when it is within
+// `clear_m` of the hole's axis, then slides down that axis, until `bottom_m`. Translation only; attitude
+// follows the hand.
+struct PegWorld {
+  double mass_kg = 0.2, clear_m = 0.2e-3, bottom_m = -0.02;
+  bool has_bottom = true;
+  Vec3 weight_W = Vec3(0, 0, -0.2 * 9.81);
+  CouplingState part{Pose{}, Twist{}, 0, true};
+
+  void step(const CouplingGains& gains, const CouplingState& proxy, double dt_s) {
+    const double k = gains.k_N_per_m, b = gains.b_Ns_per_m + 5;  // some drag in the hole
+    const Vec3 pull = k * (proxy.X_W.p - part.X_W.p) + gains.b_Ns_per_m * proxy.V_W.v + weight_W;
+    Vec3 v = (mass_kg * part.V_W.v + dt_s * pull) / (mass_kg + dt_s * b + dt_s * dt_s * k);
+    Vec3 p = part.X_W.p + dt_s * v;
+    const double off_m = std::hypot(part.X_W.p.x(), part.X_W.p.y());
+    const bool is_in = part.X_W.p.z() < 0;
+    if (!is_in && off_m > clear_m) p.z() = std::max(p.z(), 0.0);
+    if (is_in) p.head<2>() *= std::min(1.0, clear_m / std::max(1e-12, std::hypot(p.x(), p.y())));
+    if (has_bottom) p.z() = std::max(p.z(), bottom_m);
+    part.V_W.v = (p - part.X_W.p) / dt_s;
+    part.V_W.w = proxy.V_W.w;
+    part.X_W = {proxy.X_W.R, p};
+  }
+};
+
+struct Mounting {
+  OperatorPhase phase = OperatorPhase::Idle;
+  double time_s = 0, peak_N = 0, end_N = 0, error_m = 0;
+  int retries = 0;
+  std::vector<double> heights;
+  std::vector<OperatorPhase> phases;
+};
+
+Mounting mountPeg(const OperatorHabits& habits, PegWorld world, double timeout_s = 20) {
+  SimulatedDualArm arm;
+  CouplingPort port;
+  LoopSettings settings;
+  settings.gains = deriveGains(arm.limits(), {});
+  HapticLoop loop(arm, port, settings);
+  OperatorTask task;
+  task.X_WP_start = Pose::translation(Vec3(0.08, 0.03, 0.06));
+  task.way_points = {Pose::translation(Vec3(0.02, 0, 0.05)), Pose::translation(Vec3(0, 0, 0.01))};
+  task.X_WP_target = Pose::translation(Vec3(0, 0, world.bottom_m));
+  task.tolerance_m = 0.25e-3;
+  task.timeout_s = timeout_s;
+  task.weight_W = world.weight_W;
+  world.part.X_W = task.X_WP_start;
+  VirtualOperator hand(habits);
+  loop.grasp(task.X_WP_start);
+  hand.begin(task, 0);
+  Mounting run;
+  for (; run.time_s < 60; run.time_s += 1e-3) {
+    port.part.write(world.part);
+    loop.tick();
+    const TickReport& tick = loop.last();
+    const HandForce force =
+        hand.step({run.time_s, loop.toGrasp(arm.truePose()), loop.settings().map.toScene(arm.trueTwist()),
+                   world.part.X_W, world.part.V_W, tick.F_hand_W},
+                  1e-3);
+    arm.step(1e-3, loop.toDevice(force));
+    world.step(settings.gains, port.proxy.read(), 1e-3);
+    run.peak_N = std::max(run.peak_N, tick.F_hand_W.f.norm());
+    run.end_N = tick.F_hand_W.f.norm();
+    run.heights.push_back(world.part.X_W.p.z());
+    if (run.phases.empty() || run.phases.back() != hand.phase()) run.phases.push_back(hand.phase());
+    if (hand.phase() == OperatorPhase::Done || hand.phase() == OperatorPhase::Failed) break;
+  }
+  run.phase = hand.phase();
+  run.retries = hand.retries();
+  run.error_m = (world.part.X_W.p - task.X_WP_target.p).norm();
+  return run;
+}
+
+TEST(MinimumJerk, StartsAndEndsAtRestAndIsSymmetric) {
+  EXPECT_EQ(minimumJerk(0), 0);
+  EXPECT_EQ(minimumJerk(1), 1);
+  EXPECT_EQ(minimumJerk(-1), 0);
+  EXPECT_EQ(minimumJerk(2), 1);
+  EXPECT_EQ(minimumJerkRate(0), 0);
+  EXPECT_EQ(minimumJerkRate(1), 0);
+  EXPECT_DOUBLE_EQ(minimumJerkRate(0.5), 1.875);  // peak over average speed [Flash and Hogan 1985]
+  const double h = 1e-5;
+  for (double s = 0.05; s < 1; s += 0.05) {
+    EXPECT_NEAR(minimumJerk(s) + minimumJerk(1 - s), 1, 1e-14);
+    EXPECT_NEAR(minimumJerkRate(s), (minimumJerk(s + h) - minimumJerk(s - h)) / (2 * h), 1e-8);
+  }
+}
+
+TEST(Random, IsTheKnownSequenceAndNormal) {
+  Random random(0);
+  EXPECT_EQ(random.next(), 0xe220a8397b1dcdafull);  // SplitMix64's published first value for seed 0
+  double mean = 0, square = 0;
+  const int n = 100000;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.normal();
+    mean += x / n;
+    square += x * x / n;
+  }
+  EXPECT_NEAR(mean, 0, 4 / std::sqrt(n));  // four standard errors
+  EXPECT_NEAR(square, 1, 4 * std::sqrt(2.0 / n));
+}
+
+TEST(VirtualOperator, MountsAPegThatHasABottom) {
+  const Mounting run = mountPeg({}, {});
+  EXPECT_EQ(run.phase, OperatorPhase::Done) << toText(run.phase) << " after " << run.time_s << " s";
+  EXPECT_LE(run.error_m, 0.25e-3);
+  EXPECT_LT(run.time_s, 12);
+  EXPECT_LT(run.end_N, 3) << "lets go without a spring drawn";  // the part's weight is 2 N
+  const std::vector<OperatorPhase> order{OperatorPhase::Reach, OperatorPhase::Insert, OperatorPhase::Press,
+                                         OperatorPhase::Done};
+  EXPECT_EQ(run.phases, order);
+}
+
+TEST(VirtualOperator, PlacesAPegWhereNothingStopsIt) {
+  PegWorld world;
+  world.has_bottom = false;
+  const Mounting run = mountPeg({}, world);
+  EXPECT_EQ(run.phase, OperatorPhase::Done) << toText(run.phase) << " after " << run.time_s << " s";
+  EXPECT_LE(run.error_m, 0.25e-3);
+}
+
+TEST(VirtualOperator, FindsTheHoleFromTenSeedsWithATightMouth) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    OperatorHabits habits;
+    habits.seed = seed;
+    PegWorld world;
+    world.clear_m = 0.05e-3;
+    const Mounting run = mountPeg(habits, world, 30);
+    EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed << ", " << run.retries << " retries";
+    EXPECT_LE(run.peak_N, habits.force_limit_N + 3)
+        << "seed " << seed;  // the limit, the weight, and the damper
+    RecordProperty("seed_" + std::to_string(seed),
+                   std::to_string(run.time_s) + " s, retries " + std::to_string(run.retries));
+  }
+}
+
+TEST(VirtualOperator, GivesUpAtTheTimeoutWhenTheHoleIsClosed) {
+  PegWorld world;
+  world.clear_m = -1;
+  const Mounting run = mountPeg({}, world, 8);
+  EXPECT_EQ(run.phase, OperatorPhase::Failed);
+  EXPECT_NEAR(run.time_s, 8, 0.01);
+  EXPECT_GT(run.retries, 2);
+  EXPECT_LE(run.peak_N, OperatorHabits{}.force_limit_N + 3);
+}
+
+TEST(VirtualOperator, SameSeedSameBitsOtherSeedOtherPath) {
+  OperatorHabits habits;
+  const Mounting a = mountPeg(habits, {}), b = mountPeg(habits, {});
+  ASSERT_EQ(a.heights.size(), b.heights.size());
+  EXPECT_EQ(std::memcmp(a.heights.data(), b.heights.data(), a.heights.size() * sizeof(double)), 0);
+  habits.seed = 2;
+  const Mounting c = mountPeg(habits, {});
+  EXPECT_NE(a.heights, c.heights);
+}
+
+TEST(VirtualOperator, StepsWithoutTheHeapAndBearsBadViews) {
+  VirtualOperator hand;
+  OperatorTask task;
+  task.X_WP_target = Pose::translation(Vec3(0, 0, -0.05));
+  task.weight_W = Vec3(0, 0, -2);
+  hand.begin(task, 0);
+  const vps_test::NoAllocScope guard;
+  OperatorView view;
+  for (int i = 0; i < 200; ++i) {
+    view.time_s = i * 1e-3;
+    EXPECT_TRUE(hand.step(view, 1e-3).X_eq.isFinite());
+  }
+  view.X_WP.p.x() = NAN;
+  const HandForce blind = hand.step(view, 1e-3);
+  EXPECT_TRUE(blind.X_eq.isFinite());
+  EXPECT_EQ(blind.F.f, Vec3(Vec3::Zero()));
+}
+
+}  // namespace
+}  // namespace vps
