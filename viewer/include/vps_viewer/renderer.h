@@ -29,7 +29,8 @@ struct DrawnMesh {
 };
 using RenderScene = std::vector<DrawnMesh>;
 
-/// What there is to draw of a scene: its parts, in order.
+/// What there is to draw of a scene: its parts, in order. Parts that bring no colour of their own get one
+/// each from a muted palette, so that neighbours can be told apart.
 RenderScene drawnMeshes(const Scene& scene);
 
 /// A section: what lies beyond the plane, on the side n_W points to, is cut away.
@@ -61,6 +62,10 @@ struct DrawOptions {
 /// Bounds of all that the snapshot shows, in W. With show_waiting, of waiting parts too.
 Box snapshotBounds(const RenderScene& scene, const Snapshot& snapshot, bool show_waiting = false);
 
+/// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W,
+/// faces the viewer, and lies along two of W's axes where d_W does along one, as sections are drawn.
+CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
+
 /// Holds an OpenGL context and a scene's buffers. Use it on the thread that made it; several may live side by
 /// side.
 class Renderer {
@@ -72,7 +77,7 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One picture. Half a million triangles take well under a second on llvmpipe at 1280x960.
+  /// One picture. Half a million triangles take about a second on two cores of llvmpipe at 1280x960.
   Image render(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
 
   /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".

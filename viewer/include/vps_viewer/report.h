@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/progress.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
@@ -12,6 +13,7 @@ namespace vps {
 
 struct ReportOptions {
   std::string command;       ///< how to repeat the run: "vps assemble scene.toml --out out"
+  Progress progress;         ///< may be empty
   bool has_pictures = true;  ///< false: no OpenGL, tables and plots only
   int width = 1280, height = 960;
 };
@@ -21,9 +23,10 @@ struct ReportOutcome {
   std::vector<std::string> notes;  ///< what is missing and how to get it: no EGL, no gnuplot
 };
 
-/// Writes report.html, forces.{png,svg}, trace.csv and pictures into dir (made if need be). Pictures or plots
-/// that cannot be made become notes, in the page too. Everything repeats byte for byte but what the page
-/// marks as measured on the wall clock. Throws std::runtime_error when dir cannot be written.
+/// Writes report.html, trace.csv, plots/ (forces of the run and of each step) and pictures/ into dir (made if
+/// need be). Pictures or plots that cannot be made become notes, in the page too. Everything repeats byte for
+/// byte but what the page marks as measured on the wall clock. Throws std::runtime_error when dir cannot be
+/// written.
 ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, const std::string& dir,
                           const ReportOptions& options = {});
 

@@ -32,6 +32,7 @@ struct View {
   Vector3f up_C;
   Vec3 center_C;
   double radius_m = 1;  ///< of a sphere around all that is drawn
+  double detail_m = 1;  ///< the same for what the picture shows of it, which is less in a close-up
   Vec3 floor_C;         ///< on the floor, under the centre
   Vector4f cut_C = kNoCut;
   bool has_caps = false;
@@ -339,7 +340,7 @@ void Renderer::Impl::drawGeometry(const std::vector<DrawnBody>& bodies, const Vi
 
 void Renderer::Impl::drawOcclusion(const View& view) const {
   glDisable(GL_DEPTH_TEST);
-  const auto radius_m = static_cast<float>(0.16 * view.radius_m);
+  const auto radius_m = static_cast<float>(0.16 * view.detail_m);
   glBindTextureUnit(0, gl->frame->geometry.id());
   const gl::Program& occlusion = gl->programs.occlusion;
   occlusion.set("geometry", 0);
@@ -408,7 +409,7 @@ void Renderer::Impl::drawCaps(const gl::Program& program, const std::vector<Draw
     glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
     program.set("color", body.color);
     program.set("hatch", Vector2f(std::sqrt(0.5f), body.part % 2 == 0 ? std::sqrt(0.5f) : -std::sqrt(0.5f)));
-    program.set("hatch_step_m", static_cast<float>(0.035 * view.radius_m * (1 + 0.25 * (body.part % 3))));
+    program.set("hatch_step_m", static_cast<float>(0.035 * view.detail_m * (1 + 0.25 * (body.part % 3))));
     quad(program);
   }
   glDisable(GL_STENCIL_TEST);
@@ -447,7 +448,7 @@ void Renderer::Impl::drawLines(const GpuLines& lines, const DrawnBody& body, con
   program.set("picture_px", Vector2f(gl->frame->width * factor, gl->frame->height * factor));
   program.set("width_px", width_px * factor * std::clamp(gl->frame->height / 960.0f, 0.6f, 3.0f));
   program.set("pull",
-              static_cast<float>(0.004 * view.radius_m / std::max(view.radius_m, -view.center_C.z())));
+              static_cast<float>(0.004 * view.detail_m / std::max(view.detail_m, -view.center_C.z())));
   program.set("near_m", view.near_m);
   program.set("color", color);
   glBindVertexArray(lines.array.id());
@@ -512,11 +513,11 @@ void Renderer::Impl::drawGhost(const DrawnBody& ghost, const View& view, const D
 }
 
 void Renderer::Impl::drawMarks(const Snapshot& snapshot, const View& view, const DrawOptions& options) const {
-  const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.radius_m, options);
+  const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, options);
   const gl::Program& program = gl->programs.mark;
   program.use();
   program.set("projection", view.projection);
-  program.set("pull", static_cast<float>(0.01 * view.radius_m / std::max(view.radius_m, -view.center_C.z())));
+  program.set("pull", static_cast<float>(0.01 * view.detail_m / std::max(view.detail_m, -view.center_C.z())));
   if (options.show_hidden_marks) {
     glEnable(GL_BLEND);
     glDepthMask(GL_FALSE);

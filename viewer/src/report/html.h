@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small pieces of HTML.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vps::html {
+
+/// printf with one double, in the C locale's form: format(1e6 * depth_m, "%.2f") .
+std::string format(double value, const char* form);
+
+/// A table's cell; its text is HTML already.
+struct Cell {
+  std::string html;
+  std::string css_class;
+};
+
+/// A table with a header row.
+std::string table(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
+                  const std::string& css_class = {});
+
+/// A two-column table: name, value.
+std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
+
+/// A picture that opens in full on a click; file is relative to the page.
+std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
+
+/// The page around a body.
+std::string page(const std::string& title, const std::string& body);
+
+}  // namespace vps::html

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The pictures of a report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vps_viewer/report.h"
+
+namespace vps {
+
+/// File names relative to the report; empty where there is no picture.
+struct StepPictures {
+  std::string start, contact, end;
+};
+struct ReportPictures {
+  std::string overview, section;
+  std::vector<StepPictures> steps;
+  std::string why_not;  ///< said when no picture could be made
+};
+
+ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, const std::string& dir,
+                            const ReportOptions& options);
+
+}  // namespace vps
