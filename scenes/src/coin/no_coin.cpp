@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for Coin where the build has not found it.
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::import {
+
+RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&) {
+  throw LoadError(file, "",
+                  format + " needs Coin, which this build has not; install libcoin-dev and build again");
+}
+
+}  // namespace vps::import

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which format a file is, by content first: extensions lie. And whether it is all there, where its format
+// says how a whole file ends: a library may take half an assembly for a whole one.
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::import {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string upperExtension(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return char(std::toupper(c)); });
+  return extension;
+}
+
+std::string bytes(std::ifstream& in, std::uint64_t at, std::size_t count) {
+  std::string text(count, '\0');
+  in.clear();
+  in.seekg(std::streamoff(at));
+  in.read(text.data(), std::streamsize(count));
+  text.resize(std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
+  return text;
+}
+
+std::uint32_t littleEndian(const std::string& four) {
+  std::uint32_t value = 0;
+  for (int i = 3; i >= 0; --i) value = value << 8 | std::uint8_t(four[std::size_t(i)]);
+  return value;
+}
+
+std::string formatOf(const std::string& head, const std::string& extension, const std::string& file) {
+  const auto startsWith = [&](const char* text) { return head.starts_with(text); };
+  if (startsWith("ISO-10303-21")) return "STEP";
+  if (startsWith("#VRML")) return "VRML";
+  if (startsWith("#Inventor")) return "Inventor";
+  if (startsWith("DBRep_DrawableShape") || startsWith("CASCADE Topology")) return "BREP";
+  if (startsWith("glTF") || extension == "GLB" || extension == "GLTF") return "glTF";
+  if (startsWith("\x1f\x8b")) {  // gzip: Inventor and VRML come packed
+    const std::string inner = upperExtension(fs::path(file).stem().string());  // of "part.wrl.gz"
+    if (extension == "WRZ" || inner == "WRL") return "VRML";
+    return "Inventor";
+  }
+  // An IGES line is 80 columns; the first section's letter is in column 73.
+  if (head.size() >= 80 && (head[72] == 'S' || head[72] == 'B') && head.find('\n') >= 80) return "IGES";
+  if (extension == "STP" || extension == "STEP") return "STEP";
+  if (extension == "IGS" || extension == "IGES") return "IGES";
+  if (extension == "WRL") return "VRML";
+  if (extension == "IV") return "Inventor";
+  return extension;
+}
+
+/// Says how a whole file of this format ends, and whether this one does.
+bool isWhole(const std::string& format, std::ifstream& in, std::uint64_t size, const std::string& head) {
+  const std::uint64_t tail_at = size > 1024 ? size - 1024 : 0;
+  if (format == "STEP") return bytes(in, tail_at, 1024).find("END-ISO-10303-21") != std::string::npos;
+  if (format == "IGES") {
+    const std::string tail = bytes(in, tail_at, 1024);
+    const std::size_t last = tail.find_last_not_of(" \r\n\t");
+    if (last == std::string::npos) return false;
+    const std::size_t before = tail.find_last_of("\r\n", last);
+    const std::size_t line = before == std::string::npos ? 0 : before + 1;
+    return last - line >= 72 && tail[line + 72] == 'T';  // the terminate section
+  }
+  if (format == "glTF" && head.starts_with("glTF"))
+    return head.size() >= 12 && littleEndian(head.substr(8, 4)) == size;
+  if (format == "STL" && head.starts_with("solid") && head.find("facet") != std::string::npos) {
+    return bytes(in, tail_at, 1024).find("endsolid") != std::string::npos;
+  }
+  if (format == "STL")
+    return head.size() >= 84 && size >= 84 + 50 * std::uint64_t(littleEndian(head.substr(80, 4)));
+  return true;
+}
+
+}  // namespace
+
+std::string stem(const std::string& file) {
+  fs::path path(file);
+  if (path.extension() == ".gz") path = path.stem();
+  return path.stem().string();
+}
+
+std::string detectFormat(const std::string& file) {
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status)) throw LoadError(file, "", "no such file; check the path");
+  if (fs::is_directory(status)) throw LoadError(file, "", "is a folder; name a CAD file in it");
+  if (!fs::is_regular_file(status)) throw LoadError(file, "", "is not a regular file; name a CAD file");
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw LoadError(file, "", "cannot be opened; check its permissions");
+  const std::uint64_t size = fs::file_size(file, error);
+  if (error || size == 0) throw LoadError(file, "", "is empty; export it again");
+  const std::string head = bytes(in, 0, 1024);
+  const std::string format = formatOf(head, upperExtension(file), file);
+  if (!isWhole(format, in, size, head)) {
+    throw LoadError(file, "",
+                    "is cut short or is no " + format + " file (" + std::to_string(size) +
+                        " bytes); copy or export it again");
+  }
+  return format;
+}
+
+}  // namespace vps::import

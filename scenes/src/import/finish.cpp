@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From what a file says to parts one can build on.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::import {
+namespace {
+
+void flip(Mesh& mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+}
+
+/// Moves whatever of X_WP is not rigid (scale, mirror, shear) into the vertices, and the unit into both.
+ImportedPart inMetres(const RawPart& raw, double unit_m) {
+  ImportedPart part;
+  part.name = raw.name;
+  part.color = raw.color;
+  part.mesh = raw.mesh;
+  const Mat3 M = raw.X_WP.linear();
+  const double scale = std::cbrt(std::abs(M.determinant()));
+  Mat3 R = Mat3::Identity(), rest = M;
+  if (scale > 0 && M.determinant() > 0) {
+    const Mat3 candidate = M / scale;
+    // 1e-5: Inventor and glTF store rotations as floats.
+    if ((candidate * candidate.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() < 1e-5) {
+      R = Quat(candidate).normalized().toRotationMatrix();
+      rest = Mat3::Identity() * (std::abs(scale - 1) < 1e-6 ? 1.0 : scale);
+    }
+  }
+  part.X_WP = Pose(R, Vec3(raw.X_WP.translation() * unit_m));
+  for (Vec3& p : part.mesh.vertices) p = rest * p * unit_m;
+  if (rest.determinant() < 0) flip(part.mesh);
+  return part;
+}
+
+/// Welds with the least tolerance that closes the mesh; failing that, with the one that leaves fewest open
+/// edges. Exporters round to float (1e-7 of the size) or to CAD tolerance (1 um at most).
+Mesh weldedToClose(const Mesh& mesh, MeshReport& report) {
+  const double size_m = bounds(mesh).size().norm();
+  Mesh best;
+  for (const double relative : {0.0, 1e-7, 1e-6, 1e-5}) {
+    Mesh candidate = welded(mesh, std::min(relative * size_m, 1e-6));
+    const MeshReport found = checkMesh(candidate);
+    if (relative == 0 || found.open_edges < report.open_edges) {
+      best = std::move(candidate);
+      report = found;
+    }
+    if (report.open_edges == 0) break;
+  }
+  return best;
+}
+
+/// The parts that a mesh falls into when triangles with a common vertex belong together.
+std::vector<Mesh> shells(const Mesh& mesh) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::map<std::uint32_t, std::size_t> shell_of;
+  std::vector<Mesh> out;
+  std::vector<std::uint32_t> index(mesh.vertices.size(), UINT32_MAX);
+  for (const auto& t : mesh.triangles) {
+    const auto [it, is_new] = shell_of.try_emplace(root(t[0]), out.size());
+    if (is_new) out.emplace_back();
+    Mesh& shell = out[it->second];
+    auto triangle = t;
+    for (std::uint32_t& i : triangle) {
+      if (index[i] == UINT32_MAX) {
+        index[i] = std::uint32_t(shell.vertices.size());
+        shell.vertices.push_back(mesh.vertices[i]);
+      }
+      i = index[i];
+    }
+    shell.triangles.push_back(triangle);
+  }
+  return out;
+}
+
+bool hasVertex(const ImportedPart& part, const Vec3& p_W) {
+  return std::any_of(part.mesh.vertices.begin(), part.mesh.vertices.end(),
+                     [&](const Vec3& p) { return (part.X_WP * p - p_W).squaredNorm() < 1e-12; });
+}
+
+/// Where open shapes close one another, replaces them by the bodies that they bound, in the assembly's frame.
+void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
+  std::vector<ImportedPart> kept, open;
+  std::size_t open_edges = 0;
+  for (ImportedPart& part : parts) {
+    MeshReport report;
+    weldedToClose(part.mesh, report);
+    open_edges += report.open_edges;
+    (report.open_edges == 0 ? kept : open).push_back(std::move(part));
+  }
+  Mesh all;
+  MeshReport joined;
+  for (const ImportedPart& part : open) append(all, transformed(part.mesh, part.X_WP));
+  if (open.size() > 1) all = weldedToClose(all, joined);
+  if (open.size() < 2 || joined.open_edges >= open_edges) {
+    kept.insert(kept.end(), std::make_move_iterator(open.begin()), std::make_move_iterator(open.end()));
+  } else if (meaning == Shapes::BoundOne) {
+    kept.push_back({"", std::move(all), Pose(), open.front().color});
+  } else {
+    for (Mesh& shell : shells(all)) {
+      // Name and colour of the shape that its first vertex came from.
+      const Vec3 p_W = shell.vertices.front();
+      const auto source = std::find_if(open.begin(), open.end(),
+                                       [&](const ImportedPart& part) { return hasVertex(part, p_W); });
+      const ImportedPart& like = source == open.end() ? open.front() : *source;
+      kept.push_back({like.name, std::move(shell), Pose(), like.color});
+    }
+  }
+  parts = std::move(kept);
+}
+
+void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
+  std::set<std::string> taken;
+  for (ImportedPart& part : parts) {
+    for (char& c : part.name) {
+      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    }
+    if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
+    const std::string base = part.name;
+    for (int n = 2; !taken.insert(part.name).second; ++n) part.name = base + "_" + std::to_string(n);
+  }
+}
+
+void describe(const ImportedPart& part, const MeshReport& report, std::vector<std::string>& warnings) {
+  const auto warn = [&](std::size_t count, const std::string& text) {
+    if (count > 0) warnings.push_back("part '" + part.name + "': " + std::to_string(count) + " " + text);
+  };
+  warn(report.open_edges, "open edges: the surface has holes, inside and outside are uncertain near them");
+  warn(report.non_manifold_edges, "edges with more than two triangles: bodies touch or surfaces cross there");
+  warn(report.flipped_edges, "edges between facets of opposite orientation: some facets face inwards");
+  warn(report.degenerate_triangles, "triangles without area");
+  const double extent_m = bounds(part.mesh).size().maxCoeff();
+  if (extent_m > 10 || extent_m < 1e-3) {
+    char text[160];
+    std::snprintf(text, sizeof text, "part '%s': is %.3g m large; is the unit right?", part.name.c_str(),
+                  extent_m);
+    warnings.emplace_back(text);
+  }
+}
+
+}  // namespace
+
+std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
+  std::array<float, 3> linear{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float c = srgb[i];
+    linear[i] = c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+  }
+  return linear;
+}
+
+void finish(RawCad raw, ImportedCad& cad) {
+  cad.warnings = std::move(raw.warnings);
+  for (const RawPart& part : raw.parts) {
+    if (!part.mesh.triangles.empty()) cad.parts.push_back(inMetres(part, raw.unit_m));
+  }
+  // A shape without area is nothing; a file of nothing else is an error, said below.
+  const auto isNothing = [](const ImportedPart& part) { return area(part.mesh) == 0; };
+  if (!std::all_of(cad.parts.begin(), cad.parts.end(), isNothing)) {
+    const std::size_t count = std::erase_if(cad.parts, isNothing);
+    if (count > 0) cad.warnings.push_back(std::to_string(count) + " shapes without area were left out");
+  }
+  if (cad.parts.empty()) throw LoadError(cad.file, "", "holds no surfaces; export solids or meshes");
+  for (const ImportedPart& part : cad.parts) {
+    requireUsable(part.mesh, cad.file, part.name);
+    if (!part.X_WP.isFinite())
+      throw LoadError(cad.file, part.name, "its pose is not finite; export it again");
+  }
+  if (raw.open_shapes != Shapes::AreParts && cad.parts.size() > 1) joinShapes(cad.parts, raw.open_shapes);
+  nameUniquely(cad.parts, stem(cad.file));
+  for (ImportedPart& part : cad.parts) {
+    MeshReport report;
+    part.mesh = weldedToClose(part.mesh, report);
+    requireUsable(part.mesh, cad.file, part.name);
+    if (report.isClosed() && massProperties(part.mesh).volume_m3 < 0) {
+      flip(part.mesh);
+      cad.warnings.push_back("part '" + part.name + "': was inside out; turned");
+    }
+    describe(part, report, cad.warnings);
+  }
+}
+
+}  // namespace vps::import

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada, 3MF and what else it reads.
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::import {
+namespace {
+
+/// Metres per unit of what assimp hands over. It applies Collada's unit itself, in the root's transform; it
+/// drops the units of 3MF and X3D, so these count as formats without one.
+double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
+  if (format == "glTF" || format == "DAE") return 1;
+  if (settings.unit_m) return *settings.unit_m;
+  throw LoadError(file, "",
+                  format + " files do not say their unit; set unit = \"mm\" in the scene or give --units mm");
+}
+
+Eigen::Affine3d affine(const aiMatrix4x4& m) {
+  Eigen::Affine3d X;
+  X.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
+  return X;
+}
+
+void appendMesh(const aiMesh& from, Mesh& to) {
+  const auto base = std::uint32_t(to.vertices.size());
+  for (unsigned i = 0; i < from.mNumVertices; ++i) {
+    to.vertices.emplace_back(from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z);
+  }
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    to.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
+  }
+}
+
+std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_gltf) {
+  aiColor4D c;
+  if (mesh.mMaterialIndex >= scene.mNumMaterials) return ImportedPart().color;
+  aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  // glTF's factor is linear by its specification; the others mean the colour on the screen.
+  if (is_gltf && material.Get(AI_MATKEY_BASE_COLOR, c) == AI_SUCCESS) return {c.r, c.g, c.b};
+  if (std::string(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME) {
+    return ImportedPart().color;  // assimp's own grey, not the file's
+  }
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == AI_SUCCESS) return linearFromSrgb({c.r, c.g, c.b});
+  return ImportedPart().color;
+}
+
+struct Walk {
+  const aiScene& scene;
+  bool is_gltf;
+  RawCad& cad;
+
+  void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
+    const Eigen::Affine3d X_WP = X_WParent * affine(n.mTransformation);
+    RawPart part;
+    part.name = n.mName.C_Str();
+    part.X_WP = X_WP;
+    for (unsigned i = 0; i < n.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
+      if (i == 0) part.color = colorOf(scene, mesh, is_gltf);
+      if (part.name.empty()) part.name = mesh.mName.C_Str();
+      appendMesh(mesh, part.mesh);
+    }
+    if (n.mNumMeshes > 0) cad.parts.push_back(std::move(part));
+    for (unsigned i = 0; i < n.mNumChildren; ++i) node(*n.mChildren[i], X_WP);
+  }
+};
+
+/// glTF is y up by its specification, and exporters turn z-up models, meshes and all; turned back, a part has
+/// the frame that it has in CAD. assimp makes Collada y up by the root's transform alone, so only poses turn
+/// back.
+void makeZUp(RawCad& cad, bool is_gltf) {
+  const Eigen::Affine3d X_ZY(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vec3::UnitX()));
+  for (RawPart& part : cad.parts) {
+    part.X_WP = X_ZY * part.X_WP;
+    if (!is_gltf) continue;
+    part.X_WP = part.X_WP * X_ZY.inverse();
+    for (Vec3& p : part.mesh.vertices) p = Vec3(p.x(), -p.z(), p.y());
+  }
+}
+
+}  // namespace
+
+RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings) {
+  Assimp::Importer importer;  // its logger is silent unless asked
+  if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
+      format == "IFC") {
+    throw LoadError(file, "", "format not known; export STEP, glTF, STL, OBJ or PLY");
+  }
+  RawCad cad;
+  cad.unit_m = unitOf(file, format, settings);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = nullptr;
+  try {
+    scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+  } catch (const std::exception& e) {
+    throw LoadError(file, "",
+                    std::string("not a readable ") + format + " file (" + e.what() + "); export it again");
+  }
+  if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
+    std::string why = importer.GetErrorString();
+    for (char& c : why) c = c == '\n' ? ' ' : c;
+    throw LoadError(file, "", "not a readable " + format + " file (" + why + "); export it again");
+  }
+  const bool is_gltf = format == "glTF";
+  Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
+  if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
+  if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
+  for (RawPart& part : cad.parts) {
+    // STL's header and assimp's stand-ins are no names.
+    if (format == "STL" && cad.parts.size() == 1) part.name.clear();
+    if (part.name.starts_with("<") || part.name == "defaultobject" || part.name == "RootNode")
+      part.name.clear();
+  }
+  return cad;
+}
+
+}  // namespace vps::import

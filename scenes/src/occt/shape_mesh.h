@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Open CASCADE shapes to triangles.
+#pragma once
+
+#include <vector>
+
+#include <TopoDS_Shape.hxx>
+
+#include "vps/mesh.h"
+#include "vps_scenes/import.h"
+
+namespace vps::import {
+
+/// The rigid pieces of a shape: each solid, and whatever faces lie in none, sewn together where they meet.
+std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
+
+/// Triangles of all faces, in the shape's length unit (units_per_m of them a metre), outward for a solid.
+/// Faces of one shape share the points of their common edges, so welding closes it.
+Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
+
+}  // namespace vps::import
