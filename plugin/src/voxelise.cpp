@@ -16,11 +16,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <span>
 
+#include "brick_assembly.h"
 #include "triangle_bounds.h"
 #include "triangle_distance.h"
 #include "vps/load_error.h"
@@ -30,10 +30,6 @@ namespace vps {
 namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
-constexpr int kOwnNodes = kBrick * kBrick * kBrick;
-/// Beyond the band, not signed yet.
-constexpr float kFar = FLT_MAX;
-
 /// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
 constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
@@ -45,10 +41,9 @@ constexpr int ownIndex(int x, int y, int z) {
   return (x * kBrick + y) * kBrick + z;
 }
 
-/// The triangles that reach each brick, as one list with an offset for each cell of the directory.
+/// The triangles that may reach each block of nodes, as one list.
 struct Gathered {
-  std::vector<std::size_t> cells;  ///< directory indices of bricks that some triangle may reach, ascending
-  std::vector<std::size_t> first;  ///< where a cell's triangles start, one more at the end
+  std::vector<std::size_t> first;  ///< where a block's triangles start, and one more for the end
   std::vector<std::uint32_t> triangles;
 };
 
@@ -65,7 +60,6 @@ class Voxeliser {
   }
 
  private:
-  using OwnNodes = std::array<float, kOwnNodes>;
   struct Nearest {
     TrianglePoint at;
     std::uint32_t triangle = UINT32_MAX;
@@ -86,17 +80,8 @@ class Voxeliser {
   void computeNodes(std::size_t i, Work& work);
   void computeBlock(const Index3& low, int level, Work& work) const;
   Nearest nearest(const Vec3& p, double limit_m, Work& work, int level) const;
-  void collectNodes(std::size_t i, std::array<float, kBrickNodes>& distance_m) const;
-  void finishBricks();
-  void finishDirectory();
-  void floodSigns();
+  void boundCenters();
 
-  [[nodiscard]] Index3 cellAt(std::size_t index) const {
-    const auto ny = static_cast<std::size_t>(layout_->size.y()),
-               nz = static_cast<std::size_t>(layout_->size.z());
-    return layout_->low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
-                                 static_cast<int>(index % nz));
-  }
   [[nodiscard]] Vec3 nodePosition(const Index3& node) const { return h_ * node.cast<double>(); }
 
   const Mesh& mesh_;
@@ -104,8 +89,7 @@ class Voxeliser {
   const double h_, band_m_;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
   Gathered gathered_;
-  std::vector<OwnNodes> own_;         // one for each of gathered_.cells
-  std::vector<std::int32_t> own_of_;  // by directory index; -1: none
+  NodeBlocks blocks_;  // of gathered bricks
   std::vector<BoundedTriangle> bounded_;
 };
 
@@ -170,11 +154,9 @@ void Voxeliser::gather() {
     for (const auto& [cell, triangle] : chunk) ++start[cell + 1];
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   gathered_.triangles.resize(start.back());
-  own_of_.assign(layout_->cells.size(), -1);
   for (std::size_t cell = 0; cell < layout_->cells.size(); ++cell) {
     if (start[cell] == start[cell + 1]) continue;
-    own_of_[cell] = static_cast<std::int32_t>(gathered_.cells.size());
-    gathered_.cells.push_back(cell);
+    blocks_.cells.push_back(cell);
     gathered_.first.push_back(start[cell]);
   }
   gathered_.first.push_back(start.back());
@@ -184,9 +166,9 @@ void Voxeliser::gather() {
 
 /// Signed distance at a brick's own nodes; kFar beyond the band.
 void Voxeliser::computeNodes(std::size_t i, Work& work) {
-  work.nodes = &own_[i];
+  work.nodes = &blocks_.nodes[i];
   work.nodes->fill(kFar);
-  work.low = kBrick * cellAt(gathered_.cells[i]);
+  work.low = kBrick * layout_->cellAt(blocks_.cells[i]);
   work.center = h_ * (work.low.cast<double>() + Vec3::Constant(0.5 * (kBrick - 1)));
   const std::size_t count = gathered_.first[i + 1] - gathered_.first[i];
   work.lists[0].reset(count, 0);
@@ -259,66 +241,7 @@ void Voxeliser::computeBlock(const Index3& low, int level, Work& work) const {
     computeBlock(low + size / 2 * Index3(child >> 2, child >> 1 & 1, child & 1), level + 1, work);
 }
 
-/// Gives far nodes of a brick the band's distance, with the sign of the node beside them: where one of two
-/// neighbours is far, the surface does not pass between, since the band is wider than a voxel.
-void saturate(std::array<float, kBrickNodes>& distance_m, float band_m) {
-  const auto take = [&](int far, int from) {
-    float& d = distance_m[far];
-    if (d == kFar && distance_m[from] != kFar) d = std::copysign(band_m, distance_m[from]);
-  };
-  // Up and down along z fills each row that knows a sign; then along y each plane; then along x the brick.
-  constexpr int kStride[3] = {nodeIndex(0, 0, 1), nodeIndex(0, 1, 0), nodeIndex(1, 0, 0)};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < kNodes; ++i)
-      for (int j = 0; j < kNodes; ++j) {
-        const int stride = kStride[axis];
-        const int row = i * kStride[(axis + 1) % 3] + j * kStride[(axis + 2) % 3];
-        for (int k = 1; k < kNodes; ++k) take(row + k * stride, row + (k - 1) * stride);
-        for (int k = kNodes - 1; k > 0; --k) take(row + (k - 1) * stride, row + k * stride);
-      }
-}
-
-/// The nodes of a brick: its own, and the first ones of seven neighbours as its border.
-void Voxeliser::collectNodes(std::size_t i, std::array<float, kBrickNodes>& distance_m) const {
-  const Index3 cell = cellAt(gathered_.cells[i]);
-  for (int part = 0; part < 8; ++part) {
-    const Index3 step(part >> 2, part >> 1 & 1, part & 1);
-    const Index3 neighbour = cell + step;
-    const std::int32_t own = layout_->holds(neighbour) ? own_of_[layout_->cellIndex(neighbour)] : -1;
-    for (int x = 0; x < (step.x() ? 1 : kBrick); ++x)
-      for (int y = 0; y < (step.y() ? 1 : kBrick); ++y)
-        for (int z = 0; z < (step.z() ? 1 : kBrick); ++z)
-          distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
-              own < 0 ? kFar : own_[own][ownIndex(x, y, z)];
-  }
-}
-
-/// Keeps the bricks that have a node within the band.
-void Voxeliser::finishBricks() {
-  const std::size_t count = gathered_.cells.size();
-  std::vector<std::int32_t> slot(count);  // 1 if kept, then its place
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    std::array<float, kBrickNodes> nodes;
-    collectNodes(i, nodes);
-    slot[i] = std::any_of(nodes.begin(), nodes.end(), [](float d) { return d != kFar; });
-  });
-  std::int32_t kept = 0;
-  for (std::int32_t& s : slot) s = s ? kept++ : -1;
-
-  auto pool = std::make_shared<VoxPool>();
-  pool->bricks.resize(static_cast<std::size_t>(kept));
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    if (slot[i] < 0) return;
-    VoxBrick& brick = pool->bricks[slot[i]];
-    collectNodes(i, brick.distance_m);
-    saturate(brick.distance_m, static_cast<float>(band_m_));
-    layout_->cells[gathered_.cells[i]].brick = &brick;
-  });
-  layout_->pools = {pool};
-}
-
-void Voxeliser::finishDirectory() {
-  floodSigns();
+void Voxeliser::boundCenters() {
   const Index3 size = layout_->size;
   tbb::parallel_for(0, size.x() * size.y(), [&](int row) {
     double last_m = 1e300;
@@ -338,39 +261,6 @@ void Voxeliser::finishDirectory() {
   });
 }
 
-/// Fills the directory's empty cells with outside or inside: they meet the surface nowhere, so a sign spreads
-/// from cell to cell. From the rim first, which is outside: a flaw in the mesh then cannot turn the outside
-/// in.
-void Voxeliser::floodSigns() {
-  std::vector<Index3> waiting;
-  const auto fill = [&](const Index3& from, const VoxBrick* with) {
-    waiting.push_back(from);
-    while (!waiting.empty()) {
-      const Index3 cell = waiting.back();
-      waiting.pop_back();
-      if (!layout_->holds(cell)) continue;
-      VoxCell& entry = layout_->cells[layout_->cellIndex(cell)];
-      if (entry.brick != nullptr) continue;
-      entry.brick = with;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int step : {-1, 1}) waiting.push_back(cell + step * Index3::Unit(axis));
-    }
-  };
-  fill(layout_->low, layout_->outside());  // the rim is one layer of empty cells, connected
-  for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
-    const VoxBrick* brick = layout_->cells[i].brick;
-    if (brick == nullptr || layout_->isConstant(brick)) continue;
-    // An empty neighbour shares a face with the brick, whose middle node tells the sign.
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int step : {-1, 1}) {
-        Index3 node = Index3::Constant(kBrick / 2);
-        node[axis] = step < 0 ? 0 : kBrick;
-        const bool is_inside = brick->distance_m[nodeIndex(node.x(), node.y(), node.z())] < 0;
-        fill(cellAt(i) + step * Index3::Unit(axis), is_inside ? layout_->inside() : layout_->outside());
-      }
-  }
-}
-
 std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   const auto tell = [&](double share) {
     if (progress) progress("voxelising", share);
@@ -379,15 +269,15 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   layOutDirectory();
   gather();
   tell(0.2);
-  own_.resize(gathered_.cells.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, own_.size()), [&](const auto& range) {
+  blocks_.nodes.resize(blocks_.cells.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.nodes.size()), [&](const auto& range) {
     Work work;
     for (std::size_t i = range.begin(); i < range.end(); ++i) computeNodes(i, work);
   });
   tell(0.7);
-  finishBricks();
+  assembleBricks(*layout_, blocks_);
   tell(0.8);
-  finishDirectory();
+  boundCenters();
   tell(1);
   return layout_;
 }
@@ -425,14 +315,6 @@ void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std
 }
 
 }  // namespace
-
-std::shared_ptr<const VoxPool> constantBricks(double band_m) {
-  auto pool = std::make_shared<VoxPool>();
-  pool->bricks.resize(2);
-  pool->bricks[0].distance_m.fill(static_cast<float>(band_m));
-  pool->bricks[1].distance_m.fill(-static_cast<float>(band_m));
-  return pool;
-}
 
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                             const Progress& progress) {

@@ -16,7 +16,4 @@ class VoxMapBuilder {
   static VoxMap packed(const VoxMap& map);
 };
 
-/// Two bricks: all +band, all -band.
-std::shared_ptr<const VoxPool> constantBricks(double band_m);
-
 }  // namespace vps

@@ -76,6 +76,11 @@ struct VoxLayout {
                static_cast<std::size_t>(size.z()) +
            static_cast<std::size_t>(i.z());
   }
+  [[nodiscard]] Index3 cellAt(std::size_t index) const noexcept {
+    const auto ny = static_cast<std::size_t>(size.y()), nz = static_cast<std::size_t>(size.z());
+    return low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
+                        static_cast<int>(index % nz));
+  }
   [[nodiscard]] bool holds(const Index3& cell) const noexcept {
     return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
   }
