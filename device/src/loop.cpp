@@ -37,11 +37,16 @@ Pose Grasp::toHandle(const Pose& X_WG) const noexcept {
 }
 
 HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings)
-    : device_(&device),
-      port_(&port),
-      settings_(settings),
-      limits_(device.limits()),
-      guard_(settings.safety) {}
+    : device_(&device), port_(&port), settings_(settings), limits_(device.limits()), guard_(settings.safety) {
+  const CouplingGains& gains = settings_.gains;
+  const double turn = settings_.map.force_scale,
+               line = turn * settings_.map.scale;  // scene stiffness at the device
+  const double half_s = 0.5 * settings_.period_s;
+  spare_Ns_per_m_ =
+      std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
+  spare_Nms_per_rad_ =
+      std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
+}
 
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
   const DeviceSample sample = device_->read();
@@ -108,8 +113,9 @@ Wrench HapticLoop::coupling(const CouplingState& proxy) noexcept {
 }
 
 Wrench HapticLoop::passivityDamping(const Twist& V_DH) const noexcept {
-  if (!has_stored_ || ledger_.balance_J <= settings_.injected_bound_J) return {};
-  return {-settings_.passivity_damping_Nms_per_rad * V_DH.w, -settings_.passivity_damping_Ns_per_m * V_DH.v};
+  const bool is_active = settings_.has_passivity_controller && has_stored_;
+  if (!is_active || ledger_.balance_J <= settings_.injected_bound_J) return {};
+  return {-spare_Nms_per_rad_ * V_DH.w, -spare_Ns_per_m_ * V_DH.v};
 }
 
 void HapticLoop::account(const DeviceSample& sample) noexcept {

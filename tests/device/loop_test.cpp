@@ -19,8 +19,9 @@ class Puppet final : public Device {
  public:
   DeviceSample read() noexcept override { return sample; }
   void write(const Wrench& F) noexcept override { written = F; }
-  [[nodiscard]] DeviceLimits limits() const noexcept override { return {}; }
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return known; }
   [[nodiscard]] std::string_view name() const noexcept override { return "puppet"; }
+  DeviceLimits known;
   DeviceSample sample;
   Wrench written;
 };
@@ -116,6 +117,37 @@ TEST(HapticLoop, LostDeviceStopsForceAndProxyUntilRearmedAndThenRegrasps) {
   EXPECT_NEAR(loop.last().X_WG.p.x(), 0, 1e-12);
   EXPECT_EQ(loop.count(Status::Fault), 2u);
   EXPECT_EQ(loop.count(Status::Ok), loop.ticks() - 2);
+}
+
+TEST(HapticLoop, JumpingPoseDoesNotDragThePartAlong) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, {});
+  loop.grasp(Pose{});
+  loop.tick();
+  device.sample.X_DH.p = Vec3(0.2, 0, 0);
+  EXPECT_EQ(loop.tick().status, Status::Fault);
+  EXPECT_EQ(port.proxy.read().X_W.p, Vec3(Vec3::Zero()));
+}
+
+TEST(HapticLoop, InjectedEnergyIsMetWithTheDampingTheDeviceLeaves) {
+  Puppet device;
+  device.known.damping_Ns_per_m = 5;
+  CouplingPort port;
+  LoopSettings settings = quick();
+  settings.gains.k_N_per_m = 2000;
+  settings.gains.b_Ns_per_m = 1;
+  HapticLoop loop(device, port, settings);
+  device.sample.V_DH.v = Vec3(0.1, 0, 0);
+  loop.noteStored(0, 0);
+  loop.tick();
+  loop.tick();
+  EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+  loop.noteStored(0.5, 0);  // half a joule from nowhere
+  loop.tick();              // books it
+  loop.tick();              // and acts
+  EXPECT_NEAR(loop.ledger().injected_J, 0.5, 1e-12);
+  EXPECT_NEAR(device.written.f.x(), -0.1 * (5 - 2000 * 0.5e-3 - 1), 1e-12);
 }
 
 TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {

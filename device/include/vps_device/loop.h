@@ -61,8 +61,7 @@ struct LoopSettings {
   double hold_limit_s = 2e-3;
   double injected_bound_J =
       1e-3;  ///< above this the passivity controller adds damping. assumed: 5 N over 0.2 mm
-  double passivity_damping_Ns_per_m = 0;  ///< at most b - K T/2; see deriveGains
-  double passivity_damping_Nms_per_rad = 0;
+  bool has_passivity_controller = true;  ///< works once noteStored() is called
 };
 
 /// What one tick did.
@@ -123,6 +122,7 @@ class HapticLoop {
   LoopSettings settings_;
   DeviceLimits limits_;
   SafetyGuard guard_;
+  double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;  // b - K T/2 - B, at the device
   Grasp grasp_;
   bool is_holding_ = false;
   TickReport report_;
