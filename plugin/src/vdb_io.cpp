@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Voxmaps on disk, as OpenVDB level sets. The only file that includes OpenVDB: its headers are slow to
+// compile.
+//
+// A file of ours holds the grid "surface", which other programs read, and two more that make a reload exact:
+// "vps_center" (one value a directory cell: the bound at its centre) and, where parts are merged,
+// "vps_owner". Files of others have the first alone; bounds are then derived from where its bricks lie.
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <mutex>
+
+#include "brick_assembly.h"
+#include "voxelise.h"
+#include "vps/load_error.h"
+
+namespace vps {
+namespace {
+
+constexpr int kBrick = VoxMap::kBrick;
+constexpr const char* kSurface = "surface";
+constexpr const char* kCenter = "vps_center";
+constexpr const char* kOwner = "vps_owner";
+/// The largest directory that is read: 4 GiB. More can only be a damaged file.
+constexpr double kMostCells = 4.0 * 1024 * 1024 * 1024 / sizeof(VoxCell);
+
+void initializeOpenVdb() {
+  static std::once_flag once;
+  std::call_once(once, [] { openvdb::initialize(); });
+}
+
+openvdb::Coord toCoord(const Index3& i) {
+  return {i.x(), i.y(), i.z()};
+}
+openvdb::Vec3d toVdb(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+openvdb::Vec3i toVdb(const Index3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Vec3 fromVdb(const openvdb::Vec3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Index3 fromVdb(const openvdb::Vec3i& v) {
+  return {v.x(), v.y(), v.z()};
+}
+Index3 fromCoord(const openvdb::Coord& c) {
+  return {c.x(), c.y(), c.z()};
+}
+
+std::string partKey(std::size_t part, const char* what) {
+  return "vps_part" + std::to_string(part) + "_" + what;
+}
+
+/// Sums up what was stored, to tell a damaged file. FNV-1a, 64 bit.
+class Checksum {
+ public:
+  void add(float value) { add(std::bit_cast<std::uint32_t>(value)); }
+  void add(std::uint32_t word) {
+    for (int byte = 0; byte < 4; ++byte) sum_ = (sum_ ^ (word >> 8 * byte & 0xff)) * 0x100000001b3u;
+  }
+  [[nodiscard]] std::int64_t value() const { return std::bit_cast<std::int64_t>(sum_); }
+
+ private:
+  std::uint64_t sum_ = 0xcbf29ce484222325u;
+};
+
+/// Of the nodes within the band and the centres, in the directory's order.
+std::int64_t checksum(const VoxLayout& layout) {
+  Checksum sum;
+  const float band_m = layout.outside()->distance_m[0];
+  for (const VoxCell& cell : layout.cells) {
+    sum.add(cell.center_m);
+    if (layout.isConstant(cell.brick)) continue;
+    for (int i = 0; i < kBrickNodes; ++i) {
+      if (!(std::abs(cell.brick->distance_m[i]) < band_m)) continue;
+      sum.add(cell.brick->distance_m[i]);
+      sum.add(std::uint32_t{cell.brick->owners != nullptr ? cell.brick->owners[i] : cell.brick->owner});
+    }
+  }
+  return sum.value();
+}
+
+template <typename Visit>
+void forEachOwnNode(Visit visit) {
+  for (int x = 0; x < kBrick; ++x)
+    for (int y = 0; y < kBrick; ++y)
+      for (int z = 0; z < kBrick; ++z) visit(ownIndex(x, y, z), nodeIndex(x, y, z));
+}
+
+// Writing
+// -------------------------------------------------------------------------------------------------------------
+
+openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m) {
+  const auto grid = openvdb::FloatGrid::create(static_cast<float>(band_m));
+  grid->setName(kSurface);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
+  openvdb::FloatTree& tree = grid->tree();
+  for (std::size_t i = 0; i < layout.cells.size(); ++i) {
+    const VoxBrick* brick = layout.cells[i].brick;
+    const openvdb::Coord origin = toCoord(kBrick * layout.cellAt(i));
+    if (brick == layout.outside()) continue;  // the background
+    if (brick == layout.inside()) {
+      tree.addTile(1, origin, static_cast<float>(-band_m), false);
+      continue;
+    }
+    // A leaf has the order of our own nodes. Values beyond the band are inactive, of the right sign.
+    auto* leaf = tree.touchLeaf(origin);
+    forEachOwnNode([&](int own, int node) {
+      const float d = brick->distance_m[node];
+      if (std::abs(d) < static_cast<float>(band_m))
+        leaf->setValueOn(static_cast<openvdb::Index>(own), d);
+      else
+        leaf->setValueOff(static_cast<openvdb::Index>(own), d);
+    });
+  }
+  tree.prune();
+  return grid;
+}
+
+openvdb::FloatGrid::Ptr centerGrid(const VoxLayout& layout, double voxel_m) {
+  const auto grid = openvdb::FloatGrid::create(0);
+  grid->setName(kCenter);
+  const auto transform = openvdb::math::Transform::createLinearTransform(kBrick * voxel_m);
+  transform->postTranslate(openvdb::Vec3d(kBrick / 2 * voxel_m));
+  grid->setTransform(transform);
+  auto accessor = grid->getAccessor();
+  for (std::size_t i = 0; i < layout.cells.size(); ++i)
+    accessor.setValue(toCoord(layout.cellAt(i)), layout.cells[i].center_m);
+  return grid;
+}
+
+openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
+  const auto grid = openvdb::Int32Grid::create(0);
+  grid->setName(kOwner);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
+  // Every node of a brick, border too: the neighbour that owns a border node may have no brick to keep it in.
+  auto accessor = grid->getAccessor();
+  for (std::size_t i = 0; i < layout.cells.size(); ++i) {
+    const VoxBrick* brick = layout.cells[i].brick;
+    if (layout.isConstant(brick)) continue;
+    for (int x = 0; x < kNodes; ++x)
+      for (int y = 0; y < kNodes; ++y)
+        for (int z = 0; z < kNodes; ++z) {
+          const int node = nodeIndex(x, y, z);
+          const int owner = brick->owners != nullptr ? brick->owners[node] : brick->owner;
+          if (std::abs(brick->distance_m[node]) < layout.outside()->distance_m[0] && owner != 0)
+            accessor.setValue(toCoord(kBrick * layout.cellAt(i) + Index3(x, y, z)), owner);
+        }
+  }
+  return grid;
+}
+
+void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
+  // Under another name first: whoever reads `file` finds the old one or the new one, never half of it.
+  const std::string unfinished = file + ".unfinished";
+  try {
+    std::ofstream out(unfinished, std::ios::binary);
+    if (!out) throw LoadError(file, "", "cannot be written; does its folder exist, and may you write there?");
+    out.exceptions(std::ios::failbit | std::ios::badbit);
+    openvdb::io::Stream(out).write(grids);
+    out.close();
+    std::filesystem::rename(unfinished, file);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw LoadError(file, "", "could not be written whole; is the disk full?");
+  }
+}
+
+// Reading
+// -------------------------------------------------------------------------------------------------------------
+
+[[noreturn]] void refuse(const std::string& file, const std::string& found_and_remedy) {
+  throw LoadError(file, "", found_and_remedy);
+}
+[[noreturn]] void refuseDamaged(const std::string& file) {
+  refuse(file, "is damaged or cut short; build it again");
+}
+
+std::map<std::string, openvdb::GridBase::Ptr> readGrids(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) refuse(file, "cannot be read; is the name right?");
+  try {
+    // OpenVDB does not look whether a read came short; the stream itself says so.
+    in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+    std::map<std::string, openvdb::GridBase::Ptr> grids;
+    for (const auto& grid : *openvdb::io::Stream(in, false).getGrids()) grids.emplace(grid->getName(), grid);
+    return grids;
+  } catch (const std::exception&) {
+    refuse(file, "is not a whole OpenVDB file; build it again");
+  }
+}
+
+class Reader {
+ public:
+  explicit Reader(std::string file) : file_(std::move(file)), grids_(readGrids(file_)) {}
+
+  void read() {
+    findSurface();
+    findTransform();
+    findRange();
+    readNodes();
+    layout_->constants = constantBricks(band_m_);
+    assembleBricks(*layout_, blocks_);
+    if (is_ours_)
+      readExact();
+    else
+      deriveBounds();
+  }
+
+  double voxel_m_ = 0, band_m_ = 0;
+  Box bounds_;
+  std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
+
+ private:
+  using Leaf = openvdb::FloatTree::LeafNodeType;
+
+  void findSurface() {
+    const auto named = grids_.find(kSurface);
+    if (named != grids_.end()) surface_ = openvdb::gridPtrCast<openvdb::FloatGrid>(named->second);
+    for (const auto& [name, grid] : grids_)
+      if (surface_ == nullptr && grid->getGridClass() == openvdb::GRID_LEVEL_SET)
+        surface_ = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+    if (surface_ == nullptr || surface_->getGridClass() != openvdb::GRID_LEVEL_SET)
+      refuse(file_, "holds no level set of floats; convert it to one");
+    is_ours_ = surface_->getMetadata<openvdb::Int32Metadata>("vps_parts") != nullptr;
+  }
+
+  void findTransform() {
+    const auto affine =
+        surface_->transform().isLinear() ? surface_->transform().baseMap()->getAffineMap() : nullptr;
+    if (affine == nullptr) refuse(file_, "is not on a uniform grid; resample it");
+    const openvdb::Mat4R m = affine->getMat4();
+    voxel_m_ = m(0, 0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (!(std::abs(m(i, j) - (i == j ? voxel_m_ : 0)) <= 1e-9 * voxel_m_))
+          refuse(file_, "has voxels that are turned or not cubes; resample it");
+    for (int i = 0; i < 3; ++i)
+      if (!(std::abs(m(3, i)) <= 1e-6 * voxel_m_))
+        refuse(file_, "has a grid that is moved off the origin; resample it");
+    band_m_ = surface_->background();
+    if (!(band_m_ >= 2.99 * voxel_m_) || !(band_m_ < 1e3 * voxel_m_))
+      refuse(file_, "has a band of " + std::to_string(band_m_ / voxel_m_) + " voxels; 3 or more are needed");
+  }
+
+  /// Cells with nodes within the band, and one empty cell around them; for a file of ours as it was.
+  void findRange() {
+    constexpr int kMost = std::numeric_limits<int>::max() / 4;
+    Index3 low = Index3::Constant(kMost), high = Index3::Constant(-kMost);
+    for (auto leaf = surface_->tree().cbeginLeaf(); leaf; ++leaf) {
+      const Index3 origin = fromCoord(leaf->origin());
+      if (origin.cwiseAbs().maxCoeff() > kMost) refuseDamaged(file_);
+      low = low.cwiseMin(origin);
+      high = high.cwiseMax(origin);
+    }
+    if (low.x() > high.x()) refuse(file_, "is empty: no value lies within the band; build it again");
+    // One more below: nodes on a leaf's low faces are also the border of its neighbour.
+    layout_->low = low / kBrick - Index3::Constant(2);  // origins are multiples of 8
+    layout_->size = high / kBrick + Index3::Constant(2) - layout_->low;
+    if (is_ours_) {
+      const auto stored_low = surface_->getMetadata<openvdb::Vec3IMetadata>("vps_low");
+      const auto stored_size = surface_->getMetadata<openvdb::Vec3IMetadata>("vps_size");
+      if (!stored_low || !stored_size) refuseDamaged(file_);
+      const Index3 from = fromVdb(stored_low->value()), size = fromVdb(stored_size->value());
+      if (from.cwiseAbs().maxCoeff() > kMost || size.maxCoeff() > kMost) refuseDamaged(file_);
+      if (((layout_->low + Index3::Ones()).array() <= from.array()).any() ||
+          ((layout_->low + layout_->size).array() > (from + size).array()).any())
+        refuseDamaged(file_);
+      layout_->low = from;
+      layout_->size = size;
+    }
+    if (layout_->size.minCoeff() <= 0 || layout_->size.cast<double>().prod() > kMostCells)
+      refuseDamaged(file_);
+    layout_->cells.resize(static_cast<std::size_t>(layout_->size.cast<double>().prod()));
+  }
+
+  void readNodes() {
+    std::map<std::size_t, const Leaf*> leaves;  // by directory index; null: only a neighbour's border
+    for (auto leaf = surface_->tree().cbeginLeaf(); leaf; ++leaf) {
+      const Index3 cell = fromCoord(leaf->origin()) / kBrick;
+      leaves[layout_->cellIndex(cell)] = &*leaf;
+      for (int part = 1; part < 8; ++part)
+        leaves.try_emplace(layout_->cellIndex(cell - Index3(part >> 2, part >> 1 & 1, part & 1)), nullptr);
+    }
+    const auto band_m = static_cast<float>(band_m_);
+    for (const auto& [index, leaf] : leaves) {
+      blocks_.cells.push_back(index);
+      OwnNodes& nodes = blocks_.nodes.emplace_back();
+      nodes.fill(kFar);
+      if (leaf == nullptr) continue;
+      for (int i = 0; i < kOwnNodes; ++i) {
+        const float d = leaf->getValue(static_cast<openvdb::Index>(i));
+        if (!(std::abs(d) <= 1.001f * band_m)) refuseDamaged(file_);
+        if (std::abs(d) < band_m) nodes[i] = d;
+      }
+    }
+  }
+
+  void readExact() {
+    const auto centers =
+        grids_.count(kCenter) ? openvdb::gridPtrCast<openvdb::FloatGrid>(grids_[kCenter]) : nullptr;
+    const auto low = surface_->getMetadata<openvdb::Vec3DMetadata>("vps_bounds_min");
+    const auto high = surface_->getMetadata<openvdb::Vec3DMetadata>("vps_bounds_max");
+    const auto sum = surface_->getMetadata<openvdb::Int64Metadata>("vps_checksum");
+    if (!centers || !low || !high || !sum) refuseDamaged(file_);
+    bounds_.min = fromVdb(low->value());
+    bounds_.max = fromVdb(high->value());
+    auto accessor = centers->getConstAccessor();
+    for (std::size_t i = 0; i < layout_->cells.size(); ++i)
+      layout_->cells[i].center_m = accessor.getValue(toCoord(layout_->cellAt(i)));
+    readParts();
+    if (checksum(*layout_) != sum->value()) refuseDamaged(file_);
+  }
+
+  void readParts() {
+    const int count = surface_->getMetadata<openvdb::Int32Metadata>("vps_parts")->value();
+    if (count < 1 || count > std::numeric_limits<std::uint16_t>::max()) refuseDamaged(file_);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const auto min = surface_->getMetadata<openvdb::Vec3DMetadata>(partKey(i, "min"));
+      const auto max = surface_->getMetadata<openvdb::Vec3DMetadata>(partKey(i, "max"));
+      const auto low = surface_->getMetadata<openvdb::Vec3IMetadata>(partKey(i, "low"));
+      const auto high = surface_->getMetadata<openvdb::Vec3IMetadata>(partKey(i, "high"));
+      if (!min || !max || !low || !high) refuseDamaged(file_);
+      VoxPartRange& part = layout_->parts.emplace_back();
+      part.bounds.min = fromVdb(min->value());
+      part.bounds.max = fromVdb(max->value());
+      part.low = fromVdb(low->value());
+      part.high = fromVdb(high->value());
+    }
+    const auto owners =
+        grids_.count(kOwner) ? openvdb::gridPtrCast<openvdb::Int32Grid>(grids_[kOwner]) : nullptr;
+    if (count > 1 && owners == nullptr) refuseDamaged(file_);
+    if (owners != nullptr) readOwners(*owners, count);
+  }
+
+  void readOwners(const openvdb::Int32Grid& grid, int parts) {
+    auto pool = std::make_shared<VoxPool>();
+    pool->owners.reserve(layout_->pools[0]->bricks.size());  // bricks point into it
+    auto bricks = std::make_shared<VoxPool>(*layout_->pools[0]);
+    auto accessor = grid.getConstAccessor();
+    std::size_t next = 0;
+    std::vector<std::uint16_t> nodes(kBrickNodes);
+    for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
+      if (layout_->isConstant(layout_->cells[i].brick)) continue;
+      for (int n = 0; n < kBrickNodes; ++n) {
+        const Index3 at(n / (kNodes * kNodes), n / kNodes % kNodes, n % kNodes);
+        const int owner = accessor.getValue(toCoord(kBrick * layout_->cellAt(i) + at));
+        if (owner < 0 || owner >= parts) refuseDamaged(file_);
+        nodes[n] = static_cast<std::uint16_t>(owner);
+      }
+      VoxBrick& brick = bricks->bricks[next++] = *layout_->cells[i].brick;
+      layout_->cells[i].brick = &brick;
+      brick.owner = nodes[0];
+      if (std::all_of(nodes.begin(), nodes.end(), [&](std::uint16_t o) { return o == nodes[0]; })) continue;
+      auto& owners = pool->owners.emplace_back();
+      std::copy(nodes.begin(), nodes.end(), owners.begin());
+      brick.owners = owners.data();
+    }
+    layout_->pools = {bricks, pool};
+  }
+
+  /// For files without our own grids: the surface lies within bricks and next to nodes nearer than a voxel.
+  void deriveBounds() {
+    const auto size = layout_->size;
+    for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
+      VoxCell& cell = layout_->cells[i];
+      if (layout_->isConstant(cell.brick)) {
+        cell.center_m = cell.brick->distance_m[0];  // the centre is a node beyond the band
+        continue;
+      }
+      cell.center_m = cell.brick->distance_m[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)];
+      for (int n = 0; n < kBrickNodes; ++n) {
+        if (std::abs(cell.brick->distance_m[n]) > voxel_m_) continue;
+        const Index3 at(n / (kNodes * kNodes), n / kNodes % kNodes, n % kNodes);
+        const Vec3 p = voxel_m_ * (kBrick * layout_->cellAt(i) + at).cast<double>();
+        bounds_.add(p - Vec3::Constant(voxel_m_));
+        bounds_.add(p + Vec3::Constant(voxel_m_));
+      }
+    }
+    if (bounds_.isEmpty()) refuse(file_, "has no surface: no value is near zero; build it again");
+    layout_->parts = {{bounds_, layout_->low, layout_->low + size}};
+  }
+
+  const std::string file_;
+  std::map<std::string, openvdb::GridBase::Ptr> grids_;
+  openvdb::FloatGrid::Ptr surface_;
+  bool is_ours_ = false;
+  NodeBlocks blocks_;
+};
+
+}  // namespace
+
+class VoxMapFile {
+ public:
+  static void save(const VoxMap& map, const std::string& file) {
+    if (map.layout_->cells.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
+    const VoxLayout& layout = *map.layout_;
+    const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_);
+    surface->insertMeta("vps_low", openvdb::Vec3IMetadata(toVdb(layout.low)));
+    surface->insertMeta("vps_size", openvdb::Vec3IMetadata(toVdb(layout.size)));
+    surface->insertMeta("vps_bounds_min", openvdb::Vec3DMetadata(toVdb(map.bounds_.min)));
+    surface->insertMeta("vps_bounds_max", openvdb::Vec3DMetadata(toVdb(map.bounds_.max)));
+    surface->insertMeta("vps_checksum", openvdb::Int64Metadata(checksum(layout)));
+    surface->insertMeta("vps_parts", openvdb::Int32Metadata(static_cast<int>(layout.parts.size())));
+    for (std::size_t i = 0; i < layout.parts.size(); ++i) {
+      const VoxPartRange& part = layout.parts[i];
+      surface->insertMeta(partKey(i, "min"), openvdb::Vec3DMetadata(toVdb(part.bounds.min)));
+      surface->insertMeta(partKey(i, "max"), openvdb::Vec3DMetadata(toVdb(part.bounds.max)));
+      surface->insertMeta(partKey(i, "low"), openvdb::Vec3IMetadata(toVdb(part.low)));
+      surface->insertMeta(partKey(i, "high"), openvdb::Vec3IMetadata(toVdb(part.high)));
+    }
+    openvdb::GridPtrVec grids = {surface, centerGrid(layout, map.voxel_m_)};
+    if (layout.parts.size() > 1) grids.push_back(ownerGrid(layout, map.voxel_m_));
+    writeWhole(grids, file);
+  }
+
+  static VoxMap load(const std::string& file) {
+    Reader reader(file);
+    reader.read();
+    VoxMap map;
+    map.voxel_m_ = reader.voxel_m_;
+    map.band_m_ = reader.band_m_;
+    map.bounds_ = reader.bounds_;
+    map.layout_ = reader.layout_;
+    return map;
+  }
+};
+
+void saveVdb(const VoxMap& map, const std::string& file) {
+  initializeOpenVdb();
+  VoxMapFile::save(map, file);
+}
+
+VoxMap loadVdb(const std::string& file) {
+  initializeOpenVdb();
+  try {
+    return VoxMapFile::load(file);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception&) {  // out of memory for a size that is nonsense, a type that does not fit
+    refuseDamaged(file);
+  }
+}
+
+}  // namespace vps
