@@ -58,18 +58,24 @@ class SphereBound {
 /// spheres are opened until they are small beside their distance, since a quarter is precise enough to go by.
 double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& X_MP) noexcept {
   constexpr double kSmall = 0.25;  // assumed
+  const auto least = [&](const Vec3& p_P) {
+    const Vec3 p_M = X_MP * p_P;
+    return sampler.leastDistance(p_M, sampler.place(p_M));
+  };
   double least_m = kInfinity;
   for (std::size_t i = 0; i < shell.nodes.size();) {
     const ShellNode& node = shell.nodes[i];
-    const Vec3 center_M = X_MP * node.center;
-    const double center_m = sampler.leastDistance(center_M, sampler.place(center_M));
+    const double center_m = least(node.center);
     const bool is_worse = center_m - node.radius_m >= least_m;
-    if (!is_worse && !node.is_leaf && node.radius_m > kSmall * center_m) {
-      ++i;
+    if (is_worse || node.radius_m <= kSmall * center_m) {
+      least_m = std::min(least_m, center_m - node.radius_m);
+      i = node.skip;
       continue;
     }
-    least_m = std::min(least_m, center_m - node.radius_m);
-    i = node.skip;
+    ++i;
+    if (!node.is_leaf) continue;
+    for (std::uint32_t id = node.first; id < node.first + node.count; ++id)
+      least_m = std::min(least_m, least(shell.points[id]));
   }
   return least_m;
 }
@@ -143,7 +149,8 @@ QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose
   // A few points from all over the shell first: the sooner something near is known, the more is skipped.
   constexpr std::size_t kSeeds = 32;
   for (std::size_t k = 0; k < std::min(kSeeds, shell.order.size()); ++k) read(shell.order[k]);
-  for (std::size_t i = 0; i < shell.nodes.size();) {
+  // Once a point reads -band nothing can read less.
+  for (std::size_t i = 0; i < shell.nodes.size() && least_m > -map.band_m();) {
     const ShellNode& node = shell.nodes[i];
     if (bound.least(X_MP * node.center, node.radius_m) >= least_m) {
       i = node.skip;
