@@ -25,11 +25,12 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   near.contacts.reserve(static_cast<std::size_t>(settings.candidate_limit));
 
   const VpsModels& theirs = other.shape->models();
+  const PointShell& shell = *side.shape->models().shell;
   QueryOptions options;
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
-  const QueryResult result = queryContacts(*theirs.map, *side.shape->models().shell,
-                                           other.X_WM.inverse() * side.X_WM, options, near);
+  const Pose X_MP = other.X_WM.inverse() * side.X_WM;
+  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   for (const Contact& contact : near.contacts) {

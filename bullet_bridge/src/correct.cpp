@@ -7,30 +7,37 @@ namespace vps {
 
 namespace {
 
-// An edge turns by more than this (about 20 degrees) or it is a seam of a tessellated curve. Same as the
-// shell's PointShellSettings::edge_angle_rad.
-constexpr double kCosEdge = 0.94;
-constexpr double kTouching_m = 1e-9;  // below this p - q has no direction
+// A face's point and a surface that looks away from it do not meet, however near they are: such as a table's
+// top and the side of a box that stands on it. 0.2: about 78 degrees, so that a corner's mean normal still
+// meets each face.
+constexpr double kFacing = 0.2;
+constexpr double kNever_m = 1;        // far beyond any step
+constexpr double kTouching_m = 1e-6;  // below this, p - q is too short to be trusted as a direction
 
 struct Exact {
   bool found = false;
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
+  bool is_facing = false;
 };
 
-// Distance and normal of the surface at p, as a contact of a surface point with the inward normal `inward`.
-Exact exactAt(const MeshDistance& surface, const Vec3& p, const Vec3& inward, double max_m) {
+// Distance and normal at a shell point p with normal `inward` into its own part, against a surface.
+//
+// A point on a face of its part must keep its own tangent plane clear of the other part, so its own normal is
+// the contact's. Taking the other's would be the same between smooth surfaces, and wrong near its edges: the
+// plane of a chamfer, met a hair below the chamfer's rim, would stop a peg that slides past. A point on an
+// edge has no tangent plane; the other's face has.
+Exact exactAt(const MeshDistance& surface, const Vec3& p, const Vec3& inward, bool is_edge_point,
+              double max_m) {
   const MeshDistance::Closest closest = surface.closest(p, max_m);
   if (!closest.found) return {};
   const Vec3 from_q = p - closest.q;
-  // At a sharp edge the surface has no normal, but the face that rests on the edge has one, and it is that
-  // face's plane that must stay clear of the edge. Its normal into the other part is our way out.
-  const bool is_edge = surface.featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
-  if (is_edge && inward.dot(closest.normal) > 0.3) return {true, from_q.dot(inward), inward};
+  const bool is_facing = inward.dot(closest.normal) > kFacing;
+  if (!is_edge_point && is_facing) return {true, from_q.dot(inward), inward, true};
   const double sign = from_q.dot(closest.normal) < 0 ? -1 : 1;
   const double distance_m = from_q.norm();
-  if (distance_m < kTouching_m) return {true, sign * distance_m, closest.normal};
-  return {true, sign * distance_m, sign / distance_m * from_q};
+  const Vec3 n = distance_m > kTouching_m ? Vec3(sign / distance_m * from_q) : closest.normal;
+  return {true, sign * distance_m, n, is_facing};
 }
 
 }  // namespace
@@ -50,13 +57,13 @@ void correctBySurfaces(std::vector<Candidate>& candidates, const SideView& side,
     double max_m = std::abs(c.distance_m) + field_error_m;
     for (const VpsSurface& surface : theirs.surfaces) {
       const Pose X_WP = other.X_WM * surface.X_MP;
-      const Exact exact =
-          exactAt(*surface.distance, X_WP.inverse() * c.p_W, X_WP.R.transpose() * inward_W, max_m);
+      const Exact exact = exactAt(*surface.distance, X_WP.inverse() * c.p_W, X_WP.R.transpose() * inward_W,
+                                  side.shape->isEdgePoint(c.id), max_m);
       if (!exact.found || (nearest.found && exact.distance_m >= nearest.distance_m)) continue;
-      nearest = {true, exact.distance_m, X_WP.R * exact.n};
+      nearest = {true, exact.distance_m, X_WP.R * exact.n, exact.is_facing};
     }
     if (!nearest.found) continue;
-    c.distance_m = nearest.distance_m;
+    c.distance_m = nearest.is_facing ? nearest.distance_m : kNever_m;
     c.n_W = sign * nearest.n;
   }
 }

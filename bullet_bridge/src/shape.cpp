@@ -36,6 +36,24 @@ Box boxOf(const PointShell& shell) {
   return box;
 }
 
+// A point on a face has that face's normal; one on an edge has the mean of several.
+std::vector<std::uint8_t> findEdgePoints(const VpsModels& models) {
+  constexpr double kOnSurface_m = 1e-6;
+  constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
+  if (!models.shell || models.surfaces.empty()) return {};
+  std::vector<std::uint8_t> is_edge(models.shell->size(), 1);
+  for (std::size_t i = 0; i < is_edge.size(); ++i)
+    for (const VpsSurface& surface : models.surfaces) {
+      const Pose X_PM = surface.X_MP.inverse();
+      const MeshDistance::Closest closest =
+          surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
+      if (!closest.found) continue;
+      const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
+      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) > kCosFace) is_edge[i] = 0;
+    }
+  return is_edge;
+}
+
 }  // namespace
 
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
@@ -157,6 +175,7 @@ VpsShape::~VpsShape() = default;
 void VpsShape::setModels(VpsModels models) {
   models_ = std::move(models);
   ++revision_;
+  is_edge_point_ = findEdgePoints(models_);
   Box box_M;
   const auto include = [&box_M](const Box& box) {
     if (box.isEmpty()) return;

@@ -41,18 +41,18 @@ Vec6 stacked(const Vec3& w, const Vec3& v) {
 
 struct Body {
   btRigidBody* body = nullptr;
-  Mat6 mass;      // M, then M_eff
-  Mat6 inverse;   // of M_eff
-  Vec6 momentum;  // M u0 with external forces
-  Vec6 drive;     // J' c of its couplings
-  Vec6 u;         // velocity
-  Vec6 push;      // velocity that only moves it, for one step
+  Mat6 mass = Mat6::Zero();      // M, then M_eff
+  Mat6 inverse = Mat6::Zero();   // of M_eff
+  Vec6 momentum = Vec6::Zero();  // M u0 with external forces
+  Vec6 drive = Vec6::Zero();     // J' c of its couplings
+  Vec6 u = Vec6::Zero();         // velocity
+  Vec6 push = Vec6::Zero();      // velocity that only moves it, for one step
 };
 
 struct Side {
-  int body = -1;  // -1: not moved by contact
-  Vec6 J;         // so that J . u is the velocity along the row's direction
-  Vec6 MinvJ;
+  int body = -1;          // -1: not moved by contact
+  Vec6 J = Vec6::Zero();  // so that J . u is the velocity along the row's direction
+  Vec6 MinvJ = Vec6::Zero();
 };
 
 struct Row {
@@ -148,16 +148,12 @@ bool isPlain(const btManifoldPoint& point) {
 void VpsSolver::Work::addBody(btRigidBody& rigid, double dt_s) {
   Body b;
   b.body = &rigid;
-  b.mass.setZero();
   const Mat3 I_inv = fromBt(rigid.getInvInertiaTensorWorld());
   b.mass.topLeftCorner<3, 3>() = I_inv.inverse();
   b.mass.bottomRightCorner<3, 3>() = Mat3::Identity() / rigid.getInvMass();
   const Vec6 u0 = stacked(fromBt(rigid.getAngularVelocity()), fromBt(rigid.getLinearVelocity())) +
                   externalVelocity(rigid, dt_s);
   b.momentum = b.mass * u0;
-  b.drive.setZero();
-  b.u.setZero();
-  b.push.setZero();
   bodies.push_back(b);
 }
 
@@ -165,9 +161,10 @@ Row VpsSolver::Work::makeRow(const btCollisionObject* a, const btCollisionObject
                              const btManifoldPoint& point, const Vec3& d) const {
   Row row;
   const btCollisionObject* objects[2] = {a, b};
-  const btVector3 at[2] = {point.getPositionWorldOnA(), point.getPositionWorldOnB()};
+  // Both at the middle of the gap: two forces in one line keep the angular momentum.
+  const btVector3 at = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * btScalar(0.5);
   for (int i = 0; i < 2; ++i) {
-    const Vec3 r = fromBt(at[i] - objects[i]->getWorldTransform().getOrigin());
+    const Vec3 r = fromBt(at - objects[i]->getWorldTransform().getOrigin());
     const Vec3 direction = i == 0 ? d : Vec3(-d);
     row.side[i].body = indexOf(objects[i]);
     row.side[i].J = stacked(r.cross(direction), direction);

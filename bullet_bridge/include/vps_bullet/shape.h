@@ -4,6 +4,7 @@
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -67,6 +68,11 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
   /// Grows with every setModels, so that nobody keeps an impulse of a point that is gone.
   [[nodiscard]] unsigned revision() const { return revision_; }
+  /// True for a shell point that stands on a sharp edge or corner of the surfaces, where the part has no one
+  /// normal. False for all when there are no surfaces to tell by.
+  [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
+    return !is_edge_point_.empty() && is_edge_point_[id];
+  }
   /// Box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
@@ -87,6 +93,7 @@ class VpsShape : public btConcaveShape {
   Pose X_SM_;
   Box bounds_S_;
   unsigned revision_ = 0;
+  std::vector<std::uint8_t> is_edge_point_;
   std::unique_ptr<const TriangleTree> triangles_;
 };
 
