@@ -308,6 +308,23 @@ TEST(ImportInventor, RepeatedNamesAreNumbered) {
   EXPECT_EQ(cad.parts[2].name, "pin_3");
 }
 
+TEST(ImportInventor, AFaceWithAVertexThatIsNotThereIsRefused) {
+  const Folder folder;
+  for (const auto& [name, text] :
+       {std::pair("face.iv",
+                  "#Inventor V2.1 ascii\nSeparator { Coordinate3 { point [0 0 0, 1 0 0, 0 1 0] }\n"
+                  "IndexedFaceSet { coordIndex [0, 1, 70000, -1] } }\n"),
+        std::pair("strip.iv",
+                  "#Inventor V2.1 ascii\nSeparator { Coordinate3 { point [0 0 0, 1 0 0, 0 1 0] }\n"
+                  "TriangleStripSet { numVertices 90000 } }\n"),
+        std::pair(
+            "face.wrl",
+            "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate { point [0 0 0, 1 0 0] }\n"
+            "coordIndex [0 1 70000 -1] } }\n")}) {
+    EXPECT_NE(messageOf(folder.write(name, text)), "") << name;
+  }
+}
+
 TEST(ImportVrml, WithoutUnitIsMetresAndSaid) {
   const Folder folder;
   const fs::path file = folder.write("box.wrl", "#VRML V2.0 utf8\nShape { geometry Box { size 1 2 3 } }\n");

@@ -35,9 +35,11 @@ struct ImportedCad {
   std::vector<std::string> warnings;  ///< open edges, flipped facets and the like, one line each
 };
 
-/// Reads STEP and IGES (Open CASCADE), .iv and .wrl (Coin), and whatever assimp reads. Format by content and
-/// extension. Throws LoadError: file missing, cut, empty, unit unknown, format not built in (says which
-/// package).
+/// Reads STEP, IGES and BREP (Open CASCADE), .iv and .wrl (Coin), and whatever assimp reads. Format by
+/// content and extension. One part per solid (STEP) or closed shape; open shapes that close one another, as
+/// where an exporter wrote a shape per face, are joined. glTF and Collada are y up by definition and are
+/// turned to z up; other axes stay. Inventor without Units and VRML are in metres unless unit_m is given.
+/// Throws LoadError: file missing, cut, empty, unit unknown, format not built in (says which package).
 ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                       const Progress& progress = {});
 

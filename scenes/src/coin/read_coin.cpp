@@ -18,6 +18,7 @@
 #include <Inventor/nodes/SoShape.h>
 #include <Inventor/nodes/SoUnits.h>
 
+#include "coin/safe_scene.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -73,6 +74,7 @@ class NodeHold {
 struct Collector {
   RawCad cad;
   bool is_clockwise = false;
+  std::vector<std::string> damaged;
 };
 
 /// The name of the shape, or of the nearest node above it that has one.
@@ -85,8 +87,12 @@ std::string nameOf(const SoCallbackAction& action) {
   return "";
 }
 
-SoCallbackAction::Response beginShape(void* user, SoCallbackAction* action, const SoNode*) {
+SoCallbackAction::Response beginShape(void* user, SoCallbackAction* action, const SoNode* shape) {
   auto& collector = *static_cast<Collector*>(user);
+  if (!hasItsVertices(*action, *shape)) {
+    collector.damaged.push_back(nameOf(*action));
+    return SoCallbackAction::PRUNE;
+  }
   RawPart part;
   part.name = nameOf(*action);
   const SbMatrix& m = action->getModelMatrix();  // for row vectors: the transpose of ours
@@ -156,12 +162,18 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
   complexity->value = 1.0f;
   root->addChild(complexity);
   root->addChild(scene);
+  dropNormals(root);
 
   Collector collector;
   SoCallbackAction action;
   action.addPreCallback(SoShape::getClassTypeId(), beginShape, &collector);
   action.addTriangleCallback(SoShape::getClassTypeId(), addTriangle, &collector);
   action.apply(root);
+
+  if (!collector.damaged.empty()) {
+    throw LoadError(file, collector.damaged.front(),
+                    "a face names a vertex that is not there; export it again");
+  }
 
   RawCad cad = std::move(collector.cad);
   cad.open_shapes = Shapes::BoundBodies;
