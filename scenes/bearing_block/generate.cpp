@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Models the sample assembly "bearing block" and writes it as STEP and glTF, after checking its fits.
 // Usage: setarch -R vps_make_bearing_block DIR     writes DIR/bearing_block.step and DIR/bearing_block.glb
-// setarch, since Open CASCADE orders colours by address: without random addresses the same model gives the
-// same bytes.
+// setarch, since Open CASCADE orders colours in STEP by address: without random addresses one build writes
+// the same bytes each time (another build may order the colours otherwise; the .glb is the same from any).
 //
 // Everything is in mm here, z up. Each part's own frame has its origin on its axis at its seat, so that poses
 // in the assembly are translations. Section through the bore; the shaft is inserted after the lower bushing:
