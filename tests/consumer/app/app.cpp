@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A program of someone else: one VPS part dropped on another in an ordinary Bullet world, from installed
+// headers alone.
+#include <btBulletDynamicsCommon.h>
+#include <vps_bullet/install.h>
+#include <vps_bullet/shape.h>
+
+#include <cmath>
+#include <cstdio>
+
+int main() {
+  vps::Part part;
+  part.mesh = vps::makeBox(vps::Vec3(0.02, 0.02, 0.01));
+  vps::VoxMapSettings voxels;
+  voxels.voxel_m = 0.5e-3;
+  part.map = std::make_shared<vps::VoxMap>(vps::buildVoxMap(part.mesh, voxels));
+  vps::PointShellSettings points;
+  points.spacing_m = 1e-3;
+  part.shell = std::make_shared<vps::PointShell>(vps::buildPointShell(part.mesh, points));
+
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+  vps::installVps(dispatcher);
+  vps::tuneWorld(world);
+  world.setGravity(btVector3(0, 0, btScalar(-9.81)));
+
+  vps::VpsShape shape(vps::makeModels(part));
+  btVector3 inertia;
+  shape.calculateLocalInertia(btScalar(0.03), inertia);
+  btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape));
+  btRigidBody block(btRigidBody::btRigidBodyConstructionInfo(btScalar(0.03), nullptr, &shape, inertia));
+  block.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(0.012))));
+  world.addRigidBody(&floor);
+  world.addRigidBody(&block);
+  for (int i = 0; i < 500; ++i) world.stepSimulation(btScalar(1e-3), 0);
+  const double height_m = block.getWorldTransform().getOrigin().z();
+  world.removeRigidBody(&block);
+  world.removeRigidBody(&floor);
+  vps::uninstallVps(dispatcher);
+
+  std::printf("the block rests at %.4f mm (10 mm by geometry)\n", height_m * 1e3);
+  return std::abs(height_m - 0.01) < 5e-6 ? 0
+                                          : 1;  // half a percent of a voxel: a flat face has no field error
+}
