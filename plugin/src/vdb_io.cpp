@@ -9,14 +9,15 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <mutex>
+#include <sstream>
+#include <string_view>
 
 #include "brick_assembly.h"
 #include "voxelise.h"
@@ -60,33 +61,31 @@ std::string partKey(std::size_t part, const char* what) {
   return "vps_part" + std::to_string(part) + "_" + what;
 }
 
-/// Sums up what was stored, to tell a damaged file. FNV-1a, 64 bit.
-class Checksum {
- public:
-  void add(float value) { add(std::bit_cast<std::uint32_t>(value)); }
-  void add(std::uint32_t word) {
-    for (int byte = 0; byte < 4; ++byte) sum_ = (sum_ ^ (word >> 8 * byte & 0xff)) * 0x100000001b3u;
-  }
-  [[nodiscard]] std::int64_t value() const { return std::bit_cast<std::int64_t>(sum_); }
+/// The end of a file of ours: a mark and the sum of all bytes before it. OpenVDB reads past neither, and its
+/// reader trusts what it reads: a wrong byte can make it write where it must not, so we look first.
+constexpr std::string_view kMark = "vps-end1";
+constexpr std::size_t kEndBytes = kMark.size() + sizeof(std::uint64_t);
 
- private:
-  std::uint64_t sum_ = 0xcbf29ce484222325u;
-};
+/// FNV-1a, 64 bit.
+std::uint64_t checksum(std::string_view bytes) {
+  std::uint64_t sum = 0xcbf29ce484222325u;
+  for (const char byte : bytes) sum = (sum ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return sum;
+}
 
-/// Of the nodes within the band and the centres, in the directory's order.
-std::int64_t checksum(const VoxLayout& layout) {
-  Checksum sum;
-  const float band_m = layout.outside()->distance_m[0];
-  for (const VoxCell& cell : layout.cells) {
-    sum.add(cell.center_m);
-    if (layout.isConstant(cell.brick)) continue;
-    for (int i = 0; i < kBrickNodes; ++i) {
-      if (!(std::abs(cell.brick->distance_m[i]) < band_m)) continue;
-      sum.add(cell.brick->distance_m[i]);
-      sum.add(std::uint32_t{cell.brick->owners != nullptr ? cell.brick->owners[i] : cell.brick->owner});
-    }
-  }
-  return sum.value();
+std::string endOf(std::string_view bytes) {
+  std::string end(kMark);
+  const std::uint64_t sum = checksum(bytes);
+  for (int i = 0; i < 8; ++i) end.push_back(static_cast<char>(sum >> 8 * i & 0xff));
+  return end;
+}
+
+/// False for a file of ours that is not as it was written. Others' files end as they like.
+bool isWhole(std::string_view bytes) {
+  if (bytes.find("vps_parts") == std::string_view::npos && bytes.find(kMark) == std::string_view::npos)
+    return true;
+  return bytes.size() > kEndBytes &&
+         bytes.substr(bytes.size() - kEndBytes) == endOf(bytes.substr(0, bytes.size() - kEndBytes));
 }
 
 template <typename Visit>
@@ -164,10 +163,13 @@ void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
   // Under another name first: whoever reads `file` finds the old one or the new one, never half of it.
   const std::string unfinished = file + ".unfinished";
   try {
+    std::ostringstream stream;
+    openvdb::io::Stream(stream).write(grids);
+    const std::string bytes = stream.str();
     std::ofstream out(unfinished, std::ios::binary);
     if (!out) throw LoadError(file, "", "cannot be written; does its folder exist, and may you write there?");
     out.exceptions(std::ios::failbit | std::ios::badbit);
-    openvdb::io::Stream(out).write(grids);
+    out << bytes << endOf(bytes);
     out.close();
     std::filesystem::rename(unfinished, file);
   } catch (const LoadError&) {
@@ -192,11 +194,15 @@ void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
 std::map<std::string, openvdb::GridBase::Ptr> readGrids(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) refuse(file, "cannot be read; is the name right?");
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!isWhole(bytes)) refuseDamaged(file);
   try {
+    std::istringstream stream(bytes);
     // OpenVDB does not look whether a read came short; the stream itself says so.
-    in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+    stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     std::map<std::string, openvdb::GridBase::Ptr> grids;
-    for (const auto& grid : *openvdb::io::Stream(in, false).getGrids()) grids.emplace(grid->getName(), grid);
+    const openvdb::GridPtrVecPtr stored = openvdb::io::Stream(stream, false).getGrids();
+    for (const auto& grid : *stored) grids.emplace(grid->getName(), grid);
     return grids;
   } catch (const std::exception&) {
     refuse(file, "is not a whole OpenVDB file; build it again");
@@ -276,7 +282,7 @@ class Reader {
       if (!stored_low || !stored_size) refuseDamaged(file_);
       const Index3 from = fromVdb(stored_low->value()), size = fromVdb(stored_size->value());
       if (from.cwiseAbs().maxCoeff() > kMost || size.maxCoeff() > kMost) refuseDamaged(file_);
-      if (((layout_->low + Index3::Ones()).array() <= from.array()).any() ||
+      if (((layout_->low + Index3::Ones()).array() < from.array()).any() ||
           ((layout_->low + layout_->size).array() > (from + size).array()).any())
         refuseDamaged(file_);
       layout_->low = from;
@@ -314,15 +320,13 @@ class Reader {
         grids_.count(kCenter) ? openvdb::gridPtrCast<openvdb::FloatGrid>(grids_[kCenter]) : nullptr;
     const auto low = surface_->getMetadata<openvdb::Vec3DMetadata>("vps_bounds_min");
     const auto high = surface_->getMetadata<openvdb::Vec3DMetadata>("vps_bounds_max");
-    const auto sum = surface_->getMetadata<openvdb::Int64Metadata>("vps_checksum");
-    if (!centers || !low || !high || !sum) refuseDamaged(file_);
+    if (!centers || !low || !high) refuseDamaged(file_);
     bounds_.min = fromVdb(low->value());
     bounds_.max = fromVdb(high->value());
     auto accessor = centers->getConstAccessor();
     for (std::size_t i = 0; i < layout_->cells.size(); ++i)
       layout_->cells[i].center_m = accessor.getValue(toCoord(layout_->cellAt(i)));
     readParts();
-    if (checksum(*layout_) != sum->value()) refuseDamaged(file_);
   }
 
   void readParts() {
@@ -413,7 +417,6 @@ class VoxMapFile {
     surface->insertMeta("vps_size", openvdb::Vec3IMetadata(toVdb(layout.size)));
     surface->insertMeta("vps_bounds_min", openvdb::Vec3DMetadata(toVdb(map.bounds_.min)));
     surface->insertMeta("vps_bounds_max", openvdb::Vec3DMetadata(toVdb(map.bounds_.max)));
-    surface->insertMeta("vps_checksum", openvdb::Int64Metadata(checksum(layout)));
     surface->insertMeta("vps_parts", openvdb::Int32Metadata(static_cast<int>(layout.parts.size())));
     for (std::size_t i = 0; i < layout.parts.size(); ++i) {
       const VoxPartRange& part = layout.parts[i];

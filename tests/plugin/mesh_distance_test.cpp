@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/mesh_distance.h"
+
+#include <gtest/gtest.h>
+
+#include "support/analytic.h"
+
+namespace vps::test {
+namespace {
+
+TEST(ClosestOnTriangle, NamesTheFeatureOfEachRegion) {
+  const Vec3 a(0, 0, 0), b(4, 0, 0), c(0, 4, 0);
+  const auto at = [&](double x, double y) { return closestOnTriangle({x, y, 2}, a, b, c); };
+  EXPECT_EQ(at(1, 1).feature, 0);
+  EXPECT_EQ(at(2, -1).feature, 1);
+  EXPECT_EQ(at(3, 3).feature, 2);
+  EXPECT_EQ(at(-1, 2).feature, 3);
+  EXPECT_EQ(at(-1, -1).feature, 4);
+  EXPECT_EQ(at(6, -1).feature, 5);
+  EXPECT_EQ(at(-1, 6).feature, 6);
+  EXPECT_LT((at(1, 1).q - Vec3(1, 1, 0)).norm(), 1e-15);
+  EXPECT_LT((at(3, 3).q - Vec3(2, 2, 0)).norm(), 1e-15);
+}
+
+TEST(ClosestOnTriangle, NoPointOfTheTriangleIsCloser) {
+  RandomPoints random(2);
+  const Vec3 one = Vec3::Ones();
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 a = random.inBox(one), b = random.inBox(one), c = random.inBox(one), p = random.inBox(2 * one);
+    const double distance = (p - closestOnTriangle(p, a, b, c).q).norm();
+    for (int i = 0; i <= 20; ++i)
+      for (int j = 0; i + j <= 20; ++j) {
+        const Vec3 q = a + i / 20.0 * (b - a) + j / 20.0 * (c - a);
+        ASSERT_LE(distance, (p - q).norm() + 1e-15);
+      }
+  }
+}
+
+TEST(ClosestOnTriangle, CollinearCornersAreTheirEdges) {
+  const Vec3 a(0, 0, 0), b(1, 0, 0), c(3, 0, 0);
+  for (const double x : {-1.0, 0.5, 1.0, 2.0, 4.0}) {
+    const Vec3 q = closestOnTriangle({x, 1, 0}, a, b, c).q;
+    EXPECT_LT((q - Vec3(std::clamp(x, 0.0, 3.0), 0, 0)).norm(), 1e-15) << x;
+  }
+  EXPECT_EQ(closestOnTriangle({1, 2, 3}, a, a, a).q, a);
+}
+
+TEST(MeshDistance, FindsWhatVisitingEveryTriangleFinds) {
+  const Mesh mesh = transformed(makeTube(0.02, 0.01, 0.03, 37), RandomPoints(3).pose(0.01));
+  const MeshDistance distance(mesh);
+  RandomPoints random(4);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p = random.inBox(Vec3::Constant(0.05));
+    double least2 = 1e300;
+    for (const auto& t : mesh.triangles) {
+      const Vec3 q = closestOnTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]).q;
+      least2 = std::min(least2, (p - q).squaredNorm());
+    }
+    ASSERT_EQ(distance.closest(p).distance_m, std::sqrt(least2));
+  }
+}
+
+TEST(MeshDistance, SignedDistanceToABoxIsItsFormula) {
+  const Vec3 half(0.015, 0.01, 0.025);
+  const MeshDistance distance(makeBox(2 * half));
+  RandomPoints random(5);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p = random.inBox(2 * half);
+    // A few roundings of coordinates below 0.1.
+    ASSERT_NEAR(distance.signedDistance(p), boxDistance(p, half), 1e-16);
+  }
+}
+
+TEST(MeshDistance, SignIsRightAtSharpSpikesWhereFaceNormalsFail) {
+  // A needle: near its tip the nearest feature is the vertex, and some faces that share it look away.
+  Mesh needle;
+  needle.vertices = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}, {0.5, 0.3, 2}};
+  needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const MeshDistance distance(needle);
+  RandomPoints random(6);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p = needle.vertices[3] + random.inBox(Vec3::Constant(0.3));
+    bool is_inside = true;  // convex: inside is below all four planes
+    for (const auto& t : needle.triangles) {
+      const Vec3& a = needle.vertices[t[0]];
+      is_inside = is_inside && (needle.vertices[t[1]] - a).cross(needle.vertices[t[2]] - a).dot(p - a) < 0;
+    }
+    ASSERT_EQ(distance.signedDistance(p) < 0, is_inside) << p.transpose();
+  }
+}
+
+TEST(MeshDistance, BeyondTheLimitNothingIsFound) {
+  const MeshDistance distance(makeBox({2, 2, 2}));
+  EXPECT_FALSE(distance.closest({3, 0, 0}, 1.9).found);
+  EXPECT_EQ(distance.closest({3, 0, 0}, 1.9).distance_m, 1.9);
+  EXPECT_TRUE(distance.closest({3, 0, 0}, 2.1).found);
+  EXPECT_EQ(distance.signedDistance({0, 0, 0}, 0.5), 0.5);
+  EXPECT_EQ(distance.signedDistance({0, 0, 0}), -1);
+}
+
+TEST(MeshDistance, LowerBoundKeepsItsWord) {
+  const MeshDistance distance(makeSphere(0.02, 4));
+  RandomPoints random(7);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p = random.inBox(Vec3::Constant(0.05));
+    const double truth_m = distance.closest(p).distance_m, bound_m = distance.lowerBound(p, 0.1);
+    ASSERT_LE(bound_m, truth_m);
+    ASSERT_GE(bound_m * 1.1, truth_m * (1 - 1e-15));
+  }
+}
+
+TEST(MeshDistance, AnEmptyMeshIsFarFromEverything) {
+  EXPECT_FALSE(MeshDistance(Mesh{}).closest(Vec3::Zero()).found);
+}
+
+}  // namespace
+}  // namespace vps::test

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Shapes with a formula for their signed distance (negative inside): the truth that tests compare with.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "vps/mesh.h"
+
+namespace vps::test {
+
+inline double sphereDistance(const Vec3& p, double radius_m) {
+  return p.norm() - radius_m;
+}
+
+/// Of a box of half sizes `half` around the origin.
+inline double boxDistance(const Vec3& p, const Vec3& half) {
+  const Vec3 past = p.cwiseAbs() - half;
+  return past.cwiseMax(0.0).norm() + std::min(past.maxCoeff(), 0.0);
+}
+
+/// Of a profile of revolution around z that is a box in the (r, z) plane: r_low <= r <= r_high, |z| <=
+/// half_z.
+inline double ringDistance(const Vec3& p, double r_low, double r_high, double half_z) {
+  const double r = std::hypot(p.x(), p.y());
+  const double past_r = std::max(r - r_high, r_low - r), past_z = std::abs(p.z()) - half_z;
+  return std::hypot(std::max(past_r, 0.0), std::max(past_z, 0.0)) + std::min(std::max(past_r, past_z), 0.0);
+}
+inline double tubeDistance(const Vec3& p, double outer_m, double inner_m, double height_m) {
+  return ringDistance(p, inner_m, outer_m, height_m / 2);
+}
+inline double cylinderDistance(const Vec3& p, double radius_m, double height_m) {
+  return ringDistance(p, -radius_m, radius_m, height_m / 2);
+}
+
+/// How far the flats of a circle in `segments` pieces lie inside it.
+inline double sagitta(double radius_m, int segments) {
+  return radius_m * (1 - std::cos(std::numbers::pi / segments));
+}
+
+/// Even random points in a box around the origin; the same ones every time.
+class RandomPoints {
+ public:
+  explicit RandomPoints(unsigned seed) : generator_(seed) {}
+  Vec3 inBox(const Vec3& half) { return {half.x() * unit(), half.y() * unit(), half.z() * unit()}; }
+  /// -1 to 1.
+  double unit() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
+  Pose pose(double reach_m) {
+    const Quat q(unit(), unit(), unit(), unit());
+    return {q, inBox(Vec3::Constant(reach_m))};
+  }
+
+ private:
+  std::mt19937 generator_;
+};
+
+}  // namespace vps::test
