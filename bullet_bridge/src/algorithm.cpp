@@ -66,12 +66,18 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m)
   RelativeMotion motion;
   motion.dt_s = dt_s;
   motion.slack_m = slack_m;
-  if (dt_s > 0) {
-    const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), dt_s);
-    const Twist V1 = predictedVelocity(*pair.wrapper[1]->getCollisionObject(), dt_s);
-    motion.V = {V0.w - V1.w, V0.v - V1.v};
-    motion.speed_m_s = motion.velocityAt(pair.center_W()).norm() + motion.V.w.norm() * pair.radius_m();
-  }
+  if (!(dt_s > 0)) return motion;
+  const auto relative = [&](bool with_couplings) {
+    const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), dt_s, with_couplings);
+    const Twist V1 = predictedVelocity(*pair.wrapper[1]->getCollisionObject(), dt_s, with_couplings);
+    return Twist{V0.w - V1.w, V0.v - V1.v};
+  };
+  const auto greatestSpeed = [&](const Twist& V) {
+    return (V.v + V.w.cross(pair.center_W())).norm() + V.w.norm() * pair.radius_m();
+  };
+  motion.V = relative(true);
+  motion.speed_m_s = greatestSpeed(motion.V);
+  motion.own_speed_m_s = greatestSpeed(relative(false));
   return motion;
 }
 

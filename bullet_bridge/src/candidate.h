@@ -34,7 +34,8 @@ struct RelativeMotion {
   Twist V;  ///< velocity of body 0 less that of body 1, about the world's origin, in W
   double dt_s = 0;
   double slack_m = 0;
-  double speed_m_s = 0;  ///< no point of the smaller body moves faster against the other
+  double speed_m_s = 0;      ///< no point of the smaller body moves faster against the other
+  double own_speed_m_s = 0;  ///< the same without the couplings' pull
 
   [[nodiscard]] Vec3 velocityAt(const Vec3& p_W) const { return V.v + V.w.cross(p_W); }
   /// Sets predicted_m; true if the candidate can touch within the step.

@@ -11,8 +11,9 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   c.predicted_m = c.distance_m - approach_m;
   // Contact turns the free motion: a part that lands on one edge swings its other edge faster than it fell.
   // So a share of the greatest speed counts in every direction. Half: assumed, it covers a rod struck at one
-  // end.
-  return c.distance_m <= slack_m + std::max(approach_m, 0.5 * speed_m_s * dt_s);
+  // end. The couplings' pull is left out of it: on a part that is pressed home it is large, and contact holds
+  // it.
+  return c.distance_m <= slack_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
 }
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,

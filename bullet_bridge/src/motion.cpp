@@ -8,7 +8,7 @@
 
 namespace vps {
 
-Twist predictedVelocity(const btCollisionObject& object, double dt_s) {
+Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings) {
   Twist V;
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (!body || body->isStaticObject()) return V;
@@ -18,7 +18,7 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s) {
     V.v += dt_s * fromBt(body->getTotalForce() * (body->getInvMass() * body->getLinearFactor()));
     V.w += dt_s * fromBt(body->getInvInertiaTensorWorld() * body->getTotalTorque());
     // The reference list holds the constraints added with world.addConstraint(coupling, true).
-    for (int i = 0; i < const_cast<btRigidBody*>(body)->getNumConstraintRefs(); ++i) {
+    for (int i = 0; with_couplings && i < const_cast<btRigidBody*>(body)->getNumConstraintRefs(); ++i) {
       const auto* coupling =
           dynamic_cast<const VpsCoupling*>(const_cast<btRigidBody*>(body)->getConstraintRef(i));
       if (coupling && coupling->isEnabled()) {

@@ -8,9 +8,8 @@ class btCollisionObject;
 
 namespace vps {
 
-/// Velocity about the world's origin, in W, that the object would reach by the end of the step without
-/// contact: its own, plus external forces, plus the pull of its VpsCouplings. Zero for static and sleeping
-/// objects.
-Twist predictedVelocity(const btCollisionObject& object, double dt_s);
+/// Velocity about the world's origin, in W, that the object would reach by the end of the step without contact:
+/// its own, plus external forces, plus (with_couplings) the pull of its VpsCouplings. Zero for static objects.
+Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
 
 }  // namespace vps

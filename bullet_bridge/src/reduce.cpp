@@ -14,12 +14,24 @@ namespace {
 // noise of a resting part (1 nm), below any depth that matters. Assumed.
 constexpr double kStickiness_m = 1e-6;
 
-double urgency(const Candidate& c) {
-  return c.predicted_m - (c.was_contact ? kStickiness_m : 0);
+constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+
+// Two measures, and neither will do alone. Where a point will be in free motion finds what is about to be
+// hit. But contact bends that motion: a light part on a stiff coupling, turned by its contacts against the
+// coupling's pull, sank 25 um at points that free motion would have lifted. So where a point is now counts as
+// much.
+enum class Measure { Now, Then };
+
+double urgency(const Candidate& c, Measure measure) {
+  return (measure == Measure::Now ? c.distance_m : c.predicted_m) - (c.was_contact ? kStickiness_m : 0);
 }
 
-bool isMoreUrgent(const Candidate& a, const Candidate& b) {
-  const double ua = urgency(a), ub = urgency(b);
+double urgency(const Candidate& c) {
+  return std::min(urgency(c, Measure::Now), urgency(c, Measure::Then));
+}
+
+bool isMoreUrgent(const Candidate& a, const Candidate& b, Measure measure) {
+  const double ua = urgency(a, measure), ub = urgency(b, measure);
   return ua != ub ? ua < ub : a.key() < b.key();
 }
 
@@ -38,6 +50,34 @@ std::uint64_t cellOf(const Candidate& c, const Vec3& origin, double cell_m) {
   return (((at(0) << 16 | at(1)) << 16 | at(2)) << 8) | (directionCell(c.n_W) << 1) | c.side;
 }
 
+// Marks the most urgent candidate of each cell. A small open-addressed table, cell -> its best so far: one
+// pass, where sorting 5000 candidates took five times as long. A full table drops nobody: what finds no room
+// is kept.
+void markBest(const std::vector<Candidate>& candidates, const Vec3& origin, double cell_m, Measure measure,
+              std::vector<std::uint8_t>& keep) {
+  constexpr std::size_t kSlots = 4096, kProbes = 16;
+  struct Slot {
+    std::uint64_t cell = kEmpty;
+    std::uint32_t best = 0;
+  };
+  thread_local std::vector<Slot> slots;
+  slots.assign(kSlots, Slot{});
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    const std::uint64_t cell = cellOf(c, origin, cell_m);
+    std::size_t at = (cell * 0x9E3779B97F4A7C15ull) >> 52;  // Fibonacci hashing to 12 bits
+    std::size_t probe = 0;
+    for (; probe < kProbes && slots[at].cell != cell && slots[at].cell != kEmpty; ++probe)
+      at = (at + 1) % kSlots;
+    if (c.was_contact || probe == kProbes) keep[i] = 1;
+    if (probe == kProbes) continue;
+    if (slots[at].cell == kEmpty || isMoreUrgent(c, candidates[slots[at].best], measure))
+      slots[at] = {cell, i};
+  }
+  for (const Slot& slot : slots)
+    if (slot.cell != kEmpty) keep[slot.best] = 1;
+}
+
 }  // namespace
 
 void thinOut(std::vector<Candidate>& candidates, double cell_m) {
@@ -47,24 +87,14 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m) {
   // The grid stands still in the world, so that a resting part's cells do not shift with its first point.
   origin = (origin / cell_m).array().floor().matrix() * cell_m;
 
-  struct Cell {
-    std::uint64_t cell;
-    std::uint32_t index;
-  };
-  thread_local std::vector<Cell> cells;
-  cells.clear();
-  for (std::uint32_t i = 0; i < candidates.size(); ++i)
-    cells.push_back({cellOf(candidates[i], origin, cell_m), i});
-  std::sort(cells.begin(), cells.end(), [&](const Cell& a, const Cell& b) {
-    return a.cell != b.cell ? a.cell < b.cell : isMoreUrgent(candidates[a.index], candidates[b.index]);
-  });
+  thread_local std::vector<std::uint8_t> keep;
+  keep.assign(candidates.size(), 0);
+  for (const Measure measure : {Measure::Now, Measure::Then})
+    markBest(candidates, origin, cell_m, measure, keep);
   thread_local std::vector<Candidate> kept;
   kept.clear();
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool is_best = i == 0 || cells[i].cell != cells[i - 1].cell;
-    const Candidate& c = candidates[cells[i].index];
-    if (is_best || c.was_contact) kept.push_back(c);
-  }
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (keep[i]) kept.push_back(candidates[i]);
   candidates.swap(kept);
 }
 
@@ -90,10 +120,12 @@ void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double 
     for (std::size_t i = 0; i < count && chosen.size() < limit / 2; ++i)
       if (candidates[i].impulse_Ns > 0) choose(i);
     // The most urgent.
-    std::size_t deepest = 0;
-    for (std::size_t i = 1; i < count; ++i)
-      if (isMoreUrgent(candidates[i], candidates[deepest])) deepest = i;
-    if (nearest2[deepest] >= 0) choose(deepest);
+    for (const Measure measure : {Measure::Now, Measure::Then}) {
+      std::size_t first = 0;
+      for (std::size_t i = 1; i < count; ++i)
+        if (isMoreUrgent(candidates[i], candidates[first], measure)) first = i;
+      if (nearest2[first] >= 0) choose(first);
+    }
     // Extent, weighed against the gap: a contact a slack away is worth as much less as a body's length of
     // spread.
     while (chosen.size() < limit) {

@@ -69,6 +69,7 @@ struct ContactRows {
   double mu = 0;
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;
   double W_t_inverse[3] = {0, 0, 0};  // of the 2x2 tangent block: 11, 12, 22
+  double W_t = 0;                     // its greatest eigenvalue
 };
 
 }  // namespace
@@ -234,6 +235,7 @@ void VpsSolver::Work::prepareMass() {
     for (int i = 0; i < 2; ++i)
       if (c.tangent[0].side[i].body >= 0) w12 += c.tangent[0].side[i].J.dot(c.tangent[1].side[i].MinvJ);
     const double w11 = c.tangent[0].W, w22 = c.tangent[1].W, det = w11 * w22 - w12 * w12;
+    c.W_t = 0.5 * (w11 + w22) + std::hypot(0.5 * (w11 - w22), w12);
     c.W_t_inverse[0] = w22 / det;
     c.W_t_inverse[1] = -w12 / det;
     c.W_t_inverse[2] = w11 / det;
@@ -261,12 +263,19 @@ double VpsSolver::Work::iterate() {
     }
     if (p_n == 0 && c.p_t[0] == 0 && c.p_t[1] == 0) continue;
     const double v1 = velocity(c.tangent[0]), v2 = velocity(c.tangent[1]);
+    const double limit = c.mu * p_n;
     double p1 = c.p_t[0] - (c.W_t_inverse[0] * v1 + c.W_t_inverse[1] * v2);
     double p2 = c.p_t[1] - (c.W_t_inverse[1] * v1 + c.W_t_inverse[2] * v2);
-    const double size = std::hypot(p1, p2), limit = c.mu * p_n;
-    if (size > limit) {
-      p1 *= limit / size;
-      p2 *= limit / size;
+    if (std::hypot(p1, p2) > limit) {
+      // It slides. The step must be along the slip itself: stepping by the block's inverse and scaling back
+      // would settle on friction along W^-1 v, off the slip, and 1 % too weak.
+      p1 = c.p_t[0] - v1 / c.W_t;
+      p2 = c.p_t[1] - v2 / c.W_t;
+      const double size = std::hypot(p1, p2);
+      if (size > limit) {
+        p1 *= limit / size;
+        p2 *= limit / size;
+      }
     }
     const double d1 = p1 - c.p_t[0], d2 = p2 - c.p_t[1];
     if (d1 != 0) apply(c.tangent[0], d1);
@@ -367,6 +376,7 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
   Work& work = *work_;
+  if (work.bodies.empty()) return 0;  // Bullet ends each step with a call for nothing
   const double dt_s = info.m_timeStep;
 
   struct Held {
