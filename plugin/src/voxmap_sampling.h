@@ -13,6 +13,9 @@ class VoxSampler {
  public:
   explicit VoxSampler(const VoxMap& map) noexcept
       : layout_(*map.layout_),
+        cells_(map.layout_->cells.data()),
+        outside_(map.layout_->outside()),
+        inside_(map.layout_->inside()),
         voxel_m_(map.voxel_m_),
         band_m_(map.band_m_),
         bounds_(map.bounds_),
@@ -42,7 +45,7 @@ class VoxSampler {
                static_cast<std::size_t>(at.cell_at.y())) *
                   static_cast<std::size_t>(layout_.size.z()) +
               static_cast<std::size_t>(at.cell_at.z());
-    at.brick = layout_.cells[at.cell].brick;
+    at.brick = cells_[at.cell].brick;
     return at;
   }
 
@@ -51,8 +54,8 @@ class VoxSampler {
     if (at.brick == nullptr) return band_m_;
     // A constant brick would interpolate to its constant but for rounding; returning it is exact, and quick
     // where most points are.
-    if (at.brick == layout_.outside()) return band_m_;
-    if (at.brick == layout_.inside()) return -band_m_;
+    if (at.brick == outside_) return band_m_;
+    if (at.brick == inside_) return -band_m_;
     const Corners d = corners(at);
     const double x0 = mix(mix(d[0], d[1], at.t.z()), mix(d[2], d[3], at.t.z()), at.t.y());
     const double x1 = mix(mix(d[4], d[5], at.t.z()), mix(d[6], d[7], at.t.z()), at.t.y());
@@ -61,7 +64,7 @@ class VoxSampler {
 
   /// Unit outward normal at a place, zero in constant bricks and outside.
   [[nodiscard]] Vec3 normal(const Place& at, Gradient gradient) const noexcept {
-    if (at.brick == nullptr || layout_.isConstant(at.brick)) return Vec3::Zero();
+    if (at.brick == nullptr || at.brick == outside_ || at.brick == inside_) return Vec3::Zero();
     const Vec3 g = gradient == Gradient::Trilinear ? trilinearGradient(at) : continuousGradient(at);
     const double length = g.norm();
     // Where opposite walls cancel there is no direction; 1e-6 is far below any nodal gradient that is not
@@ -74,7 +77,7 @@ class VoxSampler {
   [[nodiscard]] double leastDistance(const Vec3& p_M, const Place& at) const noexcept {
     if (at.brick == nullptr) return leastDistanceOutside(p_M);
     double least_m = -band_m_;
-    const double center_m = layout_.cells[at.cell].center_m;
+    const double center_m = cells_[at.cell].center_m;
     if (center_m > 0) least_m = std::max(least_m, center_m * kRoundDown - fromCenter(at));
     least_m = std::max(least_m, distance(at) - interpolationError(at));
     const double to_box_m = boxDistance(p_M);
@@ -84,15 +87,15 @@ class VoxSampler {
   /// A value that the signed distance to the surface at p_M is not above; infinite where unknown.
   [[nodiscard]] double mostDistance(const Place& at) const noexcept {
     double most_m = std::numeric_limits<double>::infinity();
-    if (at.brick == nullptr || at.brick == layout_.outside()) return most_m;
-    const double center_m = layout_.cells[at.cell].center_m;
+    if (at.brick == nullptr || at.brick == outside_) return most_m;
+    const double center_m = cells_[at.cell].center_m;
     if (center_m < 0) most_m = center_m * kRoundDown + fromCenter(at);
     const double field_m = distance(at) + interpolationError(at);
     return field_m < band_m_ ? std::min(most_m, field_m) : most_m;
   }
 
   [[nodiscard]] bool isInside(const Place& at) const noexcept {
-    return at.brick != nullptr && at.brick != layout_.outside() && distance(at) < 0;
+    return at.brick != nullptr && at.brick != outside_ && distance(at) < 0;
   }
 
   [[nodiscard]] std::uint16_t owner(const Place& at) const noexcept {
@@ -124,44 +127,33 @@ class VoxSampler {
             mix(mix(d[1] - d[0], d[3] - d[2], y), mix(d[5] - d[4], d[7] - d[6], y), x)};
   }
 
-  /// Trilinear interpolation of the nodes' central differences, times two voxels. The 4^3 nodes around a cell
-  /// lie in at most two bricks along each axis.
+  /// Trilinear interpolation of the nodes' central differences, times two voxels. Along its own axis a
+  /// component needs one node more on each side of the cell, which may lie in a neighbour; across, the cell's
+  /// own.
   Vec3 continuousGradient(const Place& at) const noexcept {
-    const float* brick[2][2][2];
-    int which[3][4], local[3][4];
-    Index3 neighbour;
+    constexpr int kStride[3] = {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)};
+    const std::ptrdiff_t cell_stride[3] = {std::ptrdiff_t{layout_.size.y()} * layout_.size.z(),
+                                           layout_.size.z(), 1};
+    const int index = nodeIndex(at.node.x(), at.node.y(), at.node.z());
+    const float* low = &at.brick->distance_m[index];
+    // A brick with a band always has neighbours: the directory keeps one empty cell around them all.
+    const VoxCell* cell = &cells_[at.cell];
+    Vec3 g;
     for (int axis = 0; axis < 3; ++axis) {
-      neighbour[axis] = at.node[axis] == 0 ? -1 : 1;
-      for (int k = 0; k < 4; ++k) {
-        const int node = at.node[axis] + k - 1;  // -1 to 9; 8 is the brick's own border
-        which[axis][k] = node < 0 || node > VoxMap::kBrick;
-        local[axis][k] = node < 0 ? VoxMap::kBrick - 1 : node > VoxMap::kBrick ? 1 : node;
-      }
+      const int stride = kStride[axis], node = at.node[axis];
+      const float *before = low - stride, *high = low + stride, *after = high + stride;
+      if (node == 0)
+        before = &cell[-cell_stride[axis]].brick->distance_m[index + (VoxMap::kBrick - 1) * stride];
+      if (node == VoxMap::kBrick - 1)
+        after = &cell[cell_stride[axis]].brick->distance_m[index + (1 - node) * stride];
+      const int b = kStride[(axis + 1) % 3], c = kStride[(axis + 2) % 3];
+      const double t = at.t[axis], t_b = at.t[(axis + 1) % 3], t_c = at.t[(axis + 2) % 3];
+      const auto slope = [&](int k) {
+        return mix(double{high[k]} - before[k], double{after[k]} - low[k], t);
+      };
+      g[axis] = mix(mix(slope(0), slope(b), t_b), mix(slope(c), slope(b + c), t_b), t_c);
     }
-    for (int i = 0; i < 8; ++i) {
-      // A brick with a band always has neighbours: the directory keeps one empty cell around them all.
-      const Index3 cell = at.cell_at + Index3(i & 4 ? neighbour.x() : 0, i & 2 ? neighbour.y() : 0,
-                                              i & 1 ? neighbour.z() : 0);
-      brick[i >> 2][i >> 1 & 1][i & 1] =
-          layout_.cells[layout_.cellIndex(cell + layout_.low)].brick->distance_m.data();
-    }
-    const auto node = [&](int x, int y, int z) -> double {
-      return brick[which[0][x]][which[1][y]][which[2][z]][nodeIndex(local[0][x], local[1][y], local[2][z])];
-    };
-    // Along its own axis a component is the interpolated central difference; over the others plain
-    // interpolation.
-    const double x = at.t.x(), y = at.t.y(), z = at.t.z();
-    const auto slope = [](double a, double b, double c, double d, double t) { return mix(c - a, d - b, t); };
-    double gx[4], gy[4], gz[4];
-    for (int i = 0; i < 4; ++i) {
-      const int a = 1 + (i >> 1), b = 1 + (i & 1);
-      gx[i] = slope(node(0, a, b), node(1, a, b), node(2, a, b), node(3, a, b), x);
-      gy[i] = slope(node(a, 0, b), node(a, 1, b), node(a, 2, b), node(a, 3, b), y);
-      gz[i] = slope(node(a, b, 0), node(a, b, 1), node(a, b, 2), node(a, b, 3), z);
-    }
-    return {mix(mix(gx[0], gx[1], z), mix(gx[2], gx[3], z), y),
-            mix(mix(gy[0], gy[1], z), mix(gy[2], gy[3], z), x),
-            mix(mix(gz[0], gz[1], y), mix(gz[2], gz[3], y), x)};
+    return g;
   }
 
   /// How far the interpolant can be from the distance it interpolates. Distance changes by at most the way
@@ -193,6 +185,8 @@ class VoxSampler {
   }
 
   const VoxLayout& layout_;
+  const VoxCell* cells_;  // these three are the layout's, one step nearer
+  const VoxBrick *outside_, *inside_;
   double voxel_m_, band_m_;
   const Box& bounds_;
   double per_voxel_;
