@@ -138,8 +138,8 @@ TEST(VirtualOperator, PlacesAPegWhereNothingStopsIt) {
   EXPECT_LE(run.error_m, 0.25e-3);
 }
 
-TEST(VirtualOperator, FindsTheHoleFromTenSeedsWithATightMouth) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+TEST(VirtualOperator, FindsTheHoleFromFiveSeedsWithATightMouth) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     OperatorHabits habits;
     habits.seed = seed;
     PegWorld world;
