@@ -53,7 +53,9 @@ std::string fixed(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
+  // "-0.00" would claim a sign that the digits do not show.
+  const bool is_zero = std::string(text).find_first_of("123456789") == std::string::npos;
+  return is_zero && text[0] == '-' ? text + 1 : text;
 }
 
 std::string csvLine(const std::vector<std::string>& cells) {

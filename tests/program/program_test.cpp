@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program `vps` from outside: exit status, words and files, on good input and bad.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "vps/mesh.h"
+
+namespace vps {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string slurp(const fs::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+/// Binary STL of a box, in the numbers given.
+std::string stlBox(const Vec3& size) {
+  const Mesh mesh = makeBox(size);
+  std::string out(80, ' ');
+  const auto put = [&](const auto& value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  put(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) put(0.0f);
+    for (const std::uint32_t vertex : triangle)
+      for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
+    put(std::uint16_t{0});
+  }
+  return out;
+}
+
+struct Ran {
+  int status = -1;  ///< -1: ended by a signal
+  std::string out, err;
+};
+
+/// A folder of its own, in which the program runs.
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("vps_program_" + std::string(info->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write("plate.stl", stlBox(Vec3(20, 20, 10)));  // millimetres
+    write("pin.stl", stlBox(Vec3(4, 4, 8)));
+    write("cut.stl", stlBox(Vec3(4, 4, 8)).substr(0, 300));
+    write("scene.toml", kScene);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+
+  Ran run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" VPS_PROGRAM "' " + arguments +
+                                " >stdout.txt 2>stderr.txt </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder_ / "stdout.txt"),
+            slurp(folder_ / "stderr.txt")};
+  }
+
+  /// Status 2 and one line on stderr, with these words in it.
+  void expectRefused(const std::string& arguments, const std::string& words) const {
+    const Ran ran = run(arguments);
+    EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.out << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << arguments << "\n" << ran.err;
+    EXPECT_TRUE(ran.err.starts_with("vps: ")) << arguments << "\n" << ran.err;
+    EXPECT_NE(ran.err.find(words), std::string::npos) << arguments << "\n" << ran.err;
+    EXPECT_EQ(ran.out, "") << arguments;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos) << entry.path();
+  }
+
+  static constexpr const char* kScene =
+      "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n[[part]]\nfile = 'pin.stl'\n"
+      "pose = {position = [0, 0, 9.1]}\n";
+  fs::path folder_;
+};
+
+const std::vector<std::string> kReady = {"assemble", "simulate", "query", "import", "snapshot"};
+const std::vector<std::string> kComing = {"check",  "explain", "trade", "view",
+                                          "device", "render",  "watch", "replay"};
+
+TEST_F(Program, EveryCommandHasHelpWithAnExample) {
+  std::vector<std::string> all = kReady;
+  all.insert(all.end(), kComing.begin(), kComing.end());
+  const std::string overview = run("--help").out;
+  for (const std::string& command : all) {
+    const Ran ran = run(command + " --help");
+    EXPECT_EQ(ran.status, 0) << command;
+    EXPECT_EQ(ran.err, "") << command;
+    EXPECT_NE(ran.out.find("Example:\n  vps " + command), std::string::npos) << ran.out;
+    EXPECT_NE(overview.find(command), std::string::npos) << overview;
+  }
+  EXPECT_EQ(run("--version").status, 0);
+}
+
+TEST_F(Program, CommandsToComeSayThatTheyAreNotReady) {
+  for (const std::string& command : kComing) {
+    expectRefused(command, command + " is not ready yet");
+    expectRefused(command + " scene.toml --and whatever", command + " is not ready yet");
+  }
+}
+
+TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
+  expectRefused("", "see vps --help");
+  expectRefused("asemble scene.toml", "see vps --help");
+  expectRefused("assemble", "see vps assemble --help");
+  expectRefused("assemble scene.toml --fast", "see vps assemble --help");
+  expectRefused("simulate scene.toml --seconds soon", "--seconds");
+  expectRefused("simulate scene.toml --seconds nan", "--seconds");
+  expectRefused("simulate scene.toml --seconds -1", "--seconds");
+  expectRefused("snapshot scene.toml", "-o FILE.png");
+  expectRefused("snapshot scene.toml -o a.png --size 10", "--size");
+  expectRefused("snapshot scene.toml -o a.png --view north", "--view");
+  expectRefused("snapshot scene.toml --compare gone.png", "gone.png");
+  expectRefused("query plate.stl", "see vps query --help");
+}
+
+TEST_F(Program, ABadSceneIsNamedByFileLineAndKey) {
+  const std::string scene = kScene;
+  write("nan.toml", scene + "friction = nan\n");
+  write("key.toml", scene + "frcition = 1\n");
+  write("unit.toml", scene.substr(scene.find('\n') + 1));
+  write("cut.toml", scene + "[[part]]\nfile = 'cut.stl'\n");
+  write("gone.toml", scene + "[[part]]\nfile = 'gone.stl'\n");
+  for (const std::string command : {"assemble", "simulate", "snapshot -o a.png"}) {
+    expectRefused(command + " no_such.toml", "no_such.toml: no such file");
+    expectRefused(command + " nan.toml", "nan.toml:8: key 'friction' is nan");
+    expectRefused(command + " key.toml", "key.toml:8: key 'frcition' is unknown; did you mean 'friction'?");
+    expectRefused(command + " unit.toml", "unit.toml:2: key 'file' cannot be used: plate.stl");
+    expectRefused(command + " cut.toml", "cut.toml:9: key 'file' cannot be used: cut.stl");
+    expectRefused(command + " gone.toml", "gone.toml:9: key 'file' cannot be used: gone.stl");
+  }
+}
+
+TEST_F(Program, ABadMeshOrNumberIsNamed) {
+  expectRefused("query plate.stl gone.stl --units mm", "gone.stl");
+  expectRefused("query plate.stl cut.stl --units mm", "cut.stl");
+  expectRefused("query plate.stl pin.stl", "plate.stl");
+  expectRefused("query plate.stl pin.stl --units furlong", "--units is 'furlong'");
+  expectRefused("query plate.stl pin.stl --units mm --voxel -0.2mm",
+                "--voxel is -0.2mm; expected more than 0");
+  expectRefused("query plate.stl pin.stl --units mm --voxel 0.2", "--voxel");
+  expectRefused("query plate.stl pin.stl --units mm --spacing nanmm", "--spacing");
+  expectRefused("query plate.stl pin.stl --units mm --sides three", "--sides is 'three'");
+  expectRefused("query plate.stl pin.stl --units mm --fidelity finest", "finest");
+  expectRefused("query plate.stl pin.stl --units mm --stiffness nan", "--stiffness");
+  expectRefused("query plate.stl pin.stl --units mm --pose 0,0,0", "--pose: '0,0,0' is no pose");
+  expectRefused("query plate.stl pin.stl --units mm --pose 0,0,nan,0,0,0,1", "is no pose");
+  expectRefused("query plate.stl pin.stl --units mm --pose 0,0,0,0,0,0,0", "is no pose");
+  write("poses.txt", "# one pose a line\n0,0,0,0,0,0,1\n0,0,x,0,0,0,1\n");
+  expectRefused("query plate.stl pin.stl --units mm --poses poses.txt",
+                "poses.txt:3: '0,0,x,0,0,0,1' is no pose");
+  expectRefused("query plate.stl pin.stl --units mm --poses gone.txt", "gone.txt");
+  expectRefused("import cut.stl -o imported --units mm", "cut.stl");
+  expectRefused("import plate.stl -o imported", "plate.stl");
+  EXPECT_FALSE(fs::exists(folder_ / "imported"));
+}
+
+TEST_F(Program, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
+  // /dev/null is no folder for anyone, root included. The input is missing too: the place is said first.
+  expectRefused("assemble gone.toml --out /dev/null/out", "/dev/null/out");
+  expectRefused("assemble gone.toml --json /dev/null/a.json", "/dev/null/a.json");
+  expectRefused("simulate gone.toml --trace /dev/null/a.csv", "/dev/null/a.csv");
+  expectRefused("query plate.stl gone.stl --json /dev/null/a.json", "/dev/null/a.json");
+  expectRefused("import gone.step -o plate.stl", "plate.stl");
+  expectRefused("snapshot gone.toml -o /dev/null/a.png", "/dev/null/a.png");
+}
+
+TEST_F(Program, AFailedRunLeavesEarlierResultsAlone) {
+  fs::create_directories(folder_ / "out");
+  write("out/report.html", "earlier");
+  write("out/assemble.json", "{}");
+  write("broken.toml", std::string(kScene) + "friction = nan\n");
+  expectRefused("assemble broken.toml --out out --json out/assemble.json", "friction");
+  EXPECT_EQ(slurp(folder_ / "out/report.html"), "earlier");
+  EXPECT_EQ(slurp(folder_ / "out/assemble.json"), "{}");
+}
+
+TEST_F(Program, QueryAnswersWithTheAgreedKeys) {
+  // The pin's foot is at -4 mm, the plate's top at 5 mm: 9.01 mm leave 10 um, 8.99 mm press 10 um.
+  write("poses.txt", "0,0,0.00901,0,0,0,1\n0,0,0.00899,0,0,0,1\n0,0,1,0,0,0,1\n");
+  const std::string call =
+      "query plate.stl pin.stl --units mm --voxel 0.5mm --spacing 1mm --poses poses.txt --json ";
+  const Ran ran = run(call + "a.json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(ran.err, "");
+  const json answer = json::parse(slurp(folder_ / "a.json"));
+  for (const char* key : {"poses", "memory_bytes", "voxel_m", "point_spacing_m", "wall"})
+    EXPECT_TRUE(answer.contains(key)) << key;
+  for (const char* key : {"median", "p99", "max"}) EXPECT_GT(answer["wall"]["time_us"][key], 0) << key;
+  EXPECT_GT(answer["wall"]["build_s"], 0);
+  ASSERT_EQ(answer["poses"].size(), 3u);
+  for (const json& pose : answer["poses"])
+    for (const char* key : {"min_distance_m", "max_depth_m", "contact_count", "points_total", "points_tested",
+                            "force_N", "torque_Nm"})
+      EXPECT_TRUE(pose.contains(key)) << key;
+  // Flat faces: the field is exact there but for its storage, int16 over a band of 4 voxels of 0.5 mm (61
+  // nm).
+  constexpr double kTol_m = 0.1e-6;
+  EXPECT_NEAR(answer["poses"][0]["min_distance_m"], 10e-6, kTol_m);
+  EXPECT_EQ(answer["poses"][0]["max_depth_m"], 0);
+  EXPECT_EQ(answer["poses"][0]["contact_count"], 0);
+  EXPECT_NEAR(answer["poses"][1]["min_distance_m"], -10e-6, kTol_m);
+  EXPECT_NEAR(answer["poses"][1]["max_depth_m"], 10e-6, kTol_m);
+  EXPECT_GT(answer["poses"][1]["contact_count"], 0);
+  EXPECT_GT(answer["poses"][1]["force_N"][2], 0);  // B is pushed up, out of A
+  EXPECT_TRUE(answer["poses"][2]["min_distance_m"].is_null());
+  EXPECT_GT(answer["poses"][2]["beyond_m"], 0);
+
+  ASSERT_EQ(run(call + "b.json").status, 0);
+  json first = answer, second = json::parse(slurp(folder_ / "b.json"));
+  first.erase("wall");
+  second.erase("wall");
+  EXPECT_EQ(first.dump(), second.dump());
+}
+
+TEST_F(Program, ImportWritesASceneThatLoads) {
+  const Ran ran = run("import plate.stl -o imported --units mm --json import.json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("20.00 x 20.00 x 10.00"), std::string::npos) << ran.out;
+  const std::string scene = slurp(folder_ / "imported/scene.toml");
+  EXPECT_NE(scene.find("unit = \"m\""), std::string::npos) << scene;
+  const json answer = json::parse(slurp(folder_ / "import.json"));
+  ASSERT_EQ(answer["parts"].size(), 1u);
+  EXPECT_EQ(answer["parts"][0]["closed"], true);
+  // Said again by the scene that came out of it: 20 mm in float metres and back is 20 mm.
+  const Ran again =
+      run("import imported/" + answer["parts"][0]["file"].get<std::string>() + " -o again --units m");
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find("20.00 x 20.00 x 10.00"), std::string::npos) << again.out;
+  const Ran simulated = run("simulate imported/scene.toml --seconds 0.002 --voxel 1mm --spacing 2mm");
+  EXPECT_EQ(simulated.status, 0) << simulated.err;
+}
+
+TEST_F(Program, SimulateAnswersWithTheAgreedKeys) {
+  const Ran ran =
+      run("simulate scene.toml --seconds 0.01 --voxel 0.5mm --spacing 1mm --json a.json --trace a.csv");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const json answer = json::parse(slurp(folder_ / "a.json"));
+  ASSERT_EQ(answer["bodies"].size(), 1u);
+  for (const char* key : {"name", "position_m", "rotation_xyzw", "velocity_m_s", "angular_velocity_rad_s"})
+    EXPECT_TRUE(answer["bodies"][0].contains(key)) << key;
+  for (const char* key : {"max_penetration_m", "kinetic_energy_J", "wall"})
+    EXPECT_TRUE(answer.contains(key)) << key;
+  for (const char* key : {"median", "p99", "max"}) {
+    EXPECT_TRUE(answer["wall"]["step_us"].contains(key)) << key;
+    EXPECT_TRUE(answer["wall"]["contact_step_us"].contains(key)) << key;
+  }
+  const std::string trace = slurp(folder_ / "a.csv");
+  EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'), 1 + answer["steps"].get<int>());
+  // Free fall from 0.1 mm: after 10 ms it has fallen g t^2 / 2 = 0.49 mm, so it has landed.
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The scene file: what it says becomes a Scene, and what is wrong with it is said with line and key.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "vps/load_error.h"
+#include "vps_scenes/scene.h"
+
+namespace vps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Binary STL of a box, in the numbers given.
+std::string stlBox(const Vec3& size) {
+  const Mesh mesh = makeBox(size);
+  std::string out(80, ' ');
+  const auto put = [&](const auto& value) {
+    out.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  put(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) put(0.0f);
+    for (const std::uint32_t vertex : triangle)
+      for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
+    put(std::uint16_t{0});
+  }
+  return out;
+}
+
+/// A folder of its own with a plate of 40 x 40 x 10 and a pin of 4 x 4 x 20, both in millimetres.
+class SceneFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("vps_scene_file_" + std::string(info->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write("plate.stl", stlBox(Vec3(40, 40, 10)));
+    write("pin.stl", stlBox(Vec3(4, 4, 20)));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+  }
+  [[nodiscard]] std::string file() const { return (folder_ / "scene.toml").string(); }
+
+  Scene load(const std::string& text) const {
+    write("scene.toml", text);
+    return loadScene(file());
+  }
+
+  /// What loading says, without the folder; "" when it loads.
+  std::string complaint(const std::string& text) const {
+    try {
+      load(text);
+      return "";
+    } catch (const LoadError& error) {
+      std::string words = error.what();
+      const std::string prefix = folder_.string() + "/";
+      for (auto at = words.find(prefix); at != std::string::npos; at = words.find(prefix))
+        words.erase(at, prefix.size());
+      EXPECT_EQ(words.find('\n'), std::string::npos) << words;
+      return words;
+    }
+  }
+
+  fs::path folder_;
+};
+
+const std::string kPlate = "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n";  // lines 1 to 4
+const std::string kPin = kPlate + "[[part]]\nfile = 'pin.stl'\n";                        // 5 and 6
+const std::string kStep = kPin + "[[step]]\npart = 'pin'\n";                             // 7 and 8
+
+TEST_F(SceneFile, TwoMeshesAndOneStepAreAScene) {
+  const Scene scene = load(kStep);
+  ASSERT_EQ(scene.parts.size(), 2u);
+  EXPECT_EQ(scene.parts[0].part.name, "plate");
+  EXPECT_TRUE(scene.parts[0].is_fixed);
+  EXPECT_EQ(scene.parts[1].part.name, "pin");
+  EXPECT_FALSE(scene.parts[1].is_fixed);
+  EXPECT_NEAR(bounds(scene.parts[1].part.mesh).size().z(), 0.020, 1e-12);  // 20 is exact in float
+  ASSERT_EQ(scene.steps.size(), 1u);
+  EXPECT_EQ(scene.steps[0].part, 1u);
+  EXPECT_EQ(scene.gravity_W, Vec3(0, 0, -9.81));
+}
+
+TEST_F(SceneFile, AStepStartsAboveAllThatIsInPlace) {
+  // The plate's top is at 5 mm, the pin's foot at its target at -10 mm: 15 mm clear the plate, and half the
+  // pin's height of 20 mm is left free between them.
+  const Scene scene = load(kStep);
+  EXPECT_NEAR(scene.steps[0].X_WP_start.p.z(), 0.025, 1e-12);
+  EXPECT_EQ(scene.steps[0].X_WP_target.p, Vec3(Vec3::Zero()));
+}
+
+TEST_F(SceneFile, ApproachIsAnOffsetFromTheTarget) {
+  const Scene scene = load(kStep + "target = {position = [1, 2, 3]}\napproach = [0, '2cm', 30]\n");
+  EXPECT_NEAR((scene.steps[0].X_WP_target.p - Vec3(1e-3, 2e-3, 3e-3)).norm(), 0, 1e-15);
+  EXPECT_NEAR((scene.steps[0].X_WP_start.p - Vec3(1e-3, 22e-3, 33e-3)).norm(), 0, 1e-15);
+}
+
+TEST_F(SceneFile, EveryKeyArrivesInSi) {
+  const Scene scene = load(R"(
+name = "all keys"
+unit = "cm"
+gravity = [0, -1.5, 0]
+release_s = 0.5
+[material]
+density = 2700
+[[part]]
+name = "base"
+file = "plate.stl"
+fixed = true
+[[part]]
+file = "pin.stl"
+pose = {position = [1, 0, "3mm"], rpy_deg = [0, 0, 90]}
+friction = 0.3
+restitution = 0.4
+stiffness = 2e12
+color = "#ff0000"
+allow_overlap = true
+[[step]]
+part = "pin"
+start = {position = [0, 0, 9]}
+way_points = [{position = [0, 0, 5]}, {rotation_xyzw = [1, 0, 0, 0]}]
+tolerance = "50um"
+tolerance_deg = 1
+clearance = "20um"
+timeout_s = 7
+[device]
+kind = "dual_arm"
+scale = 2
+quantised_encoders = false
+[operator]
+seed = 42
+aim_error = "1mm"
+aim_error_deg = 2
+speed_m_s = 0.1
+press_N = 6
+force_limit_N = 20
+[coupling]
+k_N_per_m = 1
+b_Ns_per_m = 2
+k_Nm_per_rad = 3
+b_Nms_per_rad = 4
+max_force_N = 5
+max_torque_Nm = 6
+[fidelity]
+preset = "fine"
+voxel = "0.1mm"
+spacing = 0.02
+sides = "one"
+gradient = "trilinear"
+contact_limit = 10
+haptic_rate_hz = 4000
+physics_rate_hz = 2000
+solver_iterations = 50
+[record]
+csv_rate_hz = 100
+)");
+  EXPECT_EQ(scene.name, "all keys");
+  EXPECT_EQ(scene.gravity_W, Vec3(0, -1.5, 0));
+  EXPECT_EQ(scene.release_s, 0.5);
+  EXPECT_EQ(scene.parts[0].part.name, "base");
+  EXPECT_EQ(scene.parts[0].part.material.density_kg_m3, 2700);
+  EXPECT_NEAR(bounds(scene.parts[0].part.mesh).size().x(), 0.40, 1e-12);
+
+  const ScenePart& pin = scene.parts[1];
+  EXPECT_NEAR((pin.X_WP.p - Vec3(0.01, 0, 0.003)).norm(), 0, 1e-15);
+  EXPECT_NEAR((pin.X_WP.R * Vec3::UnitX() - Vec3::UnitY()).norm(), 0, 1e-15);
+  EXPECT_EQ(pin.part.material.density_kg_m3, 2700);
+  EXPECT_EQ(pin.part.material.friction, 0.3);
+  EXPECT_EQ(pin.part.material.restitution, 0.4);
+  EXPECT_EQ(pin.part.material.stiffness_N_per_m3, 2e12);
+  EXPECT_EQ(pin.part.color, (std::array<float, 3>{1, 0, 0}));
+  EXPECT_TRUE(pin.allow_overlap);
+
+  const SceneStep& step = scene.steps[0];
+  EXPECT_NEAR(step.X_WP_start.p.z(), 0.09, 1e-15);
+  EXPECT_NEAR((step.X_WP_start.R - pin.X_WP.R).norm(), 0, 1e-15);  // what a pose leaves out is the target's
+  ASSERT_EQ(step.way_points.size(), 2u);
+  EXPECT_NEAR(step.way_points[0].p.z(), 0.05, 1e-15);
+  EXPECT_NEAR((step.way_points[1].R - Vec3(1, -1, -1).asDiagonal().toDenseMatrix()).norm(), 0, 1e-15);
+  EXPECT_EQ(step.way_points[1].p, step.X_WP_target.p);
+  EXPECT_NEAR(step.tolerance_m, 50e-6, 1e-18);
+  EXPECT_NEAR(step.tolerance_rad, std::numbers::pi / 180, 1e-16);
+  EXPECT_NEAR(step.clearance_m, 20e-6, 1e-18);
+  EXPECT_EQ(step.timeout_s, 7);
+
+  EXPECT_EQ(scene.device.scale, 2);
+  EXPECT_FALSE(scene.device.has_quantised_encoders);
+  EXPECT_EQ(scene.hand.seed, 42u);
+  EXPECT_NEAR(scene.hand.aim_error_m, 1e-3, 1e-17);
+  EXPECT_NEAR(scene.hand.aim_error_rad, std::numbers::pi / 90, 1e-16);
+  EXPECT_EQ(scene.hand.speed_m_s, 0.1);
+  EXPECT_EQ(scene.hand.press_N, 6);
+  EXPECT_EQ(scene.hand.force_limit_N, 20);
+  EXPECT_EQ(scene.coupling.k_N_per_m, 1);
+  EXPECT_EQ(scene.coupling.b_Ns_per_m, 2);
+  EXPECT_EQ(scene.coupling.k_Nm_per_rad, 3);
+  EXPECT_EQ(scene.coupling.b_Nms_per_rad, 4);
+  EXPECT_EQ(scene.coupling.max_force_N, 5);
+  EXPECT_EQ(scene.coupling.max_torque_Nm, 6);
+  EXPECT_NEAR(scene.fidelity.voxel_m, 0.1e-3, 1e-18);
+  EXPECT_NEAR(scene.fidelity.spacing_m, 0.2e-3, 1e-18);
+  EXPECT_EQ(scene.fidelity.sides, Sides::One);
+  EXPECT_EQ(scene.fidelity.gradient, Gradient::Trilinear);
+  EXPECT_EQ(scene.fidelity.contact_limit, 10);
+  EXPECT_EQ(scene.fidelity.haptic_rate_hz, 4000);
+  EXPECT_EQ(scene.fidelity.physics_rate_hz, 2000);
+  EXPECT_EQ(scene.fidelity.solver_iterations, 50);
+  EXPECT_EQ(scene.record.csv_rate_hz, 100);
+}
+
+TEST_F(SceneFile, APresetMayStandAlone) {
+  EXPECT_EQ(load("fidelity = 'fast'\n" + kPin).fidelity.voxel_m, fidelityPreset("fast").voxel_m);
+}
+
+TEST_F(SceneFile, ACadFileGivesAllItsPartsAndPartsRefineThem) {
+  const Scene scene = load("unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plate'\nfixed = true\n");
+  ASSERT_EQ(scene.parts.size(), 1u);
+  EXPECT_TRUE(scene.parts[0].is_fixed);
+}
+
+struct Mistake {
+  std::string text;   ///< after a scene of two parts and one step (8 lines), or alone if it begins with '!'
+  std::string line;   ///< "9", or "" where no line can be told
+  std::string words;  ///< that must occur
+};
+
+TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
+  const std::vector<Mistake> mistakes = {
+      {"frcition = 1\n", "9", "key 'frcition' is unknown"},
+      {"tolerence = 1\n", "9", "key 'tolerence' is unknown; did you mean 'tolerance'?"},
+      {"xyz = 1\n", "9", "key 'xyz' is unknown; [[step]] may have part"},
+      {"clearance = 'wide'\n", "9", "key 'clearance'"},
+      {"clearance = true\n", "9", "key 'clearance' is true; expected a length"},
+      {"clearance = -1\n", "9", "key 'clearance' is -1; expected at least 0"},
+      {"clearance = nan\n", "9", "key 'clearance'"},
+      {"clearance = '5'\n", "9", "key 'clearance'"},
+      {"timeout_s = inf\n", "9", "key 'timeout_s' is inf; expected a finite number"},
+      {"timeout_s = 0\n", "9", "key 'timeout_s' is 0; expected more than 0"},
+      {"timeout_s = '1'\n", "9", "key 'timeout_s' is the text '1'; expected a number"},
+      {"approach = [0, 1]\n", "9", "key 'approach' is a list of 2; expected 3 lengths"},
+      {"approach = [0, nan, 1]\n", "9", "key 'approach'"},
+      {"approach = [0, 0, 1]\nstart = {}\n", "9", "key 'approach' stands beside 'start'"},
+      {"start = [0, 0, 1]\n", "9", "key 'start' is a list of 3; expected {position"},
+      {"start = {positon = [0, 0, 1]}\n", "9", "did you mean 'position'?"},
+      {"start = {rotation_xyzw = [0, 0, 0, 0]}\n", "9", "key 'rotation_xyzw' has the length 0"},
+      {"start = {rotation_xyzw = [0, 0, 0, 1], rpy_deg = [0, 0, 0]}\n", "9", "key 'rpy_deg'"},
+      {"way_points = 3\n", "9", "key 'way_points' is 3; expected a list of poses"},
+      {"way_points = [1]\n", "9", "key 'way_points'"},
+      {"[[step]]\n", "9", "[[step]] has no 'part'"},
+      {"[[step]]\npart = 'pin'\n", "10", "key 'part' names 'pin', which an earlier step mounts"},
+      {"[[step]]\npart = 'plate'\n", "10", "key 'part' names 'plate', which is fixed"},
+      {"[[step]]\npart = 'pim'\n", "10", "key 'part' names 'pim', which is no part; did you mean 'pin'?"},
+      {"[[part]]\n", "9", "[[part]] has neither 'name' nor 'file'"},
+      {"[[part]]\nname = 'x'\n", "9", "[[part]] has no 'file'"},
+      {"[[part]]\nfile = 'pin.stl'\n", "9", "[[part]] is the second part named 'pin'"},
+      {"[[part]]\nfile = 'gone.stl'\n", "10", "key 'file' cannot be used: gone.stl"},
+      {"[[part]]\nfile = 3\n", "10", "key 'file' is 3; expected text in quotes"},
+      {"[[part]]\nfile = ''\n", "10", "key 'file' is empty"},
+      {"[[part]]\nfile = 'pin.stl'\nnode = 'lid'\n", "11", "key 'node' names 'lid', which is no part"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nfixed = 1\n", "12",
+       "key 'fixed' is 1; expected true or false"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nfriction = -0.1\n", "12", "key 'friction' is -0.1"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nrestitution = 2\n", "12", "key 'restitution' is 2"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\ncolor = 'red'\n", "12", "key 'color' is 'red'"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\ncolor = [1, 2, 3]\n", "12", "key 'color' is 2"},
+      {"[device]\ndata = 'gone.toml'\n", "10", "key 'data' names gone.toml"},
+      {"[operator]\nseed = 1.5\n", "10", "key 'seed' is 1.5; expected a whole number"},
+      {"[operator]\nseed = -1\n", "10", "key 'seed' is -1"},
+      {"[fidelity]\nsides = 'none'\n", "10", "key 'sides' is 'none'; expected one of: one, both"},
+      {"[fidelity]\nvoxel = -0.1\n", "10", "key 'voxel' is -0.1; expected more than 0"},
+      {"[fidelity]\npreset = 'finest'\n", "10",
+       "key 'preset' is 'finest'; expected one of: fast, normal, fine"},
+      {"[record]\ncsv_rate_hz = 0\n", "10", "key 'csv_rate_hz' is 0"},
+      {"clearance = \n", "9", "not valid TOML"},
+      {"part = 'pin'\n", "9", "not valid TOML"},
+      {"!", "1", "the scene has no part"},
+      {"!unit = 'furlong'\n", "1", "key 'unit' is 'furlong'; expected one of: mm"},
+      {"!unit = 'mm'\nstep = 3\n[[part]]\nfile = 'pin.stl'\n", "2", "key 'step'"},
+      {"!part = [1]\n", "1", "key 'part' has 1 in it"},
+      {"!device = 1\n[[part]]\nfile = 'pin.stl'\n", "3", "key 'file' cannot be used: pin.stl"},  // no unit
+      {"!\n[[part]]\nfile = 'pin.stl'\npose = {position = [1, 0, 0]}\n", "3", "key 'file' cannot be used"},
+      {"!cad = 'gone.step'\nunit = 'mm'\n", "1", "key 'cad' cannot be used: gone.step"},
+      {"!cad_fallback = 'pin.stl'\nunit = 'mm'\n", "1", "key 'cad_fallback' stands without 'cad'"},
+      {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plat'\n", "4", "did you mean 'plate'?"},
+      {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plate'\n[[part]]\nname = 'plate'\n", "5",
+       "second time"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const bool is_alone = mistake.text.starts_with('!');
+    const std::string words = complaint(is_alone ? mistake.text.substr(1) : kStep + mistake.text);
+    EXPECT_TRUE(words.starts_with("scene.toml:" + mistake.line + ": ")) << mistake.text << "-> " << words;
+    EXPECT_NE(words.find(mistake.words), std::string::npos) << mistake.text << "-> " << words;
+  }
+}
+
+TEST_F(SceneFile, AMissingSceneOrAFolderIsRefused) {
+  EXPECT_THROW(loadScene((folder_ / "gone.toml").string()), LoadError);
+  EXPECT_THROW(loadScene(folder_.string()), LoadError);
+}
+
+TEST_F(SceneFile, ATruncatedMeshIsNamedByItsLine) {
+  write("pin.stl", stlBox(Vec3(4, 4, 20)).substr(0, 300));
+  const std::string words = complaint(kStep);
+  EXPECT_TRUE(words.starts_with("scene.toml:6: key 'file' cannot be used: pin.stl")) << words;
+}
+
+TEST_F(SceneFile, CutAtEveryByteItLoadsOrIsRefused) {
+  const std::string whole = kStep +
+                            "start = {position = [0, '2cm', 3], rpy_deg = [0, 1, 2]}\nclearance = \"20um\"\n"
+                            "[fidelity]\nsides = 'one'\n[operator]\nseed = 7\n# \xC3\xA9nd\n";
+  int scenes = 0;
+  for (std::size_t length = 0; length <= whole.size(); ++length) {
+    try {
+      load(whole.substr(0, length));
+      ++scenes;
+    } catch (const LoadError&) {
+    }
+  }
+  EXPECT_GT(scenes, 0);
+}
+
+TEST_F(SceneFile, ATableHeaderWithoutAKeyIsRefused) {
+  // toml++ 3.3 would abort here where assertions are on.
+  for (const char* header : {"[=]\n", "[[#]]\n", "[\n", "[[{x]]\n"})
+    EXPECT_NE(complaint(kStep + header).find("not valid TOML"), std::string::npos) << header;
+}
+
+TEST_F(SceneFile, AnyByteInTheMiddleIsAnswered) {
+  // Each byte replaced by characters that TOML gives a meaning, and by some it forbids.
+  for (std::size_t at = 0; at < kStep.size(); ++at)
+    for (const char byte : {'\0', '"', '\'', '[', ']', '{', '=', '\n', '#', '9', '\xFF', '\\'}) {
+      std::string text = kStep;
+      text[at] = byte;
+      complaint(text);
+    }
+}
+
+}  // namespace
+}  // namespace vps
