@@ -22,9 +22,23 @@ namespace vps {
 // Bullet's pool hands out elements as large as its own largest algorithm, whatever is asked for.
 static_assert(sizeof(VpsAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
+namespace {
+
+/// The points chosen in a full query, and where that was.
+struct Selection {
+  std::vector<Candidate> chosen;
+  bool is_valid = false;
+  Pose X_01;           ///< body 1 in body 0
+  double reach_m = 0;  ///< how far the query looked
+  unsigned revision[2] = {0, 0};
+};
+
+}  // namespace
+
 struct VpsPairState {
   std::shared_ptr<VpsContext> context;
   std::unique_ptr<ManifoldWriter> writer;
+  Selection selection;
 };
 
 namespace {
@@ -151,6 +165,67 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsConte
   }
 }
 
+void correct(const PairView& pair, const VpsBulletSettings& settings, std::vector<Candidate>& candidates) {
+  if (!settings.use_surfaces || !pair.vps[0] || !pair.vps[1]) return;
+  correctBySurfaces(candidates, pair.side(0), pair.side(1));
+  correctBySurfaces(candidates, pair.side(1), pair.side(0));
+}
+
+void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates) {
+  std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
+}
+
+// From thousands of near points to the few that hold the part. `writer` knows last step's contacts; may be
+// null.
+void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+            ManifoldWriter* writer, std::vector<Candidate>& candidates) {
+  dropUnreachable(motion, candidates);
+  if (writer) writer->recall(candidates);
+  const auto limit = static_cast<std::size_t>(settings.contact_limit);
+  const double radius_m = pair.radius_m();
+  // Four times the limit go to the exact surfaces: enough for some to prove out of reach, and no more than
+  // the step's time allows (about 0.5 us each).
+  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
+    thinOut(candidates, cell_m);
+  correct(pair, settings, candidates);
+  dropUnreachable(motion, candidates);
+  chooseSpread(candidates, limit, radius_m, settings.slack_m);
+}
+
+void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
+                   Selection& selection) {
+  selection.chosen = chosen;
+  selection.is_valid = true;
+  selection.X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  selection.reach_m = motion.slack_m + motion.speed_m_s * motion.dt_s;
+  for (int i = 0; i < 2; ++i) selection.revision[i] = pair.vps[i] ? pair.vps[i]->revision() : 0;
+}
+
+// A part that has not moved since its points were chosen keeps them: only their distances are looked up anew.
+// At rest that is all the work there is. False: choose anew.
+bool recallSelection(const Selection& selection, const PairView& pair, const RelativeMotion& motion,
+                     const VpsBulletSettings& settings, std::vector<Candidate>& out) {
+  constexpr double kStill_m =
+      1e-6;  // assumed: below it no other point would be worth more than the chosen ones
+  if (!selection.is_valid) return false;
+  for (int i = 0; i < 2; ++i)
+    if (selection.revision[i] != (pair.vps[i] ? pair.vps[i]->revision() : 0)) return false;
+  if (motion.slack_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
+  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
+  const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
+  const double turned_rad = (moved.R - Mat3::Identity()).norm();
+  if ((moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() > kStill_m) return false;
+  for (Candidate c : selection.chosen) {
+    lookUp(pair.side(c.side), pair.side(1 - c.side), *pair.wrapper[1 - c.side]->getCollisionShape(), settings,
+           c);
+    out.push_back(c);
+  }
+  correct(pair, settings, out);
+  dropUnreachable(motion, out);
+  return true;
+}
+
 void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
                         const btCollisionObject* object0, const btCollisionObject* object1) {
   // The solver takes the gap off the rebound's speed, which kills a bounce that would happen within the step.
@@ -182,49 +257,35 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                     const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
                                     btManifoldResult* result) {
   VpsContext& context = *state_->context;
-  const VpsBulletSettings& settings = context.settings;
   const PairView pair(body0, body1);
-  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite())
-    return state_->writer->write({}, pair.wrapper, {});
-
-  // A contactTest hands in a result of its own type, and wants points now rather than manifolds for a step.
-  const bool is_query = typeid(*result) != typeid(btManifoldResult);
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
-  RelativeMotion motion;
-  if (is_query) {
-    const double wanted_m = std::max<double>(result->m_closestPointDistanceThreshold, 0);
-    motion.slack_m = std::min(wanted_m, sight_m(pair));
-    collect(pair, motion.slack_m, context, candidates);
-  } else {
-    motion = relativeMotion(pair, info.m_timeStep, settings.slack_m);
-    collectForStep(pair, motion, context, candidates);
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) {
+    state_->writer->write({}, pair.wrapper, {});
+    return;
   }
-  ++context.pair_updates;
-
-  const auto drop_unreachable = [&] {
-    std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
-  };
-  // The field may be off by part of a voxel at edges; what it calls a little too far may touch by the exact
-  // surface.
-  drop_unreachable();
-  context.candidates += candidates.size();
-  if (!is_query) state_->writer->recall(candidates);
-  const double radius_m = pair.radius_m();
-  thinOut(candidates, radius_m / 4);
-  if (settings.use_surfaces && pair.vps[0] && pair.vps[1]) {
-    correctBySurfaces(candidates, pair.side(0), pair.side(1));
-    correctBySurfaces(candidates, pair.side(1), pair.side(0));
-    drop_unreachable();
-  }
-  chooseSpread(candidates, static_cast<std::size_t>(settings.contact_limit), radius_m, settings.slack_m);
-  context.contacts += candidates.size();
-  if (is_query) {
+  // A contactTest hands in a result of its own type, and wants points now rather than manifolds for a step.
+  if (typeid(*result) != typeid(btManifoldResult)) {
+    RelativeMotion still;
+    still.slack_m =
+        std::min<double>(std::max<double>(result->m_closestPointDistanceThreshold, 0), sight_m(pair));
+    collect(pair, still.slack_m, context, candidates);
+    choose(pair, still, context.settings, nullptr, candidates);
     reportToQuery(candidates, pair.wrapper, *result);
-  } else {
-    prepareRestitution(candidates, motion, body0->getCollisionObject(), body1->getCollisionObject());
-    state_->writer->write(candidates, pair.wrapper, motion);
+    return;
   }
+
+  const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, context.settings.slack_m);
+  if (!recallSelection(state_->selection, pair, motion, context.settings, candidates)) {
+    collectForStep(pair, motion, context, candidates);
+    ++context.pair_updates;
+    context.candidates += candidates.size();
+    choose(pair, motion, context.settings, state_->writer.get(), candidates);
+    keepSelection(candidates, pair, motion, state_->selection);
+  }
+  context.contacts += candidates.size();
+  prepareRestitution(candidates, motion, body0->getCollisionObject(), body1->getCollisionObject());
+  state_->writer->write(candidates, pair.wrapper, motion);
 }
 
 }  // namespace vps

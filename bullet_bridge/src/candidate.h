@@ -61,6 +61,11 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
                                  double cutoff_m, const VpsBulletSettings& settings,
                                  std::vector<Candidate>& out, std::size_t& points_tested);
 
+/// Renews a candidate's position, distance and normal after a move. `theirs` is the other side's shape, a
+/// VpsShape with a map or a primitive.
+void lookUp(const SideView& side, const SideView& other, const btCollisionShape& theirs,
+            const VpsBulletSettings& settings, Candidate& c);
+
 /// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction
 /// of contact survive, and what has survived once is preferred, so that the set does not flicker.
 /// @param cell_m  edge of a cell, a fraction of the smaller body's size

@@ -85,4 +85,20 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
   return left_out;
 }
 
+void lookUp(const SideView& side, const SideView& other, const btCollisionShape& theirs,
+            const VpsBulletSettings& settings, Candidate& c) {
+  const double sign = side.side == 0 ? 1 : -1;
+  c.p_W = side.X_WM * side.shape->models().shell->points[c.id];
+  const Vec3 p_M = other.X_WM.inverse() * c.p_W;
+  SurfaceDistance at;
+  if (other.shape) {
+    const VoxMap& map = *other.shape->models().map;
+    at = {map.distance(p_M), map.normal(p_M, settings.gradient)};
+  } else {
+    at = primitiveDistance(theirs, p_M);
+  }
+  c.distance_m = at.distance_m;
+  c.n_W = sign * (other.X_WM.R * at.n);
+}
+
 }  // namespace vps
