@@ -275,7 +275,6 @@ TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
       {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nrestitution = 2\n", "12", "key 'restitution' is 2"},
       {"[[part]]\nname = 'x'\nfile = 'pin.stl'\ncolor = 'red'\n", "12", "key 'color' is 'red'"},
       {"[[part]]\nname = 'x'\nfile = 'pin.stl'\ncolor = [1, 2, 3]\n", "12", "key 'color' is 2"},
-      {"[device]\ndata = 'gone.toml'\n", "10", "key 'data' names gone.toml"},
       {"[operator]\nseed = 1.5\n", "10", "key 'seed' is 1.5; expected a whole number"},
       {"[operator]\nseed = -1\n", "10", "key 'seed' is -1"},
       {"[fidelity]\nsides = 'none'\n", "10", "key 'sides' is 'none'; expected one of: one, both"},
