@@ -213,7 +213,7 @@ bool VirtualOperator::isOnTarget(double share) const noexcept {
 }
 
 bool VirtualOperator::isAtRest() const noexcept {
-  return seen_now_.V_WP.v.norm() < habits_.rest_m_s && seen_now_.V_WP.w.norm() < habits_.rest_rad_s;
+  return seen_now_.V_WP.v.norm() < habits_.still_m_s && seen_now_.V_WP.w.norm() < habits_.still_rad_s;
 }
 
 bool VirtualOperator::isInserting() const noexcept {

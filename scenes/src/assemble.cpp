@@ -56,7 +56,14 @@ LoopSettings loopSettings(const Scene& scene, const Device& device) {
   timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
   timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
   timing.scale = scene.device.scale;
-  settings.gains = scene.has_coupling ? scene.coupling : deriveGains(limits, timing);
+  settings.gains = deriveGains(limits, timing);
+  const CouplingWishes& wishes = scene.coupling;
+  settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
+  settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);
+  settings.gains.k_Nm_per_rad = wishes.k_Nm_per_rad.value_or(settings.gains.k_Nm_per_rad);
+  settings.gains.b_Nms_per_rad = wishes.b_Nms_per_rad.value_or(settings.gains.b_Nms_per_rad);
+  settings.gains.max_force_N = wishes.max_force_N.value_or(settings.gains.max_force_N);
+  settings.gains.max_torque_Nm = wishes.max_torque_Nm.value_or(settings.gains.max_torque_Nm);
   settings.map.scale = scene.device.scale;
   settings.safety.force_N = limits.peak_force_N;
   settings.safety.torque_Nm = limits.peak_torque_Nm;

@@ -300,13 +300,8 @@ class SceneReader {
   void readDevice() {
     const toml::table* table = top_.table("device");
     if (!table) return;
-    const SceneKeys keys(*table, context_, "[device]", {"kind", "data", "scale", "quantised_encoders"});
+    const SceneKeys keys(*table, context_, "[device]", {"kind", "scale", "quantised_encoders"});
     keys.text("kind", scene_.device.kind);
-    if (keys.text("data", scene_.device.data)) {
-      scene_.device.data = path(scene_.device.data);
-      if (!fs::is_regular_file(scene_.device.data))
-        keys.fail("data", "names " + scene_.device.data + ", which is no file");
-    }
     keys.number("scale", scene_.device.scale, kPositive);
     keys.flag("quantised_encoders", scene_.device.has_quantised_encoders);
   }
@@ -332,13 +327,17 @@ class SceneReader {
     const SceneKeys keys(
         *table, context_, "[coupling]",
         {"k_N_per_m", "b_Ns_per_m", "k_Nm_per_rad", "b_Nms_per_rad", "max_force_N", "max_torque_Nm"});
-    CouplingGains& gains = scene_.coupling;
-    keys.number("k_N_per_m", gains.k_N_per_m, kNotNegative);
-    keys.number("b_Ns_per_m", gains.b_Ns_per_m, kNotNegative);
-    keys.number("k_Nm_per_rad", gains.k_Nm_per_rad, kNotNegative);
-    keys.number("b_Nms_per_rad", gains.b_Nms_per_rad, kNotNegative);
-    keys.number("max_force_N", gains.max_force_N, kPositive);
-    keys.number("max_torque_Nm", gains.max_torque_Nm, kPositive);
+    const auto wish = [&](const char* key, std::optional<double>& wished, Range range) {
+      if (!keys.has(key)) return;
+      keys.number(key, wished.emplace(), range);
+    };
+    CouplingWishes& gains = scene_.coupling;
+    wish("k_N_per_m", gains.k_N_per_m, kNotNegative);
+    wish("b_Ns_per_m", gains.b_Ns_per_m, kNotNegative);
+    wish("k_Nm_per_rad", gains.k_Nm_per_rad, kNotNegative);
+    wish("b_Nms_per_rad", gains.b_Nms_per_rad, kNotNegative);
+    wish("max_force_N", gains.max_force_N, kPositive);
+    wish("max_torque_Nm", gains.max_torque_Nm, kPositive);
   }
 
   /// A preset's name, or a table of single knobs over a preset.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "vps/coupling_law.h"
 #include "vps/mesh_distance.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"

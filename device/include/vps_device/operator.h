@@ -44,8 +44,9 @@ struct OperatorHabits {
   double search_m = 0.06e-3;  ///< spiral step of a retry
   double search_rad = 0.003;
   double press_s = 0.3;
-  double rest_m_s = 1e-3;  ///< slower counts as at rest
-  double rest_rad_s = 5e-3;
+  double rest_m_s = 1e-3;   ///< slower counts as held
+  double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand opens
+  double still_rad_s = 5e-3;
 };
 
 /// One step of a procedure, for the hand. The hand holds the part at the grasp frame G, fixed in the part P;

@@ -14,7 +14,7 @@ namespace vps {
 
 struct Material {
   double density_kg_m3 = 7850;       ///< steel
-  double friction = 0.15;            ///< Coulomb; Bullet multiplies the two bodies' values
+  double friction = 0.15;            ///< Coulomb, of the material on itself; two materials: geometric mean
   double restitution = 0;            ///< 0 inelastic to 1 elastic
   double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (paper, section 4.1)
 };

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "vps/coupling_law.h"
 #include "vps/fidelity.h"
 #include "vps/part.h"
 
@@ -33,7 +33,7 @@ struct SceneStep {
   double timeout_s = 20;
 };
 
-/// The hand and its habits. Values and sources: device/data/operator.toml.
+/// The hand and its habits. Values and sources: vps_device/operator.h.
 struct OperatorSettings {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation of the aim across the path
@@ -50,6 +50,11 @@ struct DeviceSettings {
   bool has_quantised_encoders = true;
 };
 
+/// What the scene asks of the coupling; the rest follows from the device's numbers and rates (deriveGains).
+struct CouplingWishes {
+  std::optional<double> k_N_per_m, b_Ns_per_m, k_Nm_per_rad, b_Nms_per_rad, max_force_N, max_torque_Nm;
+};
+
 struct RecordSettings {
   double csv_rate_hz = 1000;
 };
@@ -61,9 +66,7 @@ struct Scene {
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
-  bool has_coupling =
-      false;  ///< `coupling` is the file's; otherwise the device's numbers decide (deriveGains)
-  CouplingGains coupling;
+  CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;
   RecordSettings record;
