@@ -165,10 +165,12 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsConte
   }
 }
 
-void correct(const PairView& pair, const VpsBulletSettings& settings, std::vector<Candidate>& candidates) {
-  if (!settings.use_surfaces || !pair.vps[0] || !pair.vps[1]) return;
-  correctBySurfaces(candidates, pair.side(0), pair.side(1));
-  correctBySurfaces(candidates, pair.side(1), pair.side(0));
+void correctAll(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+                std::vector<Candidate>& candidates) {
+  if (!settings.use_surfaces) return;
+  for (int i = 0; i < 2; ++i)
+    if (pair.hasShell(i))
+      correct(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion);
 }
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates) {
@@ -187,7 +189,7 @@ void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletS
   // the step's time allows (about 0.5 us each).
   for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
     thinOut(candidates, cell_m);
-  correct(pair, settings, candidates);
+  correctAll(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
   chooseSpread(candidates, limit, radius_m, settings.slack_m);
 }
@@ -221,7 +223,7 @@ bool recallSelection(const Selection& selection, const PairView& pair, const Rel
            c);
     out.push_back(c);
   }
-  correct(pair, settings, out);
+  correctAll(pair, motion, settings, out);
   dropUnreachable(motion, out);
   return true;
 }

@@ -71,9 +71,10 @@ void lookUp(const SideView& side, const SideView& other, const btCollisionShape&
 /// @param cell_m  edge of a cell, a fraction of the smaller body's size
 void thinOut(std::vector<Candidate>& candidates, double cell_m);
 
-/// Replaces the field's distance and normal by the exact surfaces' of the other side (`other.X_WM`).
-/// Candidates of other sides are left alone. The field still decides where the surfaces give no answer.
-void correctBySurfaces(std::vector<Candidate>& candidates, const SideView& side, const SideView& other);
+/// Replaces distance and normal of the candidates of `side` by the exact ones: of the other VpsShape's
+/// surfaces (if it has any) or of the primitive `theirs`. The field still decides where no surface is near.
+void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
+             const btCollisionShape& theirs, const RelativeMotion& motion);
 
 /// Chooses at most `limit`: those that carried load, then the deepest, then the farthest from all chosen so
 /// far, in position (in units of length_m) and direction. Ends in ascending key order, so that equal sets are

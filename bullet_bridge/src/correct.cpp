@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "candidate.h"
+#include "primitive.h"
 
 namespace vps {
 
@@ -11,60 +12,112 @@ namespace {
 // top and the side of a box that stands on it. 0.2: about 78 degrees, so that a corner's mean normal still
 // meets each face.
 constexpr double kFacing = 0.2;
+constexpr double kCosEdge = 0.94;     // 20 degrees, as in PointShellSettings::edge_angle_rad
 constexpr double kNever_m = 1;        // far beyond any step
 constexpr double kTouching_m = 1e-6;  // below this, p - q is too short to be trusted as a direction
 
-struct Exact {
+/// The nearest point q of a surface to a point p; in W.
+struct Foot {
   bool found = false;
-  double distance_m = 0;
-  Vec3 n = Vec3::Zero();
-  bool is_facing = false;
+  Vec3 from_q = Vec3::Zero();  ///< p - q
+  Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
+  bool is_edge = false;
 };
 
-// Distance and normal at a shell point p with normal `inward` into its own part, against a surface.
-//
+struct Exact {
+  bool found = false;  ///< there is a surface within reach
+  bool meets = false;  ///< and it faces the point
+  double distance_m = 0;
+  Vec3 n = Vec3::Zero();
+  bool is_edge_on_edge = false;
+};
+
+Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, double max_m) {
+  const Pose X_WP = X_WM * surface.X_MP;
+  const Vec3 p = X_WP.inverse() * p_W;
+  const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
+  if (!closest.found) return {};
+  const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
+  return {true, X_WP.R * (p - closest.q), X_WP.R * closest.normal, is_edge};
+}
+
+Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W) {
+  const SurfaceDistance at = primitiveDistance(primitive, X_WS.inverse() * p_W);
+  const Vec3 n = X_WS.R * at.n;
+  return {true, at.distance_m * n, n, at.is_edge};
+}
+
 // A point on a face of its part must keep its own tangent plane clear of the other part, so its own normal is
 // the contact's. Taking the other's would be the same between smooth surfaces, and wrong near its edges: the
 // plane of a chamfer, met a hair below the chamfer's rim, would stop a peg that slides past. A point on an
 // edge has no tangent plane; the other's face has.
-Exact exactAt(const MeshDistance& surface, const Vec3& p, const Vec3& inward, bool is_edge_point,
-              double max_m) {
-  const MeshDistance::Closest closest = surface.closest(p, max_m);
-  if (!closest.found) return {};
-  const Vec3 from_q = p - closest.q;
-  const bool is_facing = inward.dot(closest.normal) > kFacing;
-  if (!is_edge_point && is_facing) return {true, from_q.dot(inward), inward, true};
-  const double sign = from_q.dot(closest.normal) < 0 ? -1 : 1;
-  const double distance_m = from_q.norm();
-  const Vec3 n = distance_m > kTouching_m ? Vec3(sign / distance_m * from_q) : closest.normal;
-  return {true, sign * distance_m, n, is_facing};
+Exact contactAt(const Foot& foot, const Vec3& inward, bool is_edge_point) {
+  Exact exact;
+  exact.found = foot.found;
+  if (!foot.found) return exact;
+  exact.meets = inward.dot(foot.normal) > kFacing;
+  if (!is_edge_point && exact.meets) {
+    exact.distance_m = foot.from_q.dot(inward);
+    exact.n = inward;
+    return exact;
+  }
+  const double sign = foot.from_q.dot(foot.normal) < 0 ? -1 : 1;
+  const double distance_m = foot.from_q.norm();
+  exact.distance_m = sign * distance_m;
+  exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
+  exact.is_edge_on_edge = is_edge_point && foot.is_edge;
+  return exact;
 }
+
+/// Exact contact of one shell point with all of the other side.
+struct Corrector {
+  const SideView& side;
+  const SideView& other;
+  const btCollisionShape& theirs;
+
+  Exact at(const Vec3& p_W, const Vec3& inward, bool is_edge_point, double max_m) const {
+    if (!other.shape) return contactAt(footOn(theirs, other.X_WM, p_W), inward, is_edge_point);
+    // A cooked body is the union of its parts: the least of their signed distances.
+    Exact nearest;
+    for (const VpsSurface& surface : other.shape->models().surfaces) {
+      const Exact exact = contactAt(footOn(surface, other.X_WM, p_W, max_m), inward, is_edge_point);
+      nearest.found |= exact.found;
+      if (exact.meets && (!nearest.meets || exact.distance_m < nearest.distance_m)) nearest = exact;
+    }
+    return nearest;
+  }
+};
 
 }  // namespace
 
-void correctBySurfaces(std::vector<Candidate>& candidates, const SideView& side, const SideView& other) {
-  const VpsModels& theirs = other.shape->models();
-  if (theirs.surfaces.empty()) return;
+void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
+             const btCollisionShape& theirs, const RelativeMotion& motion) {
+  if (other.shape && other.shape->models().surfaces.empty()) return;
+  const Corrector corrector{side, other, theirs};
   const PointShell& shell = *side.shape->models().shell;
   const double sign = side.side == 0 ? 1 : -1;
   // The field is off by less than a voxel; beyond that it is not the same piece of surface.
-  const double field_error_m = theirs.map ? theirs.map->voxel_m() : 0;
+  const double field_error_m =
+      other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : 0;
   for (Candidate& c : candidates) {
     if (c.side != side.side) continue;
-    const Vec3 inward_W = side.X_WM.R * shell.inward[c.id];
-    // A cooked body is the union of its parts: the least of their signed distances.
-    Exact nearest;
-    double max_m = std::abs(c.distance_m) + field_error_m;
-    for (const VpsSurface& surface : theirs.surfaces) {
-      const Pose X_WP = other.X_WM * surface.X_MP;
-      const Exact exact = exactAt(*surface.distance, X_WP.inverse() * c.p_W, X_WP.R.transpose() * inward_W,
-                                  side.shape->isEdgePoint(c.id), max_m);
-      if (!exact.found || (nearest.found && exact.distance_m >= nearest.distance_m)) continue;
-      nearest = {true, exact.distance_m, X_WP.R * exact.n, exact.is_facing};
+    const Vec3 inward = side.X_WM.R * shell.inward[c.id];
+    const bool is_edge_point = side.shape->isEdgePoint(c.id);
+    const double max_m = std::abs(c.distance_m) + field_error_m;
+    Exact exact = corrector.at(c.p_W, inward, is_edge_point, max_m);
+    if (!exact.found) continue;  // the field is all there is
+    if (exact.meets && exact.is_edge_on_edge) {
+      // The line between two edges turns fast as they pass each other, and would stop a point that is about
+      // to pass clear. What the point meets at the end of its way counts, as long as that is not an overlap.
+      const Vec3 way = sign * motion.dt_s * motion.velocityAt(c.p_W);
+      Exact end = corrector.at(c.p_W + way, inward, is_edge_point, max_m + way.norm());
+      if (!end.found || (end.meets && end.distance_m >= 0)) {
+        end.distance_m -= end.n.dot(way);
+        exact = end;
+      }
     }
-    if (!nearest.found) continue;
-    c.distance_m = nearest.is_facing ? nearest.distance_m : kNever_m;
-    c.n_W = sign * nearest.n;
+    c.distance_m = exact.meets ? exact.distance_m : kNever_m;
+    c.n_W = sign * exact.n;
   }
 }
 

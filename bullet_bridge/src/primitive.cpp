@@ -27,14 +27,17 @@ SurfaceDistance aroundPoint(const Vec3& p_from_center, double radius_m) {
 template <int N>
 SurfaceDistance productDistance(const double (&q)[N], const Vec3 (&normals)[N]) {
   Vec3 outside = Vec3::Zero();
-  int nearest = 0;
+  int nearest = 0, passed = 0;
   for (int i = 0; i < N; ++i) {
-    if (q[i] > 0) outside += q[i] * normals[i];
+    if (q[i] > 0) {
+      outside += q[i] * normals[i];
+      ++passed;
+    }
     if (q[i] > q[nearest]) nearest = i;
   }
   if (q[nearest] <= 0) return {q[nearest], normals[nearest]};
   const double d = outside.norm();
-  return {d, outside / d};
+  return {d, outside / d, passed > 1};
 }
 
 Vec3 signedAxis(int axis, double coordinate) {

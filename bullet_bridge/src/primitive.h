@@ -12,6 +12,7 @@ namespace vps {
 struct SurfaceDistance {
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
+  bool is_edge = false;  ///< the nearest point is on a sharp edge or corner
 };
 
 /// True for plane, box, sphere, capsule and cylinder.

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Parts at rest, sliding, falling and bouncing: what a formula can say.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bullet_bridge/world.h"
+
+namespace vps {
+namespace {
+
+using test::Built;
+using test::Solver;
+using test::World;
+
+constexpr double kGravity = 9.81;
+constexpr bool kIsDouble = sizeof(btScalar) == 8;
+// A resting velocity is the solver's residual (1e-7 m/s by VpsSolver's settings; PGS 100 leaves about 1e-6),
+// in float the rounding of dt * g.
+constexpr double kRest_m_s = kIsDouble ? 1e-6 : 2e-5;
+
+Built steelBox() {
+  return test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
+}
+Built plate() {
+  return test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
+}
+
+struct Rest {
+  double sink_m = 0, drift_m = 0, speed_m_s = 0, spin_rad_s = 0;
+};
+
+// Lets a body settle for a second, then watches it for two.
+Rest watch(World& world, btRigidBody& body, const Pose& X_WB_expected) {
+  world.step(1000);
+  Rest rest;
+  const Pose start = fromBt(body.getWorldTransform());
+  for (int i = 0; i < 2000; ++i) {
+    world.step();
+    rest.speed_m_s = std::max<double>(rest.speed_m_s, body.getLinearVelocity().length());
+    rest.spin_rad_s = std::max<double>(rest.spin_rad_s, body.getAngularVelocity().length());
+  }
+  const Pose end = fromBt(body.getWorldTransform());
+  rest.drift_m = (end.p - start.p).norm();
+  rest.sink_m = std::abs(end.p.z() - X_WB_expected.p.z());
+  return rest;
+}
+
+class RestWithSolver : public testing::TestWithParam<Solver> {};
+
+TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPut) {
+  World world(GetParam());
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(1e-3, 2e-3, 0.005)));
+  const Rest rest = watch(world, body, fromBt(body.getWorldTransform()));
+  EXPECT_LE(rest.sink_m, 1e-6);
+  EXPECT_LE(rest.drift_m, 1e-6);
+  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+  EXPECT_LE(rest.spin_rad_s, kRest_m_s / 0.01);
+}
+
+TEST_P(RestWithSolver, ACylinderStandsOnAPlate) {
+  World world(GetParam());
+  const Built cylinder = test::build(makeCylinder(0.005, 0.02, 64), 7850, 0.5e-3, 1e-3), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(cylinder, Pose::translation(Vec3(0, 0, 0.01)));
+  const Rest rest = watch(world, body, fromBt(body.getWorldTransform()));
+  EXPECT_LE(rest.sink_m, 1e-6);
+  EXPECT_LE(rest.drift_m, 1e-6);
+  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+}
+
+TEST_P(RestWithSolver, ABoxRestsOnEachOfBulletsOwnShapes) {
+  btBoxShape box(btVector3(0.05, 0.05, 0.01));
+  btCylinderShapeZ cylinder(btVector3(0.05, 0.05, 0.01));
+  btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.01));
+  for (btCollisionShape* ground : std::initializer_list<btCollisionShape*>{&box, &cylinder, &plane}) {
+    World world(GetParam());
+    const Built part = steelBox();
+    world.addShape(*ground, 0, Vec3::Zero(), Pose());
+    btRigidBody& body = world.add(part, Pose::translation(Vec3(0, 0, 0.015)));
+    const Rest rest = watch(world, body, fromBt(body.getWorldTransform()));
+    EXPECT_LE(rest.sink_m, 1e-6) << ground->getName();
+    EXPECT_LE(rest.drift_m, 1e-6) << ground->getName();
+    EXPECT_LE(rest.speed_m_s, kRest_m_s) << ground->getName();
+  }
+}
+
+TEST_P(RestWithSolver, BallsAndCapsulesHoldAPlateAtTheirRadius) {
+  btSphereShape ball(toBt(0.01));
+  btCapsuleShapeX capsule(toBt(0.01), toBt(0.03));
+  World world(GetParam());
+  const Built part = plate();
+  world.addShape(ball, 0, Vec3::Zero(), Pose::translation(Vec3(0.02, 0, 0)));
+  world.addShape(capsule, 0, Vec3::Zero(),
+                 Pose(rotationFromVector(Vec3(0, 0, 1.5707963267948966)), Vec3(-0.02, 0, 0)));
+  btRigidBody& body = world.add(part, Pose::translation(Vec3(0, 0, 0.015)));
+  world.step(500);
+  // The plate's points are up to half a spacing (times sqrt 2) from the ball's top: s^2 / (2 r) = 25 um at 1
+  // mm.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015, 25e-6);
+}
+
+TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
+  // The stock solver's two directions are turned along the slip, so its pyramid is exact here too.
+  for (const double mu : {0.15, 0.4})
+    for (const double ratio : {0.97, 1.03}) {
+      World world(GetParam());
+      const Built box = steelBox(), ground = plate();
+      const double angle_rad = std::atan(mu * ratio);
+      const Mat3 R = rotationFromVector(Vec3(0.3, 0.95, 0).normalized() * angle_rad);  // no lattice direction
+      world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, mu);
+      btRigidBody& body = world.add(box, Pose(R, R * Vec3(0, 0, 0.005)), false, mu);
+      world.step(200);
+      const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
+      world.step(100);
+      const double moved_m = (fromBt(body.getWorldTransform().getOrigin()) - start).norm();
+      if (ratio < 1) {
+        EXPECT_LE(moved_m, 1e-6) << mu;
+      } else {
+        // a = g (sin - mu cos); it slid for 0.2 s, then 0.1 s more: a (0.3^2 - 0.2^2) / 2.
+        const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
+        EXPECT_NEAR(moved_m, a * 0.05 / 2, 0.03 * a * 0.05 / 2) << mu;
+      }
+    }
+}
+
+TEST_P(RestWithSolver, FallsFreelyUntilItTouches) {
+  World world(GetParam());
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005 + 0.005)));
+  world.step(30);
+  // Symplectic Euler: z = g dt^2 n (n + 1) / 2, exactly.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010 - kGravity * 1e-6 * 30 * 31 / 2,
+              kIsDouble ? 1e-12 : 1e-7);
+  world.step(70);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
+}
+
+TEST_P(RestWithSolver, BouncesWithTheProductOfTheRestitutions) {
+  World world(GetParam());
+  const Built box = steelBox(), ground = plate();
+  world.world->setGravity(btVector3(0, 0, 0));
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true).setRestitution(1);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005 + 0.0033)));
+  body.setRestitution(toBt(0.5));
+  body.setLinearVelocity(btVector3(0, 0, -1));
+  world.step(20);
+  EXPECT_NEAR(body.getLinearVelocity().z(), 0.5, 0.005);
+  EXPECT_LE(body.getAngularVelocity().length(), 1e-3 * 0.5 / 0.01);
+}
+
+TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
+  World world(GetParam());
+  const Built box = steelBox();
+  world.world->setGravity(btVector3(0, 0, 0));
+  btRigidBody& a = world.add(box, Pose());
+  btRigidBody& b = world.add(box, Pose(rotationFromVector(Vec3(0.3, 0.2, 0.1)), Vec3(0.002, 0.003, 0.02)));
+  b.setLinearVelocity(btVector3(0, 0, -1));
+  const double m = box.frame.mass_kg;
+  const auto angular = [&](btRigidBody& body) {
+    const Mat3 I = fromBt(body.getInvInertiaTensorWorld()).inverse();
+    const Vec3 p = fromBt(body.getWorldTransform().getOrigin());
+    return Vec3(I * fromBt(body.getAngularVelocity()) + m * p.cross(fromBt(body.getLinearVelocity())));
+  };
+  const Vec3 L0 = angular(a) + angular(b);
+  // Until they have just met: Bullet's integrator keeps the angular velocity of a tumbling box rather than
+  // its momentum, which adds up later.
+  for (int i = 0; i < 50 && a.getLinearVelocity().length() < 0.1; ++i) world.step();
+  EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // they met
+  const Vec3 P = m * fromBt(a.getLinearVelocity() + b.getLinearVelocity());
+  EXPECT_LE((P - Vec3(0, 0, -m)).norm(), (kIsDouble ? 1e-9 : 1e-5) * m);
+  // VpsSolver applies both forces in one line; the stock solver at points that are up to a step's travel (1
+  // mm) apart, so that friction (0.15 of at most the momentum) leaves a moment.
+  const double tol = GetParam() == Solver::Vps ? 2e-3 * m * 0.01 : 0.15 * m * 1e-3;
+  EXPECT_LE((angular(a) + angular(b) - L0).norm(), tol);
+  const double energy_J = 0.5 * m * (a.getLinearVelocity().length2() + b.getLinearVelocity().length2());
+  EXPECT_LE(energy_J, 0.5 * m * 1.0001);
+}
+
+TEST_P(RestWithSolver, AFastPartDoesNotTunnel) {
+  for (const double speed_m_s : {5.0, 50.0}) {
+    World world(GetParam());
+    const Built box = steelBox(), ground = plate();
+    world.world->setGravity(btVector3(0, 0, 0));
+    world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+    btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.2)));
+    body.setLinearVelocity(btVector3(0, 0, toBt(-speed_m_s)));
+    world.step(100);
+    EXPECT_GE(body.getWorldTransform().getOrigin().z(), 0.005 - 5e-6) << speed_m_s;
+    EXPECT_GE(body.getLinearVelocity().z(), -1e-3) << speed_m_s;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps),
+                         [](const auto& info) { return info.param == Solver::Stock ? "Stock" : "Vps"; });
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A small Bullet world with VPS installed, and the bodies the tests put into it.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vps/mesh_distance.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/install.h"
+#include "vps_bullet/shape.h"
+#include "vps_bullet/solver.h"
+
+namespace vps::test {
+
+enum class Solver { Stock, Vps };
+
+struct Built {
+  std::shared_ptr<VpsShape> shape;
+  Mesh mesh;
+  BodyFrame frame;
+  std::shared_ptr<const MeshDistance> exact;
+};
+
+/// Map, shell and exact surface of a mesh, as a shape whose frame is the principal one.
+inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25e-3,
+                   double spacing_m = 0.5e-3) {
+  Built built;
+  built.mesh = mesh;
+  built.frame = makeBodyFrame(massProperties(mesh), density_kg_m3);
+  Part part;
+  part.mesh = mesh;
+  VoxMapSettings voxels;
+  voxels.voxel_m = voxel_m;
+  part.map = std::make_shared<const VoxMap>(buildVoxMap(mesh, voxels));
+  PointShellSettings points;
+  points.spacing_m = spacing_m;
+  part.shell = std::make_shared<const PointShell>(buildPointShell(mesh, points));
+  VpsModels models = makeModels(part);
+  built.exact = models.surfaces[0].distance;
+  built.shape = std::make_shared<VpsShape>(std::move(models), built.frame.X_PB.inverse());
+  return built;
+}
+
+class World {
+ public:
+  explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100)
+      : dispatcher(&config) {
+    if (solver == Solver::Vps)
+      solver_ = std::make_unique<VpsSolver>();
+    else
+      solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+    world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
+    installVps(dispatcher, settings);
+    tuneWorld(*world, iterations);
+    world->setGravity(btVector3(0, 0, toBt(-9.81)));
+  }
+  ~World() {
+    for (auto& body : bodies) world->removeRigidBody(body.get());
+    uninstallVps(dispatcher);
+  }
+
+  /// mass 0: fixed. X_WP is the pose of the part's own frame.
+  btRigidBody& add(const Built& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15) {
+    const double mass_kg = is_fixed ? 0 : part.frame.mass_kg;
+    return addShape(*part.shape, mass_kg, part.frame.inertia_kg_m2, X_WP * part.frame.X_PB, friction);
+  }
+  btRigidBody& addShape(btCollisionShape& shape, double mass_kg, const Vec3& inertia, const Pose& X_WB,
+                        double friction = 0.15) {
+    btRigidBody::btRigidBodyConstructionInfo info(toBt(mass_kg), nullptr, &shape,
+                                                  mass_kg > 0 ? toBt(inertia) : btVector3(0, 0, 0));
+    info.m_startWorldTransform = toBt(X_WB);
+    info.m_friction = toBt(std::sqrt(friction));  // Bullet multiplies the two bodies' values
+    bodies.push_back(std::make_unique<btRigidBody>(info));
+    bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+    world->addRigidBody(bodies.back().get());
+    return *bodies.back();
+  }
+  void step(int count = 1, double dt_s = 1e-3) {
+    for (int i = 0; i < count; ++i) world->stepSimulation(toBt(dt_s), 0);
+  }
+
+  btDefaultCollisionConfiguration config;
+  btCollisionDispatcher dispatcher;
+  btDbvtBroadphase broadphase;
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
+  std::unique_ptr<btDiscreteDynamicsWorld> world;
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+};
+
+/// Pose of the part's own frame.
+inline Pose partPose(const btRigidBody& body, const Built& part) {
+  return fromBt(body.getWorldTransform()) * part.frame.X_PB.inverse();
+}
+
+/// Greatest depth [m] of either part's vertices in the other, by exact distance; negative: the least gap.
+inline double penetration_m(const Built& a, const Pose& X_WA, const Built& b, const Pose& X_WB) {
+  double least = 1e300;
+  const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();
+  for (const Vec3& p : b.mesh.vertices) least = std::min(least, a.exact->signedDistance(X_AB * p));
+  for (const Vec3& p : a.mesh.vertices) least = std::min(least, b.exact->signedDistance(X_BA * p));
+  return -least;
+}
+
+}  // namespace vps::test
