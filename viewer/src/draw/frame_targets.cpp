@@ -31,9 +31,9 @@ FrameTargets::FrameTargets(int width, int height, int factor)
   geometry = gl::makeTexture(GL_RGBA32F, width, height, GL_NEAREST);
   geometry_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, width, height, 0);
   geometry_target = targetOf(geometry, "normals", &geometry_depth);
-  occlusion_raw = gl::makeTexture(GL_R8, width, height, GL_NEAREST);
+  occlusion_raw = gl::makeTexture(GL_RG8, width, height, GL_NEAREST);
   occlusion_raw_target = targetOf(occlusion_raw, "occlusion");
-  occlusion = gl::makeTexture(GL_R8, width, height, GL_LINEAR);
+  occlusion = gl::makeTexture(GL_RG8, width, height, GL_LINEAR);
   occlusion_target = targetOf(occlusion, "blurred occlusion");
 
   const int w = width * factor, h = height * factor;

@@ -17,6 +17,20 @@ std::uint8_t toSrgb(float linear) {
   return static_cast<std::uint8_t>(std::lround(255 * s));
 }
 
+/// Lays white over rows y0 to y1, so that words stay readable on whatever is behind them: `opacity` at the
+/// picture's border, fading out over the last third.
+void whiten(Image& image, double y0, double y1, double opacity) {
+  const double middle_y = 0.5 * image.height, sign = y0 < middle_y ? 1 : -1;
+  const double outer = sign > 0 ? y0 : y1, height = y1 - y0;
+  for (int y = std::max(0, static_cast<int>(y0)); y < std::min(image.height, static_cast<int>(y1)); ++y) {
+    const double inward = sign * (y - outer) / height;
+    const double here = opacity * std::clamp(3 * (1 - inward), 0.0, 1.0);
+    std::uint8_t* row = image.at(0, y);
+    for (int i = 0; i < 3 * image.width; ++i)
+      row[i] = static_cast<std::uint8_t>(std::lround(row[i] + (248 - row[i]) * here));
+  }
+}
+
 /// One entry after the other along the lower border.
 class Legend {
  public:
@@ -76,6 +90,12 @@ void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& opti
   const double scale = std::clamp(image.height / 960.0, 0.6, 3.0);
   const double left = 24 * scale;
   double y = 24 * scale;
+  const auto line_count = std::count(options.caption.begin(), options.caption.end(), '\n') + 1;
+  if (!options.title.empty() || !options.caption.empty())
+    whiten(
+        image, 0,
+        ((options.title.empty() ? 24 : 48) + (options.caption.empty() ? 0 : 23.0 * line_count) + 30) * scale,
+        0.6);
   if (!options.title.empty()) {
     y += 16 * scale;
     lettering.write(image, left, y, options.title, {23 * scale, FontWeight::Bold, 35});
@@ -89,17 +109,22 @@ void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& opti
   }
   if (!options.show_legend) return;
 
-  Legend legend(image, lettering, scale);
   const bool has_hand_part = std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
                                          [](const BodySnapshot& b) { return b.role == BodyRole::InHand; });
+  const bool has_target = snapshot.has_target && options.show_target;
+  const bool has_force = snapshot.has_hand && options.show_force;
+  const bool has_contacts = !snapshot.contacts.empty() && options.show_contacts;
+  if (!has_hand_part && !has_target && !has_force && !has_contacts) return;
+  whiten(image, image.height - 66 * scale, image.height, 0.6);
+  Legend legend(image, lettering, scale);
   if (has_hand_part && options.highlight_hand) legend.swatch(colors.hand, 1, "part in hand");
-  if (snapshot.has_target && options.show_target) legend.swatch(colors.target, 0.4, "target");
-  if (snapshot.has_hand && options.show_force) {
+  if (has_target) legend.swatch(colors.target, 0.4, "target");
+  if (has_force) {
     char text[60];
     std::snprintf(text, sizeof text, "force on the hand %.1f N", snapshot.F_hand_W.f.norm());
     legend.swatch(kForceColor, 1, text);
   }
-  if (!snapshot.contacts.empty() && options.show_contacts) legend.depthScale(options.contact_full_scale_m);
+  if (has_contacts) legend.depthScale(options.contact_full_scale_m);
 }
 
 }  // namespace vps

@@ -107,6 +107,44 @@ std::vector<std::pair<bool, Pose>> fixedPoses(const RenderScene& scene) {
   return fixed;
 }
 
+/// Where a part lies in the viewport, and whether the cutting plane passes through it.
+struct ScreenBox {
+  GLint x, y;
+  GLsizei width, height;
+  bool meets_plane;
+};
+
+ScreenBox boxOnScreen(const Box& box_P, const DrawnBody& body, const View& view) {
+  GLint viewport[4];
+  glGetIntegerv(GL_VIEWPORT, viewport);
+  ScreenBox whole = {0, 0, viewport[2], viewport[3], false};
+  Eigen::Array2d low(1, 1), high(-1, -1);
+  bool is_near_side = false, is_far_side = false, reaches_eye = false;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner_P((i & 1) != 0 ? box_P.max.x() : box_P.min.x(),
+                        (i & 2) != 0 ? box_P.max.y() : box_P.min.y(),
+                        (i & 4) != 0 ? box_P.max.z() : box_P.min.z());
+    const Vec3 p_C = body.X_CP * (corner_P - body.mesh->shading.center);
+    (view.cut_C.head<3>().cast<double>().dot(p_C) > view.cut_C.w() ? is_near_side : is_far_side) = true;
+    if (p_C.z() > -view.near_m) {
+      reaches_eye = true;
+      continue;
+    }
+    const Eigen::Array2d ndc = p_C.head<2>().array() / (-p_C.z() * view.half_view.cast<double>().array());
+    low = low.min(ndc);
+    high = high.max(ndc);
+  }
+  whole.meets_plane = is_near_side && is_far_side;
+  if (reaches_eye || !whole.meets_plane) return whole;
+  low = low.max(-1.0);
+  high = high.min(1.0);
+  whole.x = static_cast<GLint>(std::floor(0.5 * (low.x() + 1) * viewport[2])) - 1;
+  whole.y = static_cast<GLint>(std::floor(0.5 * (low.y() + 1) * viewport[3])) - 1;
+  whole.width = std::max(0, static_cast<GLint>(std::ceil(0.5 * (high.x() + 1) * viewport[2])) + 1 - whole.x);
+  whole.height = std::max(0, static_cast<GLint>(std::ceil(0.5 * (high.y() + 1) * viewport[3])) + 1 - whole.y);
+  return whole;
+}
+
 struct Programs {
   gl::Program mesh{"mesh", glsl::kMeshVertex, std::string(glsl::kStudio) + glsl::kMeshFragment};
   gl::Program ghost{"ghost", glsl::kMeshVertex, glsl::kGhostFragment};
@@ -229,6 +267,7 @@ View Renderer::Impl::makeView(const Snapshot& snapshot, const Camera& camera,
   const double near_m = std::max(depth_m - reach_m, 1e-3 * far_m);
   view.near_m = static_cast<float>(near_m);
   const double tan_y = std::tan(0.5 * camera.fov_rad);
+  view.detail_m = std::min(view.radius_m, 1.5 * tan_y * (camera.eye_W - camera.target_W).norm());
   view.half_view =
       Vector2f(static_cast<float>(tan_y * options.width / options.height), static_cast<float>(tan_y));
   // The floor reaches beyond the box: its far side may pass the far plane of the box, so leave room.
@@ -347,6 +386,10 @@ void Renderer::Impl::drawOcclusion(const View& view) const {
   occlusion.set("half_view", view.half_view);
   occlusion.set("radius_m", radius_m);
   occlusion.set("projection", view.projection);
+  glBindTextureUnit(1, gl->shadows.key.id());
+  occlusion.set("shadow_map", 1);
+  occlusion.set("shadow_from_C", view.shadow_from_C);
+  occlusion.set("shadow_offset_m", static_cast<float>(0.006 * view.radius_m));
   glBindFramebuffer(GL_FRAMEBUFFER, gl->frame->occlusion_raw_target.id());
   fullScreen(occlusion);
   glBindTextureUnit(1, gl->frame->occlusion_raw.id());
@@ -361,11 +404,7 @@ void Renderer::Impl::drawOcclusion(const View& view) const {
 
 void Renderer::Impl::setStudio(const gl::Program& program, const View& view) const {
   glBindTextureUnit(0, gl->frame->occlusion.id());
-  glBindTextureUnit(1, gl->shadows.key.id());
-  program.set("ambient_occlusion", 0);
-  program.set("shadow_map", 1);
-  program.set("shadow_from_C", view.shadow_from_C);
-  program.set("shadow_offset_m", static_cast<float>(0.006 * view.radius_m));
+  program.set("light_reaching", 0);
   program.set("up_C", view.up_C);
   program.set("picture_px", Vector2f(static_cast<float>(gl->frame->width * gl->frame->factor),
                                      static_cast<float>(gl->frame->height * gl->frame->factor)));
@@ -387,9 +426,12 @@ void Renderer::Impl::drawCaps(const gl::Program& program, const std::vector<Draw
   program.set("half_size_m", static_cast<float>(2 * view.radius_m));
 
   glEnable(GL_STENCIL_TEST);
-  const std::vector<DrawnBody> one(1);
+  glEnable(GL_SCISSOR_TEST);
   for (const DrawnBody& body : bodies) {
     if (!body.is_cut) continue;
+    const ScreenBox screen = boxOnScreen(part_bounds[body.part], body, view);
+    if (!screen.meets_plane) continue;
+    glScissor(screen.x, screen.y, screen.width, screen.height);  // stencil and caps cost by the pixel
     // Along a pixel's ray behind the plane: back faces minus front faces is 1 where the ray starts inside the
     // solid.
     glClear(GL_STENCIL_BUFFER_BIT);
@@ -412,6 +454,7 @@ void Renderer::Impl::drawCaps(const gl::Program& program, const std::vector<Draw
     program.set("hatch_step_m", static_cast<float>(0.035 * view.detail_m * (1 + 0.25 * (body.part % 3))));
     quad(program);
   }
+  glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
 }
 

@@ -28,23 +28,11 @@ void main() {
 // reflection of those same lamps with Schlick's Fresnel term [Schlick 1994].
 inline constexpr const char* kStudio = R"(
 uniform vec3 up_C;
-uniform sampler2D ambient_occlusion;
-uniform sampler2DShadow shadow_map;
-uniform mat4 shadow_from_C;
-uniform float shadow_offset_m;
+uniform sampler2D light_reaching;  // of the sky, of the key light: see kOcclusionFragment
 uniform vec2 picture_px;
 const vec3 kKey = normalize(vec3(-0.55, 0.75, 0.60));
 const vec3 kFill = normalize(vec3(0.85, 0.10, 0.50));
 const vec3 kRim = normalize(vec3(0.35, 0.45, -0.85));
-
-float keyShadow(vec3 p_C, vec3 n) {
-  vec4 s = shadow_from_C * vec4(p_C + shadow_offset_m * n, 1);
-  vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
-  float lit = 0.0;
-  for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) lit += texture(shadow_map, vec3(s.xy + 2.0 * vec2(x, y) * texel, s.z));
-  return lit / 25.0;
-}
 
 vec3 environment(vec3 r) {
   float height = dot(r, up_C);
@@ -54,8 +42,8 @@ vec3 environment(vec3 r) {
 
 vec3 studio(vec3 p_C, vec3 n, vec3 albedo) {
   vec3 v = normalize(-p_C);
-  float open = texture(ambient_occlusion, gl_FragCoord.xy / picture_px).r;
-  float lit = keyShadow(p_C, n);
+  vec2 reaching = texture(light_reaching, gl_FragCoord.xy / picture_px).rg;
+  float open = reaching.r, lit = reaching.g;
   float n_v = max(dot(n, v), 0.0);
   vec3 hemisphere = mix(vec3(0.21, 0.20, 0.195), vec3(0.42, 0.44, 0.47), 0.5 + 0.5 * dot(n, up_C));
   vec3 diffuse = hemisphere * open;
@@ -154,14 +142,28 @@ uniform sampler2D geometry;
 uniform vec2 half_view;  // tan of half the angles of view
 uniform float radius_m;
 uniform mat4 projection;
-out float open;
+uniform sampler2DShadow shadow_map;
+uniform mat4 shadow_from_C;
+uniform float shadow_offset_m;
+out vec2 reaching;
 const int kSamples = 20;
+
+float keyLight(vec3 p_C, vec3 n) {
+  vec4 s = shadow_from_C * vec4(p_C + shadow_offset_m * n, 1);
+  vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
+  float lit = 0.0;
+  for (int y = -2; y <= 2; ++y)
+    for (int x = -2; x <= 2; ++x) lit += texture(shadow_map, vec3(s.xy + 2.0 * vec2(x, y) * texel, s.z));
+  return lit / 25.0;
+}
+
 void main() {
   vec4 g = texture(geometry, uv);
-  open = 1.0;
+  reaching = vec2(1);
   if (g.w > -1e-9 || g.w < -1e8) return;
   vec3 p = vec3((2.0 * uv - 1.0) * half_view * -g.w, g.w);
   vec3 n = g.xyz;
+  float lit = keyLight(p, n);
   p += n * radius_m * 0.03;
   ivec2 tile = ivec2(gl_FragCoord.xy) & 3;
   float turn = 6.2831853 * float(((4 * tile.x + tile.y) * 7) & 15) / 16.0;
@@ -181,27 +183,28 @@ void main() {
     float nearby = smoothstep(0.0, 1.0, radius_m / max(abs(p.z - z), 1e-12));
     hidden += z > s.z + radius_m * 0.02 ? nearby : 0.0;
   }
-  open = pow(clamp(1.0 - hidden / float(kSamples), 0.0, 1.0), 1.5);
+  reaching = vec2(pow(clamp(1.0 - hidden / float(kSamples), 0.0, 1.0), 1.5), lit);
 }
 )";
 
 inline constexpr const char* kOcclusionBlurFragment = R"(
 uniform sampler2D occlusion, geometry;
 uniform float radius_m;
-out float open;
+out vec2 reaching;
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   ivec2 last = textureSize(occlusion, 0) - 1;
   float z = texelFetch(geometry, here, 0).w;
-  float sum = 0.0, weights = 0.0;
+  vec2 sum = vec2(0);
+  float weights = 0.0;
   for (int y = -2; y < 2; ++y)
     for (int x = -2; x < 2; ++x) {
       ivec2 q = clamp(here + ivec2(x, y), ivec2(0), last);
       float weight = abs(texelFetch(geometry, q, 0).w - z) < 0.3 * radius_m ? 1.0 : 0.001;
-      sum += weight * texelFetch(occlusion, q, 0).r;
+      sum += weight * texelFetch(occlusion, q, 0).rg;
       weights += weight;
     }
-  open = sum / weights;
+  reaching = sum / weights;
 }
 )";
 

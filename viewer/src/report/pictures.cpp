@@ -31,7 +31,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.show_target = options.show_contacts = options.show_force = options.show_legend = false;
     options.title = result_.scene.empty() ? scene_.name : result_.scene;
-    options.caption = result_.completed ? "as assembled" : "as far as it came";
+    options.caption = result_.completed ? "as assembled" : "what is in place";
     const Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     pictures.overview = save("overview.png", result_.finished, camera, options);
     options.caption += ", cut through the middle";
