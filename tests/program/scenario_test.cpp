@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sample scenes from end to end: what the report claims, read back from its data.
+#include "program.h"
+
+#include <nlohmann/json.hpp>
+
+namespace vps {
+namespace {
+
+using nlohmann::json;
+
+const std::string kScenes = VPS_SOURCE_DIR "/scenes/";
+
+class Scenario : public Program {
+ protected:
+  json read(const std::string& name) const { return json::parse(slurp(folder_ / name)); }
+
+  /// The peg in hole with other lines for its step; meshes by absolute path.
+  void writePegScene(const std::string& peg, const std::string& step) const {
+    const std::string folder = kScenes + "peg_in_hole/";
+    write("scene.toml", "unit = 'mm'\n[[part]]\nfile = '" + folder +
+                            "hole.stl'\nfixed = true\n[[part]]\nfile = '" + folder + "peg.stl'\n" + peg +
+                            "[[step]]\npart = 'peg'\n" + step);
+  }
+};
+
+json withoutWall(json data) {
+  data.erase("wall");
+  return data;
+}
+
+// The bars of the bearing block: every part ends where it belongs, never deeper in another than a quarter of
+// the fit's clearance or 10 um, and stays where it was let go to within 5 um for 2 s, with gravity and
+// without sleeping.
+TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
+  const Ran ran = run("assemble " + kScenes + "bearing_block/scene.toml --out out");
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
+  const json data = read("out/assemble.json");
+  EXPECT_TRUE(data["completed"].get<bool>());
+  ASSERT_EQ(data["steps"].size(), 9u);
+  for (const json& step : data["steps"]) {
+    const std::string part = step["part"];
+    EXPECT_TRUE(step["completed"].get<bool>()) << part;
+    EXPECT_LE(step["max_penetration_m"].get<double>(), step["penetration_limit_m"].get<double>()) << part;
+    EXPECT_LE(step["penetration_limit_m"].get<double>(), 10e-6) << part;
+    EXPECT_LE(step["rest_drift_m"].get<double>(), 5e-6) << part;
+    // By contact: it touched on the way, and the hand felt its seat.
+    EXPECT_GE(step["impacts"].get<int>() + step["slides"].get<int>(), 1) << part;
+    EXPECT_GT(step["peak_force_N"].get<double>(), 1) << part;
+    EXPECT_LE(step["peak_force_N"].get<double>(), 30) << part;  // the device's peak, Table 1
+  }
+  EXPECT_LE(data["energy"]["injected_J"].get<double>(), 1e-3);
+  EXPECT_EQ(data["physics"]["ticks"].get<long>(), data["haptic"]["ticks"].get<long>());
+  for (const char* file : {"report.html", "trace.csv", "steps.csv"})
+    EXPECT_GT(fs::file_size(folder_ / "out" / file), 100u) << file;
+}
+
+TEST_F(Scenario, TwoRunsGiveTheSameBitsButForWallClocks) {
+  for (const char* out : {"a", "b"})
+    ASSERT_EQ(run("assemble " + kScenes + "peg_in_hole/scene.toml --out " + out).status, 0);
+  std::size_t compared = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "a")) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".png" && extension != ".csv" && extension != ".svg") continue;
+    const fs::path twin = folder_ / "b" / fs::relative(entry.path(), folder_ / "a");
+    EXPECT_EQ(slurp(entry.path()), slurp(twin)) << entry.path();
+    ++compared;
+  }
+  EXPECT_GE(compared,
+            2u);  // trace and steps at the least; pictures where there is EGL, plots where there is gnuplot
+  EXPECT_EQ(withoutWall(read("a/assemble.json")).dump(), withoutWall(read("b/assemble.json")).dump());
+}
+
+TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndSaysSo) {
+  writePegScene("", "target = {position = [0, 0, -17]}\ntimeout_s = 4\n");
+  const Ran ran = run("assemble scene.toml --out out");
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  const json data = read("out/assemble.json");
+  EXPECT_FALSE(data["completed"].get<bool>());
+  EXPECT_NE(data["steps"][0]["why_not"].get<std::string>(), "");
+}
+
+TEST_F(Scenario, APartThatStartsInsideAnotherIsRefusedByName) {
+  writePegScene("pose = {position = [0, 0, -15]}\n", "start = {position = [1, 0, -10]}\n");
+  expectRefused("assemble scene.toml --out out", "part 'peg': starts");
+}
+
+}  // namespace
+}  // namespace vps
