@@ -55,7 +55,7 @@ struct DrawOptions {
   std::string title;                    ///< first line, top left; UTF-8
   std::string caption;                  ///< smaller lines under it; '\n' starts a new one
   double contact_full_scale_m = 20e-6;  ///< depth at the red end of the colour scale
-  double force_full_scale_N = 15;       ///< force whose arrow is a quarter of the scene's size
+  double force_full_scale_N = 15;       ///< force whose arrow is a sixth of the picture's size
   int supersampling = 2;                ///< 1 quick, 2 for print: each pixel is 2x2, on top of multisampling
 };
 

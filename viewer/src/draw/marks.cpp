@@ -61,9 +61,9 @@ MarkList listMarks(const Snapshot& snapshot, const Pose& X_CW, double size_m, co
   const Vec3& f = snapshot.F_hand_W.f;
   if (options.show_force && snapshot.has_hand && f.allFinite() &&
       f.norm() > 0.01 * options.force_full_scale_N) {
-    const double length_m = 0.25 * size_m * std::min(1.5, f.norm() / options.force_full_scale_N);
+    const double length_m = 0.16 * size_m * std::min(1.5, f.norm() / options.force_full_scale_N);
     marks.arrows.push_back(makeMark(X_CW * snapshot.X_W_Proxy.p, X_CW.R * f.normalized(),
-                                    std::max(length_m, 0.03 * size_m), 0.028 * size_m, kForceColor));
+                                    std::max(length_m, 0.04 * size_m), 0.026 * size_m, kForceColor));
   }
   return marks;
 }

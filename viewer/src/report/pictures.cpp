@@ -81,6 +81,11 @@ class PictureSet {
             close_W.add(part_W.min);
             close_W.add(part_W.max);
           }
+      if (i < result_.contact.size() &&
+          result_.contact[i].has_hand) {  // the force's arrow starts at the hand
+        const Vec3& p_hand_W = result_.contact[i].X_W_Proxy.p;
+        if ((p_hand_W - close_W.center()).norm() < close_W.size().norm()) close_W.add(p_hand_W);
+      }
       const Vec3 room_W = Vec3::Constant(0.2 * close_W.size().norm());
       camera = frame({close_W.min - room_W, close_W.max + room_W});
       const Pose& X_before = step->way_points.empty() ? step->X_WP_start : step->way_points.back();
@@ -91,7 +96,7 @@ class PictureSet {
       double depth_m = 0;
       for (const ContactMark& c : s.contacts) depth_m = std::max(depth_m, c.depth_m);
       options.caption = "contact at " + format(s.time_s, "%.3f s") + ", depth " +
-                        format(1e6 * depth_m, "%.1f µm") + ", force " + format(s.F_hand_W.f.norm(), "%.1f N");
+                        format(1e6 * depth_m, "%.2f µm") + ", force " + format(s.F_hand_W.f.norm(), "%.1f N");
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {

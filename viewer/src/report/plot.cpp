@@ -187,7 +187,8 @@ PlotOutcome plotForces(const std::vector<TraceRow>& whole_trace, const std::stri
     marks += std::string("keyentry with boxes fillstyle solid fillcolor rgb \"") + kPhaseColors[k] +
              "\" title " + quoted(std::string("phase: ") + kPhaseNames[k]) + ", \\\n  ";
 
-  const double start_s = trace.front().time_s, end_s = std::max(trace.back().time_s, start_s + 1e-3);
+  const double start_s = std::floor(100 * trace.front().time_s) / 100,
+               end_s = std::max(trace.back().time_s, start_s + 1e-3);
   script += "set multiplot\nset lmargin at screen 0.075\nset rmargin at screen 0.83\n";
   script += "set xrange [" + number(start_s) + ":" + number(end_s) + "]\nset format x \"\"\n";
   script += shadePhases(trace);
