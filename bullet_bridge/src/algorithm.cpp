@@ -30,7 +30,6 @@ struct Selection {
   bool is_valid = false;
   Pose X_01;           ///< body 1 in body 0
   double reach_m = 0;  ///< how far the query looked
-  unsigned revision[2] = {0, 0};
 };
 
 }  // namespace
@@ -39,6 +38,7 @@ struct VpsPairState {
   std::shared_ptr<VpsContext> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
+  unsigned revision[2] = {0, 0};  ///< of the shapes that writer's and selection's ids belong to
 };
 
 namespace {
@@ -200,7 +200,6 @@ void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, c
   selection.is_valid = true;
   selection.X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   selection.reach_m = motion.slack_m + motion.speed_m_s * motion.dt_s;
-  for (int i = 0; i < 2; ++i) selection.revision[i] = pair.vps[i] ? pair.vps[i]->revision() : 0;
 }
 
 // A part that has not moved since its points were chosen keeps them: only their distances are looked up anew.
@@ -210,8 +209,6 @@ bool recallSelection(const Selection& selection, const PairView& pair, const Rel
   constexpr double kStill_m =
       1e-6;  // assumed: below it no other point would be worth more than the chosen ones
   if (!selection.is_valid) return false;
-  for (int i = 0; i < 2; ++i)
-    if (selection.revision[i] != (pair.vps[i] ? pair.vps[i]->revision() : 0)) return false;
   if (motion.slack_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
@@ -226,6 +223,17 @@ bool recallSelection(const Selection& selection, const PairView& pair, const Rel
   correctAll(pair, motion, settings, out);
   dropUnreachable(motion, out);
   return true;
+}
+
+// Point ids do not outlive the models they belong to.
+void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
+  for (int i = 0; i < 2; ++i) {
+    const unsigned revision = pair.vps[i] ? pair.vps[i]->revision() : 0;
+    if (state.revision[i] == revision) continue;
+    state.revision[i] = revision;
+    state.selection.is_valid = false;
+    state.writer->forget();
+  }
 }
 
 void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
@@ -277,6 +285,7 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
     return;
   }
 
+  forgetReplacedModels(*state_, pair);
   const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, context.settings.slack_m);
   if (!recallSelection(state_->selection, pair, motion, context.settings, candidates)) {
     collectForStep(pair, motion, context, candidates);

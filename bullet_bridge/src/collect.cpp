@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <span>
 
 #include "candidate.h"
 #include "primitive.h"
 
 namespace vps {
+
+namespace {
+
+std::size_t limitOf(const VpsBulletSettings& settings, const PointShell& shell) {
+  return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
+}
+
+}  // namespace
 
 bool RelativeMotion::canTouch(Candidate& c) const {
   const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
@@ -19,14 +28,11 @@ bool RelativeMotion::canTouch(Candidate& c) const {
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
                            const VpsBulletSettings& settings, std::vector<Candidate>& out,
                            std::size_t& points_tested) {
-  // One buffer a thread, so that pairs do not each hold megabytes; sized at first use.
-  thread_local ContactSet near(0);
-  near.contacts.clear();
-  near.left_out = 0;
-  near.contacts.reserve(static_cast<std::size_t>(settings.candidate_limit));
-
   const VpsModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
+  // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
+  thread_local ContactSet near(0);
+  near.contacts.reserve(shell.size());
   QueryOptions options;
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
@@ -34,9 +40,9 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
-  for (const Contact& contact : near.contacts) {
-    if (contact.n_M.squaredNorm() < 0.5)
-      continue;  // deeper than the band: the field does not know the way out
+  // The buffer's capacity depends on what other pairs needed; the limit must not.
+  const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
+  for (const Contact& contact : std::span(near.contacts).first(count)) {
     Candidate c;
     c.p_W = other.X_WM * contact.p_M;
     c.n_W = sign * (other.X_WM.R * contact.n_M);
@@ -46,7 +52,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
     c.side = side.side;
     out.push_back(c);
   }
-  return near.left_out;
+  return near.contacts.size() - count;
 }
 
 std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
@@ -56,7 +62,7 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
   const Pose X_SM = X_WS.inverse() * side.X_WM;
   const double sign = side.side == 0 ? 1 : -1;
   std::size_t left_out = 0;
-  const auto limit = static_cast<std::size_t>(settings.candidate_limit);
+  const std::size_t limit = limitOf(settings, shell);
   for (std::size_t i = 0; i < shell.nodes.size();) {
     const ShellNode& node = shell.nodes[i];
     if (primitiveDistance(primitive, X_SM * node.center).distance_m - node.radius_m > cutoff_m) {
@@ -99,6 +105,9 @@ void lookUp(const SideView& side, const SideView& other, const btCollisionShape&
   }
   c.distance_m = at.distance_m;
   c.n_W = sign * (other.X_WM.R * at.n);
+  // Deeper than the band the field knows no way out; the point's own inward normal is what queryContacts
+  // gives.
+  if (at.n.isZero(0)) c.n_W = sign * (side.X_WM.R * side.shape->models().shell->inward[c.id]);
 }
 
 }  // namespace vps

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cross_matrix.h"
 #include "vps_bullet/convert.h"
 
 namespace vps {
@@ -28,12 +29,6 @@ void requireUsable(const CouplingGains& g) {
        {g.k_N_per_m, g.b_Ns_per_m, g.k_Nm_per_rad, g.b_Nms_per_rad, g.max_force_N, g.max_torque_Nm})
     if (!(value >= 0) || !std::isfinite(value))
       throw std::invalid_argument("VpsCoupling: every gain and limit must be finite and not negative");
-}
-
-Mat3 crossMatrix(const Vec3& r) {
-  Mat3 m;
-  m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
-  return m;
 }
 
 }  // namespace

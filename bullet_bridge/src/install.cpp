@@ -80,8 +80,8 @@ void forEachPair(const Register& set) {
 
 void requireUsable(const VpsBulletSettings& s) {
   if (s.contact_limit < 4) throw std::invalid_argument("installVps: contact_limit must be at least 4");
-  if (s.candidate_limit < s.contact_limit)
-    throw std::invalid_argument("installVps: candidate_limit must be at least contact_limit");
+  if (s.candidate_limit != 0 && s.candidate_limit < s.contact_limit)
+    throw std::invalid_argument("installVps: candidate_limit must be 0 (all) or at least contact_limit");
   if (!(s.slack_m > 0) || !(s.slack_m < 1e-2))
     throw std::invalid_argument("installVps: slack_m must be positive and below 10 mm");
 }

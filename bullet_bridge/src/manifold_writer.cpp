@@ -107,6 +107,15 @@ void ManifoldWriter::append(btAlignedObjectArray<btPersistentManifold*>& manifol
   for (btPersistentManifold* manifold : manifolds_) manifolds.push_back(manifold);
 }
 
+void ManifoldWriter::forget() {
+  // With the id of no point they match none, and the next write gives their user data back.
+  for (btPersistentManifold* manifold : manifolds_)
+    for (int i = 0; i < manifold->getNumContacts(); ++i) {
+      btManifoldPoint& point = manifold->getContactPoint(i);
+      point.m_index0 = point.m_index1 = -1;
+    }
+}
+
 void ManifoldWriter::harvest() {
   old_.clear();
   for (const btPersistentManifold* manifold : manifolds_)

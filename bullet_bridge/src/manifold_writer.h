@@ -30,6 +30,8 @@ class ManifoldWriter {
   /// Replaces all contacts. Points that stay keep impulses, lifetime and user data.
   void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
              const RelativeMotion& motion);
+  /// Ids now mean other points: nothing of last step's contacts passes to the next.
+  void forget();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;
 
  private:

@@ -15,6 +15,7 @@
 // 2014 and Castro et al. 2021 for implicit springs as effective mass.
 #include "vps_bullet/solver.h"
 
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -23,6 +24,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cross_matrix.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -110,12 +112,6 @@ struct VpsSolver::Work {
 
 namespace {
 
-Mat3 crossMatrix(const Vec3& r) {
-  Mat3 m;
-  m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
-  return m;
-}
-
 // What initSolverBody and convertBodies of the stock solver take as external: forces, torques, gyroscopic
 // terms.
 Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
@@ -135,6 +131,14 @@ Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
 bool hasUnitFactors(const btRigidBody& b) {
   const btVector3 one(1, 1, 1);
   return b.getLinearFactor() == one && b.getAngularFactor() == one;
+}
+
+// No point of the body is farther than this from its origin.
+double reach_m(const btRigidBody& b) {
+  btVector3 center;
+  btScalar radius_m = 0;
+  b.getCollisionShape()->getBoundingSphere(center, radius_m);
+  return center.length() + radius_m;
 }
 
 bool isPlain(const btManifoldPoint& point) {
@@ -194,6 +198,7 @@ void VpsSolver::Work::addContact(btPersistentManifold& manifold, btManifoldPoint
   c.mu = point.m_combinedFriction;
   c.gap_m = point.getDistance() + info.m_linearSlop;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
+  if (n.isZero(0)) return;  // a contact without a direction has nothing to act along
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
     btPlaneSpace1(point.m_normalWorldOnB, point.m_lateralFrictionDir1, point.m_lateralFrictionDir2);
     point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
@@ -317,7 +322,12 @@ void VpsSolver::Work::solvePush(const btContactSolverInfo& info, const VpsSolver
     // 1e-5 m/s for a step of 1 ms is 10 nm.
     if (residual_m_s < 1e-5) break;
   }
-  for (Body& b : bodies) std::swap(b.u, b.push);
+  for (Body& b : bodies) {
+    std::swap(b.u, b.push);
+    // Each row's push is limited already, but rows that contradict each other add up.
+    const double fastest_m_s = b.push.tail<3>().norm() + b.push.head<3>().norm() * reach_m(*b.body);
+    if (fastest_m_s > kMostPush_m_s) b.push *= kMostPush_m_s / fastest_m_s;
+  }
 }
 
 void VpsSolver::Work::finish(double dt_s) {
@@ -417,6 +427,7 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
     while (used < settings_.iteration_limit && work.iterate() > settings_.residual_m_s) ++used;
     iterations_used_ = std::max(iterations_used_, used);
 
+    if (round == kRounds - 1) break;  // unsettled: the laws stay those that u was solved with
     bool is_settled = true;
     for (Held& h : held) {
       const VpsCoupling::Law law = h.coupling->lawAt(h.coupling->step_, h.J * h.body->u);

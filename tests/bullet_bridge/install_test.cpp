@@ -63,6 +63,41 @@ TEST(Install, RefusesSettingsThatCannotWork) {
   settings = {};
   settings.slack_m = 0;
   EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
+  settings = {};
+  settings.candidate_limit = settings.contact_limit - 1;
+  EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
+}
+
+TEST(Install, LooksAtEveryPointOfALargeFace) {
+  // More than 20,000 points touch at once; without those of one corner the plate would tip over it.
+  const Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.002)), 7850, 0.5e-3, 0.25e-3);
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  const Built ground = test::build(makeBox(Vec3(0.05, 0.05, 0.01)), 7850, 0.5e-3, 2e-3);
+  for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, ground.shape.get()}) {
+    World world;
+    const double top_m = under == &plane ? 0 : 0.005;
+    world.addShape(*under, 0, Vec3::Zero(), Pose());
+    world.add(plate, Pose::translation(Vec3(0, 0, top_m + 0.001)));
+    world.step();
+    EXPECT_GT(vpsStats(world.dispatcher).candidates, 20000u) << under->getName();
+    EXPECT_EQ(vpsStats(world.dispatcher).left_out, 0u) << under->getName();
+  }
+}
+
+TEST(Install, ALimitOnCandidatesIsKeptAndCounted) {
+  // After the test above too, whose buffers were larger.
+  btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
+  for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, cube().shape.get()}) {
+    VpsBulletSettings settings;
+    settings.sides = Sides::One;
+    settings.candidate_limit = 80;
+    World world(Solver::Vps, settings);
+    world.addShape(*under, 0, Vec3::Zero(), Pose());
+    world.add(cube(), Pose::translation(Vec3(0, 0, 0.010)));
+    world.step();
+    EXPECT_EQ(vpsStats(world.dispatcher).candidates, 80u) << under->getName();
+    EXPECT_GT(vpsStats(world.dispatcher).left_out, 0u) << under->getName();
+  }
 }
 
 TEST(Install, AQueryFindsPointsInBothOrdersWithOppositeNormals) {

@@ -194,6 +194,57 @@ TEST_P(RestWithSolver, AFastPartDoesNotTunnel) {
   }
 }
 
+// A small part wholly inside a large one, 8 mm from the way out, where the field has ended.
+struct Contained {
+  Built block = test::build(makeBox(Vec3::Constant(0.02)), 7850, 0.5e-3, 1e-3);
+  Built cube = test::build(makeBox(Vec3(0.004, 0.003, 0.005)), 7850, 0.5e-3, 1e-3);
+  btRigidBody& addTo(World& world) {
+    world.world->setGravity(btVector3(0, 0, 0));
+    world.add(block, Pose(), true);
+    return world.add(cube, Pose(rotationFromVector(Vec3(0.3, 0.2, 0.1)), Vec3(1e-4, 2e-4, 3e-4)));
+  }
+};
+
+TEST_P(RestWithSolver, AContainedPartThatDoesNotMoveKeepsItsPose) {
+  // Without push-out it stands still, so that the second step looks its contacts up where they were.
+  World world(GetParam());
+  Contained contained;
+  btRigidBody& body = contained.addTo(world);
+  world.world->getSolverInfo().m_erp2 = 0;
+  const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
+  world.step(3);
+  EXPECT_LE((fromBt(body.getWorldTransform().getOrigin()) - start).norm(), 1e-6);  // false for NaN
+}
+
+TEST(VpsSolver, PartsThatStartInsideEachOtherSeparateGently) {
+  World world;
+  Contained contained;
+  btRigidBody& body = contained.addTo(world);
+  for (int i = 0; i < 5; ++i) {
+    const Pose before = test::partPose(body, contained.cube);
+    world.step();
+    const Pose after = test::partPose(body, contained.cube);
+    for (const Vec3& p : contained.cube.mesh.vertices)
+      EXPECT_LE((after * p - before * p).norm(), 50.1e-6) << "step " << i;  // 0.05 m/s, and rounding
+  }
+}
+
+TEST(VpsSolver, OneSweepLeavesAnErrorThatManyRemove) {
+  const auto spinAfterLanding = [](int iteration_limit) {
+    VpsSolverSettings settings;
+    settings.iteration_limit = iteration_limit;
+    World world(Solver::Vps, {}, 100, settings);
+    const Built box = steelBox(), ground = plate();
+    world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+    btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0051)));
+    body.setLinearVelocity(btVector3(0, 0, toBt(-0.1)));
+    world.step(2);
+    return body.getAngularVelocity().length();
+  };
+  EXPECT_GT(spinAfterLanding(1), 1e-2);
+  EXPECT_LE(spinAfterLanding(400), kRest_m_s / 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(Both, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps),
                          [](const auto& info) { return info.param == Solver::Stock ? "Stock" : "Vps"; });
 

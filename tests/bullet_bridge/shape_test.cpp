@@ -117,6 +117,31 @@ TEST(VpsShape, TellsEdgePointsFromFacePoints) {
   }
 }
 
+TEST(VpsShape, ReplacedModelsInheritNoImpulses) {
+  World world;
+  const Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
+  Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.010)), 7850, 0.5e-3, 1e-3);
+  world.addShape(*plate.shape, 0, Vec3::Zero(), plate.frame.X_PB);
+  world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
+  // A point that stays a contact gets older and starts with the impulse it had.
+  const auto oldest = [&] {
+    int steps = 0;
+    for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
+      for (int i = 0; i < world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts(); ++i)
+        steps =
+            std::max(steps, world.dispatcher.getManifoldByIndexInternal(m)->getContactPoint(i).getLifeTime());
+    return steps;
+  };
+  world.step(10);
+  EXPECT_GE(oldest(), 5);
+  plate.shape->setModels(plate.shape->models());
+  world.step();
+  ASSERT_GT(world.dispatcher.getNumManifolds(), 0);
+  EXPECT_EQ(oldest(), 0);
+  world.step();
+  EXPECT_EQ(oldest(), 1);
+}
+
 TEST(VpsShape, ReplacedModelsTakeEffectAtTheNextStep) {
   // A box on a cooked plate; the plate gets a step that is 1 mm higher: the box comes up with it, gently.
   World world;

@@ -48,10 +48,11 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
 
 class World {
  public:
-  explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100)
+  explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100,
+                 const VpsSolverSettings& solver_settings = {})
       : dispatcher(&config) {
     if (solver == Solver::Vps)
-      solver_ = std::make_unique<VpsSolver>();
+      solver_ = std::make_unique<VpsSolver>(solver_settings);
     else
       solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);

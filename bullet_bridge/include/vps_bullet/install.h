@@ -21,8 +21,10 @@ struct VpsBulletSettings {
   double slack_m = 20e-6;
   Sides sides = Sides::Both;
   Gradient gradient = Gradient::Continuous;
-  bool use_surfaces = true;     ///< correct contacts by VpsModels::surfaces where there are any
-  int candidate_limit = 16384;  ///< near points of one side of a pair looked at; more are counted as left out
+  bool use_surfaces = true;  ///< correct contacts by VpsModels::surfaces where there are any
+  /// Near points of one side of a pair looked at, lowest ids first; 0: all. Bounds a step's time, and leaves
+  /// a patch without contact where points are left out. At least contact_limit.
+  int candidate_limit = 0;
 };
 
 /// Counters since installation, over all pairs of a dispatcher.
@@ -31,7 +33,7 @@ struct VpsBulletStats {
   std::size_t points_tested = 0;
   std::size_t candidates = 0;  ///< points that could touch within the step
   std::size_t contacts = 0;    ///< of them given to the solver
-  std::size_t left_out = 0;    ///< candidates that did not fit candidate_limit: raise it
+  std::size_t left_out = 0;    ///< candidates beyond candidate_limit: raise it
 };
 
 /// Makes VpsShapes collide in worlds that use this dispatcher: with each other, and with Bullet's own shapes.

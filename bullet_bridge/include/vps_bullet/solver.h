@@ -10,7 +10,7 @@ namespace vps {
 
 struct VpsSolverSettings {
   double residual_m_s = 1e-7;  ///< stop when no row's velocity error changes by more
-  int iteration_limit = 400;
+  int iteration_limit = 400;   ///< sweeps over all contacts, >= 1
 };
 
 /// Solves islands of rigid bodies, contacts and VpsCouplings with the coupling folded into the body's
