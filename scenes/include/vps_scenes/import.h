@@ -19,6 +19,10 @@ struct ImportSettings {
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
   double angle_rad = 0.35;  ///< greatest turn between neighbouring triangles of a curved face
+  /// Runs the format's library in a child process (POSIX), so that its crash on a damaged file is a
+  /// LoadError. false: in this process, as for a debugger, or where other threads use Open CASCADE or Coin
+  /// themselves.
+  bool in_own_process = true;
 };
 
 struct ImportedPart {
@@ -39,7 +43,8 @@ struct ImportedCad {
 /// content and extension. One part per solid (STEP) or closed shape; open shapes that close one another, as
 /// where an exporter wrote a shape per face, are joined. glTF and Collada are y up by definition and are
 /// turned to z up; other axes stay. Inventor without Units and VRML are in metres unless unit_m is given.
-/// Throws LoadError: file missing, cut, empty, unit unknown, format not built in (says which package).
+/// Throws LoadError: file missing, cut, empty, damaged, unit unknown, format not built in (says which
+/// package).
 ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                       const Progress& progress = {});
 

@@ -5,7 +5,7 @@
 
 namespace vps::import {
 
-RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&) {
+RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
                   format + " needs Coin, which this build has not; install libcoin-dev and build again");
 }

@@ -135,7 +135,8 @@ bool hasUnits(SoNode* root) {
 
 }  // namespace
 
-RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings& settings) {
+RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings& settings,
+                const Progress&) {
   static std::mutex one_at_a_time;  // Coin's database and error handlers are global
   const std::lock_guard lock(one_at_a_time);
   if (!SoDB::isInitialized()) {

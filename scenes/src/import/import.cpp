@@ -1,8 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "import/own_process.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
 namespace vps {
+namespace {
+
+struct Reader {
+  const char* library;
+  import::RawCad (*read)(const std::string& file, const std::string& format, const ImportSettings& settings,
+                         const Progress& progress);
+};
+
+Reader readerOf(const std::string& format) {
+  if (format == "STEP" || format == "IGES" || format == "BREP") return {"Open CASCADE", import::readOcct};
+  if (format == "Inventor" || format == "VRML") return {"Coin", import::readCoin};
+  return {"assimp", import::readAssimp};
+}
+
+}  // namespace
 
 ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
   if (settings.unit_m && !(*settings.unit_m > 0))
@@ -14,14 +30,10 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   cad.file = file;
   cad.format = import::detectFormat(file);
   if (progress) progress("reading " + import::stem(file), 0);
-  import::RawCad raw;
-  if (cad.format == "STEP" || cad.format == "IGES" || cad.format == "BREP") {
-    raw = import::readOcct(file, cad.format, settings, progress);
-  } else if (cad.format == "Inventor" || cad.format == "VRML") {
-    raw = import::readCoin(file, cad.format, settings);
-  } else {
-    raw = import::readAssimp(file, cad.format, settings);
-  }
+  const Reader reader = readerOf(cad.format);
+  const auto read = [&](const Progress& tell) { return reader.read(file, cad.format, settings, tell); };
+  import::RawCad raw =
+      settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
   import::finish(std::move(raw), cad);
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;

@@ -6,6 +6,10 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <fstream>
+#include <iterator>
+#include <optional>
+
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -86,9 +90,39 @@ void makeZUp(RawCad& cad, bool is_gltf) {
   }
 }
 
+/// The bytes to hand to assimp in place of a binary PLY whose first value begins with the byte '\n', if it is
+/// one: assimp 5.2.5 takes that byte for the second half of a line end and drops it. A line end of two halves
+/// after the header gives it what it looks for.
+std::optional<std::string> plyItReadsRight(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  bool is_binary = false;
+  for (std::string line; std::getline(in, line) && line != "end_header";)
+    is_binary = is_binary || line.starts_with("format binary");
+  if (!in || !is_binary || in.peek() != '\n') return std::nullopt;
+  const auto data_at = std::size_t(in.tellg());
+  in.seekg(0);
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  bytes.insert(data_at - 1, 1, '\r');
+  return bytes;
+}
+
+/// Are all faces' corners there? assimp's readers pass on what a damaged file says, and its triangulation
+/// then aborts.
+bool hasItsCorners(const aiMesh& mesh) {
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices == 0) return false;
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
-RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings) {
+RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
+                  const Progress&) {
   Assimp::Importer importer;  // its logger is silent unless asked
   if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
       format == "IFC") {
@@ -99,7 +133,18 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = nullptr;
   try {
-    scene = importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType);
+    std::optional<std::string> ply;
+    if (format == "PLY") ply = plyItReadsRight(file);
+    scene =
+        ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
+    for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
+      if (!hasItsCorners(*scene->mMeshes[i]))
+        throw LoadError(file, scene->mMeshes[i]->mName.C_Str(),
+                        "a face names a vertex that is not there; export it again");
+    }
+    if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+  } catch (const LoadError&) {
+    throw;
   } catch (const std::exception& e) {
     throw LoadError(file, "",
                     std::string("not a readable ") + format + " file (" + e.what() + "); export it again");

@@ -38,8 +38,10 @@ struct RawCad {
 /// Each throws LoadError; `format` is as detected, e.g. "STEP".
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
                 const Progress& progress);
-RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings& settings);
-RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings);
+RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings& settings,
+                const Progress& progress);
+RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
+                  const Progress& progress);
 
 /// Metres, rigid poses, welding, shapes joined to parts, unique names, warnings in words.
 void finish(RawCad raw, ImportedCad& cad);

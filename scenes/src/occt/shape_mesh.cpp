@@ -63,7 +63,7 @@ Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double un
   IMeshTools_Parameters parameters;
   parameters.Deflection = settings.deflection_m * units_per_m;
   parameters.Angle = settings.angle_rad;
-  parameters.InParallel = true;
+  parameters.InParallel = !settings.in_own_process;  // a forked process may start no threads
   // Planes and cylinders hold the deflection by their rims alone; other surfaces get inner points all the
   // same.
   parameters.InternalVerticesMode = false;
