@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
-#include "contact_events.h"
+#include "box_motion.h"
 #include "exact_fit.h"
 #include "fit_record.h"
 #include "scene_models.h"
@@ -17,6 +18,7 @@
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
 #include "vps_device/simulated_dual_arm.h"
+#include "vps_scenes/contact_episodes.h"
 
 namespace vps {
 
@@ -24,7 +26,7 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
-constexpr std::size_t kJudgeStride = 10;
+constexpr std::size_t kJudgeStride = 20;
 constexpr double kReturn_s = 1.5;  ///< the hand's way back to the next part
 
 double wallSeconds() {
@@ -42,8 +44,29 @@ OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
   return habits;
 }
 
+/// Where the handle starts so that a step's path lies around the middle of the workspace. Throws LoadError
+/// for a path that is longer than the workspace.
+Pose handleStart(const Scene& scene, const SceneStep& step) {
+  Box path;
+  path.add(Vec3::Zero());
+  for (const Pose& X_WP : step.way_points) path.add(X_WP.p - step.X_WP_start.p);
+  path.add(step.X_WP_target.p - step.X_WP_start.p);
+  const Vec3 room_m = DualArmParameters{}.workspace_m, needed_m = path.size() / scene.device.scale;
+  if ((needed_m.array() > room_m.array()).any())
+    throw LoadError(
+        scene.file, scene.parts[step.part].part.name,
+        "its path is longer than the device's workspace of 400 x 600 x 400 mm; start nearer, or set [device] "
+        "scale above " +
+            std::to_string(scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff()));
+  return Pose::translation(-path.center() / scene.device.scale);
+}
+
 SimulatedDualArmSettings plantSettings(const Scene& scene) {
+  if (scene.device.kind != "dual_arm")
+    throw LoadError(scene.file, "",
+                    "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
   SimulatedDualArmSettings settings;
+  settings.X_DH_start = handleStart(scene, scene.steps.front());
   settings.has_quantised_encoders = scene.device.has_quantised_encoders;
   settings.rate_hz = scene.fidelity.haptic_rate_hz;
   return settings;
@@ -81,18 +104,6 @@ int ticksPerStep(const Scene& scene) {
   return ticks;
 }
 
-/// Greatest displacement of any point of a box that moves from X_a to X_b: a corner's, since it is convex in
-/// the point.
-double greatestDisplacement(const Box& box, const Pose& X_a, const Pose& X_b) {
-  double greatest_m = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3 p((corner & 1) ? box.max.x() : box.min.x(), (corner & 2) ? box.max.y() : box.min.y(),
-                 (corner & 4) ? box.max.z() : box.min.z());
-    greatest_m = std::max(greatest_m, (X_b * p - X_a * p).norm());
-  }
-  return greatest_m;
-}
-
 /// The energy of the coupling's springs, up to their limits (beyond one the spring's force is constant).
 double springEnergy(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
   const auto stored = [](double k, double stretch, double limit) {
@@ -114,6 +125,7 @@ class Procedure {
         simulation_(scene),
         plant_(plantSettings(scene)),
         loop_(plant_, port_, loopSettings(scene, plant_)),
+        fit_bodies_(scene.parts.size()),
         ticks_per_step_(ticksPerStep(scene)),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
         haptic_clock_(1 / scene.fidelity.haptic_rate_hz),
@@ -146,7 +158,7 @@ class Procedure {
   template <typename Hand>
   void advance(const Hand& hand);
   void record(int phase);
-  [[nodiscard]] FitBody fitBody(std::size_t part) const;
+  const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
   void tell(std::size_t index, double share) const;
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
@@ -158,6 +170,7 @@ class Procedure {
   CouplingPort port_;
   HapticLoop loop_;
   ExactFit fit_;
+  std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
   int ticks_per_step_;
   double dt_s_;
   double time_s_ = 0;
@@ -168,14 +181,16 @@ class Procedure {
   bool is_holding_ = false;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
-  ContactEvents events_;
+  std::size_t first_row_ = 0;   ///< of the step, in the trace
   std::vector<FitSample> samples_;
+  Pose X_WP_before_;
   double peak_contact_N_ = 0;
   AssembleResult result_;
 };
 
 AssembleResult Procedure::run() {
   const double begun_s = wallSeconds();
+  for (const SceneStep& step : scene_.steps) handleStart(scene_, step);  // refuses before an hour is spent
   mountFixed();
   result_.completed = true;
   for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
@@ -191,6 +206,7 @@ AssembleResult Procedure::run() {
   result_.physics = physics_clock_.summary();
   const HandLedger& ledger = loop_.ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
+  result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = modelledCost(scene_);
   result_.modelled.bytes += simulation_.fixedBytes();
   if (simulation_.hasFixed()) {
@@ -213,9 +229,10 @@ void Procedure::mount(std::size_t part) {
   roles_[part] = BodyRole::Mounted;
 }
 
-FitBody Procedure::fitBody(std::size_t part) const {
-  const Part& p = scene_.parts[part].part;
-  return {p.name, p.map, p.shell, simulation_.surface(part)};
+const FitBody& Procedure::fitBody(std::size_t part) {
+  std::optional<FitBody>& body = fit_bodies_[part];
+  if (!body) body = makeFitBody(scene_.parts[part].part, simulation_.surface(part));
+  return *body;
 }
 
 void Procedure::take(const SceneStep& step) {
@@ -254,6 +271,7 @@ void Procedure::advance(const Hand& hand) {
     haptic_clock_.stop();
     plant_.step(tick_s, hand(tick_s));
   }
+  X_WP_before_ = poses_[held_.part];
   physics_clock_.start();
   const CouplingState& proxy = port_.proxy.read();
   simulation_.setProxy(proxy);
@@ -284,16 +302,14 @@ void Procedure::record(int phase) {
   row.contacts = touch.contacts;
   row.depth_m = touch.depth_m;
   result_.trace.push_back(row);
-  samples_.push_back({time_s_, row.X_WP, touch.depth_m});
+  // The solver saw the contacts of the pose in which the step began.
+  samples_.push_back({time_s_ - dt_s_, X_WP_before_, touch.depth_m});
 
   StepResult& step = result_.steps.back();
   step.field_penetration_m = std::max(step.field_penetration_m, touch.depth_m);
   if (!is_holding_) return;
   step.peak_force_N = std::max(step.peak_force_N, row.F_hand_W.f.norm());
   step.peak_torque_Nm = std::max(step.peak_torque_Nm, row.F_hand_W.tau.norm());
-  const Twist V_WP = simulation_.twist(held_.part);
-  const Vec3 v_WG = V_WP.v + V_WP.w.cross(row.X_WP.R * held_.X_PG.p);
-  events_.add(time_s_, dt_s_, touch.contacts > 0, v_WG.norm());
   if (touch.force_N > peak_contact_N_ && phase < 2) {
     peak_contact_N_ = touch.force_N;
     result_.contact.back() = snapshot();
@@ -310,7 +326,7 @@ void Procedure::runStep(std::size_t index) {
   result.penetration_limit_m =
       step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
   samples_.clear();
-  events_ = {};
+  first_row_ = result_.trace.size();
   peak_contact_N_ = 0;
 
   poses_[step.part] = step.X_WP_start;
@@ -359,9 +375,8 @@ void Procedure::runStep(std::size_t index) {
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
   }
-  events_.close();
-  result.impacts = events_.impacts();
-  result.slides = events_.slides();
+  for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
+    ++(episode.is_slide ? result.slides : result.impacts);
   result.duration_s = time_s_ - result.start_s;
   result_.end.push_back(snapshot());
 
@@ -397,11 +412,8 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
 
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
-  Pose X_DH_back;
-  if (static_cast<std::size_t>(step_) + 1 < scene_.steps.size()) {
-    const SceneStep& next = scene_.steps[static_cast<std::size_t>(step_) + 1];
-    X_DH_back.p = -0.5 * (next.X_WP_target.p - next.X_WP_start.p) / scene_.device.scale;
-  }
+  const std::size_t next = static_cast<std::size_t>(step_) + 1;
+  const Pose X_DH_back = next < scene_.steps.size() ? handleStart(scene_, scene_.steps[next]) : Pose{};
   const Pose X_DH_from = plant_.truePose();
   const Vec3 turn_rad = rotationVector(X_DH_back.R * X_DH_from.R.transpose());
   const OperatorHabits habits = habitsOf(scene_.hand, 0);
@@ -422,7 +434,9 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
     hand.inertia_kgm2 = habits.inertia_kgm2;
     return hand;
   };
-  const auto steps = static_cast<long>(std::lround(scene_.release_s / dt_s_));
+  // At least until the hand is back.
+  const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kReturn_s) / dt_s_));
+  result.rest_s = static_cast<double>(steps) * dt_s_;
   for (long i = 0; i < steps && !isStopped(); ++i) {
     advance(going_back);
     record(3);
@@ -432,6 +446,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
 }
 
 void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
+  samples_.push_back({time_s_, poses_[step.part], 0});
   const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, kJudgeStride);
   result.max_penetration_m = verdict.worst.depth_m;
   result.deepest_at_W = verdict.worst.p_W;

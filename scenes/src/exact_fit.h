@@ -8,36 +8,46 @@
 
 #include "vps/mesh_distance.h"
 #include "vps/part.h"
-#include "vps/query.h"
 
 namespace vps {
+
+/// A sharp edge of a part, in its frame.
+struct EdgeSegment {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();
+};
 
 /// A part with everything the judge needs of it.
 struct FitBody {
   std::string name;
-  std::shared_ptr<const VoxMap> map;        ///< finds candidates; does not decide
-  std::shared_ptr<const PointShell> shell;  ///< probes: corners, points along edges, points on faces
+  std::shared_ptr<const VoxMap> map;        ///< says what is surely outside; does not decide
+  std::shared_ptr<const PointShell> shell;  ///< probes on faces
   std::shared_ptr<const MeshDistance> distance;
+  std::shared_ptr<const std::vector<EdgeSegment>> edges;
 };
+
+/// With the part's sharp edges (more than 20 degrees). O(n log n).
+FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distance);
 
 struct Penetration {
   double depth_m = 0;       ///< 0 when free
-  Vec3 p_W = Vec3::Zero();  ///< the deepest probe
+  Vec3 p_W = Vec3::Zero();  ///< the deepest point found
   std::size_t against = 0;  ///< index of the mounted body
 };
 
-/// Probes lie exactly on the triangles, at the shell's spacing, with all mesh corners of sharp edges among
-/// them. The voxmap only picks the probes worth asking (within half a voxel); their depth is exact distance
-/// to triangles.
+/// Measures along every sharp edge of both sides, halving it until no point between can be deeper than what
+/// was found by kCertain_m (a signed distance changes by no more than the way along the edge), and at the
+/// shell's points on faces. Surfaces that cross do so at an edge of one of them, so only what bulges by less
+/// than the mesh's own facets, or between face points of a smooth body, can hide. For closed meshes.
 class ExactFit {
  public:
+  static constexpr double kCertain_m = 0.5e-6;
+
   /// Mounted parts do not move while they are here.
   void mount(FitBody body, const Pose& X_WB);
-  void clear() { mounted_.clear(); }
   [[nodiscard]] const std::string& name(std::size_t mounted) const { return mounted_[mounted].body.name; }
 
-  /// Deepest probe of `moving` in any mounted part and the reverse. Allocates; not for the haptic path.
-  /// O(candidate probes, log triangles).
+  /// Deepest point of `moving` in any mounted part and the reverse. Same input, same bits, on any number of
+  /// threads. Allocates; not for the haptic path.
   [[nodiscard]] Penetration deepest(const FitBody& moving, const Pose& X_WP) const;
 
  private:

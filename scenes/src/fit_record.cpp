@@ -5,11 +5,13 @@
 #include <numeric>
 #include <set>
 
+#include "box_motion.h"
+
 namespace vps {
 
 namespace {
 
-constexpr std::size_t kSuspects = 100;
+constexpr std::size_t kSuspects = 50;
 
 }  // namespace
 
@@ -27,13 +29,20 @@ FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<F
       });
   judged.insert(by_depth.begin(), by_depth.begin() + suspects);
 
+  if (!samples.empty()) judged.insert(samples.size() - 1);
+
   FitVerdict verdict;
-  verdict.poses_judged = judged.size();
+  const Box box = bounds(moving.distance->mesh());
+  const Pose* last = nullptr;
   for (const std::size_t i : judged) {
-    const Penetration found = fit.deepest(moving, samples[i].X_WP);
+    const FitSample& sample = samples[i];
+    if (last && greatestDisplacement(box, *last, sample.X_WP) < ExactFit::kCertain_m) continue;
+    last = &sample.X_WP;
+    ++verdict.poses_judged;
+    const Penetration found = fit.deepest(moving, sample.X_WP);
     if (found.depth_m > verdict.worst.depth_m) {
       verdict.worst = found;
-      verdict.time_s = samples[i].time_s;
+      verdict.time_s = sample.time_s;
     }
   }
   return verdict;

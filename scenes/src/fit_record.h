@@ -8,11 +8,11 @@
 
 namespace vps {
 
-/// One physics step of the part that moves.
+/// A pose of the part that moves, and how deep its contacts were in that pose as the solver saw them.
 struct FitSample {
   double time_s = 0;
   Pose X_WP;
-  double depth_m = 0;  ///< by the contacts the solver saw
+  double depth_m = 0;
 };
 
 struct FitVerdict {
@@ -21,8 +21,9 @@ struct FitVerdict {
   std::size_t poses_judged = 0;
 };
 
-/// Judges every `stride`-th pose and, whatever the stride, the kSuspects poses whose contacts were deepest.
-/// O(poses / stride) exact checks; parallel within a check.
+/// Judges every `stride`-th pose, the last, and, whatever the stride, the kSuspects poses whose contacts were
+/// deepest. A pose within ExactFit::kCertain_m of the last one judged (greatest motion of any point) is that
+/// one.
 FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
                  std::size_t stride);
 

@@ -165,7 +165,9 @@ class SceneReader {
     const auto known = cads_.find(file);
     if (known != cads_.end()) return known->second;
     try {
-      return cads_.emplace(file, importCad(path(file), import_)).first->second;
+      const ImportedCad& cad = cads_.emplace(file, importCad(path(file), import_)).first->second;
+      for (const std::string& warning : cad.warnings) scene_.warnings.push_back(file + ": " + warning);
+      return cad;
     } catch (const LoadError& error) {
       keys.fail(key, std::string("cannot be used: ") + error.what());
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "scene_models.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -37,6 +38,12 @@ VpsBulletSettings bulletSettings(const Fidelity& fidelity) {
   return settings;
 }
 
+VpsSolverSettings solverSettings(const Fidelity& fidelity) {
+  VpsSolverSettings settings;
+  settings.iteration_limit = fidelity.solver_iterations;
+  return settings;
+}
+
 }  // namespace
 
 struct Simulation::World {
@@ -56,7 +63,7 @@ struct Simulation::World {
   std::size_t grasped = 0;
   Pose X_PG;
 
-  explicit World(const Scene& s) : scene(s) {
+  explicit World(const Scene& s) : scene(s), solver(solverSettings(s.fidelity)) {
     installVps(dispatcher, bulletSettings(scene.fidelity));
     tuneWorld(world, scene.fidelity.solver_iterations);
     world.setGravity(toBt(scene.gravity_W));
@@ -106,12 +113,11 @@ void Simulation::mount(std::size_t part, const Pose& X_WP) {
   w.mounted.push_back({part, X_WP});
 
   const Part& added = w.scene.parts[part].part;
-  VoxMapSettings settings;
-  settings.voxel_m = w.scene.fidelity.voxel_m;
   const PlacedMesh placed{&added.mesh, X_WP};
   VpsModels models;
-  models.map = std::make_shared<VoxMap>(w.fixed_shape ? mountVoxMap(*w.fixed_shape->models().map, placed)
-                                                      : cookVoxMap({placed}, settings));
+  models.map =
+      std::make_shared<VoxMap>(w.fixed_shape ? mountVoxMap(*w.fixed_shape->models().map, placed)
+                                             : cookVoxMap({placed}, voxMapSettings(w.scene.fidelity)));
   std::vector<const PointShell*> shells;
   std::vector<Pose> poses;
   for (const MountedPart& mounted : w.mounted) {
@@ -192,13 +198,13 @@ CouplingState Simulation::graspState() const {
   return world_->coupling ? world_->coupling->partState() : CouplingState{};
 }
 
-Wrench Simulation::couplingWrench() const {
-  return world_->coupling ? world_->coupling->wrench() : Wrench{};
-}
-
 void Simulation::step(double dt_s) {
   // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
   world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
+  for (const auto& [part, b] : world_->bodies)
+    if (!fromBt(b.body->getWorldTransform()).isFinite())
+      throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
+                      "its pose is no longer a number; check its mass and size, or take a finer fidelity");
 }
 
 Pose Simulation::pose(std::size_t part) const {
@@ -275,6 +281,10 @@ void Simulation::contactMarks(std::vector<ContactMark>& marks) const {
     marks.push_back({fromBt(point.getPositionWorldOnB()), fromBt(point.m_normalWorldOnB),
                      std::max(0.0, -static_cast<double>(point.getDistance()))});
   });
+}
+
+std::size_t Simulation::contactsLeftOut() const {
+  return vpsStats(world_->dispatcher).left_out;
 }
 
 std::size_t Simulation::fixedBytes() const {

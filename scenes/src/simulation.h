@@ -45,9 +45,8 @@ class Simulation {
   void setProxy(const CouplingState& proxy);
   /// The part's grasp frame now: what the haptic side couples to.
   [[nodiscard]] CouplingState graspState() const;
-  /// Wrench of the coupling on the part about its grasp point over the last step, in W.
-  [[nodiscard]] Wrench couplingWrench() const;
 
+  /// Throws LoadError naming the part whose pose is no longer a number.
   void step(double dt_s);
 
   [[nodiscard]] Pose pose(std::size_t part) const;
@@ -63,6 +62,8 @@ class Simulation {
   [[nodiscard]] std::shared_ptr<const MeshDistance> surface(std::size_t part) const;
   [[nodiscard]] TouchState touch() const;
   void contactMarks(std::vector<ContactMark>& marks) const;
+  /// Near points that did not fit a query's limit, so far.
+  [[nodiscard]] std::size_t contactsLeftOut() const;
   /// Bytes of the cooked field and its points.
   [[nodiscard]] std::size_t fixedBytes() const;
 

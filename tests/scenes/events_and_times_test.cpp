@@ -1,47 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "contact_events.h"
+#include <algorithm>
+
 #include "tick_times.h"
+#include "vps_scenes/contact_episodes.h"
 
 namespace vps {
 namespace {
 
-constexpr double kDt_s = 1e-3;
-
-void feed(ContactEvents& events, double& time_s, int steps, bool is_touching, double speed_m_s) {
-  for (int i = 0; i < steps; ++i) {
-    time_s += kDt_s;
-    events.add(time_s, kDt_s, is_touching, speed_m_s);
+/// A trace at 1 kHz, grown piece by piece.
+struct TraceMaker {
+  std::vector<TraceRow> rows;
+  void add(int steps, bool is_touching, double speed_m_s, int phase = 1) {
+    for (int i = 0; i < steps; ++i) {
+      TraceRow row = rows.empty() ? TraceRow{} : rows.back();
+      row.time_s += 1e-3;
+      row.X_WP.p.x() += speed_m_s * 1e-3;
+      row.contacts = is_touching ? 1 : 0;
+      row.phase = phase;
+      rows.push_back(row);
+    }
   }
-}
+  [[nodiscard]] std::ptrdiff_t count(bool is_slide) const {
+    const auto episodes = contactEpisodes(rows);
+    return std::count_if(episodes.begin(), episodes.end(),
+                         [&](const ContactEpisode& e) { return e.is_slide == is_slide; });
+  }
+};
 
-TEST(ContactEvents, CountsFiveImpactsAndTwoSlidesAsFigure9Does) {
-  ContactEvents events;
-  double time_s = 0;
+TEST(ContactEpisodes, FiveImpactsAndTwoSlidesAsInFigure9) {
+  TraceMaker trace;
   for (int i = 0; i < 5; ++i) {
-    feed(events, time_s, 5, true, 0.01);  // 5 ms, 50 um of slip: an impact
-    feed(events, time_s, 100, false, 0.05);
+    trace.add(5, true, 0.01);  // 5 ms, 50 um: an impact
+    trace.add(100, false, 0.05);
   }
   for (int i = 0; i < 2; ++i) {
-    feed(events, time_s, 300, true, 0.01);  // 300 ms, 3 mm: a slide
-    feed(events, time_s, 100, false, 0.05);
+    trace.add(300, true, 0.01);  // 300 ms, 3 mm: a slide
+    trace.add(100, false, 0.05);
   }
-  events.close();
-  EXPECT_EQ(events.impacts(), 5);
-  EXPECT_EQ(events.slides(), 2);
+  EXPECT_EQ(trace.count(false), 5);
+  EXPECT_EQ(trace.count(true), 2);
 }
 
-TEST(ContactEvents, ChatterShorterThanTheBridgeIsOneImpact) {
-  ContactEvents events;
-  double time_s = 0;
+TEST(ContactEpisodes, ChatterShorterThanTheBridgeIsOneImpact) {
+  TraceMaker trace;
   for (int i = 0; i < 4; ++i) {
-    feed(events, time_s, 2, true, 0.001);
-    feed(events, time_s, 10, false, 0.001);
+    trace.add(2, true, 0.001);
+    trace.add(10, false, 0.001);
   }
-  events.close();
-  EXPECT_EQ(events.impacts(), 1);
-  EXPECT_EQ(events.slides(), 0);
+  EXPECT_EQ(trace.count(false), 1);
+  EXPECT_EQ(trace.count(true), 0);
+}
+
+TEST(ContactEpisodes, APartLeftAloneOnItsSeatIsNoEpisode) {
+  TraceMaker trace;
+  trace.add(100, true, 0, 3);
+  EXPECT_TRUE(contactEpisodes(trace.rows).empty());
 }
 
 TEST(TickClock, PercentilesAreNearestRankAndMissesAreThoseAboveThePeriod) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "exact_fit.h"
 #include "fit_record.h"
 
@@ -12,8 +14,11 @@ FitBody makeBody(const std::string& name, const Mesh& mesh) {
   voxels.voxel_m = 0.5e-3;
   PointShellSettings points;
   points.spacing_m = 1e-3;
-  return {name, std::make_shared<VoxMap>(buildVoxMap(mesh, voxels)),
-          std::make_shared<PointShell>(buildPointShell(mesh, points)), std::make_shared<MeshDistance>(mesh)};
+  Part part;
+  part.name = name;
+  part.map = std::make_shared<VoxMap>(buildVoxMap(mesh, voxels));
+  part.shell = std::make_shared<PointShell>(buildPointShell(mesh, points));
+  return makeFitBody(part, std::make_shared<MeshDistance>(mesh));
 }
 
 class ExactFitOfBoxes : public ::testing::Test {
@@ -54,11 +59,35 @@ TEST_F(ExactFitOfBoxes, FloorsOwnEdgeInsideTheMovingPartIsFoundToo) {
   EXPECT_NEAR(fit_.deepest(box_, X_WP).depth_m, deep_m, kRounding_m);
 }
 
+TEST_F(ExactFitOfBoxes, APartWhollyInsideAnotherIsAsDeepAsItsDeepestPoint) {
+  const FitBody block = makeBody("block", makeBox(Vec3::Constant(30e-3)));
+  ExactFit fit;
+  fit.mount(block, {});
+  // Half of 30 mm to every face at the middle; of a 6 mm cube's faces the middle is 12 mm below the block's.
+  const FitBody cube = makeBody("cube", makeBox(Vec3::Constant(6e-3)));
+  EXPECT_NEAR(fit.deepest(cube, {}).depth_m, 12e-3, kRounding_m);
+}
+
+TEST(ExactFit, CrossingRidgesThatTouchBetweenProbesAreFound) {
+  // Two square bars, each turned by 45 degrees about its length, laid crosswise ridge on ridge and lowered by
+  // d. Each ridge dips d below the other's: where they cross, a point d deep along the bisector is d / sqrt 2
+  // from both faces.
+  const double side_m = 10e-3, half_diagonal_m = side_m / std::sqrt(2.0), d_m = 8e-6;
+  const FitBody lower = makeBody("lower", makeBox(Vec3(40e-3, side_m, side_m)));
+  const FitBody upper = makeBody("upper", makeBox(Vec3(side_m, 40e-3, side_m)));
+  ExactFit fit;
+  fit.mount(lower, Pose(rotationFromVector({M_PI / 4, 0, 0}), Vec3::Zero()));
+  // Off the shell's own spacing, so that no probe stands at the crossing.
+  const Pose X_WU(rotationFromVector({0, M_PI / 4, 0}), Vec3(0.37e-3, 0.21e-3, 2 * half_diagonal_m - d_m));
+  EXPECT_NEAR(fit.deepest(upper, X_WU).depth_m, d_m / std::sqrt(2.0), ExactFit::kCertain_m + kRounding_m);
+}
+
 TEST_F(ExactFitOfBoxes, JudgeFindsTheDeepestPoseEvenBetweenStrides) {
   std::vector<FitSample> samples;
   for (int i = 0; i < 1000; ++i) {
     const double depth_m = i == 501 ? 5e-6 : 1e-6;
-    samples.push_back({i * 1e-3, Pose::translation({0, 0, 10e-3 - depth_m}), depth_m});
+    // Sideways motion, so that no pose passes for the one before.
+    samples.push_back({i * 1e-3, Pose::translation({i * 1e-6, 0, 10e-3 - depth_m}), depth_m});
   }
   const FitVerdict verdict = judge(fit_, box_, samples, 10);
   EXPECT_NEAR(verdict.worst.depth_m, 5e-6, kRounding_m);

@@ -15,10 +15,6 @@ namespace vps {
 
 namespace {
 
-bool isWithinLimit(const StepResult& step) {
-  return step.max_penetration_m <= step.penetration_limit_m;
-}
-
 std::string tableOf(const std::vector<StepResult>& steps) {
   Table table({"<step", "<completed", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
                "drift [um]"});
@@ -31,17 +27,18 @@ std::string tableOf(const std::vector<StepResult>& steps) {
 }
 
 std::string csvOf(const std::vector<StepResult>& steps) {
-  std::string out =
-      csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m", "penetration_limit_m",
-               "deepest_against", "field_penetration_m", "peak_force_N", "peak_torque_Nm", "impacts",
-               "slides", "final_error_m", "final_error_rad", "rest_drift_m", "why_not"});
+  std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
+                             "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
+                             "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
+                             "rest_drift_m", "rest_s", "is_placed", "why_not"});
   for (const StepResult& step : steps)
-    out += csvLine(
-        {step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
-         csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
-         csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N), csvNumber(step.peak_torque_Nm),
-         std::to_string(step.impacts), std::to_string(step.slides), csvNumber(step.final_error_m),
-         csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m), step.why_not});
+    out +=
+        csvLine({step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
+                 csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
+                 csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N),
+                 csvNumber(step.peak_torque_Nm), std::to_string(step.impacts), std::to_string(step.slides),
+                 csvNumber(step.final_error_m), csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m),
+                 csvNumber(step.rest_s), step.is_placed ? "1" : "0", step.why_not});
   return out;
 }
 
@@ -49,10 +46,9 @@ std::string csvOf(const std::vector<StepResult>& steps) {
 
 int runAssemble(const AssembleArguments& given) {
   OutputFolder out(given.out);
-  OutputFile json(given.json);
+  OutputFile json(given.json, {given.scene});
   ProgressBar bar;
-  Scene scene = loadScene(given.scene);
-  scene.fidelity = fidelityFrom(given.fidelity, scene.fidelity);
+  Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
 
   AssembleOptions options;
   options.progress = bar.progress();
@@ -77,13 +73,19 @@ int runAssemble(const AssembleArguments& given) {
   std::fputs(tableOf(result.steps).c_str(), stdout);
   bool is_good = result.completed;
   for (const StepResult& step : result.steps) {
-    if (!step.completed) std::printf("%s: %s\n", step.part.c_str(), step.why_not.c_str());
-    if (isWithinLimit(step)) continue;
-    is_good = false;
-    std::printf("%s: deepest against %s, beyond its limit\n", step.part.c_str(),
-                step.deepest_against.c_str());
+    const char* name = step.part.c_str();
+    if (!step.completed) std::printf("%s: %s\n", name, step.why_not.c_str());
+    if (step.is_placed) std::printf("%s: put on its target all the same, for the next step\n", name);
+    if (!isWithinLimit(step))
+      std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());
+    if (!isAtRest(step))
+      std::printf("%s: drifted more than %g um after it was let go\n", name, kRestDriftLimit_m * 1e6);
+    is_good = is_good && isGood(step);
   }
-  for (const std::string& note : outcome.notes) std::fprintf(stderr, "vps: %s\n", note.c_str());
+  if (result.contacts_left_out > 0)
+    warn(std::to_string(result.contacts_left_out) +
+         " near points found no room in a query; take a coarser spacing");
+  for (const std::string& note : outcome.notes) warn(note);
   std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
   return is_good ? kGood : kBad;
 }

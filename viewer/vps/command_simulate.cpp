@@ -40,10 +40,9 @@ std::string traceRow(double time_s, const std::vector<BodyState>& bodies, double
 int runSimulate(const SimulateArguments& given) {
   if (!std::isfinite(given.seconds) || given.seconds <= 0)
     throw LoadError("", "", "--seconds must be a finite number of more than 0");
-  OutputFile trace(given.trace), json(given.json);
+  OutputFile trace(given.trace, {given.scene}), json(given.json, {given.scene});
   ProgressBar bar;
-  Scene scene = loadScene(given.scene);
-  scene.fidelity = fidelityFrom(given.fidelity, scene.fidelity);
+  Scene scene = sceneFrom(given.scene, given.fidelity, {given.trace, given.json});
 
   std::string rows;
   SimulateOptions options;

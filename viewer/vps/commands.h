@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vps/fidelity.h"
+#include "vps_scenes/scene.h"
 
 namespace vps {
 
@@ -56,6 +57,7 @@ int runQuery(const QueryArguments& given);
 struct ImportArguments {
   std::string cad, out;
   std::string units, deflection, json;
+  bool is_forced = false;  ///< writes over a scene.toml that is there
 };
 int runImport(const ImportArguments& given);
 
@@ -71,5 +73,10 @@ int runSnapshot(const SnapshotArguments& given);
 
 /// The views that --view knows.
 std::vector<std::string> viewNames();
+
+/// The scene with the command line's fidelity over its own; what its CAD files lack is said on stderr.
+/// Throws LoadError when one of `outputs` is a file that the scene was read from.
+Scene sceneFrom(const std::string& file, const FidelityArguments& given,
+                const std::vector<std::string>& outputs);
 
 }  // namespace vps

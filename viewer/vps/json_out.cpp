@@ -63,7 +63,9 @@ Json step(const StepResult& step) {
           {"slides", step.slides},
           {"final_error_m", step.final_error_m},
           {"final_error_rad", step.final_error_rad},
-          {"rest_drift_m", step.rest_drift_m}};
+          {"rest_drift_m", step.rest_drift_m},
+          {"rest_s", step.rest_s},
+          {"is_placed", step.is_placed}};
 }
 
 }  // namespace
@@ -82,6 +84,7 @@ std::string toJson(const AssembleResult& result) {
                  {"physics", loopWall(result.physics)}}},
                {"scene", result.scene},
                {"completed", result.completed},
+               {"contacts_left_out", result.contacts_left_out},
                {"simulated_s", result.simulated_s},
                {"steps", steps},
                {"haptic", loop(result.haptic_rate_hz, result.haptic)},
@@ -122,6 +125,7 @@ std::string toJson(const QueryAnswer& answer) {
                   {"rotation_xyzw", list(pose.X_AB.quaternion())},
                   {"min_distance_m", pose.is_beyond ? Json(nullptr) : Json(pose.min_distance_m)},
                   {"max_depth_m", pose.is_beyond ? 0 : pose.maxDepth_m()},
+                  {"is_depth_saturated", pose.is_saturated},
                   {"contact_count", pose.contact_count},
                   {"points_total", answer.points_total},
                   {"points_tested", pose.points_tested},

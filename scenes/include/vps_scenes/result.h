@@ -32,9 +32,26 @@ struct StepResult {
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
   double final_error_m = 0, final_error_rad = 0;
-  double rest_drift_m = 0;  ///< greatest displacement of any point of the part from 0 to 2 s after release
+  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
+  double rest_s = 0;
+  bool is_placed = false;  ///< not completed, and set on its target by us, for the next step to stand on
   double cook_wall_s = 0;
 };
+
+/// Greatest drift of a part that was let go and should rest.
+inline constexpr double kRestDriftLimit_m = 5e-6;
+
+/// Reached, never too deep, and stayed: what a step must be for the whole to be good. One home for report,
+/// table, JSON and exit status.
+inline bool isWithinLimit(const StepResult& step) {
+  return step.max_penetration_m <= step.penetration_limit_m;
+}
+inline bool isAtRest(const StepResult& step) {
+  return step.rest_drift_m <= kRestDriftLimit_m;
+}
+inline bool isGood(const StepResult& step) {
+  return step.completed && isWithinLimit(step) && isAtRest(step);
+}
 
 /// One row of the time series (figure 9 of the paper).
 struct TraceRow {
@@ -68,6 +85,7 @@ struct AssembleResult {
   TickTimes haptic, physics;
   EnergyLedger energy;
   ModelledCost modelled;
+  std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 

@@ -56,12 +56,13 @@ struct CouplingWishes {
 };
 
 struct RecordSettings {
-  double csv_rate_hz = 1000;
+  double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };
 
 struct Scene {
   std::string file;
   std::string name;
+  std::vector<std::string> warnings;  ///< what the CAD files were found to lack, one line each
   std::vector<ScenePart> parts;
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);

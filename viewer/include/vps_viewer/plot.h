@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "vps_scenes/contact_episodes.h"
 #include "vps_scenes/result.h"
 
 namespace vps {
@@ -41,16 +42,5 @@ PlotOutcome plotForces(const std::vector<TraceRow>& trace, const std::string& fi
 
 /// Any lines over a common axis; file + ".png" and file + ".svg".
 PlotOutcome plotSeries(const Plot& plot, const std::string& file);
-
-/// A time during which the part in hand touches something; pauses up to 20 ms belong to it.
-struct ContactEpisode {
-  double start_s = 0, end_s = 0;
-  int step = -1;
-  bool is_slide =
-      false;  ///< the part moved more than 1 mm while it touched; otherwise the episode is an impact
-};
-
-/// What plotForces() marks, by the thresholds that StepResult::impacts and slides are counted with.
-std::vector<ContactEpisode> contactEpisodes(const std::vector<TraceRow>& trace);
 
 }  // namespace vps

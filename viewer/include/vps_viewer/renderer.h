@@ -25,7 +25,7 @@ struct DrawnMesh {
   const Mesh* mesh = nullptr;  ///< must live as long as the constructor of Renderer runs
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
   bool is_fixed = false;                              ///< drawn where X_WP says, whatever the snapshot lists
-  Pose X_WP;
+  Pose X_WP = {};
 };
 using RenderScene = std::vector<DrawnMesh>;
 

@@ -112,27 +112,6 @@ std::string nameSteps(const std::vector<TraceRow>& trace, const std::vector<std:
 
 }  // namespace
 
-std::vector<ContactEpisode> contactEpisodes(const std::vector<TraceRow>& trace) {
-  constexpr double kBridge_s = 0.02, kSlip_m = 1e-3;
-  std::vector<ContactEpisode> episodes;
-  double slip_m = 0;
-  for (std::size_t i = 0; i < trace.size(); ++i) {
-    const TraceRow& row = trace[i];
-    if (row.contacts <= 0) continue;
-    const bool is_same = !episodes.empty() && episodes.back().step == row.step &&
-                         row.time_s - episodes.back().end_s <= kBridge_s;
-    if (!is_same) {
-      episodes.push_back({row.time_s, row.time_s, row.step, false});
-      slip_m = 0;
-    } else {
-      slip_m += (row.X_WP.p - trace[i - 1].X_WP.p).norm();
-    }
-    episodes.back().end_s = row.time_s;
-    episodes.back().is_slide = slip_m > kSlip_m;
-  }
-  return episodes;
-}
-
 PlotOutcome plotForces(const std::vector<TraceRow>& whole_trace, const std::string& file,
                        const std::vector<std::string>& step_names, int step) {
   std::vector<TraceRow> trace;

@@ -18,22 +18,32 @@ std::string micrometres(double length_m, const char* form = "%.2f") {
   return format(1e6 * length_m, form);
 }
 
-bool isWithinLimit(const StepResult& step) {
-  return step.penetration_limit_m <= 0 || step.max_penetration_m <= step.penetration_limit_m;
+/// The rows nearest after every 1 / rate_hz.
+std::vector<TraceRow> thinned(const std::vector<TraceRow>& trace, double rate_hz) {
+  std::vector<TraceRow> rows;
+  double next_s = 0;
+  for (const TraceRow& row : trace) {
+    // Half a microsecond: times are sums of steps, and their rounding must not drop a row.
+    if (row.time_s < next_s - 0.5e-6) continue;
+    rows.push_back(row);
+    next_s = std::max(next_s + 1 / rate_hz, row.time_s);
+  }
+  return rows;
 }
 
 std::string headline(const AssembleResult& result) {
   const auto done = std::count_if(result.steps.begin(), result.steps.end(),
                                   [](const StepResult& s) { return s.completed; });
-  const auto good = std::count_if(result.steps.begin(), result.steps.end(),
-                                  [](const StepResult& s) { return s.completed && isWithinLimit(s); });
+  const auto good =
+      std::count_if(result.steps.begin(), result.steps.end(), [](const StepResult& s) { return isGood(s); });
   const std::string count = std::to_string(done) + " of " + std::to_string(result.steps.size());
   const bool is_complete = result.completed && done == static_cast<std::ptrdiff_t>(result.steps.size());
   std::string text = is_complete
                          ? "Yes, the parts go together: " + count + " steps completed."
                          : "No, the parts do not go together as planned: " + count + " steps completed.";
   if (good < done)
-    text += " In " + std::to_string(done - good) + " of them parts overlapped more than the limit.";
+    text += " In " + std::to_string(done - good) +
+            " of them the part went deeper than its limit or did not stay where it was let go.";
   return "<p class=\"verdict " + std::string(is_complete && good == done ? "good" : "bad") + "\">" + text +
          "</p>\n";
 }
@@ -84,7 +94,8 @@ std::string stepFacts(const StepResult& s) {
        {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
        {"Final error",
         micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
-       {"Greatest motion within 2 s of letting go", micrometres(s.rest_drift_m) + " µm"}});
+       {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after letting go",
+        micrometres(s.rest_drift_m) + " µm"}});
 }
 
 std::string plotFigure(const std::string& name, const std::string& caption) {
@@ -181,7 +192,7 @@ ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, cons
                           const ReportOptions& options) {
   ReportOutcome outcome;
   outcome.file = dir + "/report.html";
-  writeTraceCsv(result.trace, dir + "/trace.csv");
+  writeTraceCsv(thinned(result.trace, scene.record.csv_rate_hz), dir + "/trace.csv");
 
   std::vector<std::string> step_names;
   for (const StepResult& step : result.steps) step_names.push_back(step.part);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands.h"
+#include "output.h"
+#include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
@@ -25,6 +27,17 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
     base.sides = given.sides == "one" ? Sides::One : Sides::Both;
   }
   return base;
+}
+
+Scene sceneFrom(const std::string& file, const FidelityArguments& given,
+                const std::vector<std::string>& outputs) {
+  Scene scene = loadScene(file);
+  std::vector<std::string> read;
+  for (const ScenePart& part : scene.parts) read.push_back(part.file);
+  for (const std::string& output : outputs) requireNotRead(output, read);
+  for (const std::string& warning : scene.warnings) warn(warning);
+  scene.fidelity = fidelityFrom(given, scene.fidelity);
+  return scene;
 }
 
 }  // namespace vps
