@@ -299,14 +299,21 @@ void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
   const double area_m2 = area(mesh);
   const Vec3 size_m = bounds(mesh).size();
+  char text[160];
+  // Indices are 32 bit; half of their range is left to the part's own size, which the memory bounds below it.
+  const double away_m = bounds(mesh).center().cwiseAbs().maxCoeff();
+  if (!(away_m / settings.voxel_m < 1e9)) {
+    std::snprintf(text, sizeof text,
+                  "lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer", away_m,
+                  settings.voxel_m * 1e3);
+    throw LoadError("", part, text);
+  }
   const auto fits = [&](double h) {
-    return estimatedBytes(area_m2, size_m, h, settings.band_voxels) <= kMemoryLimit_bytes &&
-           bounds(mesh).max.cwiseAbs().cwiseMax(bounds(mesh).min.cwiseAbs()).maxCoeff() / h < 1e9;
+    return estimatedBytes(area_m2, size_m, h, settings.band_voxels) <= kMemoryLimit_bytes;
   };
   if (fits(settings.voxel_m)) return;
   double h = settings.voxel_m;
   while (!fits(h)) h *= 1.05;
-  char text[160];
   std::snprintf(
       text, sizeof text, "needs %.0f GiB at %.3g mm voxels, the limit is %.0f; %.2g mm would fit",
       estimatedBytes(area_m2, size_m, settings.voxel_m, settings.band_voxels) / (1024.0 * 1024 * 1024),

@@ -2,6 +2,10 @@
 // The program `vps` from outside: exit status, words and files, on good input and bad.
 #include "program.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -37,7 +41,8 @@ TEST_F(Program, CommandsToComeSayThatTheyAreNotReady) {
 
 TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("", "see vps --help");
-  expectRefused("asemble scene.toml", "see vps --help");
+  expectRefused("asemble scene.toml", "unknown command 'asemble'; see vps --help");
+  expectRefused("--fast", "unknown option '--fast'; see vps --help");
   expectRefused("assemble", "see vps assemble --help");
   expectRefused("assemble scene.toml --fast", "see vps assemble --help");
   expectRefused("simulate scene.toml --seconds soon", "--seconds");
@@ -85,7 +90,8 @@ TEST_F(Program, ABadMeshOrNumberIsNamed) {
   write("poses.txt", "# one pose a line\n0,0,0,0,0,0,1\n0,0,x,0,0,0,1\n");
   expectRefused("query plate.stl pin.stl --units mm --poses poses.txt",
                 "poses.txt:3: '0,0,x,0,0,0,1' is no pose");
-  expectRefused("query plate.stl pin.stl --units mm --poses gone.txt", "gone.txt");
+  expectRefused("query plate.stl pin.stl --units mm --poses gone.txt", "gone.txt: no such file");
+  expectRefused("query plate.stl pin.stl --units mm --poses .", ".: is a folder");
   expectRefused("import cut.stl -o imported --units mm", "cut.stl");
   expectRefused("import plate.stl -o imported", "plate.stl");
   EXPECT_FALSE(fs::exists(folder_ / "imported"));
@@ -99,6 +105,89 @@ TEST_F(Program, APlaceThatCannotBeWrittenIsSaidBeforeTheWork) {
   expectRefused("query plate.stl gone.stl --json /dev/null/a.json", "/dev/null/a.json");
   expectRefused("import gone.step -o plate.stl", "plate.stl");
   expectRefused("snapshot gone.toml -o /dev/null/a.png", "/dev/null/a.png");
+}
+
+TEST_F(Program, AnInputIsNeverWrittenOver) {
+  const std::string plate = slurp(folder_ / "plate.stl"), words = "which would overwrite it";
+  fs::create_symlink("plate.stl", folder_ / "link.json");
+  expectRefused("query plate.stl pin.stl --units mm --json ./plate.stl", words);
+  expectRefused("query plate.stl pin.stl --units mm --json link.json", words);
+  expectRefused("simulate scene.toml --trace scene.toml", words);
+  expectRefused("assemble scene.toml --json scene.toml", words);
+  expectRefused("simulate scene.toml --json plate.stl", words);
+  expectRefused("assemble scene.toml --json plate.stl", words);
+  expectRefused("snapshot scene.toml -o scene.toml", words);
+  expectRefused("snapshot scene.toml -o plate.stl", words);
+  expectRefused("import plate.stl -o . --units mm", "has a scene.toml already");
+  expectRefused("import plate.stl -o . --units mm --force", words);
+  EXPECT_EQ(slurp(folder_ / "plate.stl"), plate);
+  EXPECT_EQ(slurp(folder_ / "scene.toml"), kScene);
+  ASSERT_EQ(run("import pin.stl -o new --units mm").status, 0);
+  EXPECT_EQ(run("import pin.stl -o new --units mm").status, 2);
+  EXPECT_EQ(run("import pin.stl -o new --units mm --force").status, 0);
+}
+
+TEST_F(Program, LinksAndPipesStayWhatTheyAre) {
+  const std::string call = "query plate.stl pin.stl --units mm --voxel 1mm --spacing 2mm --repeats 1 --json ";
+  write("old.json", "old");
+  fs::create_symlink("old.json", folder_ / "link.json");
+  fs::create_symlink("new.json", folder_ / "dangling.json");
+  ASSERT_EQ(run(call + "link.json").status, 0);
+  ASSERT_EQ(run(call + "dangling.json").status, 0);
+  for (const char* link : {"link.json", "dangling.json"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
+  for (const char* file : {"old.json", "new.json"}) EXPECT_TRUE(json::accept(slurp(folder_ / file))) << file;
+
+  // Open for reading beforehand, so that the program finds a reader; what it writes is less than a pipe
+  // holds.
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  EXPECT_EQ(run(call + "pipe").status, 0);
+  std::string bytes(65536, ' ');
+  bytes.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(reader, bytes.data(), bytes.size()))));
+  close(reader);
+  EXPECT_TRUE(json::accept(bytes)) << bytes;
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST_F(Program, WhatMakesAnAnswerDoubtfulIsSaid) {
+  // One triangle of twelve left out: the count at byte 80, then 50 bytes each.
+  std::string open_box = stlBox(Vec3(4, 4, 8));
+  open_box[80] = 11;
+  open_box.resize(84 + 11 * 50);
+  write("open.stl", open_box);
+  const std::string settings = " --units mm --spacing 2mm --voxel ";
+  EXPECT_TRUE(run("query plate.stl open.stl" + settings + "1mm").err.starts_with("vps: warning: open.stl: "));
+  EXPECT_TRUE(run("import open.stl -o new --units mm").err.starts_with("vps: warning: open.stl: "));
+  EXPECT_NE(run("query plate.stl pin.stl" + settings + "6mm")
+                .err.find("vps: warning: plate.stl: is 10.000 mm thin"),
+            std::string::npos);
+  EXPECT_EQ(run("query plate.stl pin.stl" + settings + "1mm").err, "");
+}
+
+TEST_F(Program, ADepthBeyondTheBandIsSaidToBeABound) {
+  // The plate is 10 mm thick: in its middle the pin is 5 mm deep, and the band is 4 voxels wide.
+  const std::string call = "query plate.stl pin.stl --units mm --spacing 1mm --json a.json --voxel ";
+  const Ran deep = run(call + "0.25mm");
+  EXPECT_NE(deep.out.find("< -1000.00"), std::string::npos) << deep.out;
+  EXPECT_EQ(json::parse(slurp(folder_ / "a.json"))["poses"][0]["is_depth_saturated"], true);
+  const Ran shallow = run(call + "0.25mm --pose 0,0,0.0085,0,0,0,1");
+  EXPECT_NE(shallow.out.find(" -500.00"), std::string::npos) << shallow.out;
+  EXPECT_EQ(json::parse(slurp(folder_ / "a.json"))["poses"][0]["is_depth_saturated"], false);
+}
+
+TEST_F(Program, APartFarAwayIsSaidToBeFar) {
+  std::string far = "solid far\n";
+  for (const char* facet :
+       {"1e9 0 0 vertex 1e9 9 0 vertex 1e9 0 9", "1e9 0 0 vertex 1000000099 0 0 vertex 1e9 9 0"})
+    far += std::string("facet normal 0 0 1 outer loop vertex ") + facet + " endloop endfacet\n";
+  write("far.stl", far + "endsolid far\n");
+  const Ran ran = run("query far.stl pin.stl --units m --voxel 0.25mm");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("far.stl': lies 1e+09 m from the origin, too far for 0.25 mm voxels"),
+            std::string::npos)
+      << ran.err;
 }
 
 TEST_F(Program, AFailedRunLeavesEarlierResultsAlone) {

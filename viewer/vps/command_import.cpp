@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <set>
 
 #include "commands.h"
@@ -18,6 +19,8 @@
 namespace vps {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 /// A part's mesh as binary STL: float metres, which hold 1 m to 0.06 um. Equal corners are equal to the bit,
 /// so that they weld again. (Binary PLY is smaller, but Debian 12's assimp takes a first data byte of 0x0A
@@ -143,8 +146,12 @@ int runImport(const ImportArguments& given) {
   if (!given.deflection.empty()) settings.deflection_m = lengthFromText(given.deflection, "--deflection");
   if (!(settings.deflection_m > 0))
     throw LoadError("", "", "--deflection is " + given.deflection + "; expected more than 0");
+  std::error_code error;
+  if (!given.is_forced && fs::exists(fs::path(given.out) / "scene.toml", error))
+    throw LoadError(given.out, "",
+                    "has a scene.toml already; choose another folder, or --force to write over it");
   OutputFolder out(given.out);
-  OutputFile json(given.json);
+  OutputFile json(given.json, {given.cad});
   ProgressBar bar;
   const ImportedCad cad = importCad(given.cad, settings, bar.progress());
 
@@ -155,6 +162,7 @@ int runImport(const ImportArguments& given) {
     throwIfStopped();
     const ImportedPartAnswer row{part.name, fileNameOf(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
+    requireNotRead((fs::path(given.out) / row.file).string(), {given.cad});
     out.write(row.file, stlOf(part.mesh));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
@@ -168,7 +176,7 @@ int runImport(const ImportArguments& given) {
   bar.clear();
 
   std::fputs(table.text().c_str(), stdout);
-  for (const std::string& warning : cad.warnings) std::printf("%s\n", warning.c_str());
+  for (const std::string& warning : cad.warnings) warn(given.cad + ": " + warning);
   std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),
               given.out.c_str());
   return kGood;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 
@@ -22,6 +23,7 @@ namespace vps {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point begun) {
@@ -52,7 +54,12 @@ Pose poseFromText(const std::string& text, const std::string& where) {
 
 std::vector<Pose> readPoses(const QueryArguments& given) {
   if (given.poses.empty()) return {given.pose.empty() ? Pose() : poseFromText(given.pose, "--pose")};
+  std::error_code error;
+  if (fs::is_directory(given.poses, error))
+    throw LoadError(given.poses, "", "is a folder; expected a file with a pose on each line");
+  if (!fs::exists(given.poses, error)) throw LoadError(given.poses, "", "no such file");
   std::ifstream in(given.poses);
+  if (!in) throw LoadError(given.poses, "", "cannot be read");
   std::vector<Pose> poses;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -65,7 +72,7 @@ std::vector<Pose> readPoses(const QueryArguments& given) {
   return poses;
 }
 
-/// All parts of a file as one mesh, in the file's frame.
+/// All parts of a file as one mesh, in the file's frame. Says what the file lacks.
 Mesh readMesh(const std::string& file, const std::string& units) {
   ImportSettings settings;
   if (!units.empty()) {
@@ -73,11 +80,20 @@ Mesh readMesh(const std::string& file, const std::string& units) {
     if (!settings.unit_m)
       throw LoadError("", "", "--units is '" + units + "'; expected one of: mm, cm, m, um, inch");
   }
+  const ImportedCad cad = importCad(file, settings);
+  for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
   Mesh mesh;
-  for (const ImportedPart& part : importCad(file, settings).parts)
-    append(mesh, transformed(part.mesh, part.X_WP));
+  for (const ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
   requireUsable(mesh, file, "");
   return mesh;
+}
+
+/// Between its samples the field is linear: it cannot turn back within a wall thinner than two voxels.
+void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
+  const double thinnest_m = bounds(mesh).size().minCoeff();
+  if (voxel_m > thinnest_m / 2)
+    warn(file + ": is " + fixed(thinnest_m * 1e3, 3) + " mm thin, less than two voxels of " +
+         fixed(voxel_m * 1e3, 3) + " mm: depths in it mean little; take a finer --voxel");
 }
 
 /// One side of the test: the points of one mesh against the field of the other.
@@ -110,6 +126,11 @@ SideAnswer ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Fidelity& f
   return answer;
 }
 
+/// The field ends at the band. A millionth of it: the reading is a float.
+bool isSaturated(const QueryResult& found, const VoxMap& map) {
+  return found.min_distance_m <= -map.band_m() * (1 - 1e-6);
+}
+
 /// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
 /// half.
 PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Fidelity& fidelity,
@@ -119,6 +140,7 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   const SideAnswer first = ask(b_in_a, X_AB, X_AB.p, fidelity, k_N_per_m3);
   answer.min_distance_m = first.distance.min_distance_m;
   answer.is_beyond = first.distance.is_beyond_band;
+  answer.is_saturated = isSaturated(first.distance, b_in_a.map);
   answer.contact_count = first.contact_count;
   answer.points_tested = first.points_tested;
   answer.F_Bo_A = first.F_M;
@@ -127,6 +149,7 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   const SideAnswer second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), fidelity, k_N_per_m3);
   answer.min_distance_m = std::min(answer.min_distance_m, second.distance.min_distance_m);
   answer.is_beyond = answer.is_beyond && second.distance.is_beyond_band;
+  answer.is_saturated = answer.is_saturated || isSaturated(second.distance, a_in_b->map);
   answer.contact_count += second.contact_count;
   answer.points_tested += second.points_tested;
   const Wrench F_Ao_B = second.F_M;  // on A about B's origin, in B: B gets the opposite
@@ -155,10 +178,11 @@ std::string tableOf(const QueryAnswer& answer) {
   Table table({"pose", "distance [um]", "depth [um]", "contacts", "tested", "force [N]", "torque [N m]"});
   for (std::size_t i = 0; i < answer.poses.size(); ++i) {
     const PoseAnswer& pose = answer.poses[i];
-    table.add({std::to_string(i + 1), (pose.is_beyond ? "> " : "") + fixed(pose.min_distance_m * 1e6, 2),
-               fixed(pose.maxDepth_m() * 1e6, 2), std::to_string(pose.contact_count),
-               std::to_string(pose.points_tested), fixed(pose.F_Bo_A.f.norm(), 4),
-               fixed(pose.F_Bo_A.tau.norm(), 6)});
+    const char* const bound = pose.is_beyond ? "> " : pose.is_saturated ? "< " : "";
+    table.add({std::to_string(i + 1), bound + fixed(pose.min_distance_m * 1e6, 2),
+               (pose.is_saturated ? "> " : "") + fixed(pose.maxDepth_m() * 1e6, 2),
+               std::to_string(pose.contact_count), std::to_string(pose.points_tested),
+               fixed(pose.F_Bo_A.f.norm(), 4), fixed(pose.F_Bo_A.tau.norm(), 6)});
   }
   return table.text();
 }
@@ -170,10 +194,12 @@ int runQuery(const QueryArguments& given) {
     throw LoadError("", "", "--stiffness must be a finite number of at least 0");
   Fidelity fidelity = fidelityFrom(given.fidelity, fidelityPreset("normal"));
   const std::vector<Pose> poses = readPoses(given);
-  OutputFile json(given.json);
+  OutputFile json(given.json, {given.mesh_a, given.mesh_b, given.poses});
   ProgressBar bar;
 
   const Mesh mesh_a = readMesh(given.mesh_a, given.units), mesh_b = readMesh(given.mesh_b, given.units);
+  warnIfThin(mesh_a, fidelity.voxel_m, given.mesh_a);
+  if (fidelity.sides == Sides::Both) warnIfThin(mesh_b, fidelity.voxel_m, given.mesh_b);
   if (given.fidelity.points > 0) fidelity.spacing_m = spacingFor(mesh_b, given.fidelity.points);
   QueryAnswer answer;
   answer.mesh_a = given.mesh_a;

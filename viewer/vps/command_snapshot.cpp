@@ -65,11 +65,12 @@ int runSnapshot(const SnapshotArguments& given) {
   const auto [width, height] = sizeFromText(given.size);
   options.width = width;
   options.height = height;
-  OutputFile out(given.out), difference(given.difference), json(given.json);
+  const std::vector<std::string> inputs = {given.scene, given.compare};
+  OutputFile out(given.out, inputs), difference(given.difference, inputs), json(given.json, inputs);
   // Before the work: an image that is missing is a mistake in the call.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
-  const Scene scene = loadScene(given.scene);
+  const Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
   const RenderScene drawn = drawnMeshes(scene);
   const Snapshot snapshot = finished(scene);
   const Box box = snapshotBounds(drawn, snapshot);

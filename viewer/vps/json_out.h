@@ -20,6 +20,7 @@ struct PoseAnswer {
   Pose X_AB;
   double min_distance_m = 0;  ///< negative when touching; a lower bound if is_beyond
   bool is_beyond = false;     ///< nothing within the band
+  bool is_saturated = false;  ///< as deep as the band is wide, or deeper
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_Bo_A;  ///< on B about its origin, in A
   [[nodiscard]] double maxDepth_m() const { return min_distance_m < 0 ? -min_distance_m : 0; }

@@ -3,8 +3,6 @@
 // The one file that includes CLI11.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <new>
 
@@ -16,12 +14,8 @@ namespace vps {
 
 namespace {
 
-/// Says it in one line, whatever it holds.
-int couldNot(std::string words) {
-  std::replace_if(
-      words.begin(), words.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-  words.erase(words.find_last_not_of(' ') + 1);
-  std::fprintf(stderr, "vps: %s\n", words.c_str());
+int couldNot(const std::string& words) {
+  say(words);
   return kCouldNot;
 }
 
@@ -65,7 +59,7 @@ class CommandLine {
       const auto chosen = app_.get_subcommands();
       const std::string help =
           chosen.empty() ? "vps --help" : "vps " + chosen.front()->get_name() + " --help";
-      return couldNot(std::string(error.what()) + "; see " + help);
+      return couldNot(reason(error) + "; see " + help);
     }
     return run_();
   }
@@ -76,6 +70,14 @@ class CommandLine {
     command->footer("Example:\n  " + example);
     command->callback([this, run = std::move(run)] { run_ = run; });
     return command;
+  }
+
+  /// CLI11 calls an unknown command a missing one.
+  std::string reason(const CLI::ParseError& error) const {
+    const auto left_over = app_.remaining();
+    if (!app_.get_subcommands().empty() || left_over.empty()) return error.what();
+    const std::string& first = left_over.front();
+    return (first.starts_with('-') ? "unknown option '" : "unknown command '") + first + "'";
   }
 
   static void addFidelity(CLI::App* command, FidelityArguments& given) {
@@ -154,6 +156,7 @@ class CommandLine {
     command->add_option("--units", import_.units, "of files that do not say: mm, cm, m, um, inch");
     command->add_option("--deflection", import_.deflection,
                         "greatest distance of triangles from curved faces, with unit");
+    command->add_flag("--force", import_.is_forced, "over a scene.toml that is there");
     addJson(command, import_.json);
   }
 

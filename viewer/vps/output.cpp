@@ -5,8 +5,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -21,10 +21,35 @@ std::string partialName(const std::string& name) {
   return ".partial-" + std::to_string(processId()) + (name.empty() ? "" : "-" + name);
 }
 
+/// A device or a pipe: written as it stands, since a rename would put a file in its place.
+bool isStream(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+/// The file behind symbolic links, which may be missing yet: a rename onto the link would replace the link.
+fs::path throughLinks(fs::path path) {
+  constexpr int kMaxLinks = 40;  // as Linux follows
+  std::error_code error;
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i)
+    path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
-  fs::rename(from, to, error);
+  const fs::path target = throughLinks(to);
+  fs::rename(from, target, error);
+  if (error == std::errc::cross_device_link)
+    fs::copy_file(from, target, fs::copy_options::overwrite_existing, error);
   if (error) throw std::runtime_error(to.string() + ": cannot be written: " + error.message());
+}
+
+std::string contentOf(const fs::path& file) {
+  std::ostringstream out;
+  out << std::ifstream(file, std::ios::binary).rdbuf();
+  return out.str();
 }
 
 }  // namespace
@@ -37,11 +62,25 @@ void writeWhole(const std::string& file, std::string_view bytes) {
   if (!out) throw std::runtime_error(file + ": cannot be written: " + std::strerror(errno));
 }
 
-OutputFile::OutputFile(const std::string& file) : file_(file) {
-  if (file.empty()) return;
-  const fs::path path(file);
+void requireNotRead(const std::string& output, const std::vector<std::string>& inputs) {
   std::error_code error;
-  if (fs::is_directory(path, error)) throw LoadError(file, "", "is a folder; name a file to write");
+  if (output.empty() || !fs::is_regular_file(output, error)) return;
+  for (const std::string& input : inputs)
+    if (fs::equivalent(output, input, error))
+      throw LoadError(output, "", "is read by this command, which would overwrite it; choose another place");
+}
+
+OutputFile::OutputFile(const std::string& file, const std::vector<std::string>& inputs) : file_(file) {
+  if (file.empty()) return;
+  std::error_code error;
+  if (fs::is_directory(file, error)) throw LoadError(file, "", "is a folder; name a file to write");
+  requireNotRead(file, inputs);
+  is_stream_ = isStream(file);
+  if (is_stream_) {
+    partial_ = file;  // not tried out: the reader of a pipe would take the end of the trial for the end
+    return;
+  }
+  const fs::path path = throughLinks(file);
   partial_ = (path.parent_path() / partialName(path.filename().string())).string();
   errno = 0;
   if (!std::ofstream(partial_, std::ios::binary)) {
@@ -52,7 +91,7 @@ OutputFile::OutputFile(const std::string& file) : file_(file) {
 
 OutputFile::~OutputFile() {
   std::error_code ignored;
-  if (!partial_.empty()) fs::remove(partial_, ignored);
+  if (!partial_.empty() && !is_stream_) fs::remove(partial_, ignored);
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -62,7 +101,7 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::commit() {
-  if (!file_.empty()) move(partial_, file_);
+  if (!file_.empty() && !is_stream_) move(partial_, file_);
 }
 
 OutputFolder::OutputFolder(const std::string& folder) : folder_(folder) {
@@ -95,7 +134,10 @@ void OutputFolder::commit() {
   for (const fs::path& file : files) {
     const fs::path to = fs::path(folder_) / file.lexically_relative(partial_);
     fs::create_directories(to.parent_path());
-    move(file, to);
+    if (isStream(to))
+      writeWhole(to.string(), contentOf(file));
+    else
+      move(file, to);
   }
 }
 

@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results appear whole at the end of a run that succeeded, or not at all; what an earlier run left stays
-// until then.
+// until then. What is there and no plain file stays what it is: symbolic links are followed, devices and
+// pipes are written directly.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vps {
+
+/// Throws LoadError when `output` is one of the files that a command reads, under whatever name.
+void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
 
 /// One output file. Opened when the work starts, so that a place that cannot be written is said before it.
 class OutputFile {
  public:
-  /// Throws LoadError when nothing can be written there. An empty name is no output: write() then does
-  /// nothing.
-  explicit OutputFile(const std::string& file);
+  /// Throws LoadError when nothing can be written there, or when it is one of the command's `inputs`. An
+  /// empty name is no output: write() then does nothing.
+  OutputFile(const std::string& file, const std::vector<std::string>& inputs);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Where to write until commit(): in the same folder, so that the move is atomic.
+  /// Where to write until commit(): in the same folder, so that the move is atomic; a device or pipe itself.
   [[nodiscard]] const std::string& partial() const { return partial_; }
   /// Writes the whole content and commits it.
   void write(std::string_view bytes);
@@ -27,6 +32,7 @@ class OutputFile {
 
  private:
   std::string file_, partial_;
+  bool is_stream_ = false;
 };
 
 /// A folder of results.

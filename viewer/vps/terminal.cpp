@@ -3,7 +3,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdio>
 
 namespace vps {
 
@@ -18,6 +20,17 @@ void onStop(int) {
 
 bool isTerminal() {
   return isatty(STDERR_FILENO) == 1;
+}
+
+void say(std::string words) {
+  std::replace_if(
+      words.begin(), words.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  words.erase(words.find_last_not_of(' ') + 1);
+  std::fprintf(stderr, "vps: %s\n", words.c_str());
+}
+
+void warn(const std::string& words) {
+  say("warning: " + words);
 }
 
 long processId() {

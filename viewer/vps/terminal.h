@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The little of POSIX that a command line needs: is anybody watching, and did they press Ctrl-C.
+// The little of POSIX that a command line needs: is anybody watching, and did they press Ctrl-C. And how it
+// speaks on stderr.
 #pragma once
 
 #include <atomic>
 #include <exception>
+#include <string>
 
 namespace vps {
 
 /// Is stderr a terminal?
 bool isTerminal();
+
+/// Prints "vps: WORDS" on stderr as one line, whatever the words hold.
+void say(std::string words);
+/// The same with "warning: " before the words: the answer stands, but should be looked at.
+void warn(const std::string& words);
 
 /// This process's number, for names of temporary files.
 long processId();
