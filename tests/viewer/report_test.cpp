@@ -102,7 +102,9 @@ TEST(Report, SaysNoWithTheReasonAndEveryPictureItShowsExists) {
     const std::string file = page.substr(at + 5, page.find('"', at + 5) - at - 5);
     EXPECT_TRUE(fs::exists(dir + "/" + file)) << file;
   }
-  if (outcome.notes.empty()) EXPECT_EQ(count, 2u + 3u + 1u);  // assembly, step, forces
+  if (outcome.notes.empty()) {
+    EXPECT_EQ(count, 2u + 3u + 1u);  // assembly, step, forces
+  }
 }
 
 TEST(Report, RepeatsByteForByte) {
