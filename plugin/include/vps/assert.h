@@ -5,12 +5,12 @@
 #ifdef VPS_ASSERT_ON
 #include <cstdio>
 #include <cstdlib>
-#define VPS_ASSERT(condition)                                                                    \
-  do {                                                                                           \
-    if (!(condition)) {                                                                          \
+#define VPS_ASSERT(condition)                                                                         \
+  do {                                                                                                \
+    if (!(condition)) {                                                                               \
       std::fprintf(stderr, "%s:%d: our mistake: %s does not hold\n", __FILE__, __LINE__, #condition); \
-      std::abort();                                                                              \
-    }                                                                                            \
+      std::abort();                                                                                   \
+    }                                                                                                 \
   } while (false)
 #else
 #define VPS_ASSERT(condition) static_cast<void>(0)

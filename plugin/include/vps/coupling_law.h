@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling between the device's proxy and the part in hand: the law, and the port where the haptic
-// and the physics side meet. Neither side includes the other.
+// The virtual coupling between the device's proxy and the part in hand: the law, and the port where the
+// haptic and the physics side meet. Neither side includes the other.
 #pragma once
 
 #include "vps/pose.h"
@@ -9,8 +9,8 @@
 
 namespace vps {
 
-/// A 6-DOF spring-damper. Limits bound the spring's part, keeping its direction, so that a part that hangs back
-/// pulls with a known greatest force.
+/// A 6-DOF spring-damper. Limits bound the spring's part, keeping its direction, so that a part that hangs
+/// back pulls with a known greatest force.
 struct CouplingGains {
   double k_N_per_m = 2000;
   double b_Ns_per_m = 10;
@@ -28,13 +28,14 @@ struct CouplingState {
   bool is_coupled = false;
 };
 
-/// Wrench on the part about its grasp point, in W: k times the pose error plus b times the velocity error, springs
-/// limited. The proxy gets the opposite. Zero if anything is not finite. Never throws or allocates.
+/// Wrench on the part about its grasp point, in W: k times the pose error plus b times the velocity error,
+/// springs limited. The proxy gets the opposite. Zero if anything is not finite. Never throws or allocates.
 /// Source: Colgate, Stanley and Brown 1995 (virtual coupling); rotation error as a rotation vector.
-Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) noexcept;
+Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
+                      const CouplingState& part) noexcept;
 
-/// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads the
-/// other's latest without waiting.
+/// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads
+/// the other's latest without waiting.
 struct CouplingPort {
   TripleBuffer<CouplingState> proxy;
   TripleBuffer<CouplingState> part;

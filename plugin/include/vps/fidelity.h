@@ -11,11 +11,11 @@ namespace vps {
 enum class Sides { One, Both };
 
 struct Fidelity {
-  double voxel_m = 0.25e-3;         ///< grid step of voxmaps
-  double spacing_m = 0.5e-3;        ///< distance between shell points
-  Sides sides = Sides::Both;        ///< moving points against fixed field only, or both ways
+  double voxel_m = 0.25e-3;   ///< grid step of voxmaps
+  double spacing_m = 0.5e-3;  ///< distance between shell points
+  Sides sides = Sides::Both;  ///< moving points against fixed field only, or both ways
   Gradient gradient = Gradient::Continuous;
-  int contact_limit = 64;           ///< contacts given to the solver for each pair
+  int contact_limit = 64;  ///< contacts given to the solver for each pair
   double haptic_rate_hz = 1000;
   double physics_rate_hz = 1000;
   int solver_iterations = 100;

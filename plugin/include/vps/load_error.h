@@ -7,8 +7,8 @@
 
 namespace vps {
 
-/// Thrown while loading files, meshes and settings; never in the haptic path. what() is one line for a person:
-/// "gear.stl: part 'hub': vertex 17 is not a number; export it again".
+/// Thrown while loading files, meshes and settings; never in the haptic path. what() is one line for a
+/// person: "gear.stl: part 'hub': vertex 17 is not a number; export it again".
 class LoadError : public std::runtime_error {
  public:
   LoadError(const std::string& file, const std::string& part, const std::string& found_and_remedy)

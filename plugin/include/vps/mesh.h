@@ -29,7 +29,8 @@ struct Box {
   [[nodiscard]] Vec3 size() const { return max - min; }
 };
 
-/// Of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in the mesh's frame.
+/// Of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in the mesh's
+/// frame.
 struct MassProperties {
   double volume_m3 = 0;
   Vec3 com = Vec3::Zero();
@@ -43,7 +44,9 @@ struct MeshReport {
   std::size_t non_manifold_edges = 0;  ///< edges with more than two
   std::size_t flipped_edges = 0;       ///< edges whose two triangles disagree on orientation
   std::size_t shells = 0;              ///< connected components
-  [[nodiscard]] bool isClosed() const { return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0; }
+  [[nodiscard]] bool isClosed() const {
+    return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0;
+  }
 };
 
 Box bounds(const Mesh& mesh);
@@ -66,8 +69,8 @@ Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 /// Counts edges and shells. Expects shared vertices (see welded()).
 MeshReport checkMesh(const Mesh& mesh);
 
-/// Refuses what nothing can be built from: no triangles, an index out of range, a coordinate that is not finite,
-/// zero area. Throws LoadError naming file and part.
+/// Refuses what nothing can be built from: no triangles, an index out of range, a coordinate that is not
+/// finite, zero area. Throws LoadError naming file and part.
 void requireUsable(const Mesh& mesh, const std::string& file, const std::string& part);
 
 /// Primitives with analytic truth, for tests and simple scenes; all centred at the origin, closed, outward.

@@ -26,7 +26,7 @@ class MeshDistance {
     Vec3 q = Vec3::Zero();       ///< nearest point on the mesh, in the mesh's frame
     Vec3 normal = Vec3::Zero();  ///< outward pseudonormal of its feature, unit
     std::uint32_t triangle = 0;
-    double distance_m = 0;       ///< unsigned; max_m when nothing is nearer
+    double distance_m = 0;  ///< unsigned; max_m when nothing is nearer
     bool found = false;
   };
 
@@ -37,8 +37,8 @@ class MeshDistance {
   [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
   /// Negative inside. Clamped to +-max_m; beyond max_m the sign is not computed and the answer is +max_m.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
-  /// A value L with L <= distance <= L (1 + slack), unsigned; quicker than closest() where much is equally far. If
-  /// nothing is nearer than max_m: max_m / (1 + slack).
+  /// A value L with L <= distance <= L (1 + slack), unsigned; quicker than closest() where much is equally
+  /// far. If nothing is nearer than max_m: max_m / (1 + slack).
   [[nodiscard]] double lowerBound(const Vec3& p, double slack, double max_m = 1e300) const noexcept;
   /// Outward pseudonormal of a triangle's feature (numbered as in TrianglePoint), unit.
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;

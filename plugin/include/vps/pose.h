@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid poses and velocities. Letters: X pose, R rotation, p position, v/w velocity; X_AB is the pose of B in A.
+// Rigid poses and velocities. Letters: X pose, R rotation, p position, v/w velocity; X_AB is the pose of B in
+// A.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +19,8 @@ struct Pose {
 
   Pose() = default;
   Pose(const Mat3& rotation, const Vec3& position) : R(rotation), p(position) {}
-  Pose(const Quat& rotation, const Vec3& position) : R(rotation.normalized().toRotationMatrix()), p(position) {}
+  Pose(const Quat& rotation, const Vec3& position)
+      : R(rotation.normalized().toRotationMatrix()), p(position) {}
   static Pose translation(const Vec3& position) { return {Mat3(Mat3::Identity()), position}; }
 
   Pose operator*(const Pose& X_BC) const { return {Mat3(R * X_BC.R), R * X_BC.p + p}; }

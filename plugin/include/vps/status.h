@@ -15,12 +15,18 @@ enum class Status {
 
 inline const char* toText(Status status) {
   switch (status) {
-    case Status::Ok: return "ok";
-    case Status::BadPose: return "bad pose";
-    case Status::Truncated: return "truncated";
-    case Status::BeyondBand: return "beyond band";
-    case Status::Fault: return "fault";
-    case Status::Singular: return "singular";
+    case Status::Ok:
+      return "ok";
+    case Status::BadPose:
+      return "bad pose";
+    case Status::Truncated:
+      return "truncated";
+    case Status::BeyondBand:
+      return "beyond band";
+    case Status::Fault:
+      return "fault";
+    case Status::Singular:
+      return "singular";
   }
   return "unknown";
 }

@@ -14,21 +14,21 @@
 namespace vps {
 
 struct VoxMapSettings {
-  double voxel_m = 0.25e-3;   ///< grid step h
-  double band_voxels = 4;     ///< half width of the narrow band in voxels, >= 3 (nodal gradients need it)
+  double voxel_m = 0.25e-3;  ///< grid step h
+  double band_voxels = 4;    ///< half width of the narrow band in voxels, >= 3 (nodal gradients need it)
 };
 
-/// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force never jumps from
-/// cell to cell, and is only nearly the derivative of an energy. `Trilinear` is the exact derivative of the
-/// interpolated distance, and turns abruptly at cell borders. Cost and error: plugin/README.md.
+/// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force never jumps
+/// from cell to cell, and is only nearly the derivative of an energy. `Trilinear` is the exact derivative of
+/// the interpolated distance, and turns abruptly at cell borders. Cost and error: plugin/README.md.
 enum class Gradient { Continuous, Trilinear };
 
 struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
 
-/// Signed distance [m] to a part's surface in frame M, negative inside: exact at the grid's nodes within the band,
-/// trilinear between them. Beyond the band the distance saturates at +-band_m() with the right sign, and
-/// lowerBound() gives a coarse bound that still tells far from near. Immutable once built; sampling is thread-safe,
-/// and never allocates or throws.
+/// Signed distance [m] to a part's surface in frame M, negative inside: exact at the grid's nodes within the
+/// band, trilinear between them. Beyond the band the distance saturates at +-band_m() with the right sign,
+/// and lowerBound() gives a coarse bound that still tells far from near. Immutable once built; sampling is
+/// thread-safe, and never allocates or throws.
 class VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
@@ -54,14 +54,16 @@ class VoxMap {
   [[nodiscard]] Vec3 normal(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
   /// Both at once, for less than the two apart.
   [[nodiscard]] Sample sample(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
-  /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away it
-  /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
+  /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away
+  /// it grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
   [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
-  /// A value that the signed distance at p_M is not below; -band_m() where that is all that is known. What a sphere of points needs: every
-  /// distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r, band_m()) - sampleError_m().
+  /// A value that the signed distance at p_M is not below; -band_m() where that is all that is known. What a
+  /// sphere of points needs: every distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r,
+  /// band_m()) - sampleError_m().
   [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
-  /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel, at the
-  /// middle of a cell where surfaces meet at a corner. (On smooth surfaces it is h^2/8 times curvature.)
+  /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel,
+  /// at the middle of a cell where surfaces meet at a corner. (On smooth surfaces it is h^2/8 times
+  /// curvature.)
   [[nodiscard]] double sampleError_m() const noexcept { return 0.8661 * voxel_m_; }
   /// True if p_M is inside by the coarse sign; meaningful beyond the band, where distance() has saturated.
   [[nodiscard]] bool isInsideCoarse(const Vec3& p_M) const noexcept;
@@ -78,8 +80,8 @@ class VoxMap {
 };
 
 /// Builds the map of one mesh: exact distance to its triangles at every node within the band, sign by
-/// pseudonormals. O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size
-/// that is not positive, or a grid that would not fit in memory (says which voxel size would).
+/// pseudonormals. O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel
+/// size that is not positive, or a grid that would not fit in memory (says which voxel size would).
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                    const Progress& progress = {});
 
@@ -89,16 +91,19 @@ struct PlacedMesh {
   Pose X_MP;
 };
 
-/// "Cooks" mounted parts into one voxmap (paper, section 5): the union, min over the parts' own exact distances
-/// on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells the parts apart.
-VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings, const Progress& progress = {});
+/// "Cooks" mounted parts into one voxmap (paper, section 5): the union, min over the parts' own exact
+/// distances on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells
+/// the parts apart.
+VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
+                  const Progress& progress = {});
 
-/// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new part.
+/// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new
+/// part.
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 
 /// Writes/reads an ordinary OpenVDB level set ("surface", float, narrow band); opens in Houdini and Blender.
-/// Throws LoadError on a file that is missing, damaged, or not a uniform level set. Writing goes to a temporary
-/// name first: an existing file is replaced whole or not at all.
+/// Throws LoadError on a file that is missing, damaged, or not a uniform level set. Writing goes to a
+/// temporary name first: an existing file is replaced whole or not at all.
 void saveVdb(const VoxMap& map, const std::string& file);
 VoxMap loadVdb(const std::string& file);
 

@@ -6,8 +6,8 @@
 
 namespace vps {
 
-/// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about P's
-/// origin, in W.
+/// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about
+/// P's origin, in W.
 struct Wrench {
   Vec3 tau = Vec3::Zero();
   Vec3 f = Vec3::Zero();
@@ -24,12 +24,18 @@ struct Wrench {
 };
 
 /// The same wrench about point B, where p_BA runs from B to the old point A, in the wrench's frame.
-inline Wrench shifted(const Wrench& F_A, const Vec3& p_BA) { return {F_A.tau + p_BA.cross(F_A.f), F_A.f}; }
+inline Wrench shifted(const Wrench& F_A, const Vec3& p_BA) {
+  return {F_A.tau + p_BA.cross(F_A.f), F_A.f};
+}
 
 /// The same wrench with its components in frame A, where R_AB turns B's components into A's.
-inline Wrench rotated(const Mat3& R_AB, const Wrench& F_B) { return {R_AB * F_B.tau, R_AB * F_B.f}; }
+inline Wrench rotated(const Mat3& R_AB, const Wrench& F_B) {
+  return {R_AB * F_B.tau, R_AB * F_B.f};
+}
 
 /// Power [W] of a wrench about a point that moves with V; both in one frame.
-inline double power(const Wrench& F, const Twist& V) { return F.tau.dot(V.w) + F.f.dot(V.v); }
+inline double power(const Wrench& F, const Twist& V) {
+  return F.tau.dot(V.w) + F.f.dot(V.v);
+}
 
 }  // namespace vps
