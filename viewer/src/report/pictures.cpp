@@ -31,7 +31,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.show_target = options.show_contacts = options.show_force = options.show_legend = false;
     options.title = result_.scene.empty() ? scene_.name : result_.scene;
-    options.caption = result_.completed ? "as assembled" : "what is in place";
+    options.caption = result_.completed ? "as assembled" : "not complete" + placedOnes();
     const Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     pictures.overview = save("overview.png", result_.finished, camera, options);
     options.caption += ", cut through the middle";
@@ -42,6 +42,15 @@ class PictureSet {
   }
 
  private:
+  /// What the picture shows in place although no contact brought it there.
+  [[nodiscard]] std::string placedOnes() const {
+    std::string names;
+    for (const StepResult& step : result_.steps)
+      if (step.is_placed)
+        names += (names.empty() ? "; drawn on target without having got there: " : ", ") + step.part;
+    return names;
+  }
+
   [[nodiscard]] DrawOptions baseOptions() const {
     DrawOptions options;
     options.width = options_.width;
@@ -63,7 +72,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.title = title;
     if (result_.steps[i].penetration_limit_m > 0)
-      options.contact_full_scale_m = 2 * result_.steps[i].penetration_limit_m;
+      options.contact_full_scale_m = result_.steps[i].penetration_limit_m;
     if (i < result_.start.size()) {
       options.caption = "start; the target in transparency";
       pictures.start = save(prefix + "start.png", result_.start[i],
@@ -100,7 +109,7 @@ class PictureSet {
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption = result_.steps[i].completed ? "end: in place" : "end: not completed";
+      options.caption = result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].why_not;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;
