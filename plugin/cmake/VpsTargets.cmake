@@ -31,7 +31,11 @@ function(vps_compile_options target)
     target_link_options(${target} PUBLIC -fsanitize=${VPS_SANITIZE})
   endif()
   # Our own mistakes are loud in Debug and in sanitized builds (see vps/assert.h).
-  target_compile_definitions(${target} PRIVATE $<$<OR:$<CONFIG:Debug>,$<BOOL:${VPS_SANITIZE}>>:VPS_ASSERT_ON>)
+  if(VPS_SANITIZE)
+    target_compile_definitions(${target} PRIVATE VPS_ASSERT_ON)
+  else()
+    target_compile_definitions(${target} PRIVATE $<$<CONFIG:Debug>:VPS_ASSERT_ON>)
+  endif()
 endfunction()
 
 # A GoogleTest program, one per tested folder or topic.
