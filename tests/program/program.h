@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string>
 
-#include "vps/mesh.h"
+#include "support/stl_box.h"
 
 namespace vps {
 
@@ -22,23 +22,6 @@ inline std::string slurp(const fs::path& file) {
   std::ostringstream out;
   out << std::ifstream(file, std::ios::binary).rdbuf();
   return out.str();
-}
-
-/// Binary STL of a box, in the numbers given.
-inline std::string stlBox(const Vec3& size) {
-  const Mesh mesh = makeBox(size);
-  std::string out(80, ' ');
-  const auto put = [&](const auto& value) {
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  put(static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const auto& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) put(0.0f);
-    for (const std::uint32_t vertex : triangle)
-      for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
-    put(std::uint16_t{0});
-  }
-  return out;
 }
 
 struct Ran {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "support/stl_box.h"
 #include "vps/load_error.h"
 #include "vps_scenes/scene.h"
 
@@ -17,23 +18,6 @@ namespace vps {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Binary STL of a box, in the numbers given.
-std::string stlBox(const Vec3& size) {
-  const Mesh mesh = makeBox(size);
-  std::string out(80, ' ');
-  const auto put = [&](const auto& value) {
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  put(static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const auto& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) put(0.0f);
-    for (const std::uint32_t vertex : triangle)
-      for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
-    put(std::uint16_t{0});
-  }
-  return out;
-}
 
 /// A folder of its own with a plate of 40 x 40 x 10 and a pin of 4 x 4 x 20, both in millimetres.
 class SceneFile : public testing::Test {
