@@ -33,8 +33,9 @@ void saturate(BrickNodes& distance_m, float band_m) {
 
 class Assembler {
  public:
-  Assembler(VoxLayout& layout, const NodeBlocks& blocks) : layout_(layout), blocks_(blocks) {
-    block_of_.assign(layout.cells.size(), -1);
+  Assembler(VoxLayout& layout, const NodeBlocks& blocks, double band_m)
+      : layout_(layout), blocks_(blocks), band_m_(static_cast<float>(band_m)) {
+    block_of_.assign(layout.bricks.size(), -1);
     for (std::size_t i = 0; i < blocks.cells.size(); ++i)
       block_of_[blocks.cells[i]] = static_cast<std::int32_t>(i);
   }
@@ -50,33 +51,41 @@ class Assembler {
     std::int32_t kept = 0;
     for (std::int32_t& s : slot) s = s != 0 ? kept++ : -1;
 
-    auto pool = std::make_shared<VoxPool>();
-    pool->bricks.resize(static_cast<std::size_t>(kept));
+    layout_.pool = std::make_shared<VoxPool>(static_cast<std::size_t>(kept));
+    const std::uint32_t first = layout_.pool->take(static_cast<std::size_t>(kept));
+    const double quantum_m = quantumOf(band_m_);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       if (slot[i] < 0) return;
-      VoxBrick& brick = pool->bricks[slot[i]];
-      collect(i, brick.distance_m);
-      saturate(brick.distance_m, layout_.outside()->distance_m[0]);
-      layout_.cells[blocks_.cells[i]].brick = &brick;
+      const std::uint32_t brick = first + static_cast<std::uint32_t>(slot[i]) * kBrickStride;
+      BrickNodes distance_m;
+      collect(i, distance_m);
+      saturate(distance_m, band_m_);
+      NodeValue* nodes = layout_.pool->nodes(brick);
+      std::fill(std::transform(distance_m.begin(), distance_m.end(), nodes,
+                               [&](float d) { return toNode(d, quantum_m); }),
+                nodes + kBrickStride, NodeValue{0});
+      layout_.pool->owner(brick) = 0;
+      layout_.pool->mixed(brick) = nullptr;
+      layout_.bricks[blocks_.cells[i]] = brick;
     });
-    layout_.pools = {pool};
   }
 
   /// Empty cells meet the surface nowhere, so a sign spreads from cell to cell. From the rim first, which is
   /// outside: a flaw in the mesh then cannot turn the outside in.
   void fillEmptyCells() {
-    fill(layout_.low, layout_.outside());  // the rim is one connected layer of empty cells
-    for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
-      const VoxBrick* brick = layout_.cells[i].brick;
-      if (brick == nullptr || layout_.isConstant(brick)) continue;
+    is_filled_.assign(layout_.bricks.size(), false);
+    for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);
+    fill(layout_.low, kOutside);  // the rim is one connected layer of empty cells
+    for (std::size_t i = 0; i < layout_.bricks.size(); ++i) {
+      if (isConstant(layout_.bricks[i])) continue;
+      const NodeValue* nodes = layout_.nodesOf(i);
       // An empty neighbour shares a face with the brick, whose middle node tells the sign.
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           Index3 node = Index3::Constant(kBrick / 2);
           node[axis] = step < 0 ? 0 : kBrick;
-          const bool is_inside = brick->distance_m[nodeIndex(node.x(), node.y(), node.z())] < 0;
-          fill(layout_.cellAt(i) + step * Index3::Unit(axis),
-               is_inside ? layout_.inside() : layout_.outside());
+          const bool is_inside = nodes[nodeIndex(node.x(), node.y(), node.z())] < 0;
+          fill(layout_.cellAt(i) + step * Index3::Unit(axis), is_inside ? kInside : kOutside);
         }
     }
   }
@@ -97,15 +106,16 @@ class Assembler {
     }
   }
 
-  void fill(const Index3& from, const VoxBrick* with) {
+  void fill(const Index3& from, std::uint32_t with) {
     waiting_.push_back(from);
     while (!waiting_.empty()) {
       const Index3 cell = waiting_.back();
       waiting_.pop_back();
       if (!layout_.holds(cell)) continue;
-      VoxCell& entry = layout_.cells[layout_.cellIndex(cell)];
-      if (entry.brick != nullptr) continue;
-      entry.brick = with;
+      const std::size_t index = layout_.cellIndex(cell);
+      if (is_filled_[index]) continue;
+      is_filled_[index] = true;
+      layout_.bricks[index] = with;
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) waiting_.push_back(cell + step * Index3::Unit(axis));
     }
@@ -113,22 +123,16 @@ class Assembler {
 
   VoxLayout& layout_;
   const NodeBlocks& blocks_;
+  const float band_m_;
   std::vector<std::int32_t> block_of_;  // by directory index; -1: none
+  std::vector<bool> is_filled_;         // has its brick or its sign
   std::vector<Index3> waiting_;
 };
 
 }  // namespace
 
-std::shared_ptr<const VoxPool> constantBricks(double band_m) {
-  auto pool = std::make_shared<VoxPool>();
-  pool->bricks.resize(2);
-  pool->bricks[0].distance_m.fill(static_cast<float>(band_m));
-  pool->bricks[1].distance_m.fill(-static_cast<float>(band_m));
-  return pool;
-}
-
-void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks) {
-  Assembler assembler(layout, blocks);
+void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m) {
+  Assembler assembler(layout, blocks, band_m);
   assembler.makeBricks();
   assembler.fillEmptyCells();
 }

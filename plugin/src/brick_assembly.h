@@ -28,10 +28,8 @@ struct NodeBlocks {
   std::vector<OwnNodes> nodes;
 };
 
-/// Two bricks: all +band, all -band.
-std::shared_ptr<const VoxPool> constantBricks(double band_m);
-
-/// Fills the directory's cells: a brick where a node is within the band, else outside or inside.
-void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks);
+/// Gives the directory its bricks, in a pool of their own: one where a node is within the band, else outside
+/// or inside. Distances are rounded to the band's quantum (voxmap_layout.h).
+void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m);
 
 }  // namespace vps

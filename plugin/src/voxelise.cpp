@@ -55,8 +55,8 @@ class Voxeliser {
   std::shared_ptr<VoxLayout> build(const Progress& progress);
 
   static double bandOf(const VoxMapSettings& settings) {
-    // As the float that saturated nodes hold, so that a saturated distance equals band_m() exactly.
-    return static_cast<float>(settings.band_voxels * settings.voxel_m);
+    // What a saturated node reads as, so that a saturated distance equals band_m() exactly.
+    return kFullBand * quantumOf(settings.band_voxels * settings.voxel_m);
   }
 
  private:
@@ -101,9 +101,8 @@ void Voxeliser::layOutDirectory() {
   const Vec3 high = ((box.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
-  layout_->cells.resize(static_cast<std::size_t>((high - low).prod()));
+  layout_->resizeCells();
   layout_->parts = {{box, layout_->low, layout_->low + layout_->size}};
-  layout_->constants = constantBricks(band_m_);
 }
 
 /// Halves the range of cells until few are left, dropping halves that the triangle cannot reach: a big
@@ -149,12 +148,12 @@ void Voxeliser::gather() {
   });
 
   // Counting sort by cell; triangles stay ascending within each.
-  std::vector<std::size_t> start(layout_->cells.size() + 1, 0);
+  std::vector<std::size_t> start(layout_->bricks.size() + 1, 0);
   for (const auto& chunk : reached)
     for (const auto& [cell, triangle] : chunk) ++start[cell + 1];
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   gathered_.triangles.resize(start.back());
-  for (std::size_t cell = 0; cell < layout_->cells.size(); ++cell) {
+  for (std::size_t cell = 0; cell < layout_->bricks.size(); ++cell) {
     if (start[cell] == start[cell + 1]) continue;
     blocks_.cells.push_back(cell);
     gathered_.first.push_back(start[cell]);
@@ -247,16 +246,14 @@ void Voxeliser::boundCenters() {
     double last_m = 1e300;
     for (int z = 0; z < size.z(); ++z) {
       const Index3 cell = layout_->low + Index3(row / size.y(), row % size.y(), z);
-      VoxCell& entry = layout_->cells[layout_->cellIndex(cell)];
+      const std::size_t index = layout_->cellIndex(cell);
       const Vec3 center = nodePosition(kBrick * cell + Index3::Constant(kBrick / 2));
       // From the centre before, the surface can be farther by the way between at most: a good start for the
       // search.
       const double start_m = (last_m * (1 + kCenterSlack) + kBrick * h_) * (1 + 1e-9);
       last_m = distance_.lowerBound(center, kCenterSlack, start_m);
-      const bool is_inside = layout_->isConstant(entry.brick)
-                                 ? entry.brick == layout_->inside()
-                                 : entry.brick->distance_m[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)] < 0;
-      entry.center_m = static_cast<float>(is_inside ? -last_m : last_m);
+      const bool is_inside = layout_->nodesOf(index)[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)] < 0;
+      layout_->centers_m[index] = static_cast<float>(is_inside ? -last_m : last_m);
     }
   });
 }
@@ -275,7 +272,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) computeNodes(i, work);
   });
   tell(0.7);
-  assembleBricks(*layout_, blocks_);
+  assembleBricks(*layout_, blocks_, band_m_);
   tell(0.8);
   boundCenters();
   tell(1);
@@ -288,8 +285,8 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
   const double cells = ((size_m.array() + 2 * band_voxels * h) / cell_m + 3).prod();
-  return bricks * 2 * sizeof(VoxBrick) +
-         cells * (sizeof(VoxCell) + 16);  // twice: bricks are built, then packed
+  const double kWhileBuilding = sizeof(OwnNodes);  // as floats first
+  return bricks * (VoxPool::kBytes + kWhileBuilding) + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
 }
 
 void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
@@ -331,6 +328,7 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, co
   VoxMap map;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
+  map.quantum_m_ = quantumOf(map.band_m_);
   map.bounds_ = bounds(mesh);
   map.layout_ = Voxeliser(shared, settings).build(progress);
   return map;

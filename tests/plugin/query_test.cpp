@@ -16,8 +16,6 @@ namespace {
 
 constexpr double kMm = 1e-3, kUm = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Distances are stored as float in units of at most a few millimetres.
-constexpr double kFloat_m = 1e-9;
 
 PointShell shellOf(const Mesh& mesh, double spacing_m) {
   return buildPointShell(mesh, {spacing_m, 0.35});
@@ -45,7 +43,7 @@ TEST(Query, BallOnBallReportsAnalyticDepthAndNormal) {
   }
   // Trilinear: h^2/8 times the summed second derivatives, 2/r; the facets lie inside the sphere by the
   // sagitta.
-  const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + kFloat_m;
+  const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + map.quantum_m();
   // Facet normals differ from the sphere's by about sqrt(2 sagitta / r); differences over 2h see h^2/6 of
   // curvature.
   const double tol_rad = std::sqrt(2 * sagitta_m / map_radius_m) + std::pow(h / map_radius_m, 2);
@@ -77,8 +75,8 @@ TEST(Query, BoxSunkInPlateTouchesWithItsWholeLowerFace) {
   const ContactSet set = contactsOf(map, shell, X_MP);
   EXPECT_EQ(set.contacts.size(), expected);
   for (const Contact& c : set.contacts) {  // over a plane trilinear interpolation is exact
-    EXPECT_NEAR(c.distance_m, c.p_M.z() - 4 * kMm, kFloat_m);
-    EXPECT_LT((c.n_M - Vec3::UnitZ()).norm(), 1e-5);  // kFloat_m over 2h
+    EXPECT_NEAR(c.distance_m, c.p_M.z() - 4 * kMm, map.quantum_m());
+    EXPECT_LT((c.n_M - Vec3::UnitZ()).norm(), 1e-5);  // a quantum over 2h
   }
 }
 
@@ -91,7 +89,7 @@ TEST(Query, PegInBoreReportsDepthAndNormalWithinHalfAMicron) {
   const Pose X_MP = Pose::translation({aside_m, 0, 0});
   // Facets: sagitta. Trilinear: h^2/8 times 1/r, the distance's one second derivative.
   const double sagitta_m = bore_m * (1 - std::cos(std::numbers::pi / segments));
-  const double tol_m = sagitta_m + h * h / (8 * (peg_m - map.band_m())) + kFloat_m;
+  const double tol_m = sagitta_m + h * h / (8 * (peg_m - map.band_m())) + map.quantum_m();
   ASSERT_LT(tol_m, 0.5 * kUm);
   const double tol_rad = std::numbers::pi / segments + std::pow(h / bore_m, 2);
   const ContactSet set = contactsOf(map, shell, X_MP);
@@ -124,7 +122,7 @@ TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
     const double cap_m = std::sqrt(2 * R * delta_m);
     const double tol = std::pow(spacing_m / cap_m, 1.5) + 0.01;  // facets: 2 sagitta / delta
     EXPECT_NEAR(F.f.z() / exact_N, 1, tol) << spacing_m;
-    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // a plane's normals: kFloat_m over 2h
+    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // a plane's normals: a quantum over 2h
     EXPECT_LT(F.tau.norm() / (exact_N * cap_m), tol);
   }
 }
