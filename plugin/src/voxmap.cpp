@@ -39,6 +39,10 @@ VoxMap::VoxMap() {
   layout_ = empty;
 }
 
+std::size_t VoxMap::partCount() const noexcept {
+  return layout_->parts.size();
+}
+
 std::size_t VoxMap::brickCount() const noexcept {
   const auto& bricks = layout_->bricks;
   return bricks.size() - static_cast<std::size_t>(std::count_if(bricks.begin(), bricks.end(), isConstant));

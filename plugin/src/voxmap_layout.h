@@ -115,6 +115,9 @@ struct VoxLayout {
   std::shared_ptr<VoxPool> pool;
   std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< what mixed bricks point to
   std::vector<VoxPartRange> parts;
+  /// The most by which neighbouring nodes differ, in voxels: 1 for true distances. More where signs change
+  /// without a surface, or where a level set of others was none.
+  float steepest = 1;
 
   void resizeCells() {
     bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);

@@ -48,6 +48,10 @@ class VoxMap {
   [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Parts merged into it.
+  [[nodiscard]] std::size_t partCount() const noexcept;
+  /// True if both are copies of one map.
+  [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
   [[nodiscard]] std::size_t brickCount() const noexcept;
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
