@@ -26,8 +26,9 @@ class CoherentWalk {
         memory_(memory),
         X_MP_(X_MP),
         cutoff_(cutoff),
-        error_(0.8661 + reading.field.quantum),
-        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_ : reading.field.band + 2 * error_),
+        error_(reading.field.error),
+        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_
+                                                     : reading.field.band + reading.field.diagonal),
         reader_(reading, Reader{this, consume}) {}
 
   /// Returns a bound that no point left out is below.
