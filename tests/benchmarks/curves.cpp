@@ -122,7 +122,7 @@ void accuracyCurves(const std::filesystem::path& dir) {
       << "| shape | voxel [mm] | distance [um], mean / p99 / most | continuous normal [degrees] | trilinear "
          "normal [degrees] |\n|---|---|---|---|---|\n";
   std::string shape;
-  for (const AccuracyPoint& p : accuracyStudy(40'000)) {
+  for (const AccuracyPoint& p : accuracyStudy(20'000)) {
     if (p.shape != shape) {
       shape = p.shape;
       data = std::ofstream(dir / ("accuracy_" + shape + ".dat"));
