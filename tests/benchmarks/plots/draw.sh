@@ -3,6 +3,5 @@
 # draw.sh DATA OUT: pictures of what vps_curves wrote to DATA. Each stays well under 60 kB.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-for picture in accuracy query_time; do
-  gnuplot -e "data='$1'; out='$2/$picture.png'; plots='$here'" "$here/$picture.gp"
-done
+gnuplot -e "data='$1'; out='$2'; plots='$here'" "$here/accuracy.gp"
+gnuplot -e "data='$1'; out='$2/query_time.png'; plots='$here'" "$here/query_time.gp"
