@@ -36,14 +36,17 @@ PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept
   return some;
 }
 
-std::shared_ptr<const Scene> makeScene(Pair pair, const SceneSize& size) {
-  auto scene = std::make_shared<Scene>();
-  std::tie(scene->map_mesh, scene->shell_mesh) = meshesOf(pair, size.coarser);
-  scene->settings = {voxelFor(scene->map_mesh, size.voxels), kBandVoxels};
-  scene->map = buildVoxMap(scene->map_mesh, scene->settings);
-  scene->shell = shellOfSize(scene->shell_mesh, size.points);
-  scene->field = buildOpenVdb(scene->map_mesh, {scene->settings.voxel_m, kBandVoxels, true});
-  return scene;
+/// The last scene made, and what it was made of.
+struct Kept {
+  Pair pair = Pair::PegInPlate;
+  SceneSize size;
+  std::shared_ptr<const Scene> scene;
+};
+
+void makeMap(Scene& scene, int voxels) {
+  scene.settings = {voxelFor(scene.map_mesh, voxels), kBandVoxels};
+  scene.map = buildVoxMap(scene.map_mesh, scene.settings);
+  scene.field = buildOpenVdb(scene.map_mesh, {scene.settings.voxel_m, kBandVoxels, true});
 }
 
 }  // namespace
@@ -92,16 +95,20 @@ PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count
 }
 
 std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size) {
-  static std::shared_ptr<const Scene> kept;
-  static Pair kept_pair;
-  static SceneSize kept_size;
-  if (!kept || kept_pair != pair || kept_size != size) {
-    kept.reset();  // before the next is built: both may be large
-    kept = makeScene(pair, size);
-    kept_pair = pair;
-    kept_size = size;
-  }
-  return kept;
+  static Kept kept;
+  if (kept.scene && kept.pair == pair && kept.size == size) return kept.scene;
+  const bool has_parts = kept.scene && kept.pair == pair && kept.size.coarser == size.coarser;
+  if (!has_parts) kept.scene.reset();  // before the next is built: both may be large
+  auto scene = std::make_shared<Scene>();
+  if (has_parts)
+    *scene = *kept.scene;
+  else
+    std::tie(scene->map_mesh, scene->shell_mesh) = meshesOf(pair, size.coarser);
+  if (!has_parts || kept.size.points != size.points)
+    scene->shell = shellOfSize(scene->shell_mesh, size.points);
+  if (!has_parts || kept.size.voxels != size.voxels) makeMap(*scene, size.voxels);
+  kept = {pair, size, scene};
+  return scene;
 }
 
 }  // namespace vps::bench

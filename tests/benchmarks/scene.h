@@ -27,7 +27,7 @@ struct Scene {
   VoxMapSettings settings;
   VoxMap map;
   PointShell shell;
-  std::unique_ptr<RivalField> field;  ///< meshToVolume's, as it comes
+  std::shared_ptr<const RivalField> field;  ///< meshToVolume's, as it comes
 };
 
 inline constexpr double kBandVoxels = 4;
@@ -41,7 +41,8 @@ double voxelFor(const Mesh& mesh, int voxels);
 PointShell shellOfSize(const Mesh& mesh, std::size_t points);
 /// The points first to first + count of a shell, as a shell.
 PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count);
-/// Takes seconds. Deterministic. The last one is kept and returned again while the same is asked for.
+/// Takes seconds. Deterministic. The last one is kept, and so are its map or its shell where the next has the
+/// same.
 std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size);
 
 /// Pose of the shell's part in the map's part at a step; deterministic, never twice the same in a run.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # gnuplot -e "data='FOLDER'; out='query_time.png'; plots='.../plots'" query_time.gp
 load plots."/style.gp"
-set terminal pngcairo size 1320,470 font "DejaVu Sans,11" background "white"
+set terminal pngcairo size 1080,400 font "DejaVu Sans,9.5" background "white"
 set output out
-set multiplot layout 1,3 margins 0.055,0.99,0.13,0.92 spacing 0.05,0.1
+set multiplot layout 1,3 margins 0.06,0.99,0.15,0.92 spacing 0.05,0.1
 set yrange [1:1e6]
 set ylabel "time of one query [µs]"
 file(x, s) = data."/".x."_".s.".dat"
