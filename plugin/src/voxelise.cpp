@@ -292,7 +292,8 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
 void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
-  if (!(settings.band_voxels >= 3) || !(settings.band_voxels <= 64))
+  // A band read from a map is rounded, see quantumOf().
+  if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
   const double area_m2 = area(mesh);
   const Vec3 size_m = bounds(mesh).size();

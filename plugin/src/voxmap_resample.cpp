@@ -45,7 +45,6 @@ class ResampledField final : public AddedField {
         X_PM_(part.X_MP.inverse()),
         voxel_m_(voxel_m),
         field_(map_),
-        motion_(field_, X_PM_),
         kernels_(readKernels(Simd::Best)),
         blocks_(nodeBlocks(voxel_m)),
         quanta_(static_cast<float>(field_.quantum_m / quantum_m)) {
@@ -65,19 +64,15 @@ class ResampledField final : public AddedField {
   [[nodiscard]] const Box& bounds() const { return bounds_; }
 
   void write(std::size_t cell, NodeValue* nodes) const override {
-    const Vec3 center = centerOf(cellAt(cell));
-    ShellBlock blocks[kBatch];
+    // All bricks have the same blocks; the pose carries them to this one.
+    const Motion motion(field_, {X_PM_.R, X_PM_ * centerOf(cellAt(cell))});
     const ShellBlock* batch[kBatch];
     ReadBatch read;
-    for (int i = 0; i < kBatch; ++i) batch[i] = &blocks[i];
     for (int first = 0; first < kBlocksOfBrick; first += kBatch) {
       const int count = std::min(kBatch, kBlocksOfBrick - first);
-      for (int i = 0; i < count; ++i) {
-        blocks[i] = blocks_[static_cast<std::size_t>(first + i)];
-        for (int k = 0; k < 3; ++k) blocks[i].center[k] = center[k];
-      }
-      kernels_.read(field_, motion_, batch, count, read);
-      toNodes(read, kLanes * count, nodes + kLanes * first);
+      for (int i = 0; i < count; ++i) batch[i] = &blocks_[static_cast<std::size_t>(first + i)];
+      kernels_.read(field_, motion, batch, count, read);
+      toNodes(read.value, kLanes * count, nodes + kLanes * first);
     }
   }
   [[nodiscard]] std::uint16_t ownerOf(std::size_t cell, int node) const override {
@@ -97,13 +92,13 @@ class ResampledField final : public AddedField {
     return voxel_m_ * (kBrick * cell + Index3::Constant(kBrick / 2)).cast<double>();
   }
 
-  /// From the map's quanta to the grid's; a saturated reading stays one.
-  void toNodes(const ReadBatch& read, int count, NodeValue* nodes) const {
+  /// From the map's quanta to the grid's, rounded to the nearest. The map's band is no narrower than the
+  /// grid's, so that what is saturated stays so.
+  void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
+    constexpr float kBand = kFullBand;
     for (int i = 0; i < count; ++i) {
-      const float v = read.value[i];
-      const float scaled = std::abs(v) >= kFullBand ? std::copysign(float{kFullBand}, v)
-                                                    : std::clamp(v * quanta_, -32767.0f, 32767.0f);
-      nodes[i] = static_cast<NodeValue>(static_cast<int>(scaled + (scaled < 0 ? -0.5f : 0.5f)));
+      const float quanta = std::clamp(value[i] * quanta_, -kBand, kBand);
+      nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + 32768.5f) - 32768);
     }
   }
 
@@ -144,7 +139,6 @@ class ResampledField final : public AddedField {
   const Pose X_PM_;
   const double voxel_m_;
   const FieldView field_;
-  const Motion motion_;
   const ReadKernels& kernels_;
   const std::vector<ShellBlock> blocks_;
   const float quanta_;  ///< the grid's quanta per quantum of the map
