@@ -28,6 +28,34 @@ struct NodeBlocks {
   std::vector<OwnNodes> nodes;
 };
 
+/// All nodes of a brick, border included.
+using BrickNodes = std::array<float, kBrickNodes>;
+
+/// Gives far nodes of a brick the band's distance, with the sign of a node beside them: where one of two
+/// neighbours is far, the surface does not pass between, since the band is wider than a voxel. At least one
+/// node must be known.
+void saturate(BrickNodes& distance_m, float band_m);
+
+/// Takes bricks that are whole, a batch at a time; the order of batches is the order of the bricks.
+class BrickWriter {
+ public:
+  BrickWriter(VoxLayout& layout, double band_m) : layout_(layout), band_m_(static_cast<float>(band_m)) {}
+
+  /// Makes room for a batch. Not thread-safe.
+  void take(std::size_t count);
+  /// Stores a brick in place `slot` of the last batch, saturated, and names it in the directory. Thread-safe
+  /// for different slots and cells.
+  void write(std::size_t slot, std::size_t cell, BrickNodes& distance_m);
+
+ private:
+  VoxLayout& layout_;
+  const float band_m_;
+  VoxBrick* bricks_ = nullptr;  // the last batch
+};
+
+/// Empty cells, after all bricks are in: outside or inside.
+void fillEmptyCells(VoxLayout& layout);
+
 /// Two bricks: all +band, all -band.
 std::shared_ptr<const VoxPool> constantBricks(double band_m);
 
