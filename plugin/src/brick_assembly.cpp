@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace vps {
@@ -11,14 +12,20 @@ namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
 
-/// Takes over the sign of `from` where a node is far and `from` is not.
+constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
+
+/// Takes over the sign of `from` where a node is far and `from` is not. On the bits, since compilers do not
+/// put comparisons of floats into vectors by default.
 float signedFar(float d, float from, float band_m) {
-  return d == kFar && from != kFar ? std::copysign(band_m, from) : d;
+  const auto bits = std::bit_cast<std::uint32_t>(d), other = std::bit_cast<std::uint32_t>(from);
+  const std::uint32_t saturated = std::bit_cast<std::uint32_t>(band_m) | (other & 0x80000000U);
+  const bool takes = (bits == kFarBits) & (other != kFarBits);
+  return std::bit_cast<float>(takes ? saturated : bits);
 }
 
 /// One step of saturate(): `count` nodes from those `back` before (or, negative, behind) them.
-void takeSigns(float* nodes, int count, int back, float band_m) {
-  const float* from = nodes - back;
+void takeSigns(float* __restrict nodes, int count, int back, float band_m) {
+  const float* __restrict from = nodes - back;  // as many nodes, but none of them
   for (int i = 0; i < count; ++i) nodes[i] = signedFar(nodes[i], from[i], band_m);
 }
 

@@ -220,22 +220,22 @@ auto Splatter::withFeature(std::uint32_t feature, const Vec3& origin, Visit visi
 }
 
 Box Splatter::reach(std::uint32_t feature) {
-  const auto boxOf = [](const auto& f) { return f.box; };
-  Box box = withFeature(feature, Vec3::Zero(), boxOf);
-  if (box.isEmpty() || feature < features_.faceCount()) return box;
+  if (feature < features_.faceCount()) return Face(features_, feature, Vec3::Zero(), band_).box;
   // Most edges and vertices of a smooth surface have a region so thin that no node lies in it.
-  const Vec3 low = (box.min.array() - kBorder).ceil();
-  const Vec3 size = (box.max.array() + kBorder).floor() - low.array();
-  if (size.minCoeff() < 0) return {};
-  if (size.maxCoeff() >= kTile) return box;
-  const bool is_empty = withFeature(feature, low, [&](const auto& f) {
+  return withFeature(feature, Vec3::Zero(), [&](const auto& f) {
+    const Vec3 low = (f.box.min.array() - kBorder).ceil();
+    const Vec3 size = (f.box.max.array() + kBorder).floor() - low.array();
+    if (!(size.minCoeff() >= 0)) return Box();
+    if (size.maxCoeff() > kTile) return f.box;
     SplatRegion region;
-    for (int axis = 0; axis < 3; ++axis)
-      region.low[axis] = 0, region.high[axis] = static_cast<int>(size[axis]);
+    for (int axis = 0; axis < 3; ++axis) {
+      region.low[axis] = 0;
+      region.high[axis] = static_cast<int>(size[axis]);
+      region.origin[axis] = low[axis];
+    }
     f.planes(region);
-    return findRows(region, rows_.data()) == 0;
+    return findRows(region, rows_.data()) > 0 ? f.box : Box();
   });
-  return is_empty ? Box() : box;
 }
 
 bool Splatter::reaches(std::uint32_t feature, const Vec3& center, double radius) const {

@@ -24,7 +24,8 @@ struct SplatRegion {
   static constexpr float kNoBound = 1e30F;
   int count = 0;
   float at[kMaxPlanes], per_x[kMaxPlanes], per_y[kMaxPlanes], lift[kMaxPlanes], drop[kMaxPlanes];
-  int low[3], high[3];  ///< first and last node
+  int low[3], high[3];                ///< first and last node
+  double origin[3] = {0, 0, 0};       ///< where node 0 lies in the coordinates that planes are given in
 
   /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kSlack scale is added.
   void add(double a, double b, double c, double d, double scale);

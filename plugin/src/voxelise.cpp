@@ -15,6 +15,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -42,10 +43,16 @@ struct CutBrick {
   std::size_t cell;
 };
 
+/// As kFar == d, on the bits: compilers do not put comparisons of floats into vectors by default.
+bool isFar(float d) {
+  return std::bit_cast<std::uint32_t>(d) == std::bit_cast<std::uint32_t>(kFar);
+}
+
 class Voxeliser {
  public:
-  Voxeliser(const Mesh& mesh, const VoxMapSettings& settings)
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings)
       : mesh_(mesh),
+        box_(box),
         h_(settings.voxel_m),
         band_m_(bandOf(settings)),
         // A hair less, so that no node is stored that reads as the full band.
@@ -82,6 +89,7 @@ class Voxeliser {
   }
 
   const Mesh& mesh_;
+  const Box box_;
   const double h_, band_m_;
   const double reach_;  // of the nodes that are computed [voxels]
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
@@ -92,15 +100,14 @@ class Voxeliser {
 };
 
 void Voxeliser::layOutDirectory() {
-  const Box box = bounds(mesh_);
   const double cell_m = kBrick * h_;
   // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
-  const Vec3 low = ((box.min.array() - band_m_) / cell_m).floor() - 1;
-  const Vec3 high = ((box.max.array() + band_m_) / cell_m).floor() + 2;
+  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - 1;
+  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
   layout_->cells.resize(static_cast<std::size_t>((high - low).prod()));
-  layout_->parts = {{box, layout_->low, layout_->low + layout_->size}};
+  layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
   layout_->constants = constantBricks(band_m_);
 }
 
@@ -166,19 +173,39 @@ void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const 
 
 /// The bricks of a tile that have a node within the band.
 std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
-  std::vector<CutBrick> bricks;
-  for (int i = 0; i < kTileBricks * kTileBricks * kTileBricks; ++i) {
-    const Index3 at(i / (kTileBricks * kTileBricks), i / kTileBricks % kTileBricks, i % kTileBricks);
-    if (((low + at).array() >= layout_->size.array()).any()) continue;
-    const Index3 node = kBrick * at;
-    bool is_known = false;
-    for (int row = 0; row < kNodes * kNodes && !is_known; ++row) {
-      const float* d = &tile[tileIndex(node.x() + row / kNodes, node.y() + row % kNodes, node.z())];
-      for (int z = 0; z < kNodes; ++z) is_known |= d[z] != kFar;
+  // Bit b of a row along z: brick b has a node there. A brick's last node is the next one's first.
+  std::array<std::uint8_t, std::size_t{kTileNodes} * kTileNodes> rows = {};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const float* d = &tile[row * kTileNodes];
+    for (int b = 0; b < kTileBricks; ++b) {
+      int known = 0;
+      for (int z = 0; z < kNodes; ++z) known |= isFar(d[kBrick * b + z]) ? 0 : 1;
+      rows[row] |= static_cast<std::uint8_t>(known << b);
     }
-    if (is_known) bricks.push_back({node, layout_->cellIndex(layout_->low + low + at)});
   }
+  std::vector<CutBrick> bricks;
+  for (int x = 0; x < kTileBricks; ++x)
+    for (int y = 0; y < kTileBricks; ++y) {
+      unsigned known = 0;
+      for (int i = 0; i < kNodes * kNodes; ++i)
+        known |= rows[static_cast<std::size_t>((kBrick * x + i / kNodes) * kTileNodes + kBrick * y + i % kNodes)];
+      for (int z = 0; z < kTileBricks; ++z) {
+        const Index3 at(x, y, z);
+        if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
+        bricks.push_back({kBrick * at, layout_->cellIndex(layout_->low + low + at)});
+      }
+    }
   return bricks;
+}
+
+/// Bit z of a brick's row: the node is so near the surface that it may be the nearest to a point of it.
+std::uint8_t nearBits(const float* row) {
+  constexpr auto kNearBits = std::bit_cast<std::uint32_t>(static_cast<float>(SurfaceBits::kNear));
+  unsigned bits = 0;
+  // Without their sign, floats sort as their bits do.
+  for (unsigned z = 0; z < kBrick; ++z)
+    bits |= (std::bit_cast<std::uint32_t>(row[z]) & 0x7FFFFFFFU) <= kNearBits ? 1U << z : 0U;
+  return static_cast<std::uint8_t>(bits);
 }
 
 /// Copies a brick from its tile, in metres, and notes where the surface is.
@@ -190,12 +217,12 @@ void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t sl
     for (int y = 0; y < kNodes; ++y) {
       const float* from = &tile[tileIndex(brick.node.x() + x, brick.node.y() + y, brick.node.z())];
       float* to = &distance_m[nodeIndex(x, y, 0)];
-      for (int z = 0; z < kNodes; ++z) to[z] = from[z] == kFar ? kFar : static_cast<float>(from[z] * h);
-      if (x == kBrick || y == kBrick) continue;
-      unsigned is_near = 0;
-      for (unsigned z = 0; z < kBrick; ++z)
-        is_near |= std::abs(from[z]) <= static_cast<float>(SurfaceBits::kNear) ? 1U << z : 0U;
-      surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= static_cast<std::uint8_t>(is_near);
+      for (int z = 0; z < kNodes; ++z) {
+        const auto d_m = static_cast<float>(from[z] * h);
+        to[z] = isFar(from[z]) ? kFar : d_m;
+      }
+      if (x < kBrick && y < kBrick)
+        surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= nearBits(from);
     }
   writer.write(slot, brick.cell, distance_m);
 }
@@ -279,16 +306,16 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
          cells * (sizeof(VoxCell) + 16);  // twice: bricks are built, then packed
 }
 
-void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
+void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
   if (!(settings.band_voxels >= 3) || !(settings.band_voxels <= 64))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
   const double area_m2 = area(mesh);
-  const Vec3 size_m = bounds(mesh).size();
+  const Vec3 size_m = box.size();
   char text[160];
   // Indices are 32 bit; half of their range is left to the part's own size, which the memory bounds below it.
-  const double away_m = bounds(mesh).center().cwiseAbs().maxCoeff();
+  const double away_m = box.center().cwiseAbs().maxCoeff();
   if (!(away_m / settings.voxel_m < 1e9)) {
     std::snprintf(text, sizeof text,
                   "lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer", away_m,
@@ -313,13 +340,14 @@ void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                             const Progress& progress) {
   requireUsable(mesh, "", part);
-  requireSettings(mesh, settings, part);
+  const Box box = bounds(mesh);
+  requireSettings(mesh, box, settings, part);
   const Mesh shared = welded(mesh);  // signs need shared vertices
   VoxMap map;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
-  map.bounds_ = bounds(mesh);
-  map.layout_ = Voxeliser(shared, settings).build(progress);
+  map.bounds_ = box;
+  map.layout_ = Voxeliser(shared, box, settings).build(progress);
   return map;
 }
 
