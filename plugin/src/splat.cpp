@@ -83,9 +83,11 @@ struct Splatter::Edge {
   Box box;
   std::span<const HalfOf> sides;
   const SurfaceFeatures& features;
+  const Vec3 from;  // where the tile lies
+  bool is_by_thin;
 
   Edge(const SurfaceFeatures& surface, std::uint32_t i, const Vec3& origin, double band_voxels)
-      : band(band_voxels), features(surface) {
+      : band(band_voxels), features(surface), from(origin) {
     const SurfaceFeatures::Edge& edge = features.edge(i);
     a = features.point(edge.a) - origin;
     const Vec3 b = features.point(edge.b) - origin;
@@ -93,10 +95,19 @@ struct Splatter::Edge {
     length = along.norm();
     along /= length;
     sides = features.sidesOf(i);
+    is_by_thin = features.hasThin(sides);
     for (const HalfOf side : sides) pseudonormal += features.normal(side.triangle);
     box.add(a);
     box.add(b);
     bound();
+  }
+
+  /// Where a triangle beside the edge has no normal. Within the edge, even if t is at its end or past it by
+  /// rounding: only what meets along the edge counts.
+  [[nodiscard]] Vec3 normalAt(double t) const {
+    const double margin = std::min(2 * SurfaceFeatures::kTouch, 0.5 * length);
+    const double within = std::clamp(t, margin, length - margin);
+    return features.pseudonormalThrough(from + a + within * along, sides);
   }
 
   /// Into a face from the edge, at a right angle to it; zero for a face without a normal.
@@ -147,7 +158,9 @@ struct Splatter::Edge {
       for (const HalfOf side : sides) is_beyond = is_beyond && into(side).dot(r) <= kBorder;
       if (!is_beyond) continue;
       const double d = (r - t * along).norm();
-      if (d < band) put(tile + tileIndex(row.x, row.y, z), pseudonormal.dot(r) < 0 ? -d : d);
+      if (d >= band) continue;
+      const Vec3 n = is_by_thin ? normalAt(t) : pseudonormal;
+      put(tile + tileIndex(row.x, row.y, z), n.dot(r) < 0 ? -d : d);
     }
   }
 };
@@ -189,6 +202,12 @@ struct Splatter::Corner {
     }
   }
 
+  [[nodiscard]] Vec3 normal() const {
+    const std::span<const HalfOf> around = features.sidesFrom(vertex);
+    return features.hasThin(around) ? features.pseudonormalThrough(features.point(vertex), around)
+                                    : features.pseudonormal(vertex);
+  }
+
   void write(const SplatRow& row, float* tile) {
     for (int z = row.low; z <= row.high; ++z) {
       const Vec3 r = Vec3(row.x, row.y, z) - v;
@@ -197,7 +216,7 @@ struct Splatter::Corner {
       if (std::any_of(spokes.begin(), spokes.end(),
                       [&](const Vec3& s) { return s.dot(r) > kBorder * taxicab(s); }))
         continue;
-      if (!has_normal) pseudonormal = features.pseudonormal(vertex);
+      if (!has_normal) pseudonormal = normal();
       has_normal = true;
       put(tile + tileIndex(row.x, row.y, z), pseudonormal.dot(r) < 0 ? -d : d);
     }

@@ -15,10 +15,6 @@ namespace {
 
 using FindRows = int (*)(const SplatRegion&, SplatRow*);
 
-int findRowsBaseline(const SplatRegion& region, SplatRow* rows) {
-  return findRowsHere(region, rows);
-}
-
 FindRows chosen() {
 #ifdef VPS_SPLAT_AVX2
   if (__builtin_cpu_supports("avx2")) return findRowsAvx2;
@@ -27,6 +23,10 @@ FindRows chosen() {
 }
 
 }  // namespace
+
+int findRowsBaseline(const SplatRegion& region, SplatRow* rows) {
+  return findRowsHere(region, rows);
+}
 
 void SplatRegion::add(double a, double b, double c, double d, double scale) {
   // Nearly vertical planes are leant a little: within a tile that moves them by less than the slack.

@@ -24,8 +24,8 @@ struct SplatRegion {
   static constexpr float kNoBound = 1e30F;
   int count = 0;
   float at[kMaxPlanes], per_x[kMaxPlanes], per_y[kMaxPlanes], lift[kMaxPlanes], drop[kMaxPlanes];
-  int low[3], high[3];                ///< first and last node
-  double origin[3] = {0, 0, 0};       ///< where node 0 lies in the coordinates that planes are given in
+  int low[3], high[3];           ///< first and last node
+  double origin[3] = {0, 0, 0};  ///< where node 0 lies in the coordinates that planes are given in
 
   /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kSlack scale is added.
   void add(double a, double b, double c, double d, double scale);
@@ -37,5 +37,7 @@ struct SplatRegion {
 /// Finds the rows of a region; they must hold kMaxRows. Returns how many. Every node of the region is in one;
 /// a row may hold nodes that are kSlack beyond it.
 int findRows(const SplatRegion& region, SplatRow* rows);
+/// The same without the machine's own vector instructions, for comparison.
+int findRowsBaseline(const SplatRegion& region, SplatRow* rows);
 
 }  // namespace vps

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace vps {
@@ -12,6 +13,17 @@ namespace {
 constexpr double kLeastHeight = 1e-7;
 /// And so is one less high than this share of its longest side: its normal is rounding noise.
 constexpr double kLeastSlimness = 1e-12;
+
+double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * along).norm();
+}
+
+/// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
+double angleBetween(const Vec3& u, const Vec3& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
 
 std::uint32_t next(std::uint32_t side) {
   return side == 2 ? 0 : side + 1;
@@ -26,6 +38,7 @@ SurfaceFeatures::SurfaceFeatures(const Mesh& mesh, double voxel_m, const Vec3& o
   computeNormals();
   collectCorners();
   collectEdges();
+  if (has_thin_) nameSides();
 }
 
 void SurfaceFeatures::computeNormals() {
@@ -36,6 +49,7 @@ void SurfaceFeatures::computeNormals() {
     const double twice_area = n.norm();
     const double longest = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
     const bool is_thin = !(twice_area > longest * std::max(kLeastHeight, kLeastSlimness * longest));
+    has_thin_ = has_thin_ || is_thin;
     normals_.emplace_back(is_thin ? Vec3(Vec3::Zero()) : Vec3(n / twice_area));
   }
 }
@@ -92,8 +106,46 @@ Vec3 SurfaceFeatures::pseudonormal(std::uint32_t vertex) const {
     const auto& t = triangles_[corner.triangle];
     const Vec3 u = points_[t[next(corner.side)]] - points_[vertex];
     const Vec3 v = points_[t[next(next(corner.side))]] - points_[vertex];
-    // atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
-    sum += std::atan2(u.cross(v).norm(), u.dot(v)) * normals_[corner.triangle];
+    sum += angleBetween(u, v) * normals_[corner.triangle];
+  }
+  return sum;
+}
+
+void SurfaceFeatures::nameSides() {
+  edge_of_.assign(3 * triangles_.size(), 0);
+  for (std::uint32_t edge = 0; edge < edgeCount(); ++edge)
+    for (const HalfOf side : sidesOf(edge)) edge_of_[3 * std::size_t{side.triangle} + side.side] = edge;
+}
+
+bool SurfaceFeatures::hasThin(std::span<const HalfOf> sides) const {
+  return has_thin_ && std::any_of(sides.begin(), sides.end(),
+                                  [&](HalfOf side) { return normals_[side.triangle].isZero(); });
+}
+
+/// The angle under which a triangle meets a point q of its boundary; 0 where it does not touch q.
+double SurfaceFeatures::angleAt(const Vec3& q, std::uint32_t triangle) const {
+  const auto& t = triangles_[triangle];
+  const Vec3 p[3] = {points_[t[0]], points_[t[1]], points_[t[2]]};
+  for (std::uint32_t k = 0; k < 3; ++k)
+    if ((p[k] - q).norm() < kTouch) return angleBetween(p[next(k)] - p[k], p[next(next(k))] - p[k]);
+  for (std::uint32_t k = 0; k < 3; ++k)
+    if (distanceToSegment(q, p[k], p[next(k)]) < kTouch) return std::numbers::pi;
+  return 0;
+}
+
+Vec3 SurfaceFeatures::pseudonormalThrough(const Vec3& q, std::span<const HalfOf> around) const {
+  Vec3 sum = Vec3::Zero();
+  std::vector<std::uint32_t> seen;
+  const auto see = [&](HalfOf side) {
+    if (std::find(seen.begin(), seen.end(), side.triangle) == seen.end()) seen.push_back(side.triangle);
+  };
+  for (const HalfOf side : around) see(side);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const double angle_rad = angleAt(q, seen[i]);
+    sum += angle_rad * normals_[seen[i]];
+    if (angle_rad == 0 || !normals_[seen[i]].isZero()) continue;
+    for (std::uint32_t k = 0; k < 3; ++k)
+      for (const HalfOf side : sidesOf(edge_of_[3 * std::size_t{seen[i]} + k])) see(side);
   }
   return sum;
 }

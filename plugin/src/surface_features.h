@@ -33,6 +33,9 @@ class SurfaceFeatures {
     std::uint32_t first;  ///< of its sides
   };
 
+  /// A point so near a corner or a side lies on it [voxels].
+  static constexpr double kTouch = 1e-6;
+
   /// Positions are p / voxel_m - origin: voxels. Expects welded vertices and at most 2^30 triangles. O(n).
   SurfaceFeatures(const Mesh& mesh, double voxel_m, const Vec3& origin);
 
@@ -58,11 +61,19 @@ class SurfaceFeatures {
   [[nodiscard]] bool isRegular(std::uint32_t vertex) const { return is_regular_[vertex] != 0; }
   /// Sum of the normals at a vertex, weighted by angle. Source: Baerentzen and Aanaes 2005.
   [[nodiscard]] Vec3 pseudonormal(std::uint32_t vertex) const;
+  /// The same at a point q of the surface, from the triangles `around` it and from those that touch q beyond
+  /// triangles without a normal: a collinear triangle that closes a T-junction has the face it stands for
+  /// only behind it. Slower.
+  [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const HalfOf> around) const;
+  /// Whether one of some triangles has no normal.
+  [[nodiscard]] bool hasThin(std::span<const HalfOf> sides) const;
 
  private:
   void computeNormals();
   void collectCorners();
   void collectEdges();
+  void nameSides();
+  [[nodiscard]] double angleAt(const Vec3& q, std::uint32_t triangle) const;
 
   const std::vector<std::array<std::uint32_t, 3>>& triangles_;  // the mesh's
   std::vector<Vec3> points_, normals_;
@@ -71,6 +82,8 @@ class SurfaceFeatures {
   std::vector<Edge> edges_;  // and one more for the end
   std::vector<HalfOf> sides_;
   std::vector<std::uint8_t> is_regular_;
+  bool has_thin_ = false;
+  std::vector<std::uint32_t> edge_of_;  // of each triangle's three sides; only where a triangle is thin
 };
 
 }  // namespace vps

@@ -174,7 +174,7 @@ void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const 
 /// The bricks of a tile that have a node within the band.
 std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
   // Bit b of a row along z: brick b has a node there. A brick's last node is the next one's first.
-  std::array<std::uint8_t, std::size_t{kTileNodes} * kTileNodes> rows = {};
+  std::array<std::uint8_t, std::size_t{kTileNodes}* kTileNodes> rows = {};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const float* d = &tile[row * kTileNodes];
     for (int b = 0; b < kTileBricks; ++b) {
@@ -188,7 +188,8 @@ std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) c
     for (int y = 0; y < kTileBricks; ++y) {
       unsigned known = 0;
       for (int i = 0; i < kNodes * kNodes; ++i)
-        known |= rows[static_cast<std::size_t>((kBrick * x + i / kNodes) * kTileNodes + kBrick * y + i % kNodes)];
+        known |=
+            rows[static_cast<std::size_t>((kBrick * x + i / kNodes) * kTileNodes + kBrick * y + i % kNodes)];
       for (int z = 0; z < kTileBricks; ++z) {
         const Index3 at(x, y, z);
         if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
@@ -268,9 +269,10 @@ void Voxeliser::boundCenters() {
     constexpr int kCenter = kBrick / 2;
     const float center_m = entry.brick->distance_m[nodeIndex(kCenter, kCenter, kCenter)];
     const auto band_m = static_cast<float>(band_m_);
-    // Within the band the distance itself is known; beyond, it is at least the band.
-    const float least_m = std::abs(center_m) < band_m ? std::abs(center_m)
-                                                      : std::max(band_m, bound[i] * static_cast<float>(h_));
+    // Within the band the distance itself is known, but for rounding; beyond, it is at least the band.
+    const float known_m = std::max(0.F, std::abs(center_m) - 1e-6F * static_cast<float>(h_));
+    const float least_m =
+        std::abs(center_m) < band_m ? known_m : std::max(band_m, bound[i] * static_cast<float>(h_));
     entry.center_m = std::copysign(least_m, center_m);
   });
 }
@@ -306,7 +308,8 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
          cells * (sizeof(VoxCell) + 16);  // twice: bricks are built, then packed
 }
 
-void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, const std::string& part) {
+void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings,
+                     const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
   if (!(settings.band_voxels >= 3) || !(settings.band_voxels <= 64))

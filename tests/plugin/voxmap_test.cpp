@@ -78,6 +78,17 @@ TEST(VoxMap, NodesOfASpikeAreExact) {
   needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   expectNodesExact(needle);
 }
+TEST(VoxMap, NodesAreExactAtEveryScale) {  // a part of 1 um, one of 100 m, and one of atoms
+  const Mesh tube = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(26).pose(1));
+  for (const double scale : {0.5e-6, 50.0, 1e-12}) {
+    Mesh scaled = tube;
+    for (Vec3& p : scaled.vertices) p *= scale;
+    expectNodesExact(scaled, {0.05 * scale, 4});
+  }
+}
+TEST(VoxMap, NodesOfAWideBandAreExact) {
+  expectNodesExact(transformed(makeBox({0.006, 0.004, 0.002}), RandomPoints(27).pose(0.01)), {kVoxel_m, 20});
+}
 TEST(VoxMap, UnsharedVerticesMakeNoDifference) {
   const Mesh box = transformed(makeBox({0.01, 0.008, 0.006}), RandomPoints(4).pose(0.001));
   Mesh soup;
