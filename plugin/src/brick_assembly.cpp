@@ -11,7 +11,6 @@ namespace vps {
 namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
-
 constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
 
 /// Takes over the sign of `from` where a node is far and `from` is not. On the bits, since compilers do not
@@ -31,8 +30,9 @@ void takeSigns(float* __restrict nodes, int count, int back, float band_m) {
 
 class Assembler {
  public:
-  Assembler(VoxLayout& layout, const NodeBlocks& blocks) : layout_(layout), blocks_(blocks) {
-    block_of_.assign(layout.cells.size(), -1);
+  Assembler(VoxLayout& layout, const NodeBlocks& blocks, double band_m)
+      : layout_(layout), blocks_(blocks), band_m_(static_cast<float>(band_m)) {
+    block_of_.assign(layout.bricks.size(), -1);
     for (std::size_t i = 0; i < blocks.cells.size(); ++i)
       block_of_[blocks.cells[i]] = static_cast<std::int32_t>(i);
   }
@@ -48,16 +48,23 @@ class Assembler {
     std::int32_t kept = 0;
     for (std::int32_t& s : slot) s = s != 0 ? kept++ : -1;
 
-    auto pool = std::make_shared<VoxPool>();
-    pool->bricks.resize(static_cast<std::size_t>(kept));
+    layout_.pool = std::make_shared<VoxPool>(static_cast<std::size_t>(kept));
+    const std::uint32_t first = layout_.pool->take(static_cast<std::size_t>(kept));
+    const double quantum_m = quantumOf(band_m_);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
       if (slot[i] < 0) return;
-      VoxBrick& brick = pool->bricks[slot[i]];
-      collect(i, brick.distance_m);
-      saturate(brick.distance_m, layout_.outside()->distance_m[0]);
-      layout_.cells[blocks_.cells[i]].brick = &brick;
+      const std::uint32_t brick = first + static_cast<std::uint32_t>(slot[i]) * kBrickStride;
+      BrickNodes distance_m;
+      collect(i, distance_m);
+      saturate(distance_m, band_m_);
+      NodeValue* nodes = layout_.pool->nodes(brick);
+      std::fill(std::transform(distance_m.begin(), distance_m.end(), nodes,
+                               [&](float d) { return toNode(d, quantum_m); }),
+                nodes + kBrickStride, NodeValue{0});
+      layout_.pool->owner(brick) = 0;
+      layout_.pool->mixed(brick) = nullptr;
+      layout_.bricks[blocks_.cells[i]] = brick;
     });
-    layout_.pools = {pool};
   }
 
  private:
@@ -78,6 +85,7 @@ class Assembler {
 
   VoxLayout& layout_;
   const NodeBlocks& blocks_;
+  const float band_m_;
   std::vector<std::int32_t> block_of_;  // by directory index; -1: none
 };
 
@@ -89,37 +97,40 @@ class Filler {
   /// Empty cells meet the surface nowhere, so a sign spreads from cell to cell. From the rim first, which is
   /// outside: a flaw in the mesh then cannot turn the outside in.
   void run() {
-    fill(layout_.low, layout_.outside());  // the rim is one connected layer of empty cells
-    for (std::size_t i = 0; i < layout_.cells.size(); ++i) {
-      const VoxBrick* brick = layout_.cells[i].brick;
-      if (brick == nullptr || layout_.isConstant(brick)) continue;
+    is_filled_.resize(layout_.bricks.size());
+    for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);
+    fill(layout_.low, kOutside);  // the rim is one connected layer of empty cells
+    for (std::size_t i = 0; i < layout_.bricks.size(); ++i) {
+      if (isConstant(layout_.bricks[i])) continue;
+      const NodeValue* nodes = layout_.nodesOf(i);
       // An empty neighbour shares a face with the brick, whose middle node tells the sign.
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           Index3 node = Index3::Constant(kBrick / 2);
           node[axis] = step < 0 ? 0 : kBrick;
-          const bool is_inside = brick->distance_m[nodeIndex(node.x(), node.y(), node.z())] < 0;
-          fill(layout_.cellAt(i) + step * Index3::Unit(axis),
-               is_inside ? layout_.inside() : layout_.outside());
+          const bool is_inside = nodes[nodeIndex(node.x(), node.y(), node.z())] < 0;
+          fill(layout_.cellAt(i) + step * Index3::Unit(axis), is_inside ? kInside : kOutside);
         }
     }
   }
 
  private:
   /// Gives a connected region of empty cells their sign, a run along z at a time.
-  void fill(const Index3& from, const VoxBrick* with) {
+  void fill(const Index3& from, std::uint32_t with) {
     waiting_.push_back(from);
     while (!waiting_.empty()) {
       const Index3 cell = waiting_.back();
       waiting_.pop_back();
       if (!layout_.holds(cell)) continue;
-      VoxCell* row = &layout_.cells[layout_.cellIndex({cell.x(), cell.y(), layout_.low.z()})];
+      const std::size_t row = layout_.cellIndex({cell.x(), cell.y(), layout_.low.z()});
+      std::uint8_t* is_filled = &is_filled_[row];
       const int z = cell.z() - layout_.low.z();
-      if (row[z].brick != nullptr) continue;
+      if (is_filled[z] != 0) continue;
       int begin = z, end = z + 1;
-      while (begin > 0 && row[begin - 1].brick == nullptr) --begin;
-      while (end < layout_.size.z() && row[end].brick == nullptr) ++end;
-      for (int k = begin; k < end; ++k) row[k].brick = with;
+      while (begin > 0 && is_filled[begin - 1] == 0) --begin;
+      while (end < layout_.size.z() && is_filled[end] == 0) ++end;
+      std::fill(is_filled + begin, is_filled + end, std::uint8_t{1});
+      std::fill(&layout_.bricks[row] + begin, &layout_.bricks[row] + end, with);
       for (const Index3& step : {Index3(1, 0, 0), Index3(-1, 0, 0), Index3(0, 1, 0), Index3(0, -1, 0)})
         wait(cell + step, begin, end);
     }
@@ -128,66 +139,84 @@ class Filler {
   /// Remembers one cell of each empty run in part of a row along z.
   void wait(const Index3& at, int begin, int end) {
     if (!layout_.holds(at)) return;
-    const VoxCell* row = &layout_.cells[layout_.cellIndex({at.x(), at.y(), layout_.low.z()})];
+    const std::uint8_t* is_filled = &is_filled_[layout_.cellIndex({at.x(), at.y(), layout_.low.z()})];
     for (int k = begin; k < end; ++k)
-      if (row[k].brick == nullptr && (k == begin || row[k - 1].brick != nullptr))
+      if (is_filled[k] == 0 && (k == begin || is_filled[k - 1] != 0))
         waiting_.emplace_back(at.x(), at.y(), layout_.low.z() + k);
   }
 
   VoxLayout& layout_;
+  std::vector<std::uint8_t> is_filled_;  // has its brick or its sign
   std::vector<Index3> waiting_;
 };
 
 }  // namespace
 
-void saturate(BrickNodes& distance_m, float band_m) {
-  if (std::find(distance_m.begin(), distance_m.end(), kFar) == distance_m.end()) return;
+void saturate(BrickNodes& distance, float band) {
+  if (std::find(distance.begin(), distance.end(), kFar) == distance.end()) return;
   // Plane by plane along x, then row by row along y: both many nodes at a time.
   constexpr int kPlane = kNodes * kNodes;
-  for (int x = 1; x < kNodes; ++x) takeSigns(&distance_m[x * kPlane], kPlane, kPlane, band_m);
-  for (int x = kNodes - 2; x >= 0; --x) takeSigns(&distance_m[x * kPlane], kPlane, -kPlane, band_m);
+  for (int x = 1; x < kNodes; ++x) takeSigns(&distance[x * kPlane], kPlane, kPlane, band);
+  for (int x = kNodes - 2; x >= 0; --x) takeSigns(&distance[x * kPlane], kPlane, -kPlane, band);
   for (int x = 0; x < kNodes; ++x) {
-    for (int y = 1; y < kNodes; ++y) takeSigns(&distance_m[nodeIndex(x, y, 0)], kNodes, kNodes, band_m);
-    for (int y = kNodes - 2; y >= 0; --y) takeSigns(&distance_m[nodeIndex(x, y, 0)], kNodes, -kNodes, band_m);
+    for (int y = 1; y < kNodes; ++y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, kNodes, band);
+    for (int y = kNodes - 2; y >= 0; --y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, -kNodes, band);
   }
   // Now a plane across z is known whole, or not at all.
   for (int z = 1; z < kNodes; ++z) {
-    if (distance_m[z] != kFar || distance_m[z - 1] == kFar) continue;
-    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance_m[i], 1, 1, band_m);
+    if (distance[z] != kFar || distance[z - 1] == kFar) continue;
+    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, 1, band);
   }
   for (int z = kNodes - 2; z >= 0; --z) {
-    if (distance_m[z] != kFar || distance_m[z + 1] == kFar) continue;
-    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance_m[i], 1, -1, band_m);
+    if (distance[z] != kFar || distance[z + 1] == kFar) continue;
+    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, -1, band);
   }
+}
+
+BrickWriter::BrickWriter(VoxLayout& layout, double per_unit, std::size_t expected)
+    : layout_(layout), per_unit_(per_unit) {
+  layout_.pool = std::make_shared<VoxPool>(expected);
 }
 
 void BrickWriter::take(std::size_t count) {
-  auto pool = std::make_shared<VoxPool>();
-  pool->bricks.resize(count);
-  layout_.pools.push_back(pool);
-  bricks_ = pool->bricks.data();
+  first_ = layout_.pool->take(count);
+  if (first_ != 0) return;
+  // Bricks are named by their place, so that a copy keeps the names.
+  const VoxPool& old = *layout_.pool;
+  const std::size_t used = old.size() - 2;
+  auto larger = std::make_shared<VoxPool>(used + used / 2 + count);
+  const std::uint32_t begin = larger->take(used);
+  std::copy_n(old.nodes(begin), used * kBrickStride, larger->nodes(begin));
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::uint32_t brick = begin + static_cast<std::uint32_t>(i) * kBrickStride;
+    larger->owner(brick) = old.owner(brick);
+    larger->mixed(brick) = old.mixed(brick);
+  }
+  layout_.pool = larger;
+  first_ = larger->take(count);
 }
 
-void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance_m) {
-  saturate(distance_m, band_m_);
-  bricks_[slot].distance_m = distance_m;
-  layout_.cells[cell].brick = &bricks_[slot];
+void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance) {
+  saturate(distance, static_cast<float>(kFullBand / per_unit_));
+  const std::uint32_t brick = first_ + static_cast<std::uint32_t>(slot) * kBrickStride;
+  NodeValue* nodes = layout_.pool->nodes(brick);
+  for (int i = 0; i < kBrickNodes; ++i) {
+    // As toNode() rounds, half away from zero, but many at a time.
+    const double quanta = distance[i] * per_unit_;
+    nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(0.5, quanta)));
+  }
+  std::fill(nodes + kBrickNodes, nodes + kBrickStride, NodeValue{0});
+  layout_.pool->owner(brick) = 0;
+  layout_.pool->mixed(brick) = nullptr;
+  layout_.bricks[cell] = brick;
 }
 
 void fillEmptyCells(VoxLayout& layout) {
   Filler(layout).run();
 }
 
-std::shared_ptr<const VoxPool> constantBricks(double band_m) {
-  auto pool = std::make_shared<VoxPool>();
-  pool->bricks.resize(2);
-  pool->bricks[0].distance_m.fill(static_cast<float>(band_m));
-  pool->bricks[1].distance_m.fill(-static_cast<float>(band_m));
-  return pool;
-}
-
-void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks) {
-  Assembler assembler(layout, blocks);
+void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m) {
+  Assembler assembler(layout, blocks, band_m);
   assembler.makeBricks();
   fillEmptyCells(layout);
 }

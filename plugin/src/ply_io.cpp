@@ -314,6 +314,7 @@ PointShell loadPly(const std::string& file) {
   PointShell shell = reader.read();
   if (!reader.isSorted()) sortPoints(shell);
   shell.nodes = sphereHierarchy(shell.points);
+  layOutBlocks(shell);
   shell.order = progressiveOrder(shell.points);
   return shell;
 }

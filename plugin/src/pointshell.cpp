@@ -60,6 +60,7 @@ PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {
     shell.area_m2.push_back(samples[i].area_m2);
   }
   shell.nodes = sphereHierarchy(shell.points);
+  layOutBlocks(shell);
   shell.order = progressiveOrder(shell.points);
   return shell;
 }
@@ -98,7 +99,7 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
 std::size_t PointShell::memoryBytes() const noexcept {
   return sizeof(PointShell) + points.capacity() * sizeof(Vec3) + inward.capacity() * sizeof(Vec3) +
          area_m2.capacity() * sizeof(double) + order.capacity() * sizeof(std::uint32_t) +
-         nodes.capacity() * sizeof(ShellNode);
+         nodes.capacity() * sizeof(ShellNode) + blocks.capacity() * sizeof(ShellBlock);
 }
 
 PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings, const std::string& part,
@@ -138,6 +139,7 @@ PointShell mergedShells(const std::vector<const PointShell*>& shells, const std:
     merged.spacing_m = std::max(merged.spacing_m, shells[s]->spacing_m);
   }
   merged.nodes = joinedNodes(shells, X_MPs, count);
+  layOutBlocks(merged);
   merged.order = progressiveOrder(merged.points);
   return merged;
 }

@@ -1,57 +1,90 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One depth-first walk over the shell's spheres; whole clusters are skipped where the field proves that none
-// of their points can matter. The proof must hold for the field as it is read, not for the true distance,
-// because the answer promised is that of reading it at every point.
+// Who touches, and how far off the nearest is. Whole clusters are skipped where the field proves that none of
+// their points can matter. The proof must hold for the field as it is read, not for the true distance,
+// because the answer promised is that of reading it at every point (read_kernel.inc has the bounds).
 #include "vps/query.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "coherent_walk.h"
+#include "contact_normals.h"
+#include "leaf_walk.h"
+#include "voxmap_layout.h"
 #include "voxmap_sampling.h"
 
 namespace vps {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSqrt3 = 1.7320508075688772;
 
-/// Bounds the field over spheres. Let f be the true signed distance, I the field: nodal values of f,
-/// saturated at
-/// +-band, trilinear between nodes. f changes by at most the way gone; so
-///   (a) each component of I's gradient averages differences of neighbouring nodes over h and is at most 1:
-///       |grad I| <= sqrt 3;
-///   (b) |I(p) - f(p)| <= sum w_i |x_i - p| <= h sqrt(sum over axes of t (1 - t)) <= sqrt(3)/2 h, where
-///   unsaturated,
-///       by Jensen's inequality; and f >= x <= band at p gives I(p) >= x - sqrt(3)/2 h even where some nodes
-///       saturate;
-///   (c) I(p) = band where f(p) >= band + sqrt(3) h, since all eight nodes are nearer than sqrt(3) h.
-/// (a) serves small spheres, (b) large ones, (c) far ones. Needs a field with consistent signs: a closed
-/// mesh.
-class SphereBound {
+/// A saturated reading says only "far": it is never a contact, however wide the cutoff.
+double usedCutoff(const VoxMap& map, double cutoff_m) {
+  return std::min(cutoff_m, map.band_m() - 0.01 * map.voxel_m());
+}
+
+/// Collects the contacts of leaves that have been read.
+class ContactCollector {
  public:
-  explicit SphereBound(const VoxMap& map) noexcept
+  ContactCollector(const VoxMap& map, const Reading& reading, const Pose& X_MP, const QueryOptions& options,
+                   double cutoff_m, ContactSet& out) noexcept
       : sampler_(map),
-        band_m_(map.band_m()),
-        diagonal_m_(kSqrt3 * map.voxel_m()),
-        quantum_m_(1e-3 * map.voxel_m()) {}
+        reading_(reading),
+        X_MP_(X_MP),
+        cutoff_(static_cast<float>(cutoff_m / reading.field.quantum_m)),
+        has_owners_(map.partCount() > 1),
+        normals_(reading, options.gradient),
+        out_(out) {}
 
-  /// A value that the field is not below at any point of the sphere.
-  [[nodiscard]] double least(const Vec3& center_M, double radius_m) const noexcept {
-    const VoxSampler::Place at = sampler_.place(center_M);
-    const double true_m = sampler_.leastDistance(center_M, at) - radius_m;
-    if (true_m >= band_m_ + diagonal_m_) return band_m_;                       // (c)
-    const double by_distance_m = std::min(true_m, band_m_) - diagonal_m_ / 2;  // (b)
-    const double by_slope_m = sampler_.distance(at) - kSqrt3 * radius_m;       // (a)
-    return std::max(by_distance_m, by_slope_m) - quantum_m_;
+  void take(const ReadLeaf& leaf) noexcept {
+    least_ = std::min(least_, leaf.least());
+    if (!(leaf.least() <= cutoff_)) return;
+    for (std::uint32_t lane = 0; lane < leaf.block.count; ++lane)
+      if (leaf.value(static_cast<int>(lane)) <= cutoff_) add(leaf, static_cast<int>(lane));
   }
 
-  [[nodiscard]] const VoxSampler& sampler() const noexcept { return sampler_; }
+  void finish() noexcept { giveNormals(); }
+
+  /// Least reading so far [quanta].
+  [[nodiscard]] float least() const noexcept { return least_; }
 
  private:
+  void add(const ReadLeaf& leaf, int lane) noexcept {
+    if (out_.contacts.size() == out_.contacts.capacity()) {
+      ++out_.left_out;
+      return;
+    }
+    const std::uint32_t id = leaf.block.first + static_cast<std::uint32_t>(lane);
+    const Vec3 p_M = X_MP_ * reading_.shell.points[id];
+    const std::uint16_t owner = has_owners_ ? sampler_.owner(sampler_.place(p_M)) : std::uint16_t{0};
+    out_.contacts.push_back({p_M, Vec3::Zero(), reading_.field.quantum_m * leaf.value(lane),
+                             reading_.shell.area_m2[id], id, owner});
+    normals_.add(leaf, lane);
+    if (normals_.isFull()) giveNormals();
+  }
+
+  void giveNormals() noexcept {
+    const int count = normals_.compute();
+    for (int i = 0; i < count; ++i) {
+      Contact& c = out_.contacts[done_++];
+      c.n_M = normals_.normal(i);
+      // Deeper than the band the field knows no way out; the point's own inward normal is the older VPS's
+      // answer.
+      if (c.n_M.isZero(0)) c.n_M = X_MP_.R * reading_.shell.inward[c.id];
+    }
+    normals_.clear();
+  }
+
   VoxSampler sampler_;
-  double band_m_, diagonal_m_;
-  double quantum_m_;  ///< allows for nodes stored with fewer digits (float now) and for rounding here
+  const Reading& reading_;
+  const Pose& X_MP_;
+  const float cutoff_;
+  const bool has_owners_;
+  ContactNormals normals_;
+  ContactSet& out_;
+  std::size_t done_ = 0;
+  float least_ = std::numeric_limits<float>::infinity();
 };
 
 /// Least over the shell of a lower bound of the true distance, for shells that are all beyond the band:
@@ -80,10 +113,50 @@ double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& 
   return least_m;
 }
 
+/// Branch and bound for the least reading [quanta]: spheres with the nearest centres first.
+class LeastReading {
+ public:
+  explicit LeastReading(const Reading& reading) noexcept : reading_(reading), reader_(reading, {this}) {}
+
+  float find() noexcept {
+    if (!reading_.shell.blocks.empty()) open(static_cast<std::uint32_t>(reading_.shell.blocks.size() - 1));
+    return least_;
+  }
+  [[nodiscard]] std::size_t pointsRead() const noexcept { return reader_.pointsRead(); }
+
+ private:
+  void open(std::uint32_t index) noexcept {
+    const ShellBlock& block = reading_.shell.blocks[index];
+    if (block.is_leaf) {
+      reader_.add(index);
+      reader_.flush();
+      return;
+    }
+    SphereBounds bounds;
+    reading_.kernels.bound(reading_.field, reading_.motion, block, 0, bounds);
+    std::uint32_t order[kLanes];
+    for (std::uint32_t i = 0; i < block.count; ++i) order[i] = i;
+    std::sort(order, order + block.count, [&](std::uint32_t a, std::uint32_t b) {
+      return bounds.center[a] != bounds.center[b] ? bounds.center[a] < bounds.center[b] : a < b;
+    });
+    // Once a point reads -band nothing can read less.
+    for (std::uint32_t k = 0; k < block.count && least_ > -kFullBand; ++k)
+      if (bounds.least[order[k]] < reading_.field.quantum * least_) open(block.first + order[k]);
+  }
+
+  struct Consume {
+    LeastReading* self;
+    void operator()(const ReadLeaf& leaf) const { self->least_ = std::min(self->least_, leaf.least()); }
+  };
+  const Reading& reading_;
+  LeafReader<Consume> reader_;
+  float least_ = kFullBand;
+};
+
 }  // namespace
 
 QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
-                          const QueryOptions& options, ContactSet& out) noexcept {
+                          const QueryOptions& options, ContactSet& out, QueryMemory* memory) noexcept {
   out.contacts.clear();
   out.left_out = 0;
   QueryResult result;
@@ -91,96 +164,36 @@ QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose
     result.status = Status::BadPose;
     return result;
   }
-  const SphereBound bound(map);
-  const VoxSampler& sampler = bound.sampler();
-  // A saturated reading says only "far": it is never a contact, however wide the cutoff.
-  const double cutoff_m = std::min(options.cutoff_m, map.band_m() - 0.01 * map.voxel_m());
-  double least_read_m = kInfinity, least_skipped_m = kInfinity;
-
-  for (std::size_t i = 0; i < shell.nodes.size();) {
-    const ShellNode& node = shell.nodes[i];
-    if (!options.is_exhaustive) {
-      const double node_m = bound.least(X_MP * node.center, node.radius_m);
-      if (node_m > cutoff_m) {
-        least_skipped_m = std::min(least_skipped_m, node_m);
-        i = node.skip;
-        continue;
-      }
-    }
-    ++i;
-    if (!node.is_leaf) continue;
-    result.points_tested += node.count;
-    for (std::uint32_t id = node.first; id < node.first + node.count; ++id) {
-      const Vec3 p_M = X_MP * shell.points[id];
-      const VoxSampler::Place at = sampler.place(p_M);
-      const double distance_m = sampler.distance(at);
-      least_read_m = std::min(least_read_m, distance_m);
-      if (!(distance_m <= cutoff_m)) continue;
-      if (out.contacts.size() == out.contacts.capacity()) {
-        ++out.left_out;
-        continue;
-      }
-      Vec3 n_M = sampler.normal(at, options.gradient);
-      // Deeper than the band the field knows no way out; the point's own inward normal is the older VPS's
-      // answer.
-      if (n_M.isZero(0)) n_M = X_MP.R * shell.inward[id];
-      out.contacts.push_back({p_M, n_M, distance_m, shell.area_m2[id], id, sampler.owner(at)});
-    }
-  }
+  const Reading reading(map, shell, X_MP, options.simd);
+  const double cutoff_m = usedCutoff(map, options.cutoff_m);
+  ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
+  const double least_skipped =
+      readNearLeaves(reading, X_MP, options, cutoff_m, usable(memory, map, shell), result.points_tested,
+                     [&](const ReadLeaf& leaf) { collector.take(leaf); });
+  collector.finish();
   if (out.left_out > 0) result.status = Status::Truncated;
-  result.min_distance_m = std::min(least_read_m, least_skipped_m);
-  result.is_beyond_band = least_skipped_m < least_read_m || !(least_read_m < map.band_m());
+  setDistance(map, reading, collector.least(), least_skipped, result);
   return result;
 }
 
-QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP) noexcept {
+QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP, Simd simd) noexcept {
   QueryResult result;
   if (!X_MP.isFinite()) {
     result.status = Status::BadPose;
     return result;
   }
-  const SphereBound bound(map);
-  const VoxSampler& sampler = bound.sampler();
-  double least_m = map.band_m();
-  const auto read = [&](std::uint32_t id) {
-    ++result.points_tested;
-    least_m = std::min(least_m, sampler.distance(sampler.place(X_MP * shell.points[id])));
-  };
-  // A few points from all over the shell first: the sooner something near is known, the more is skipped.
-  constexpr std::size_t kSeeds = 32;
-  for (std::size_t k = 0; k < std::min(kSeeds, shell.order.size()); ++k) read(shell.order[k]);
-  // Once a point reads -band nothing can read less.
-  for (std::size_t i = 0; i < shell.nodes.size() && least_m > -map.band_m();) {
-    const ShellNode& node = shell.nodes[i];
-    if (bound.least(X_MP * node.center, node.radius_m) >= least_m) {
-      i = node.skip;
-      continue;
-    }
-    ++i;
-    if (!node.is_leaf) continue;
-    for (std::uint32_t id = node.first; id < node.first + node.count; ++id) read(id);
-  }
-  result.min_distance_m = least_m;
-  result.is_beyond_band = !(least_m < map.band_m());
+  const Reading reading(map, shell, X_MP, simd);
+  LeastReading search(reading);
+  result.min_distance_m = reading.field.quantum_m * search.find();
+  result.points_tested = search.pointsRead();
+  result.is_beyond_band = !(result.min_distance_m < map.band_m());
   if (result.is_beyond_band) {
     result.status = Status::BeyondBand;
-    // Saturated readings allow for a true distance that is half a cell's diagonal less, see (b).
+    // Saturated readings allow for a true distance that is half a cell's diagonal less.
     result.min_distance_m =
-        std::max(farBound(sampler, shell, X_MP), map.band_m() - kSqrt3 / 2 * map.voxel_m());
+        std::max(farBound(VoxSampler(map), shell, X_MP), map.band_m() - map.sampleError_m());
   }
   return result;
-}
-
-Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept {
-  Wrench F_O_M;
-  for (const Contact& c :
-       contacts) {  // in the order of ids: a sum that depends on anything else breaks replay
-    if (!(c.distance_m < 0)) continue;
-    const Vec3 f_M = k_N_per_m3 * c.area_m2 * -c.distance_m * c.n_M;
-    F_O_M.f += f_M;
-    F_O_M.tau += (c.p_M - p_MO).cross(f_M);
-  }
-  return F_O_M;
 }
 
 }  // namespace vps

@@ -10,14 +10,17 @@
 namespace vps {
 namespace {
 
-/// Points of a leaf: one AVX-512 vector of floats. Assumed; the prototype measured 16 as good as any.
-constexpr std::size_t kLeafPoints = 16;
+constexpr std::size_t kLeafPoints = kLanes;
 
 /// Where a range of `count` points is cut: near the middle, at a multiple of the leaf size, so that leaves
-/// are full. Sorting and hierarchy must agree on it, and a saved shell finds its leaves again by it.
+/// are full, and of the largest power of 16 that leaves both halves something, so that sixteen leaves in a
+/// row are neighbours too. Sorting and hierarchy must agree on it, and a saved shell finds its leaves again
+/// by it.
 std::size_t cut(std::size_t count) {
-  const std::size_t leaves = (count + kLeafPoints - 1) / kLeafPoints;
-  return (leaves / 2) * kLeafPoints;
+  std::size_t unit = kLeafPoints;
+  while (2 * unit * kLanes <= count) unit *= kLanes;
+  const std::size_t units = (count + unit - 1) / unit;
+  return (units / 2) * unit;
 }
 
 void sortRange(std::span<const Vec3> points, std::span<std::uint32_t> order) {
@@ -92,6 +95,63 @@ void addNodes(std::span<const Vec3> points, std::size_t first, std::size_t count
   nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
 }
 
+/// A block's sphere as the kernels read it: offsets are rounded to floats, so it grows by their error.
+void setSphere(ShellBlock& block, const Vec3& center, double radius_m) {
+  for (int k = 0; k < 3; ++k) block.center[k] = center[k];
+  block.radius_m = radius_m * (1 + 1e-6);
+}
+
+/// Lane i of a block, and of all lanes after it, until those are set.
+void setLane(ShellBlock& block, std::uint32_t lane, const Vec3& p, double weight) {
+  const Vec3 offset = p - Vec3(block.center[0], block.center[1], block.center[2]);
+  block.x[lane] = static_cast<float>(offset.x());
+  block.y[lane] = static_cast<float>(offset.y());
+  block.z[lane] = static_cast<float>(offset.z());
+  block.weight[lane] = static_cast<float>(weight);
+}
+
+void repeatFirstLane(ShellBlock& block) {
+  for (std::uint32_t i = block.count; i < kLanes; ++i) {
+    block.x[i] = block.x[0];
+    block.y[i] = block.y[0];
+    block.z[i] = block.z[0];
+    block.weight[i] = 0;
+  }
+}
+
+ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf) {
+  ShellBlock block;
+  setSphere(block, leaf.center, leaf.radius_m);
+  block.first = leaf.first;
+  block.count = leaf.count;
+  block.is_leaf = 1;
+  for (std::uint32_t i = 0; i < leaf.count; ++i)
+    setLane(block, i, shell.points[leaf.first + i], shell.area_m2[leaf.first + i]);
+  repeatFirstLane(block);
+  return block;
+}
+
+/// Around up to sixteen blocks in a row.
+ShellBlock parentBlock(std::span<const ShellBlock> children, std::size_t first) {
+  const auto centerOf = [](const ShellBlock& b) { return Vec3(b.center[0], b.center[1], b.center[2]); };
+  Box box;
+  for (const ShellBlock& child : children) {
+    box.add(centerOf(child) - Vec3::Constant(child.radius_m));
+    box.add(centerOf(child) + Vec3::Constant(child.radius_m));
+  }
+  double radius_m = 0;
+  for (const ShellBlock& child : children)
+    radius_m = std::max(radius_m, (centerOf(child) - box.center()).norm() + child.radius_m);
+  ShellBlock block;
+  setSphere(block, box.center(), radius_m);
+  block.first = static_cast<std::uint32_t>(first);
+  block.count = static_cast<std::uint32_t>(children.size());
+  for (std::uint32_t i = 0; i < block.count; ++i)
+    setLane(block, i, centerOf(children[i]), children[i].radius_m * (1 + 1e-6));
+  repeatFirstLane(block);
+  return block;
+}
+
 /// 0 to count - 1, each next one far from those before (van der Corput: the index with its bits reversed).
 std::vector<std::uint32_t> bitReversed(std::size_t count) {
   int bits = 0;
@@ -121,6 +181,20 @@ std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points) {
   nodes.reserve(2 * (points.size() / kLeafPoints + 1));
   addNodes(points, 0, points.size(), nodes);
   return nodes;
+}
+
+void layOutBlocks(PointShell& shell) {
+  shell.blocks.clear();
+  for (const ShellNode& node : shell.nodes)
+    if (node.is_leaf) shell.blocks.push_back(leafBlock(shell, node));
+  shell.leaf_blocks = shell.blocks.size();
+  for (std::size_t first = 0, end = shell.blocks.size(); end - first > 1;
+       first = end, end = shell.blocks.size())
+    for (std::size_t i = first; i < end; i += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, end - i);
+      shell.blocks.push_back(parentBlock(std::span(shell.blocks).subspan(i, count), i));
+    }
+  shell.blocks.shrink_to_fit();
 }
 
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {

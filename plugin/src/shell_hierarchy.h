@@ -19,6 +19,9 @@ std::vector<std::uint32_t> sortedOrder(std::span<const Vec3> points);
 /// fewer.
 std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points);
 
+/// Fills shell.blocks from its points, areas and the leaves of its nodes.
+void layOutBlocks(PointShell& shell);
+
 /// A permutation of which every prefix is an even sampling: with R the least gap between points of the
 /// prefix, every point is within 2 R of it, as long as R is above the points' own spacing.
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points);

@@ -31,7 +31,7 @@ constexpr const char* kSurface = "surface";
 constexpr const char* kCenter = "vps_center";
 constexpr const char* kOwner = "vps_owner";
 /// The largest directory that is read: 4 GiB. More can only be a damaged file.
-constexpr double kMostCells = 4.0 * 1024 * 1024 * 1024 / sizeof(VoxCell);
+constexpr double kMostCells = 4.0 * 1024 * 1024 * 1024 / (sizeof(std::uint32_t) + sizeof(float));
 
 void initializeOpenVdb() {
   static std::once_flag once;
@@ -98,25 +98,27 @@ void forEachOwnNode(Visit visit) {
 // Writing
 // -------------------------------------------------------------------------------------------------------------
 
-openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m) {
+openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m,
+                                    double quantum_m) {
   const auto grid = openvdb::FloatGrid::create(static_cast<float>(band_m));
   grid->setName(kSurface);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
   openvdb::FloatTree& tree = grid->tree();
-  for (std::size_t i = 0; i < layout.cells.size(); ++i) {
-    const VoxBrick* brick = layout.cells[i].brick;
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
+    const std::uint32_t brick = layout.bricks[i];
     const openvdb::Coord origin = toCoord(kBrick * layout.cellAt(i));
-    if (brick == layout.outside()) continue;  // the background
-    if (brick == layout.inside()) {
+    if (brick == kOutside) continue;  // the background
+    if (brick == kInside) {
       tree.addTile(1, origin, static_cast<float>(-band_m), false);
       continue;
     }
     // A leaf has the order of our own nodes. Values beyond the band are inactive, of the right sign.
     auto* leaf = tree.touchLeaf(origin);
+    const NodeValue* nodes = layout.nodesOf(i);
     forEachOwnNode([&](int own, int node) {
-      const float d = brick->distance_m[node];
-      if (std::abs(d) < static_cast<float>(band_m))
+      const auto d = static_cast<float>(quantum_m * nodes[node]);
+      if (std::abs(nodes[node]) < kFullBand)
         leaf->setValueOn(static_cast<openvdb::Index>(own), d);
       else
         leaf->setValueOff(static_cast<openvdb::Index>(own), d);
@@ -133,8 +135,8 @@ openvdb::FloatGrid::Ptr centerGrid(const VoxLayout& layout, double voxel_m) {
   transform->postTranslate(openvdb::Vec3d(kBrick / 2 * voxel_m));
   grid->setTransform(transform);
   auto accessor = grid->getAccessor();
-  for (std::size_t i = 0; i < layout.cells.size(); ++i)
-    accessor.setValue(toCoord(layout.cellAt(i)), layout.cells[i].center_m);
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i)
+    accessor.setValue(toCoord(layout.cellAt(i)), layout.centers_m[i]);
   return grid;
 }
 
@@ -144,15 +146,15 @@ openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
   // Every node of a brick, border too: the neighbour that owns a border node may have no brick to keep it in.
   auto accessor = grid->getAccessor();
-  for (std::size_t i = 0; i < layout.cells.size(); ++i) {
-    const VoxBrick* brick = layout.cells[i].brick;
-    if (layout.isConstant(brick)) continue;
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
+    const std::uint32_t brick = layout.bricks[i];
+    if (isConstant(brick)) continue;
     for (int x = 0; x < kNodes; ++x)
       for (int y = 0; y < kNodes; ++y)
         for (int z = 0; z < kNodes; ++z) {
           const int node = nodeIndex(x, y, z);
-          const int owner = brick->owners != nullptr ? brick->owners[node] : brick->owner;
-          if (std::abs(brick->distance_m[node]) < layout.outside()->distance_m[0] && owner != 0)
+          const int owner = layout.pool->ownerOf(brick, node);
+          if (std::abs(layout.nodesOf(i)[node]) < kFullBand && owner != 0)
             accessor.setValue(toCoord(kBrick * layout.cellAt(i) + Index3(x, y, z)), owner);
         }
   }
@@ -218,8 +220,7 @@ class Reader {
     findTransform();
     findRange();
     readNodes();
-    layout_->constants = constantBricks(band_m_);
-    assembleBricks(*layout_, blocks_);
+    assembleBricks(*layout_, blocks_, band_m_);
     if (is_ours_)
       readExact();
     else
@@ -258,6 +259,10 @@ class Reader {
       if (!(std::abs(m(3, i)) <= 1e-6 * voxel_m_))
         refuse(file_, "has a grid that is moved off the origin; resample it");
     band_m_ = surface_->background();
+    // A float does not hold our band exactly; the quantum that it gives may be another.
+    if (const auto stored = surface_->getMetadata<openvdb::DoubleMetadata>("vps_band"))
+      if (std::abs(stored->value() - band_m_) <= 1e-6 * band_m_) band_m_ = stored->value();
+    band_m_ = kFullBand * quantumOf(band_m_);
     if (!(band_m_ >= 2.99 * voxel_m_) || !(band_m_ < 1e3 * voxel_m_))
       refuse(file_, "has a band of " + std::to_string(band_m_ / voxel_m_) + " voxels; 3 or more are needed");
   }
@@ -290,7 +295,7 @@ class Reader {
     }
     if (layout_->size.minCoeff() <= 0 || layout_->size.cast<double>().prod() > kMostCells)
       refuseDamaged(file_);
-    layout_->cells.resize(static_cast<std::size_t>(layout_->size.cast<double>().prod()));
+    layout_->resizeCells();
   }
 
   void readNodes() {
@@ -324,8 +329,8 @@ class Reader {
     bounds_.min = fromVdb(low->value());
     bounds_.max = fromVdb(high->value());
     auto accessor = centers->getConstAccessor();
-    for (std::size_t i = 0; i < layout_->cells.size(); ++i)
-      layout_->cells[i].center_m = accessor.getValue(toCoord(layout_->cellAt(i)));
+    for (std::size_t i = 0; i < layout_->bricks.size(); ++i)
+      layout_->centers_m[i] = accessor.getValue(toCoord(layout_->cellAt(i)));
     readParts();
   }
 
@@ -351,43 +356,37 @@ class Reader {
   }
 
   void readOwners(const openvdb::Int32Grid& grid, int parts) {
-    auto pool = std::make_shared<VoxPool>();
-    pool->owners.reserve(layout_->pools[0]->bricks.size());  // bricks point into it
-    auto bricks = std::make_shared<VoxPool>(*layout_->pools[0]);
+    auto mixed = std::make_shared<std::vector<NodeOwners>>();
+    mixed->reserve(layout_->pool->size());  // bricks point into it
     auto accessor = grid.getConstAccessor();
-    std::size_t next = 0;
-    std::vector<std::uint16_t> nodes(kBrickNodes);
-    for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
-      if (layout_->isConstant(layout_->cells[i].brick)) continue;
+    NodeOwners nodes;
+    for (std::size_t i = 0; i < layout_->bricks.size(); ++i) {
+      const std::uint32_t brick = layout_->bricks[i];
+      if (isConstant(brick)) continue;
       for (int n = 0; n < kBrickNodes; ++n) {
         const Index3 at(n / (kNodes * kNodes), n / kNodes % kNodes, n % kNodes);
         const int owner = accessor.getValue(toCoord(kBrick * layout_->cellAt(i) + at));
         if (owner < 0 || owner >= parts) refuseDamaged(file_);
         nodes[n] = static_cast<std::uint16_t>(owner);
       }
-      VoxBrick& brick = bricks->bricks[next++] = *layout_->cells[i].brick;
-      layout_->cells[i].brick = &brick;
-      brick.owner = nodes[0];
+      layout_->pool->owner(brick) = nodes[0];
       if (std::all_of(nodes.begin(), nodes.end(), [&](std::uint16_t o) { return o == nodes[0]; })) continue;
-      auto& owners = pool->owners.emplace_back();
-      std::copy(nodes.begin(), nodes.end(), owners.begin());
-      brick.owners = owners.data();
+      layout_->pool->mixed(brick) = &mixed->emplace_back(nodes);
     }
-    layout_->pools = {bricks, pool};
+    layout_->owners = {mixed};
   }
 
   /// For files without our own grids: the surface lies within bricks and next to nodes nearer than a voxel.
   void deriveBounds() {
-    const auto size = layout_->size;
-    for (std::size_t i = 0; i < layout_->cells.size(); ++i) {
-      VoxCell& cell = layout_->cells[i];
-      if (layout_->isConstant(cell.brick)) {
-        cell.center_m = cell.brick->distance_m[0];  // the centre is a node beyond the band
-        continue;
-      }
-      cell.center_m = cell.brick->distance_m[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)];
+    const double quantum_m = quantumOf(band_m_);
+    for (std::size_t i = 0; i < layout_->bricks.size(); ++i) {
+      const NodeValue* nodes = layout_->nodesOf(i);
+      // The centre is a node; rounded down, it stays a bound.
+      const int center = nodes[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)];
+      layout_->centers_m[i] = static_cast<float>(quantum_m * (center > 0 ? center - 1 : center));
+      if (isConstant(layout_->bricks[i])) continue;
       for (int n = 0; n < kBrickNodes; ++n) {
-        if (std::abs(cell.brick->distance_m[n]) > voxel_m_) continue;
+        if (quantum_m * std::abs(nodes[n]) > voxel_m_) continue;
         const Index3 at(n / (kNodes * kNodes), n / kNodes % kNodes, n % kNodes);
         const Vec3 p = voxel_m_ * (kBrick * layout_->cellAt(i) + at).cast<double>();
         bounds_.add(p - Vec3::Constant(voxel_m_));
@@ -395,7 +394,7 @@ class Reader {
       }
     }
     if (bounds_.isEmpty()) refuse(file_, "has no surface: no value is near zero; build it again");
-    layout_->parts = {{bounds_, layout_->low, layout_->low + size}};
+    layout_->parts = {{bounds_, layout_->low, layout_->low + layout_->size}};
   }
 
   const std::string file_;
@@ -410,9 +409,10 @@ class Reader {
 class VoxMapFile {
  public:
   static void save(const VoxMap& map, const std::string& file) {
-    if (map.layout_->cells.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
+    if (map.layout_->bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
     const VoxLayout& layout = *map.layout_;
-    const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_);
+    const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_, map.quantum_m_);
+    surface->insertMeta("vps_band", openvdb::DoubleMetadata(map.band_m_));
     surface->insertMeta("vps_low", openvdb::Vec3IMetadata(toVdb(layout.low)));
     surface->insertMeta("vps_size", openvdb::Vec3IMetadata(toVdb(layout.size)));
     surface->insertMeta("vps_bounds_min", openvdb::Vec3DMetadata(toVdb(map.bounds_.min)));
@@ -436,6 +436,7 @@ class VoxMapFile {
     VoxMap map;
     map.voxel_m_ = reader.voxel_m_;
     map.band_m_ = reader.band_m_;
+    map.quantum_m_ = quantumOf(map.band_m_);
     map.bounds_ = reader.bounds_;
     map.layout_ = reader.layout_;
     return map;

@@ -55,14 +55,14 @@ class Voxeliser {
         box_(box),
         h_(settings.voxel_m),
         band_m_(bandOf(settings)),
-        // A hair less, so that no node is stored that reads as the full band.
-        reach_(band_m_ / h_ * (1 - 2.5e-7)) {}
+        // What rounds to the full band need not be computed.
+        reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_) {}
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
 
   static double bandOf(const VoxMapSettings& settings) {
-    // As the float that saturated nodes hold, so that a saturated distance equals band_m() exactly.
-    return static_cast<float>(settings.band_voxels * settings.voxel_m);
+    // What a saturated node reads as, so that a saturated distance equals band_m() exactly.
+    return kFullBand * quantumOf(settings.band_voxels * settings.voxel_m);
   }
 
  private:
@@ -106,9 +106,8 @@ void Voxeliser::layOutDirectory() {
   const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
-  layout_->cells.resize(static_cast<std::size_t>((high - low).prod()));
+  layout_->resizeCells();
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
-  layout_->constants = constantBricks(band_m_);
 }
 
 /// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
@@ -209,23 +208,18 @@ std::uint8_t nearBits(const float* row) {
   return static_cast<std::uint8_t>(bits);
 }
 
-/// Copies a brick from its tile, in metres, and notes where the surface is.
+/// Copies a brick from its tile, and notes where the surface is.
 void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer) {
-  const double h = h_;
-  BrickNodes distance_m;
+  BrickNodes distance;
   SurfaceBits& surface = surface_[static_cast<std::size_t>(brick_of_[brick.cell])];
   for (int x = 0; x < kNodes; ++x)
     for (int y = 0; y < kNodes; ++y) {
       const float* from = &tile[tileIndex(brick.node.x() + x, brick.node.y() + y, brick.node.z())];
-      float* to = &distance_m[nodeIndex(x, y, 0)];
-      for (int z = 0; z < kNodes; ++z) {
-        const auto d_m = static_cast<float>(from[z] * h);
-        to[z] = isFar(from[z]) ? kFar : d_m;
-      }
+      std::copy_n(from, kNodes, &distance[nodeIndex(x, y, 0)]);
       if (x < kBrick && y < kBrick)
         surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= nearBits(from);
     }
-  writer.write(slot, brick.cell, distance_m);
+  writer.write(slot, brick.cell, distance);
 }
 
 /// A batch of tiles at a time, in the same memory: fresh pages for all of them would cost more than the work.
@@ -234,8 +228,11 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i + 1 < first_.size(); ++i)
     if (first_[i] < first_[i + 1]) wanted.push_back(i);
-  brick_of_.assign(layout_->cells.size(), -1);
-  BrickWriter writer(*layout_, band_m_);
+  brick_of_.assign(layout_->bricks.size(), -1);
+  // A surface through a tile takes about a third of its bricks.
+  constexpr std::size_t kExpected = kTileBricks * kTileBricks * kTileBricks / 2;
+  BrickWriter writer(*layout_, h_ / quantumOf(band_m_),
+                     std::min(kExpected * wanted.size(), brick_of_.size()));
   std::vector<Tile> tiles(std::min(kBatch, wanted.size()));
   std::vector<std::vector<CutBrick>> bricks(tiles.size());
   std::vector<std::size_t> slot(tiles.size());
@@ -264,16 +261,14 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
 
 void Voxeliser::boundCenters() {
   const std::vector<float> bound = boundCellCenters(layout_->size, brick_of_, surface_);
+  const double quantum_m = quantumOf(band_m_);
   tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {
-    VoxCell& entry = layout_->cells[i];
     constexpr int kCenter = kBrick / 2;
-    const float center_m = entry.brick->distance_m[nodeIndex(kCenter, kCenter, kCenter)];
-    const auto band_m = static_cast<float>(band_m_);
-    // Within the band the distance itself is known, but for rounding; beyond, it is at least the band.
-    const float known_m = std::max(0.F, std::abs(center_m) - 1e-6F * static_cast<float>(h_));
-    const float least_m =
-        std::abs(center_m) < band_m ? known_m : std::max(band_m, bound[i] * static_cast<float>(h_));
-    entry.center_m = std::copysign(least_m, center_m);
+    const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
+    // Within the band the distance itself is known, but for rounding; beyond, it is at least nearly the band.
+    const double known_m = std::max(0.0, (std::abs(center) - 0.51) * quantum_m);
+    const double least_m = std::abs(center) < kFullBand ? known_m : std::max(known_m, bound[i] * h_);
+    layout_->centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
   });
 }
 
@@ -304,8 +299,7 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
   const double cells = ((size_m.array() + 2 * band_voxels * h) / cell_m + 3).prod();
-  return bricks * 2 * sizeof(VoxBrick) +
-         cells * (sizeof(VoxCell) + 16);  // twice: bricks are built, then packed
+  return bricks * VoxPool::kBytes + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
 }
 
 void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings,
@@ -349,6 +343,7 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, co
   VoxMap map;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
+  map.quantum_m_ = quantumOf(map.band_m_);
   map.bounds_ = box;
   map.layout_ = Voxeliser(shared, box, settings).build(progress);
   return map;

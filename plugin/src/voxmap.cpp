@@ -1,34 +1,57 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/voxmap.h"
 
+#include <new>
+
 #include "voxmap_layout.h"
 #include "voxmap_sampling.h"
 
 namespace vps {
 
+VoxPool::VoxPool(std::size_t capacity)
+    : capacity_(capacity + 2),
+      nodes_(static_cast<NodeValue*>(
+          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{64}))),
+      owner_(new std::uint16_t[capacity_]),
+      mixed_(new const NodeOwners*[capacity_]) {
+  used_ = 2;
+  std::fill_n(nodes(kOutside), kBrickStride, static_cast<NodeValue>(kFullBand));
+  std::fill_n(nodes(kInside), kBrickStride, static_cast<NodeValue>(-kFullBand));
+  owner(kOutside) = owner(kInside) = 0;
+  mixed(kOutside) = mixed(kInside) = nullptr;
+}
+
+std::uint32_t VoxPool::take(std::size_t count) noexcept {
+  std::size_t first = used_;
+  do {
+    if (first + count > capacity_) return 0;
+  } while (!used_.compare_exchange_weak(first, first + count));
+  return static_cast<std::uint32_t>(first * kBrickStride);
+}
+
 VoxMap::VoxMap() {
   // An empty map: no cells, so everywhere outside; shared by all.
   static const std::shared_ptr<const VoxLayout> empty = [] {
     auto layout = std::make_shared<VoxLayout>();
-    auto constants = std::make_shared<VoxPool>();
-    constants->bricks.resize(2);
-    layout->constants = constants;
+    layout->pool = std::make_shared<VoxPool>(0);
     return layout;
   }();
   layout_ = empty;
 }
 
+std::size_t VoxMap::partCount() const noexcept {
+  return layout_->parts.size();
+}
+
 std::size_t VoxMap::brickCount() const noexcept {
-  std::size_t count = 0;
-  for (const VoxCell& cell : layout_->cells) count += !layout_->isConstant(cell.brick);
-  return count;
+  const auto& bricks = layout_->bricks;
+  return bricks.size() - static_cast<std::size_t>(std::count_if(bricks.begin(), bricks.end(), isConstant));
 }
 
 std::size_t VoxMap::memoryBytes() const noexcept {
-  std::size_t bytes = sizeof(VoxLayout) + layout_->cells.size() * sizeof(VoxCell) + 2 * sizeof(VoxBrick);
-  for (const auto& pool : layout_->pools)
-    bytes += pool->bricks.size() * sizeof(VoxBrick) +
-             pool->owners.size() * sizeof(std::array<std::uint16_t, kBrickNodes>);
+  std::size_t bytes = sizeof(VoxLayout) + layout_->bricks.size() * (sizeof(std::uint32_t) + sizeof(float)) +
+                      layout_->pool->size() * VoxPool::kBytes;
+  for (const auto& owners : layout_->owners) bytes += owners->size() * sizeof(NodeOwners);
   return bytes;
 }
 

@@ -30,6 +30,26 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
+/// The pool that takes `count` bricks more: a's own if it has room, else a copy with room for as many again,
+/// so that mounting one part after another copies each brick a few times at most.
+std::shared_ptr<VoxPool> poolWithRoom(const std::shared_ptr<VoxPool>& pool, std::size_t count,
+                                      std::uint32_t& first) {
+  if (count == 0) return pool;
+  first = pool->take(count);
+  if (first != 0) return pool;
+  const std::size_t old_count = pool->size();
+  auto larger = std::make_shared<VoxPool>(2 * (old_count + count));
+  (void)larger->take(old_count - 2);
+  std::copy_n(pool->nodes(0), old_count * kBrickStride, larger->nodes(0));
+  for (std::uint32_t brick = kInside + kBrickStride; brick < old_count * kBrickStride;
+       brick += kBrickStride) {
+    larger->owner(brick) = pool->owner(brick);
+    larger->mixed(brick) = pool->mixed(brick);
+  }
+  first = larger->take(count);
+  return larger;
+}
+
 /// Two maps' cells and bricks on their way to become one.
 class Merger {
  public:
@@ -39,17 +59,15 @@ class Merger {
   std::shared_ptr<VoxLayout> run() {
     layOut();
     std::size_t new_bricks = 0, mixed_bricks = 0;
-    forEachCellOfB([&](const VoxCell& old, const VoxCell& added) {
-      if (old.brick == a_.inside() || b_.isConstant(added.brick)) return;
+    forEachCellOfB([&](std::uint32_t old, std::uint32_t added) {
+      if (old == kInside || isConstant(added)) return;
       ++new_bricks;
-      mixed_bricks += old.brick != a_.outside() || added.brick->owners != nullptr;
+      mixed_bricks += old != kOutside || b_.pool->mixed(added) != nullptr;
     });
-    // Cells point into the pool, so it must not grow later.
-    pool_->bricks.reserve(new_bricks);
-    pool_->owners.reserve(mixed_bricks);
-    forEachCellOfB(
-        [&](VoxCell& cell, const VoxCell& added) { cell.brick = mergedBrick(cell.brick, added.brick); });
-    if (!pool_->bricks.empty()) out_->pools.push_back(pool_);
+    out_->pool = poolWithRoom(a_.pool, new_bricks, next_);
+    mixed_->reserve(mixed_bricks);  // bricks point into it
+    forEachCellOfB([&](std::uint32_t& brick, std::uint32_t added) { brick = mergedBrick(brick, added); });
+    if (!mixed_->empty()) out_->owners.push_back(mixed_);
     return out_;
   }
 
@@ -59,21 +77,20 @@ class Merger {
     const Index3 low = a_.low.cwiseMin(b_.low), high = (a_.low + a_.size).cwiseMax(b_.low + b_.size);
     out_->low = low;
     out_->size = high - low;
-    out_->constants = a_.constants;
-    out_->pools = a_.pools;
+    out_->owners = a_.owners;
     out_->parts = a_.parts;
     out_->parts.insert(out_->parts.end(), b_.parts.begin(), b_.parts.end());
-    out_->cells.resize(static_cast<std::size_t>(out_->size.cast<std::int64_t>().prod()));
+    out_->resizeCells();
     for (int x = low.x(); x < high.x(); ++x)
       for (int y = low.y(); y < high.y(); ++y)
         for (int z = low.z(); z < high.z(); ++z) {
           const Index3 at(x, y, z);
-          VoxCell& cell = out_->cells[out_->cellIndex(at)];
+          const std::size_t cell = out_->cellIndex(at);
           const bool in_a = a_.holds(at), in_b = b_.holds(at);
-          cell.brick = in_a ? a_.cells[a_.cellIndex(at)].brick : a_.outside();
-          const float from_a = in_a ? a_.cells[a_.cellIndex(at)].center_m : boxBound(a_.parts, at, voxel_m_);
-          const float from_b = in_b ? b_.cells[b_.cellIndex(at)].center_m : boxBound(b_.parts, at, voxel_m_);
-          cell.center_m = std::min(from_a, from_b);
+          if (in_a) out_->bricks[cell] = a_.bricks[a_.cellIndex(at)];
+          const float from_a = in_a ? a_.centers_m[a_.cellIndex(at)] : boxBound(a_.parts, at, voxel_m_);
+          const float from_b = in_b ? b_.centers_m[b_.cellIndex(at)] : boxBound(b_.parts, at, voxel_m_);
+          out_->centers_m[cell] = std::min(from_a, from_b);
         }
   }
 
@@ -83,43 +100,43 @@ class Merger {
       for (int y = 0; y < b_.size.y(); ++y)
         for (int z = 0; z < b_.size.z(); ++z) {
           const Index3 at = b_.low + Index3(x, y, z);
-          visit(out_->cells[out_->cellIndex(at)], b_.cells[b_.cellIndex(at)]);
+          visit(out_->bricks[out_->cellIndex(at)], b_.bricks[b_.cellIndex(at)]);
         }
   }
 
-  const VoxBrick* mergedBrick(const VoxBrick* old, const VoxBrick* added) {
-    if (old == a_.inside() || added == b_.outside()) return old;
-    if (added == b_.inside()) return a_.inside();
-    VoxBrick& brick = pool_->bricks.emplace_back(*added);
-    brick.owner = static_cast<std::uint16_t>(added->owner + owner_offset_);
-    if (old == a_.outside() && added->owners == nullptr) return &brick;
-
-    auto& owners = pool_->owners.emplace_back();
-    brick.owners = owners.data();
-    const float inside_m = a_.inside()->distance_m[0];
-    bool is_all_inside = true;
-    for (int i = 0; i < kBrickNodes; ++i) {
-      const bool takes_old = old->distance_m[i] <= added->distance_m[i];
-      brick.distance_m[i] = std::min(old->distance_m[i], added->distance_m[i]);
-      owners[i] =
-          takes_old ? ownerOf(*old, i) : static_cast<std::uint16_t>(ownerOf(*added, i) + owner_offset_);
-      is_all_inside = is_all_inside && brick.distance_m[i] == inside_m;
+  std::uint32_t mergedBrick(std::uint32_t old, std::uint32_t added) {
+    if (old == kInside || added == kOutside) return old;
+    if (added == kInside) return kInside;
+    VoxPool& pool = *out_->pool;
+    const std::uint32_t brick = next_;
+    const NodeValue *old_nodes = pool.nodes(old), *added_nodes = b_.pool->nodes(added);
+    NodeValue* nodes = pool.nodes(brick);
+    pool.owner(brick) = static_cast<std::uint16_t>(b_.pool->owner(added) + owner_offset_);
+    pool.mixed(brick) = nullptr;
+    if (old == kOutside && b_.pool->mixed(added) == nullptr) {
+      std::copy_n(added_nodes, kBrickStride, nodes);
+      next_ += kBrickStride;
+      return brick;
     }
-    if (!is_all_inside) return &brick;
-    pool_->bricks.pop_back();
-    pool_->owners.pop_back();
-    return a_.inside();
-  }
-
-  static std::uint16_t ownerOf(const VoxBrick& brick, int node) {
-    return brick.owners != nullptr ? brick.owners[node] : brick.owner;
+    std::transform(old_nodes, old_nodes + kBrickStride, added_nodes, nodes,
+                   [](NodeValue a, NodeValue b) { return std::min(a, b); });
+    if (std::all_of(nodes, nodes + kBrickNodes, [](NodeValue d) { return d == -kFullBand; })) return kInside;
+    NodeOwners& owners = mixed_->emplace_back();
+    for (int i = 0; i < kBrickNodes; ++i)
+      owners[i] = old_nodes[i] <= added_nodes[i]
+                      ? pool.ownerOf(old, i)
+                      : static_cast<std::uint16_t>(b_.pool->ownerOf(added, i) + owner_offset_);
+    pool.mixed(brick) = &owners;
+    next_ += kBrickStride;
+    return brick;
   }
 
   const VoxLayout &a_, &b_;
   const double voxel_m_;
   const std::uint16_t owner_offset_;
   std::shared_ptr<VoxLayout> out_ = std::make_shared<VoxLayout>();
-  std::shared_ptr<VoxPool> pool_ = std::make_shared<VoxPool>();
+  std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
+  std::uint32_t next_ = 0;  ///< the brick to fill next
 };
 
 }  // namespace
@@ -132,30 +149,27 @@ VoxMap VoxMapBuilder::merge(const VoxMap& a, const VoxMap& b) {
   return out;
 }
 
-/// The same map with all its bricks in one pool: merging leaves bricks behind that nothing points to any
-/// more.
+/// The same map with its bricks close together: merging leaves bricks behind that nothing names any more.
 VoxMap VoxMapBuilder::packed(const VoxMap& map) {
   auto layout = std::make_shared<VoxLayout>(*map.layout_);
-  auto pool = std::make_shared<VoxPool>();
-  std::size_t bricks = 0, mixed = 0;
-  for (const VoxCell& cell : layout->cells) {
-    if (layout->isConstant(cell.brick)) continue;
-    ++bricks;
-    mixed += cell.brick->owners != nullptr;
+  const VoxPool& from = *map.layout_->pool;
+  const std::size_t count = map.brickCount();
+  auto pool = std::make_shared<VoxPool>(count);
+  std::uint32_t next = pool->take(count);
+  auto mixed = std::make_shared<std::vector<NodeOwners>>();
+  mixed->reserve(static_cast<std::size_t>(
+      std::count_if(layout->bricks.begin(), layout->bricks.end(),
+                    [&](std::uint32_t brick) { return from.mixed(brick) != nullptr; })));
+  for (std::uint32_t& brick : layout->bricks) {
+    if (isConstant(brick)) continue;
+    std::copy_n(from.nodes(brick), kBrickStride, pool->nodes(next));
+    pool->owner(next) = from.owner(brick);
+    pool->mixed(next) = from.mixed(brick) != nullptr ? &mixed->emplace_back(*from.mixed(brick)) : nullptr;
+    brick = next;
+    next += kBrickStride;
   }
-  pool->bricks.reserve(bricks);
-  pool->owners.reserve(mixed);
-  for (VoxCell& cell : layout->cells) {
-    if (layout->isConstant(cell.brick)) continue;
-    VoxBrick& brick = pool->bricks.emplace_back(*cell.brick);
-    if (brick.owners != nullptr) {
-      auto& owners = pool->owners.emplace_back();
-      std::copy_n(brick.owners, kBrickNodes, owners.begin());
-      brick.owners = owners.data();
-    }
-    cell.brick = &brick;
-  }
-  layout->pools = {pool};
+  layout->pool = pool;
+  layout->owners = {mixed};
   VoxMap out = map;
   out.layout_ = layout;
   return out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sampling a VoxMap, inline: the innermost loop of every query.
+// Reading a VoxMap at one point, in double; the vectorised reading of many is in read_kernel.h.
 #pragma once
 
 #include <limits>
@@ -13,22 +13,23 @@ class VoxSampler {
  public:
   explicit VoxSampler(const VoxMap& map) noexcept
       : layout_(*map.layout_),
-        cells_(map.layout_->cells.data()),
-        outside_(map.layout_->outside()),
-        inside_(map.layout_->inside()),
+        bricks_(layout_.bricks.data()),
+        nodes_(layout_.pool->nodes(0)),
         voxel_m_(map.voxel_m_),
         band_m_(map.band_m_),
+        quantum_m_(map.quantum_m_),
         bounds_(map.bounds_),
         per_voxel_(map.voxel_m_ > 0 ? 1 / map.voxel_m_ : 0),
         low_((VoxMap::kBrick * layout_.low).cast<double>()),
         size_((VoxMap::kBrick * layout_.size).cast<double>()) {}
 
   /// Where a point lies: the directory's cell, the low node of its grid cell within the brick, and the
-  /// position between nodes. brick is null outside the directory.
+  /// position between nodes. is_within is false outside the directory.
   struct Place {
-    const VoxBrick* brick = nullptr;
+    bool is_within = false;
+    std::uint32_t brick = kOutside;
     std::size_t cell = 0;
-    Index3 cell_at, node;
+    Index3 node;
     Vec3 t;
   };
 
@@ -38,46 +39,45 @@ class VoxSampler {
     // Written so that a NaN fails it. Within, x >= 0: truncation is the floor.
     if (!((x.array() >= 0).all() && (x.array() < size_.array()).all())) return at;
     const Index3 whole = x.cast<int>();
+    at.is_within = true;
     at.t = x - whole.cast<double>();
-    at.cell_at = Index3(whole.x() >> 3, whole.y() >> 3, whole.z() >> 3);
     at.node = Index3(whole.x() & 7, whole.y() & 7, whole.z() & 7);
-    at.cell = (static_cast<std::size_t>(at.cell_at.x()) * static_cast<std::size_t>(layout_.size.y()) +
-               static_cast<std::size_t>(at.cell_at.y())) *
+    at.cell = (static_cast<std::size_t>(whole.x() >> 3) * static_cast<std::size_t>(layout_.size.y()) +
+               static_cast<std::size_t>(whole.y() >> 3)) *
                   static_cast<std::size_t>(layout_.size.z()) +
-              static_cast<std::size_t>(at.cell_at.z());
-    at.brick = cells_[at.cell].brick;
+              static_cast<std::size_t>(whole.z() >> 3);
+    at.brick = bricks_[at.cell];
     return at;
   }
 
   /// Trilinear distance [m]; +band outside the directory.
   [[nodiscard]] double distance(const Place& at) const noexcept {
-    if (at.brick == nullptr) return band_m_;
     // A constant brick would interpolate to its constant but for rounding; returning it is exact, and quick
     // where most points are.
-    if (at.brick == outside_) return band_m_;
-    if (at.brick == inside_) return -band_m_;
+    if (at.brick == kOutside) return band_m_;
+    if (at.brick == kInside) return -band_m_;
     const Corners d = corners(at);
     const double x0 = mix(mix(d[0], d[1], at.t.z()), mix(d[2], d[3], at.t.z()), at.t.y());
     const double x1 = mix(mix(d[4], d[5], at.t.z()), mix(d[6], d[7], at.t.z()), at.t.y());
-    return mix(x0, x1, at.t.x());
+    return quantum_m_ * mix(x0, x1, at.t.x());
   }
 
   /// Unit outward normal at a place, zero in constant bricks and outside.
   [[nodiscard]] Vec3 normal(const Place& at, Gradient gradient) const noexcept {
-    if (at.brick == nullptr || at.brick == outside_ || at.brick == inside_) return Vec3::Zero();
+    if (isConstant(at.brick)) return Vec3::Zero();
     const Vec3 g = gradient == Gradient::Trilinear ? trilinearGradient(at) : continuousGradient(at);
     const double length = g.norm();
-    // Where opposite walls cancel there is no direction; 1e-6 is far below any nodal gradient that is not
-    // noise (true gradients have length 1; here g is in metres over one or two voxels).
-    return length > 1e-6 * voxel_m_ ? Vec3(g / length) : Vec3(Vec3::Zero());
+    // Where opposite walls cancel there is no direction: a gradient below two quanta is rounding noise (a
+    // true one has length 1, some thousand quanta over a voxel).
+    return length > 2 ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
 
   /// A value that the signed distance to the surface at p_M is not below; -band_m where nothing better is
   /// known.
   [[nodiscard]] double leastDistance(const Vec3& p_M, const Place& at) const noexcept {
-    if (at.brick == nullptr) return leastDistanceOutside(p_M);
+    if (!at.is_within) return leastDistanceOutside(p_M);
     double least_m = -band_m_;
-    const double center_m = cells_[at.cell].center_m;
+    const double center_m = layout_.centers_m[at.cell];
     if (center_m > 0) least_m = std::max(least_m, center_m * kRoundDown - fromCenter(at));
     least_m = std::max(least_m, distance(at) - interpolationError(at));
     const double to_box_m = boxDistance(p_M);
@@ -87,39 +87,43 @@ class VoxSampler {
   /// A value that the signed distance to the surface at p_M is not above; infinite where unknown.
   [[nodiscard]] double mostDistance(const Place& at) const noexcept {
     double most_m = std::numeric_limits<double>::infinity();
-    if (at.brick == nullptr || at.brick == outside_) return most_m;
-    const double center_m = cells_[at.cell].center_m;
+    if (at.brick == kOutside) return most_m;
+    const double center_m = layout_.centers_m[at.cell];
     if (center_m < 0) most_m = center_m * kRoundDown + fromCenter(at);
     const double field_m = distance(at) + interpolationError(at);
     return field_m < band_m_ ? std::min(most_m, field_m) : most_m;
   }
 
   [[nodiscard]] bool isInside(const Place& at) const noexcept {
-    return at.brick != nullptr && at.brick != outside_ && distance(at) < 0;
+    return at.brick != kOutside && distance(at) < 0;
   }
 
   [[nodiscard]] std::uint16_t owner(const Place& at) const noexcept {
-    if (at.brick == nullptr) return 0;
-    if (at.brick->owners == nullptr) return at.brick->owner;
+    if (isConstant(at.brick)) return 0;
     const auto nearest = [&](int axis) { return at.node[axis] + (at.t[axis] >= 0.5 ? 1 : 0); };
-    return at.brick->owners[nodeIndex(nearest(0), nearest(1), nearest(2))];
+    return layout_.pool->ownerOf(at.brick, nodeIndex(nearest(0), nearest(1), nearest(2)));
   }
 
  private:
-  using Corners = std::array<double, 8>;  // bits of the index: x y z
+  using Corners = std::array<double, 8>;  // bits of the index: x y z; quanta
   /// Centre distances were rounded to float: a bound taken from one gives this share of it back.
   static constexpr double kRoundDown = 1 - 2e-7;
 
   static double mix(double a, double b, double t) noexcept { return a + t * (b - a); }
 
-  static Corners corners(const Place& at) noexcept {
-    const float* d = &at.brick->distance_m[nodeIndex(at.node.x(), at.node.y(), at.node.z())];
-    constexpr int x = nodeIndex(1, 0, 0), y = nodeIndex(0, 1, 0);
-    return {d[0], d[1], d[y], d[y + 1], d[x], d[x + 1], d[x + y], d[x + y + 1]};
+  [[nodiscard]] const NodeValue* lowNode(const Place& at) const noexcept {
+    return nodes_ + at.brick + nodeIndex(at.node.x(), at.node.y(), at.node.z());
   }
 
-  /// Derivative of the interpolant, times one voxel.
-  static Vec3 trilinearGradient(const Place& at) noexcept {
+  [[nodiscard]] Corners corners(const Place& at) const noexcept {
+    const NodeValue* d = lowNode(at);
+    constexpr int x = nodeIndex(1, 0, 0), y = nodeIndex(0, 1, 0);
+    return {double(d[0]), double(d[1]),     double(d[y]),     double(d[y + 1]),
+            double(d[x]), double(d[x + 1]), double(d[x + y]), double(d[x + y + 1])};
+  }
+
+  /// Derivative of the interpolant, times one voxel, in quanta.
+  [[nodiscard]] Vec3 trilinearGradient(const Place& at) const noexcept {
     const Corners d = corners(at);
     const double x = at.t.x(), y = at.t.y(), z = at.t.z();
     return {mix(mix(d[4] - d[0], d[5] - d[1], z), mix(d[6] - d[2], d[7] - d[3], z), y),
@@ -127,29 +131,27 @@ class VoxSampler {
             mix(mix(d[1] - d[0], d[3] - d[2], y), mix(d[5] - d[4], d[7] - d[6], y), x)};
   }
 
-  /// Trilinear interpolation of the nodes' central differences, times two voxels. Along its own axis a
-  /// component needs one node more on each side of the cell, which may lie in a neighbour; across, the cell's
-  /// own.
-  Vec3 continuousGradient(const Place& at) const noexcept {
+  /// Trilinear interpolation of the nodes' central differences, times two voxels, in quanta. Along its own
+  /// axis a component needs one node more on each side of the cell, which may lie in a neighbour; across, the
+  /// cell's own.
+  [[nodiscard]] Vec3 continuousGradient(const Place& at) const noexcept {
     constexpr int kStride[3] = {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)};
     const std::ptrdiff_t cell_stride[3] = {std::ptrdiff_t{layout_.size.y()} * layout_.size.z(),
                                            layout_.size.z(), 1};
-    const int index = nodeIndex(at.node.x(), at.node.y(), at.node.z());
-    const float* low = &at.brick->distance_m[index];
+    const NodeValue* low = lowNode(at);
+    const std::ptrdiff_t index = low - (nodes_ + at.brick);
     // A brick with a band always has neighbours: the directory keeps one empty cell around them all.
-    const VoxCell* cell = &cells_[at.cell];
+    const std::uint32_t* cell = bricks_ + at.cell;
     Vec3 g;
     for (int axis = 0; axis < 3; ++axis) {
       const int stride = kStride[axis], node = at.node[axis];
-      const float *before = low - stride, *high = low + stride, *after = high + stride;
-      if (node == 0)
-        before = &cell[-cell_stride[axis]].brick->distance_m[index + (VoxMap::kBrick - 1) * stride];
-      if (node == VoxMap::kBrick - 1)
-        after = &cell[cell_stride[axis]].brick->distance_m[index + (1 - node) * stride];
+      const NodeValue *before = low - stride, *high = low + stride, *after = high + stride;
+      if (node == 0) before = nodes_ + cell[-cell_stride[axis]] + index + (VoxMap::kBrick - 1) * stride;
+      if (node == VoxMap::kBrick - 1) after = nodes_ + cell[cell_stride[axis]] + index + (1 - node) * stride;
       const int b = kStride[(axis + 1) % 3], c = kStride[(axis + 2) % 3];
       const double t = at.t[axis], t_b = at.t[(axis + 1) % 3], t_c = at.t[(axis + 2) % 3];
       const auto slope = [&](int k) {
-        return mix(double{high[k]} - before[k], double{after[k]} - low[k], t);
+        return mix(double(high[k] - before[k]), double(after[k] - low[k]), t);
       };
       g[axis] = mix(mix(slope(0), slope(b), t_b), mix(slope(c), slope(b + c), t_b), t_c);
     }
@@ -161,19 +163,19 @@ class VoxSampler {
   /// axes of t (1 - t)).
   [[nodiscard]] double interpolationError(const Place& at) const noexcept {
     return voxel_m_ * std::sqrt((at.t.array() * (1 - at.t.array())).sum()) +
-           1e-6 * band_m_;  // and float's rounding
+           0.51 * quantum_m_;  // half a quantum from storage, the rest for rounding
   }
 
   /// The directory is a box that holds the surface. From its nearest point c to p, every point of the surface
   /// lies at a right angle to cp or behind: distance(p)^2 >= |p - c|^2 + distance(c)^2.
   [[nodiscard]] double leastDistanceOutside(const Vec3& p_M) const noexcept {
-    if (layout_.cells.empty()) return boxDistance(p_M);
+    if (layout_.bricks.empty()) return boxDistance(p_M);
     const Vec3 low = low_ * voxel_m_, high = (low_ + size_) * voxel_m_;
     // A hair inside, so that it has a place in spite of rounding.
     const Vec3 hair = Vec3::Constant(1e-6 * voxel_m_);
     const Vec3 c = p_M.cwiseMax(low + hair).cwiseMin(high - hair);
     const Place at = place(c);
-    const double from_c_m = at.brick == nullptr ? boxDistance(c) : std::max(0.0, leastDistance(c, at));
+    const double from_c_m = at.is_within ? std::max(0.0, leastDistance(c, at)) : boxDistance(c);
     return std::sqrt((p_M - c).squaredNorm() + from_c_m * from_c_m) - voxel_m_ * 1e-5;
   }
   /// Distance from the place to its directory cell's centre [m].
@@ -185,9 +187,9 @@ class VoxSampler {
   }
 
   const VoxLayout& layout_;
-  const VoxCell* cells_;  // these three are the layout's, one step nearer
-  const VoxBrick *outside_, *inside_;
-  double voxel_m_, band_m_;
+  const std::uint32_t* bricks_;  // these two are the layout's, one step nearer
+  const NodeValue* nodes_;
+  double voxel_m_, band_m_, quantum_m_;
   const Box& bounds_;
   double per_voxel_;
   Vec3 low_, size_;  // of the directory, in voxels

@@ -16,8 +16,11 @@ namespace {
 
 constexpr double kMm = 1e-3, kUm = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Distances are stored as float in units of at most a few millimetres.
-constexpr double kFloat_m = 1e-9;
+
+/// Queries place points in floats of a few voxels about their leaf, which may be off by 3e-5 voxel.
+double readingTolerance(const VoxMap& map) {
+  return 1e-4 * map.voxel_m();
+}
 
 PointShell shellOf(const Mesh& mesh, double spacing_m) {
   return buildPointShell(mesh, {spacing_m, 0.35});
@@ -45,7 +48,7 @@ TEST(Query, BallOnBallReportsAnalyticDepthAndNormal) {
   }
   // Trilinear: h^2/8 times the summed second derivatives, 2/r; the facets lie inside the sphere by the
   // sagitta.
-  const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + kFloat_m;
+  const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + map.quantum_m();
   // Facet normals differ from the sphere's by about sqrt(2 sagitta / r); differences over 2h see h^2/6 of
   // curvature.
   const double tol_rad = std::sqrt(2 * sagitta_m / map_radius_m) + std::pow(h / map_radius_m, 2);
@@ -77,8 +80,8 @@ TEST(Query, BoxSunkInPlateTouchesWithItsWholeLowerFace) {
   const ContactSet set = contactsOf(map, shell, X_MP);
   EXPECT_EQ(set.contacts.size(), expected);
   for (const Contact& c : set.contacts) {  // over a plane trilinear interpolation is exact
-    EXPECT_NEAR(c.distance_m, c.p_M.z() - 4 * kMm, kFloat_m);
-    EXPECT_LT((c.n_M - Vec3::UnitZ()).norm(), 1e-5);  // kFloat_m over 2h
+    EXPECT_NEAR(c.distance_m, c.p_M.z() - 4 * kMm, map.quantum_m());
+    EXPECT_LT((c.n_M - Vec3::UnitZ()).norm(), 1e-5);  // a quantum over 2h
   }
 }
 
@@ -91,7 +94,7 @@ TEST(Query, PegInBoreReportsDepthAndNormalWithinHalfAMicron) {
   const Pose X_MP = Pose::translation({aside_m, 0, 0});
   // Facets: sagitta. Trilinear: h^2/8 times 1/r, the distance's one second derivative.
   const double sagitta_m = bore_m * (1 - std::cos(std::numbers::pi / segments));
-  const double tol_m = sagitta_m + h * h / (8 * (peg_m - map.band_m())) + kFloat_m;
+  const double tol_m = sagitta_m + h * h / (8 * (peg_m - map.band_m())) + map.quantum_m();
   ASSERT_LT(tol_m, 0.5 * kUm);
   const double tol_rad = std::numbers::pi / segments + std::pow(h / bore_m, 2);
   const ContactSet set = contactsOf(map, shell, X_MP);
@@ -124,7 +127,7 @@ TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
     const double cap_m = std::sqrt(2 * R * delta_m);
     const double tol = std::pow(spacing_m / cap_m, 1.5) + 0.01;  // facets: 2 sagitta / delta
     EXPECT_NEAR(F.f.z() / exact_N, 1, tol) << spacing_m;
-    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // a plane's normals: kFloat_m over 2h
+    EXPECT_LT(F.f.head<2>().norm() / exact_N, 1e-4);  // a plane's normals: a quantum over 2h
     EXPECT_LT(F.tau.norm() / (exact_N * cap_m), tol);
   }
 }
@@ -254,17 +257,27 @@ TEST_P(EveryPair, CullingFindsExactlyWhatVisitingEveryPointFinds) {
 TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
   for (const Pose& X_MP : manyPoses(pair, 40)) {
     const ContactSet set = contactsOf(pair.map, pair.shell, X_MP, {20 * kUm, true, Gradient::Trilinear});
+    const double tol_m = readingTolerance(pair.map), h = pair.map.voxel_m();
     std::size_t next = 0;
     for (std::uint32_t id = 0; id < pair.shell.size(); ++id) {
       const Vec3 p_M = X_MP * pair.shell.points[id];
-      if (pair.map.distance(p_M) > 20 * kUm) continue;
-      ASSERT_LT(next, set.contacts.size());
+      const double distance_m = pair.map.distance(p_M);
+      const bool is_listed = next < set.contacts.size() && set.contacts[next].id == id;
+      if (std::abs(distance_m - 20 * kUm) > tol_m) {
+        ASSERT_EQ(is_listed, distance_m < 20 * kUm);
+      }
+      if (!is_listed) continue;
       const Contact& c = set.contacts[next++];
-      ASSERT_EQ(c.id, id);
-      ASSERT_EQ(c.distance_m, pair.map.distance(p_M));
-      ASSERT_EQ(c.owner, pair.map.owner(p_M));
+      ASSERT_NEAR(c.distance_m, distance_m, tol_m);
+      // On the middle between two parts' nodes either may be meant.
+      if (pair.map.owner(p_M - Vec3::Constant(tol_m)) == pair.map.owner(p_M + Vec3::Constant(tol_m))) {
+        ASSERT_EQ(c.owner, pair.map.owner(p_M));
+      }
+      // Within a cell the trilinear normal turns little over the tolerance; at a cell's face it jumps.
+      const Vec3 t = p_M / h;
+      if ((t - t.array().round().matrix()).cwiseAbs().minCoeff() * h < tol_m) continue;
       const Vec3 n_M = pair.map.normal(p_M, Gradient::Trilinear);
-      ASSERT_EQ(c.n_M, n_M.isZero(0) ? Vec3(X_MP.R * pair.shell.inward[id]) : n_M);
+      ASSERT_LT((c.n_M - (n_M.isZero(0) ? Vec3(X_MP.R * pair.shell.inward[id]) : n_M)).norm(), 0.01);
     }
     ASSERT_EQ(next, set.contacts.size());
   }
@@ -279,8 +292,12 @@ TEST_P(EveryPair, DistanceIsTheLeastReadingOrAnHonestBound) {
     const QueryResult result = queryDistance(pair.map, pair.shell, X_MP);
     tested += result.points_tested;
     if (least_m < pair.map.band_m()) {
+      if (result.status == Status::BeyondBand) {  // nearly so
+        ASSERT_GT(least_m, pair.map.band_m() - readingTolerance(pair.map));
+        continue;
+      }
       ASSERT_EQ(result.status, Status::Ok);
-      ASSERT_EQ(result.min_distance_m, least_m);
+      ASSERT_NEAR(result.min_distance_m, least_m, readingTolerance(pair.map));
       ++exact;
     } else {
       ASSERT_EQ(result.status, Status::BeyondBand);

@@ -8,6 +8,7 @@
 
 #include "vps/mesh.h"
 #include "vps/progress.h"
+#include "vps/shell_block.h"
 
 namespace vps {
 
@@ -35,6 +36,10 @@ struct PointShell {
   std::vector<double> area_m2;       ///< the surface each point stands for; sums to the mesh's area
   std::vector<std::uint32_t> order;  ///< progressive order, a permutation
   std::vector<ShellNode> nodes;      ///< sphere hierarchy, depth-first
+  /// The same leaves sixteen points wide, then spheres around sixteen leaves each, and so on; the root last.
+  /// What queries walk.
+  std::vector<ShellBlock> blocks;
+  std::size_t leaf_blocks = 0;  ///< how many of the blocks hold points; they come first
   double spacing_m = 0;
   [[nodiscard]] std::size_t size() const noexcept { return points.size(); }
   [[nodiscard]] std::size_t memoryBytes() const noexcept;

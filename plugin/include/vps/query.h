@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "vps/pointshell.h"
+#include "vps/query_memory.h"
+#include "vps/simd.h"
 #include "vps/status.h"
 #include "vps/voxmap.h"
 #include "vps/wrench.h"
@@ -27,6 +29,7 @@ struct QueryOptions {
   double cutoff_m = 0;  ///< report points with distance_m <= cutoff_m (> 0: also near ones, up to the band)
   bool is_exhaustive = false;  ///< visit every point, without culling: the reference for tests
   Gradient gradient = Gradient::Continuous;
+  Simd simd = Simd::Best;  ///< changes the time, not one bit of the answer
 };
 
 /// Room for contacts, sized once. When full, further contacts are counted in `left_out` and Status is
@@ -51,15 +54,35 @@ struct QueryResult {
 /// since culled points are not read: ask queryDistance() for the distance. When `out` is full the first ids
 /// are kept. Expects a rigid pose and the map of closed meshes: signs that contradict each other cannot be
 /// culled exactly. The culled answer is the exhaustive one, exactly. BadPose (no contacts) if X_MP is not
-/// finite. O(points near contact). Source: McNeely et al. 1999 and the paper, section 4.1.
+/// finite. With a memory, the leaves that cannot have come near since the last pose are not looked at:
+/// min_distance_m is then no more than the cutoff. O(points near contact). Source: McNeely et al. 1999 and
+/// the paper, section 4.1.
 QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
-                          const QueryOptions& options, ContactSet& out) noexcept;
+                          const QueryOptions& options, ContactSet& out,
+                          QueryMemory* memory = nullptr) noexcept;
 
 /// Least signed distance of the shell to the map, by branch and bound over the spheres: exact (the field's
 /// least reading) within the band; -band_m() means that deep or deeper. Beyond the band status is BeyondBand
 /// and min_distance_m a lower bound of the true distance, infinite for an empty shell. Never throws,
 /// allocates, locks.
-QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP) noexcept;
+QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
+                          Simd simd = Simd::Best) noexcept;
+
+/// What touches, in sum.
+struct TouchSummary {
+  std::size_t count = 0;   ///< touching points: distance below 0
+  double area_m2 = 0;      ///< surface they stand for
+  double volume_m3 = 0;    ///< sum of area times depth: about the volume of the overlap
+  double max_depth_m = 0;  ///< 0 when nothing touches
+  Wrench F_O_M;            ///< penalty wrench on the shell's part about O, in M [N m, N]
+};
+
+/// The penalty wrench (see penaltyWrench()) of all touching points, without a list of them: for haptic rates.
+/// Same points and distances as queryContacts() with cutoff 0 (the options' own is not used); sums in a fixed
+/// order, so that culling, coherence and processor change no bit.
+QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
+                        const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO, TouchSummary& out,
+                        QueryMemory* memory = nullptr) noexcept;
 
 /// Penalty wrench of a contact set: F = sum of k A d n over touching points (paper, section 4.1, with the
 /// point's area as weight, so that it converges under refinement).

@@ -24,11 +24,12 @@ struct VoxMapSettings {
 enum class Gradient { Continuous, Trilinear };
 
 struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
+struct FieldView;  // what queries read: src/read_kernel.h
 
-/// Signed distance [m] to a part's surface in frame M, negative inside: exact at the grid's nodes within the
-/// band, trilinear between them. Beyond the band the distance saturates at +-band_m() with the right sign,
-/// and lowerBound() gives a coarse bound that still tells far from near. Immutable once built; sampling is
-/// thread-safe, and never allocates or throws.
+/// Signed distance [m] to a part's surface in frame M, negative inside: at the grid's nodes within the band
+/// exact to half a quantum_m() (nodes are 16 bit), trilinear between them. Beyond the band the distance
+/// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse bound that still tells far
+/// from near. Immutable once built; sampling is thread-safe, and never allocates or throws.
 class VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
@@ -43,8 +44,14 @@ class VoxMap {
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
   [[nodiscard]] double band_m() const noexcept { return band_m_; }
+  /// The step in which nodes store distances: band_m() / 32767.
+  [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
+  /// Parts merged into it.
+  [[nodiscard]] std::size_t partCount() const noexcept;
+  /// True if both are copies of one map.
+  [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
   [[nodiscard]] std::size_t brickCount() const noexcept;
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
@@ -62,9 +69,9 @@ class VoxMap {
   /// band_m()) - sampleError_m().
   [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
   /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel,
-  /// at the middle of a cell where surfaces meet at a corner. (On smooth surfaces it is h^2/8 times
-  /// curvature.)
-  [[nodiscard]] double sampleError_m() const noexcept { return 0.8661 * voxel_m_; }
+  /// and half a quantum, at the middle of a cell where surfaces meet at a corner. (On smooth surfaces it is
+  /// h^2/8 times curvature.)
+  [[nodiscard]] double sampleError_m() const noexcept { return 0.8661 * voxel_m_ + 0.51 * quantum_m_; }
   /// True if p_M is inside by the coarse sign; meaningful beyond the band, where distance() has saturated.
   [[nodiscard]] bool isInsideCoarse(const Vec3& p_M) const noexcept;
   /// Index of the part (order of merging, 0 first) whose surface is nearest at p_M's nearest node.
@@ -74,7 +81,8 @@ class VoxMap {
   friend class VoxMapBuilder;
   friend class VoxMapFile;
   friend class VoxSampler;
-  double voxel_m_ = 0, band_m_ = 0;
+  friend struct FieldView;
+  double voxel_m_ = 0, band_m_ = 0, quantum_m_ = 0;
   Box bounds_;
   std::shared_ptr<const VoxLayout> layout_;  // never null
 };

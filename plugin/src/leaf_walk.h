@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a shell and a pose to its leaves that may matter, read in batches and in ascending order.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "read_kernel.h"
+#include "vps/pointshell.h"
+
+namespace vps {
+
+/// One map, one shell, one pose.
+struct Reading {
+  Reading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
+      : field(map), motion(field, X_MP), shell(its_shell), kernels(readKernels(simd)) {}
+
+  FieldView field;
+  Motion motion;
+  const PointShell& shell;
+  const ReadKernels& kernels;
+};
+
+/// A leaf that has been read: its block, and where in the batch.
+struct ReadLeaf {
+  const ShellBlock& block;
+  std::uint32_t index;  ///< of the leaf among the shell's blocks
+  const ReadBatch& batch;
+  int slot;
+
+  [[nodiscard]] float least() const { return batch.least[slot]; }
+  [[nodiscard]] float value(int lane) const { return batch.value[kLanes * slot + lane]; }
+};
+
+/// Collects leaves until a batch is full, reads them, and hands each to `consume(const ReadLeaf&)`.
+template <typename Consume>
+class LeafReader {
+ public:
+  LeafReader(const Reading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
+
+  void add(std::uint32_t leaf) noexcept {
+    const ShellBlock& block = reading_.shell.blocks[leaf];
+    if (block.radius_m > kFineEnough * reading_.field.voxel_m) {
+      flush();
+      readOneByOne(block, leaf);
+      return;
+    }
+    blocks_[count_] = &block;
+    leaves_[count_++] = leaf;
+    if (count_ == kBatch) flush();
+  }
+
+  void flush() noexcept {
+    if (count_ == 0) return;
+    reading_.kernels.read(reading_.field, reading_.motion, blocks_, count_, batch_);
+    points_ += countPoints();
+    for (int i = 0; i < count_; ++i) consume_(ReadLeaf{*blocks_[i], leaves_[i], batch_, i});
+    count_ = 0;
+  }
+
+  [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
+
+ private:
+  /// Radius of a leaf, in voxels, up to which float offsets keep 3e-5 voxel.
+  static constexpr double kFineEnough = 256;
+
+  [[nodiscard]] std::size_t countPoints() const noexcept {
+    std::size_t points = 0;
+    for (int i = 0; i < count_; ++i) points += blocks_[i]->count;
+    return points;
+  }
+
+  /// A leaf far larger than a voxel: each point as a block of its own, about itself.
+  void readOneByOne(const ShellBlock& block, std::uint32_t leaf) noexcept {
+    ShellBlock singles[kLanes];
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Vec3& p = reading_.shell.points[block.first + i];
+      for (int k = 0; k < 3; ++k) singles[i].center[k] = p[k];
+      singles[i].first = block.first + i;
+      singles[i].count = singles[i].is_leaf = 1;
+      singles[i].weight[0] = block.weight[i];
+      blocks_[count_] = &singles[i];
+      leaves_[count_++] = leaf;
+    }
+    flush();
+  }
+
+  const Reading& reading_;
+  Consume consume_;
+  ReadBatch batch_;
+  const ShellBlock* blocks_[kBatch];
+  std::uint32_t leaves_[kBatch];
+  int count_ = 0;
+  std::size_t points_ = 0;
+};
+
+/// Walks the spheres and calls `take(leaf)` for those in which the field may come down to the cutoff
+/// [voxels]; of the others, the least bound [voxels].
+template <typename Take>
+float walkNear(const Reading& reading, float cutoff, Take take) noexcept {
+  const auto& blocks = reading.shell.blocks;
+  float least_skipped = std::numeric_limits<float>::infinity();
+  if (blocks.empty()) return least_skipped;
+  // Sixteen waiting children a level; 2^32 points are eight levels.
+  std::uint32_t waiting[8 * kLanes];
+  int count = 0;
+  waiting[count++] = static_cast<std::uint32_t>(blocks.size() - 1);
+  while (count > 0) {
+    const std::uint32_t index = waiting[--count];
+    const ShellBlock& block = blocks[index];
+    if (block.is_leaf) {
+      take(index);
+      continue;
+    }
+    SphereBounds bounds;
+    reading.kernels.bound(reading.field, reading.motion, block, cutoff, bounds);
+    // Backwards, so that the first child is on top: leaves come in ascending order.
+    for (std::uint32_t i = block.count; i-- > 0;) {
+      if (bounds.least[i] > cutoff)
+        least_skipped = std::min(least_skipped, bounds.least[i]);
+      else
+        waiting[count++] = block.first + i;
+    }
+  }
+  return least_skipped;
+}
+
+}  // namespace vps

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels as compiled for processors with AVX2 (flags: CMakeLists.txt).
+#include "read_kernel.h"
+
+namespace vps {
+namespace {
+#include "read_kernel.inc"
+}  // namespace
+
+extern const ReadKernels kAvx2Kernels;
+const ReadKernels kAvx2Kernels = {read, bound, touch, readAt};
+
+}  // namespace vps

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels as compiled for processors with AVX-512 (flags: CMakeLists.txt).
+#include "read_kernel.h"
+
+namespace vps {
+namespace {
+#include "read_kernel.inc"
+}  // namespace
+
+extern const ReadKernels kAvx512Kernels;
+const ReadKernels kAvx512Kernels = {read, bound, touch, readAt};
+
+}  // namespace vps

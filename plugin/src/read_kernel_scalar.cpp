@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels as compiled for any processor.
+#include "read_kernel.h"
+
+namespace vps {
+namespace {
+#include "read_kernel.inc"
+}  // namespace
+
+extern const ReadKernels kScalarKernels;
+const ReadKernels kScalarKernels = {read, bound, touch, readAt};
+
+}  // namespace vps
