@@ -4,31 +4,28 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace vps {
 namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
-using BrickNodes = std::array<float, kBrickNodes>;
+constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
 
-/// Gives far nodes of a brick the band's distance, with the sign of the node beside them: where one of two
-/// neighbours is far, the surface does not pass between, since the band is wider than a voxel.
-void saturate(BrickNodes& distance_m, float band_m) {
-  const auto take = [&](int far, int from) {
-    if (distance_m[far] == kFar && distance_m[from] != kFar)
-      distance_m[far] = std::copysign(band_m, distance_m[from]);
-  };
-  // Up and down along z fills each row that knows a sign; then along y each plane; then along x the brick.
-  constexpr int kStride[3] = {nodeIndex(0, 0, 1), nodeIndex(0, 1, 0), nodeIndex(1, 0, 0)};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < kNodes; ++i)
-      for (int j = 0; j < kNodes; ++j) {
-        const int stride = kStride[axis];
-        const int row = i * kStride[(axis + 1) % 3] + j * kStride[(axis + 2) % 3];
-        for (int k = 1; k < kNodes; ++k) take(row + k * stride, row + (k - 1) * stride);
-        for (int k = kNodes - 1; k > 0; --k) take(row + (k - 1) * stride, row + k * stride);
-      }
+/// Takes over the sign of `from` where a node is far and `from` is not. On the bits, since compilers do not
+/// put comparisons of floats into vectors by default.
+float signedFar(float d, float from, float band_m) {
+  const auto bits = std::bit_cast<std::uint32_t>(d), other = std::bit_cast<std::uint32_t>(from);
+  const std::uint32_t saturated = std::bit_cast<std::uint32_t>(band_m) | (other & 0x80000000U);
+  const bool takes = (bits == kFarBits) & (other != kFarBits);
+  return std::bit_cast<float>(takes ? saturated : bits);
+}
+
+/// One step of saturate(): `count` nodes from those `back` before (or, negative, behind) them.
+void takeSigns(float* __restrict nodes, int count, int back, float band_m) {
+  const float* __restrict from = nodes - back;  // as many nodes, but none of them
+  for (int i = 0; i < count; ++i) nodes[i] = signedFar(nodes[i], from[i], band_m);
 }
 
 class Assembler {
@@ -70,10 +67,37 @@ class Assembler {
     });
   }
 
+ private:
+  /// The nodes of a brick: its own, and the first ones of seven neighbours as its border.
+  void collect(std::size_t i, BrickNodes& distance_m) const {
+    const Index3 cell = layout_.cellAt(blocks_.cells[i]);
+    for (int part = 0; part < 8; ++part) {
+      const Index3 step(part >> 2, part >> 1 & 1, part & 1);
+      const Index3 neighbour = cell + step;
+      const std::int32_t block = layout_.holds(neighbour) ? block_of_[layout_.cellIndex(neighbour)] : -1;
+      for (int x = 0; x < (step.x() ? 1 : kBrick); ++x)
+        for (int y = 0; y < (step.y() ? 1 : kBrick); ++y)
+          for (int z = 0; z < (step.z() ? 1 : kBrick); ++z)
+            distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
+                block < 0 ? kFar : blocks_.nodes[block][ownIndex(x, y, z)];
+    }
+  }
+
+  VoxLayout& layout_;
+  const NodeBlocks& blocks_;
+  const float band_m_;
+  std::vector<std::int32_t> block_of_;  // by directory index; -1: none
+};
+
+/// Spreads signs over empty cells.
+class Filler {
+ public:
+  explicit Filler(VoxLayout& layout) : layout_(layout) {}
+
   /// Empty cells meet the surface nowhere, so a sign spreads from cell to cell. From the rim first, which is
   /// outside: a flaw in the mesh then cannot turn the outside in.
-  void fillEmptyCells() {
-    is_filled_.assign(layout_.bricks.size(), false);
+  void run() {
+    is_filled_.resize(layout_.bricks.size());
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);
     fill(layout_.low, kOutside);  // the rim is one connected layer of empty cells
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) {
@@ -91,50 +115,110 @@ class Assembler {
   }
 
  private:
-  /// The nodes of a brick: its own, and the first ones of seven neighbours as its border.
-  void collect(std::size_t i, BrickNodes& distance_m) const {
-    const Index3 cell = layout_.cellAt(blocks_.cells[i]);
-    for (int part = 0; part < 8; ++part) {
-      const Index3 step(part >> 2, part >> 1 & 1, part & 1);
-      const Index3 neighbour = cell + step;
-      const std::int32_t block = layout_.holds(neighbour) ? block_of_[layout_.cellIndex(neighbour)] : -1;
-      for (int x = 0; x < (step.x() ? 1 : kBrick); ++x)
-        for (int y = 0; y < (step.y() ? 1 : kBrick); ++y)
-          for (int z = 0; z < (step.z() ? 1 : kBrick); ++z)
-            distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
-                block < 0 ? kFar : blocks_.nodes[block][ownIndex(x, y, z)];
-    }
-  }
-
+  /// Gives a connected region of empty cells their sign, a run along z at a time.
   void fill(const Index3& from, std::uint32_t with) {
     waiting_.push_back(from);
     while (!waiting_.empty()) {
       const Index3 cell = waiting_.back();
       waiting_.pop_back();
       if (!layout_.holds(cell)) continue;
-      const std::size_t index = layout_.cellIndex(cell);
-      if (is_filled_[index]) continue;
-      is_filled_[index] = true;
-      layout_.bricks[index] = with;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int step : {-1, 1}) waiting_.push_back(cell + step * Index3::Unit(axis));
+      const std::size_t row = layout_.cellIndex({cell.x(), cell.y(), layout_.low.z()});
+      std::uint8_t* is_filled = &is_filled_[row];
+      const int z = cell.z() - layout_.low.z();
+      if (is_filled[z] != 0) continue;
+      int begin = z, end = z + 1;
+      while (begin > 0 && is_filled[begin - 1] == 0) --begin;
+      while (end < layout_.size.z() && is_filled[end] == 0) ++end;
+      std::fill(is_filled + begin, is_filled + end, std::uint8_t{1});
+      std::fill(&layout_.bricks[row] + begin, &layout_.bricks[row] + end, with);
+      for (const Index3& step : {Index3(1, 0, 0), Index3(-1, 0, 0), Index3(0, 1, 0), Index3(0, -1, 0)})
+        wait(cell + step, begin, end);
     }
   }
 
+  /// Remembers one cell of each empty run in part of a row along z.
+  void wait(const Index3& at, int begin, int end) {
+    if (!layout_.holds(at)) return;
+    const std::uint8_t* is_filled = &is_filled_[layout_.cellIndex({at.x(), at.y(), layout_.low.z()})];
+    for (int k = begin; k < end; ++k)
+      if (is_filled[k] == 0 && (k == begin || is_filled[k - 1] != 0))
+        waiting_.emplace_back(at.x(), at.y(), layout_.low.z() + k);
+  }
+
   VoxLayout& layout_;
-  const NodeBlocks& blocks_;
-  const float band_m_;
-  std::vector<std::int32_t> block_of_;  // by directory index; -1: none
-  std::vector<bool> is_filled_;         // has its brick or its sign
+  std::vector<std::uint8_t> is_filled_;  // has its brick or its sign
   std::vector<Index3> waiting_;
 };
 
 }  // namespace
 
+void saturate(BrickNodes& distance, float band) {
+  if (std::find(distance.begin(), distance.end(), kFar) == distance.end()) return;
+  // Plane by plane along x, then row by row along y: both many nodes at a time.
+  constexpr int kPlane = kNodes * kNodes;
+  for (int x = 1; x < kNodes; ++x) takeSigns(&distance[x * kPlane], kPlane, kPlane, band);
+  for (int x = kNodes - 2; x >= 0; --x) takeSigns(&distance[x * kPlane], kPlane, -kPlane, band);
+  for (int x = 0; x < kNodes; ++x) {
+    for (int y = 1; y < kNodes; ++y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, kNodes, band);
+    for (int y = kNodes - 2; y >= 0; --y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, -kNodes, band);
+  }
+  // Now a plane across z is known whole, or not at all.
+  for (int z = 1; z < kNodes; ++z) {
+    if (distance[z] != kFar || distance[z - 1] == kFar) continue;
+    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, 1, band);
+  }
+  for (int z = kNodes - 2; z >= 0; --z) {
+    if (distance[z] != kFar || distance[z + 1] == kFar) continue;
+    for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, -1, band);
+  }
+}
+
+BrickWriter::BrickWriter(VoxLayout& layout, double per_unit, std::size_t expected)
+    : layout_(layout), per_unit_(per_unit) {
+  layout_.pool = std::make_shared<VoxPool>(expected);
+}
+
+void BrickWriter::take(std::size_t count) {
+  first_ = layout_.pool->take(count);
+  if (first_ != 0) return;
+  // Bricks are named by their place, so that a copy keeps the names.
+  const VoxPool& old = *layout_.pool;
+  const std::size_t used = old.size() - 2;
+  auto larger = std::make_shared<VoxPool>(used + used / 2 + count);
+  const std::uint32_t begin = larger->take(used);
+  std::copy_n(old.nodes(begin), used * kBrickStride, larger->nodes(begin));
+  for (std::size_t i = 0; i < used; ++i) {
+    const std::uint32_t brick = begin + static_cast<std::uint32_t>(i) * kBrickStride;
+    larger->owner(brick) = old.owner(brick);
+    larger->mixed(brick) = old.mixed(brick);
+  }
+  layout_.pool = larger;
+  first_ = larger->take(count);
+}
+
+void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance) {
+  saturate(distance, static_cast<float>(kFullBand / per_unit_));
+  const std::uint32_t brick = first_ + static_cast<std::uint32_t>(slot) * kBrickStride;
+  NodeValue* nodes = layout_.pool->nodes(brick);
+  for (int i = 0; i < kBrickNodes; ++i) {
+    // As toNode() rounds, half away from zero, but many at a time.
+    const double quanta = distance[i] * per_unit_;
+    nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(0.5, quanta)));
+  }
+  std::fill(nodes + kBrickNodes, nodes + kBrickStride, NodeValue{0});
+  layout_.pool->owner(brick) = 0;
+  layout_.pool->mixed(brick) = nullptr;
+  layout_.bricks[cell] = brick;
+}
+
+void fillEmptyCells(VoxLayout& layout) {
+  Filler(layout).run();
+}
+
 void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m) {
   Assembler assembler(layout, blocks, band_m);
   assembler.makeBricks();
-  assembler.fillEmptyCells();
+  fillEmptyCells(layout);
 }
 
 }  // namespace vps

@@ -28,6 +28,36 @@ struct NodeBlocks {
   std::vector<OwnNodes> nodes;
 };
 
+/// All nodes of a brick, border included.
+using BrickNodes = std::array<float, kBrickNodes>;
+
+/// Gives far nodes of a brick the band's distance, with the sign of a node beside them: where one of two
+/// neighbours is far, the surface does not pass between, since the band is wider than a voxel. At least one
+/// node must be known.
+void saturate(BrickNodes& distance, float band);
+
+/// Takes bricks that are whole, a batch at a time; the order of batches is the order of the bricks. Distances
+/// may be in any unit: `per_unit` quanta.
+class BrickWriter {
+ public:
+  /// @param expected  bricks to make room for at first; more cost a copy
+  BrickWriter(VoxLayout& layout, double per_unit, std::size_t expected);
+
+  /// Makes room for a batch. Not thread-safe.
+  void take(std::size_t count);
+  /// Stores a brick in place `slot` of the last batch, saturated, and names it in the directory. Thread-safe
+  /// for different slots and cells. Known nodes must be within the band.
+  void write(std::size_t slot, std::size_t cell, BrickNodes& distance);
+
+ private:
+  VoxLayout& layout_;
+  const double per_unit_;
+  std::uint32_t first_ = 0;  // of the last batch
+};
+
+/// Empty cells, after all bricks are in: outside or inside.
+void fillEmptyCells(VoxLayout& layout);
+
 /// Gives the directory its bricks, in a pool of their own: one where a node is within the band, else outside
 /// or inside. Distances are rounded to the band's quantum (voxmap_layout.h).
 void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m);

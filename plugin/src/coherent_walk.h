@@ -13,9 +13,6 @@
 
 namespace vps {
 
-/// Leaves with one odometer: 4096 points. Fewer would be moved more exactly, and cost more each pose.
-inline constexpr std::size_t kGroupLeaves = 256;
-
 /// The walk that remembers; see QueryMemory. Lengths are in voxels.
 template <typename Consume>
 class CoherentWalk {
@@ -24,29 +21,29 @@ class CoherentWalk {
                Consume consume) noexcept
       : reading_(reading),
         memory_(memory),
-        X_MP_(X_MP),
         cutoff_(cutoff),
-        error_(0.8661 + reading.field.quantum),
-        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_ : reading.field.band + 2 * error_),
+        error_(reading.field.error),
+        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_
+                                                     : reading.field.band + reading.field.diagonal),
+        turn_(X_MP.R - memory.X_MP_.R),
+        shift_(X_MP.p - memory.X_MP_.p),
+        // The largest singular value: a difference of rotations has two equal ones and a zero.
+        turn_norm_(turn_.norm() * (0.70710678118654757 * (1 + 1e-6)) + 1e-15),
         reader_(reading, Reader{this, consume}) {}
 
-  /// Returns a bound that no point left out is below.
-  double run() noexcept {
-    if (memory_.cutoff_ != cutoff_) {
-      memory_.clear();
-      memory_.cutoff_ = cutoff_;
-      memory_.X_MP_ = X_MP_;
-    }
-    turn_ = (X_MP_.R - memory_.X_MP_.R).eval();
-    shift_ = X_MP_.p - memory_.X_MP_.p;
-    // Largest singular value: a difference of rotations has two equal ones and a zero.
-    turn_norm_ = turn_.norm() * (0.70710678118654757 * (1 + 1e-6)) + 1e-15;
-    memory_.X_MP_ = X_MP_;
-    for (std::size_t g = 0; g < memory_.groups_.size(); ++g) visitGroup(g);
-    reader_.flush();
-    return cutoff_;
+  /// Before a pose's first group: with another cutoff than before the memory starts anew.
+  static void begin(QueryMemory& memory, double cutoff, const Pose& X_MP) noexcept {
+    if (memory.cutoff_ == cutoff) return;
+    memory.clear();
+    memory.cutoff_ = cutoff;
+    memory.X_MP_ = X_MP;
   }
+  /// After its last.
+  static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
 
+  /// Threads may visit different groups at once. Every leaf taken has been read on return from flush().
+  void visit(std::size_t group) noexcept { visitGroup(group); }
+  void flush() noexcept { reader_.flush(); }
   [[nodiscard]] std::size_t pointsRead() const noexcept { return reader_.pointsRead(); }
 
  private:
@@ -132,13 +129,12 @@ class CoherentWalk {
 
   const Reading& reading_;
   QueryMemory& memory_;
-  const Pose& X_MP_;
   const double cutoff_;
   const double error_;   ///< of the field against true distances: half a cell's diagonal, and a quantum
   const double beyond_;  ///< a true distance above this gives readings above the cutoff
-  Mat3 turn_;
-  Vec3 shift_;
-  double turn_norm_ = 0;
+  const Mat3 turn_;      // since the last pose
+  const Vec3 shift_;
+  const double turn_norm_;
   std::uint32_t noted_ = UINT32_MAX;
   LeafReader<Reader> reader_;
 };
@@ -154,18 +150,51 @@ template <typename Consume>
 double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptions& options, double cutoff_m,
                       QueryMemory* memory, std::size_t& points_read, Consume consume) noexcept {
   const double cutoff = cutoff_m / reading.field.voxel_m;
+  double least = std::numeric_limits<double>::infinity();
+  if (reading.shell.leaf_blocks == 0) return least;
   if (memory != nullptr && !options.is_exhaustive) {
-    CoherentWalk<Consume> walk(reading, X_MP, cutoff, *memory, consume);
-    const double least = walk.run();
+    using Walk = CoherentWalk<Consume>;
+    Walk::begin(*memory, cutoff, X_MP);
+    Walk walk(reading, X_MP, cutoff, *memory, consume);
+    for (std::size_t g = 0; g < groupCount(reading.shell); ++g) walk.visit(g);
+    walk.flush();
+    Walk::end(*memory, X_MP);
     points_read = walk.pointsRead();
-    return least;
+    return cutoff;
   }
   LeafReader<Consume> reader(reading, consume);
-  double least = std::numeric_limits<double>::infinity();
   if (options.is_exhaustive)
     for (std::uint32_t leaf = 0; leaf < reading.shell.leaf_blocks; ++leaf) reader.add(leaf);
   else
-    least = walkNear(reading, static_cast<float>(cutoff), [&](std::uint32_t leaf) { reader.add(leaf); });
+    least = walkNear(reading, static_cast<std::uint32_t>(reading.shell.blocks.size() - 1),
+                     static_cast<float>(cutoff), [&](std::uint32_t leaf) { reader.add(leaf); });
+  reader.flush();
+  points_read = reader.pointsRead();
+  return least;
+}
+
+/// The same for one group, for threads that share a query. With a memory, begin() and end() are the caller's.
+template <typename Consume>
+double readNearLeavesOf(std::size_t group, const Reading& reading, const Pose& X_MP,
+                        const QueryOptions& options, double cutoff_m, QueryMemory* memory,
+                        std::size_t& points_read, Consume consume) noexcept {
+  const double cutoff = cutoff_m / reading.field.voxel_m;
+  if (memory != nullptr && !options.is_exhaustive) {
+    CoherentWalk<Consume> walk(reading, X_MP, cutoff, *memory, consume);
+    walk.visit(group);
+    walk.flush();
+    points_read = walk.pointsRead();
+    return cutoff;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  LeafReader<Consume> reader(reading, consume);
+  const std::size_t end = std::min(reading.shell.leaf_blocks, (group + 1) * kGroupLeaves);
+  if (options.is_exhaustive)
+    for (std::size_t leaf = group * kGroupLeaves; leaf < end; ++leaf)
+      reader.add(static_cast<std::uint32_t>(leaf));
+  else
+    least = walkNear(reading, groupRoot(reading.shell, group), static_cast<float>(cutoff),
+                     [&](std::uint32_t leaf) { reader.add(leaf); });
   reader.flush();
   points_read = reader.pointsRead();
   return least;

@@ -94,17 +94,27 @@ class LeafReader {
   std::size_t points_ = 0;
 };
 
-/// Walks the spheres and calls `take(leaf)` for those in which the field may come down to the cutoff
-/// [voxels]; of the others, the least bound [voxels].
+/// Leaves that queries treat as one: 4096 points, and all under one block of the second level.
+inline constexpr std::size_t kGroupLeaves = kLanes * kLanes;
+inline std::size_t groupCount(const PointShell& shell) noexcept {
+  return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
+}
+/// The block over a group's leaves.
+inline std::uint32_t groupRoot(const PointShell& shell, std::size_t group) noexcept {
+  if (groupCount(shell) <= 1) return static_cast<std::uint32_t>(shell.blocks.size() - 1);
+  return static_cast<std::uint32_t>(shell.leaf_blocks + (shell.leaf_blocks + kLanes - 1) / kLanes + group);
+}
+
+/// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may come down to
+/// the cutoff [voxels]; of the others, the least bound [voxels].
 template <typename Take>
-float walkNear(const Reading& reading, float cutoff, Take take) noexcept {
+float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
   const auto& blocks = reading.shell.blocks;
   float least_skipped = std::numeric_limits<float>::infinity();
-  if (blocks.empty()) return least_skipped;
   // Sixteen waiting children a level; 2^32 points are eight levels.
   std::uint32_t waiting[8 * kLanes];
   int count = 0;
-  waiting[count++] = static_cast<std::uint32_t>(blocks.size() - 1);
+  waiting[count++] = root;
   while (count > 0) {
     const std::uint32_t index = waiting[--count];
     const ShellBlock& block = blocks[index];

@@ -62,14 +62,19 @@ struct Merger {
     return static_cast<std::uint32_t>(kept.size() - 1);
   }
 
+  /// A table of indices, open addressing: half full at most, so that a search ends soon.
   void exact() {
-    std::unordered_map<CellKey, std::uint32_t, CellHash> seen(mesh.vertices.size());
+    std::size_t size = 16;
+    while (size < 2 * mesh.vertices.size()) size *= 2;
+    std::vector<std::uint32_t> table(size, UINT32_MAX);
     for (const Vec3& p : mesh.vertices) {
       const Vec3 q = p + Vec3::Zero();  // -0 becomes +0: equal numbers, equal bits
       CellKey key;
       for (int i = 0; i < 3; ++i) key[i] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(q[i]));
-      const auto [it, is_new] = seen.try_emplace(key, static_cast<std::uint32_t>(kept.size()));
-      index_of.push_back(is_new ? keep(q) : it->second);
+      std::size_t at = CellHash()(key) & (size - 1);
+      while (table[at] != UINT32_MAX && kept[table[at]] != q) at = (at + 1) & (size - 1);
+      if (table[at] == UINT32_MAX) table[at] = keep(q);
+      index_of.push_back(table[at]);
     }
   }
 

@@ -5,8 +5,10 @@
 // order within a row of sixteen leaves; rows in ascending order within a group of 256 leaves; lanes by
 // halves; groups in ascending order. A leaf that does not touch adds nothing.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "coherent_walk.h"
 #include "contact_normals.h"
@@ -22,6 +24,20 @@ double sumOfLanes(const double lanes[kLanes]) {
     for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
   return sum[0];
 }
+
+/// Sums over whole groups.
+struct Totals {
+  Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as TouchSums
+  double area_m2 = 0, area_depth = 0, count = 0;
+
+  void add(const Totals& group) noexcept {
+    f += group.f;
+    tau += group.tau;
+    area_m2 += group.area_m2;
+    area_depth += group.area_depth;
+    count += group.count;
+  }
+};
 
 /// Sums of leaves; the groups' sums, added up.
 class WrenchCollector {
@@ -54,18 +70,24 @@ class WrenchCollector {
     finishGroup();
   }
 
-  [[nodiscard]] float least() const noexcept { return least_; }
+  /// Least reading since it was last taken [quanta].
+  [[nodiscard]] float takeLeast() noexcept {
+    return std::exchange(least_, std::numeric_limits<float>::infinity());
+  }
 
-  /// What has been summed, with stiffness, about O.
-  [[nodiscard]] TouchSummary summary(double k_N_per_m3) const noexcept {
+  /// What has been summed since it was last taken.
+  [[nodiscard]] Totals takeTotals() noexcept { return std::exchange(totals_, Totals()); }
+
+  /// Sums with stiffness, about O.
+  [[nodiscard]] TouchSummary summary(const Totals& sums, float least, double k_N_per_m3) const noexcept {
     TouchSummary out;
     const double quantum_m = reading_.field.quantum_m, h = reading_.field.voxel_m;
-    out.count = count_;
-    out.area_m2 = area_m2_;
-    out.volume_m3 = area_depth_ * quantum_m;
-    out.max_depth_m = least_ < 0 ? -static_cast<double>(least_) * quantum_m : 0;
-    out.F_O_M.f = k_N_per_m3 * quantum_m * f_;
-    out.F_O_M.tau = k_N_per_m3 * quantum_m * h * (tau_ - from_reference_.cross(f_));
+    out.count = static_cast<std::size_t>(sums.count);
+    out.area_m2 = sums.area_m2;
+    out.volume_m3 = sums.area_depth * quantum_m;
+    out.max_depth_m = least < 0 ? -static_cast<double>(least) * quantum_m : 0;
+    out.F_O_M.f = k_N_per_m3 * quantum_m * sums.f;
+    out.F_O_M.tau = k_N_per_m3 * quantum_m * h * (sums.tau - from_reference_.cross(sums.f));
     return out;
   }
 
@@ -143,13 +165,15 @@ class WrenchCollector {
   void finishGroup() noexcept {
     if (!has_sums_) return;
     addForces();
+    Totals group;
     for (int k = 0; k < 3; ++k) {
-      f_[k] += sumOfLanes(sums_.f[k]);
-      tau_[k] += sumOfLanes(sums_.tau[k]);
+      group.f[k] = sumOfLanes(sums_.f[k]);
+      group.tau[k] = sumOfLanes(sums_.tau[k]);
     }
-    area_m2_ += sumOfLanes(sums_.area_m2);
-    area_depth_ += sumOfLanes(sums_.area_depth);
-    for (const std::uint32_t count : sums_.count) count_ += count;
+    group.area_m2 = sumOfLanes(sums_.area_m2);
+    group.area_depth = sumOfLanes(sums_.area_depth);
+    for (const std::uint32_t count : sums_.count) group.count += count;
+    totals_.add(group);
     sums_ = TouchSums();
     has_sums_ = false;
   }
@@ -166,10 +190,63 @@ class WrenchCollector {
   ContactNormals normals_;
   Entry waiting_[kBatchLanes];
   int waiting_count_ = 0;
-  Vec3 f_ = Vec3::Zero(), tau_ = Vec3::Zero();
-  double area_m2_ = 0, area_depth_ = 0;
-  std::size_t count_ = 0;
+  Totals totals_;
   float least_ = std::numeric_limits<float>::infinity();
+};
+
+/// Group by group on several threads; each group's sums go to a place of their own and are added in order, as
+/// one thread alone does.
+class SharedWrench {
+ public:
+  SharedWrench(const Reading& reading, const Pose& X_MP, const QueryOptions& options, const Vec3& p_MO,
+               QueryMemory* memory) noexcept
+      : reading_(reading), X_MP_(X_MP), options_(options), p_MO_(p_MO), memory_(memory) {}
+
+  void run() noexcept {
+    using Walk = CoherentWalk<int>;
+    if (memory_ != nullptr) Walk::begin(*memory_, 0, X_MP_);
+    options_.team->run([](void* self, int) { static_cast<SharedWrench*>(self)->work(); }, this);
+    if (memory_ != nullptr) Walk::end(*memory_, X_MP_);
+    for (std::size_t g = 0; g < groupCount(reading_.shell); ++g) add(options_.team->share(g));
+  }
+
+  Totals totals;
+  float least = std::numeric_limits<float>::infinity();
+  double least_skipped = std::numeric_limits<double>::infinity();
+  std::size_t points_read = 0;
+
+ private:
+  void work() noexcept {
+    WrenchCollector collector(reading_, X_MP_, options_.gradient, p_MO_);
+    const std::size_t groups = groupCount(reading_.shell);
+    for (std::size_t g = next_++; g < groups; g = next_++) {
+      std::size_t points = 0;
+      const double skipped = readNearLeavesOf(g, reading_, X_MP_, options_, 0, memory_, points,
+                                              [&](const ReadLeaf& leaf) { collector.take(leaf); });
+      collector.finish();
+      const Totals t = collector.takeTotals();
+      options_.team->share(g) = {t.f.x(),   t.f.y(),
+                                 t.f.z(),   t.tau.x(),
+                                 t.tau.y(), t.tau.z(),
+                                 t.area_m2, t.area_depth,
+                                 t.count,   static_cast<double>(collector.takeLeast()),
+                                 skipped,   static_cast<double>(points)};
+    }
+  }
+
+  void add(const QueryTeam::GroupShare& s) noexcept {
+    points_read += static_cast<std::size_t>(s[11]);
+    least_skipped = std::min(least_skipped, s[10]);
+    least = std::min(least, static_cast<float>(s[9]));
+    if (s[8] > 0) totals.add({{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, s[6], s[7], s[8]});
+  }
+
+  const Reading& reading_;
+  const Pose& X_MP_;
+  const QueryOptions& options_;
+  const Vec3& p_MO_;
+  QueryMemory* const memory_;
+  std::atomic<std::size_t> next_ = 0;
 };
 
 }  // namespace
@@ -184,13 +261,23 @@ QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& 
     return result;
   }
   const Reading reading(map, shell, X_MP, options.simd);
+  QueryMemory* const own_memory = usable(memory, map, shell);
   WrenchCollector collector(reading, X_MP, options.gradient, p_MO);
-  const double least_skipped =
-      readNearLeaves(reading, X_MP, options, 0, usable(memory, map, shell), result.points_tested,
-                     [&](const ReadLeaf& leaf) { collector.take(leaf); });
+  const std::size_t groups = groupCount(shell);
+  if (options.team != nullptr && groups > 1 && groups <= QueryTeam::kMostGroups) {
+    SharedWrench shared(reading, X_MP, options, p_MO, own_memory);
+    shared.run();
+    out = collector.summary(shared.totals, shared.least, k_N_per_m3);
+    result.points_tested = shared.points_read;
+    setDistance(map, reading, shared.least, shared.least_skipped, result);
+    return result;
+  }
+  const double least_skipped = readNearLeaves(reading, X_MP, options, 0, own_memory, result.points_tested,
+                                              [&](const ReadLeaf& leaf) { collector.take(leaf); });
   collector.finish();
-  out = collector.summary(k_N_per_m3);
-  setDistance(map, reading, collector.least(), least_skipped, result);
+  const float least = collector.takeLeast();
+  out = collector.summary(collector.takeTotals(), least, k_N_per_m3);
+  setDistance(map, reading, least, least_skipped, result);
   return result;
 }
 

@@ -1,56 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mesh to voxmap: the exact distance at every node within the band.
 //
-// 1. Gather: for each triangle, the bricks it can reach; turned round into a list of triangles for each
-// brick.
-// 2. Distances: a brick is halved into blocks of 4^3, 2^3 nodes and then one, each block keeping only the
-// triangles
-//    that can be nearest to one of its nodes.
-// 3. Bricks: distances and the neighbours' border, and a sign for the nodes beyond the band.
-// 4. Directory: a sign and a bound of the distance at every cell's centre.
+// 1. Features: faces, edges and vertices with their neighbours (surface_features.h).
+// 2. Gather: for each feature the tiles of 32^3 nodes it can reach; turned round into a list for each tile.
+// 3. Splat: tile by tile, each feature writes to the nodes that may be nearest to it (splat.h). Bricks are
+//    cut from the tile while it is in the cache.
+// 4. Bricks: the neighbours' border, a sign for the nodes beyond the band (brick_assembly.h), and a bound of
+//    the distance at every cell's centre (center_bounds.h).
 //
-// Parallel over triangles, bricks and rows; each result has one writer and a fixed order of its own, so that
+// Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
 // every number of threads gives the same bits.
 #include "voxelise.h"
 
-#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <span>
 
 #include "brick_assembly.h"
-#include "triangle_bounds.h"
-#include "triangle_distance.h"
+#include "center_bounds.h"
+#include "splat.h"
 #include "vps/load_error.h"
-#include "vps/mesh_distance.h"
 
 namespace vps {
 namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
+constexpr int kTileBricks = kTile / kBrick;
 /// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
 constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
-/// How far the bound at a cell's centre may fall short, as a share: the cell's own size costs more, and an
-/// exact search is slow amid a round part, where everything is equally far.
-constexpr double kCenterSlack = 0.1;
-
-constexpr int ownIndex(int x, int y, int z) {
-  return (x * kBrick + y) * kBrick + z;
-}
-
-/// The triangles that may reach each block of nodes, as one list.
-struct Gathered {
-  std::vector<std::size_t> first;  ///< where a block's triangles start, and one more for the end
-  std::vector<std::uint32_t> triangles;
+/// A feature that reaches a tile.
+struct Reached {
+  std::uint32_t tile, feature;
 };
+
+/// A brick in a tile: its first node there, and its cell.
+struct CutBrick {
+  Index3 node;
+  std::size_t cell;
+};
+
+/// As kFar == d, on the bits: compilers do not put comparisons of floats into vectors by default.
+bool isFar(float d) {
+  return std::bit_cast<std::uint32_t>(d) == std::bit_cast<std::uint32_t>(kFar);
+}
 
 class Voxeliser {
  public:
-  Voxeliser(const Mesh& mesh, const VoxMapSettings& settings)
-      : mesh_(mesh), distance_(mesh), h_(settings.voxel_m), band_m_(bandOf(settings)) {}
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings)
+      : mesh_(mesh),
+        box_(box),
+        h_(settings.voxel_m),
+        band_m_(bandOf(settings)),
+        // What rounds to the full band need not be computed.
+        reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_) {}
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
 
@@ -60,201 +66,209 @@ class Voxeliser {
   }
 
  private:
-  struct Nearest {
-    TrianglePoint at;
-    std::uint32_t triangle = UINT32_MAX;
-    double distance_m;
-  };
-  /// One brick being computed; a list for each level of blocks.
-  struct Work {
-    Vec3 center;
-    Index3 low;
-    TriangleBounds lists[4];
-    OwnNodes* nodes;
-  };
-
   void layOutDirectory();
-  void gather();
-  void gatherTriangle(std::uint32_t triangle, const Index3& low, const Index3& size,
-                      std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const;
-  void computeNodes(std::size_t i, Work& work);
-  void computeBlock(const Index3& low, int level, Work& work) const;
-  Nearest nearest(const Vec3& p, double limit_m, Work& work, int level) const;
+  void gather(const SurfaceFeatures& features);
+  void gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const;
+  void gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low, const Index3& size,
+                   std::vector<Reached>& out) const;
+  void splatTiles(const SurfaceFeatures& features);
+  void splatTile(Splatter& splatter, std::size_t at, Tile& tile) const;
+  [[nodiscard]] std::vector<CutBrick> bricksOf(const Tile& tile, const Index3& low) const;
+  void cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer);
   void boundCenters();
 
-  [[nodiscard]] Vec3 nodePosition(const Index3& node) const { return h_ * node.cast<double>(); }
+  [[nodiscard]] Index3 tiles() const { return (layout_->size.array() + kTileBricks - 1) / kTileBricks; }
+  [[nodiscard]] std::uint32_t tileNumber(const Index3& tile) const {
+    return static_cast<std::uint32_t>((tile.x() * tiles().y() + tile.y()) * tiles().z() + tile.z());
+  }
+
+  [[nodiscard]] Index3 tileAt(std::size_t number) const {
+    const Index3 size = tiles();
+    const int i = static_cast<int>(number);
+    return {i / (size.y() * size.z()), i / size.z() % size.y(), i % size.z()};
+  }
 
   const Mesh& mesh_;
-  const MeshDistance distance_;
+  const Box box_;
   const double h_, band_m_;
+  const double reach_;  // of the nodes that are computed [voxels]
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
-  Gathered gathered_;
-  NodeBlocks blocks_;  // of gathered bricks
-  std::vector<BoundedTriangle> bounded_;
+  std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
+  std::vector<std::uint32_t> features_;  // by tile, ascending within each
+  std::vector<std::int32_t> brick_of_;   // by cell; -1: none
+  std::vector<SurfaceBits> surface_;     // by brick
 };
 
 void Voxeliser::layOutDirectory() {
-  const Box box = bounds(mesh_);
   const double cell_m = kBrick * h_;
   // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
-  const Vec3 low = ((box.min.array() - band_m_) / cell_m).floor() - 1;
-  const Vec3 high = ((box.max.array() + band_m_) / cell_m).floor() + 2;
+  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - 1;
+  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
   layout_->resizeCells();
-  layout_->parts = {{box, layout_->low, layout_->low + layout_->size}};
+  layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
 }
 
-/// Halves the range of cells until few are left, dropping halves that the triangle cannot reach: a big
-/// oblique triangle costs what its surface costs, not its box.
-void Voxeliser::gatherTriangle(std::uint32_t triangle, const Index3& low, const Index3& size,
-                               std::vector<std::pair<std::uint32_t, std::uint32_t>>& out) const {
-  const BoundedTriangle& t = bounded_[triangle];
-  const Vec3 half = 0.5 * kBrick * h_ * size.cast<double>();
-  const Vec3 center = kBrick * h_ * low.cast<double>() + half;
-  const double reach_m = half.norm() + band_m_;
-  if (t.bound2(center) > reach_m * reach_m) return;
-  if (size.prod() == 1) {
-    out.emplace_back(static_cast<std::uint32_t>(layout_->cellIndex(low)), triangle);
+/// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
+/// triangle costs what its surface costs, not its box.
+void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low,
+                            const Index3& size, std::vector<Reached>& out) const {
+  const Vec3 half = 0.5 * kTile * size.cast<double>();
+  if (!splatter.reaches(feature, kTile * low.cast<double>() + half, half.norm())) return;
+  int axis = 0;
+  if (size.maxCoeff(&axis) == 1) {
+    out.push_back({tileNumber(low), feature});
     return;
   }
-  int axis = 0;
-  size.maxCoeff(&axis);
   Index3 near = size, far = size, middle = low;
   near[axis] = size[axis] / 2;
   far[axis] = size[axis] - near[axis];
   middle[axis] += near[axis];
-  gatherTriangle(triangle, low, near, out);
-  gatherTriangle(triangle, middle, far, out);
+  gatherRange(splatter, feature, low, near, out);
+  gatherRange(splatter, feature, middle, far, out);
 }
 
-void Voxeliser::gather() {
-  const std::size_t count = mesh_.triangles.size();
-  bounded_.reserve(count);
-  for (const auto& t : mesh_.triangles) bounded_.emplace_back(mesh_, t);
+void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const {
+  const Box box = splatter.reach(feature);
+  if (box.isEmpty()) return;
+  // A tile's last nodes are the next one's first.
+  const Index3 low = ((box.min.array() - (kTile + 1e-6)) / kTile).ceil().max(0).cast<int>();
+  const Index3 high = (box.max / kTile).cast<int>();
+  const Index3 size = high - low + Index3::Ones();
+  if (size.maxCoeff() > 2) return gatherRange(splatter, feature, low, size, out);
+  // Few: cheaper to take all of them than to look.
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z) out.push_back({tileNumber({x, y, z}), feature});
+}
 
-  constexpr std::size_t kGrain = 1024;
-  const std::size_t chunks = (count + kGrain - 1) / kGrain;
-  std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> reached(chunks);  // cell, triangle
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kGrain; i < std::min(count, (chunk + 1) * kGrain); ++i) {
-      const BoundedTriangle& t = bounded_[i];
-      const double cell_m = kBrick * h_;
-      const Vec3 min = ((t.a.cwiseMin(t.b).cwiseMin(t.c).array() - band_m_) / cell_m).floor();
-      const Vec3 max = ((t.a.cwiseMax(t.b).cwiseMax(t.c).array() + band_m_) / cell_m).floor();
-      const Index3 low = min.cast<int>(), high = max.cast<int>();
-      gatherTriangle(static_cast<std::uint32_t>(i), low, high - low + Index3::Ones(), reached[chunk]);
-    }
+void Voxeliser::gather(const SurfaceFeatures& features) {
+  constexpr std::size_t kGrain = 4096;
+  const std::size_t count = Splatter(features, reach_).count();
+  std::vector<std::vector<Reached>> reached((count + kGrain - 1) / kGrain);
+  tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t chunk) {
+    Splatter splatter(features, reach_);
+    for (std::size_t i = chunk * kGrain; i < std::min(count, (chunk + 1) * kGrain); ++i)
+      gatherFeature(splatter, static_cast<std::uint32_t>(i), reached[chunk]);
   });
 
-  // Counting sort by cell; triangles stay ascending within each.
-  std::vector<std::size_t> start(layout_->bricks.size() + 1, 0);
+  // Counting sort by tile.
+  first_.assign(static_cast<std::size_t>(tiles().prod()) + 2, 0);
   for (const auto& chunk : reached)
-    for (const auto& [cell, triangle] : chunk) ++start[cell + 1];
-  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  gathered_.triangles.resize(start.back());
-  for (std::size_t cell = 0; cell < layout_->bricks.size(); ++cell) {
-    if (start[cell] == start[cell + 1]) continue;
-    blocks_.cells.push_back(cell);
-    gathered_.first.push_back(start[cell]);
-  }
-  gathered_.first.push_back(start.back());
+    for (const Reached& r : chunk) ++first_[r.tile + 2];
+  for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  features_.resize(first_.back());
   for (const auto& chunk : reached)
-    for (const auto& [cell, triangle] : chunk) gathered_.triangles[start[cell]++] = triangle;
+    for (const Reached& r : chunk) features_[first_[r.tile + 1]++] = r.feature;
+  first_.pop_back();
 }
 
-/// Signed distance at a brick's own nodes; kFar beyond the band.
-void Voxeliser::computeNodes(std::size_t i, Work& work) {
-  work.nodes = &blocks_.nodes[i];
-  work.nodes->fill(kFar);
-  work.low = kBrick * layout_->cellAt(blocks_.cells[i]);
-  work.center = h_ * (work.low.cast<double>() + Vec3::Constant(0.5 * (kBrick - 1)));
-  const std::size_t count = gathered_.first[i + 1] - gathered_.first[i];
-  work.lists[0].reset(count, 0);
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t triangle = gathered_.triangles[gathered_.first[i] + k];
-    work.lists[0].add(triangle, bounded_[triangle], work.center, 1 / h_, kBrick);
+void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const {
+  tile.fill(kFar);
+  const Vec3 origin = kTile * tileAt(at).cast<double>();
+  for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) splatter.splat(features_[k], origin, tile.data());
+}
+
+/// The bricks of a tile that have a node within the band.
+std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
+  // Bit b of a row along z: brick b has a node there. A brick's last node is the next one's first.
+  std::array<std::uint8_t, std::size_t{kTileNodes}* kTileNodes> rows = {};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const float* d = &tile[row * kTileNodes];
+    for (int b = 0; b < kTileBricks; ++b) {
+      int known = 0;
+      for (int z = 0; z < kNodes; ++z) known |= isFar(d[kBrick * b + z]) ? 0 : 1;
+      rows[row] |= static_cast<std::uint8_t>(known << b);
+    }
   }
-  computeBlock(Index3::Zero(), 0, work);
+  std::vector<CutBrick> bricks;
+  for (int x = 0; x < kTileBricks; ++x)
+    for (int y = 0; y < kTileBricks; ++y) {
+      unsigned known = 0;
+      for (int i = 0; i < kNodes * kNodes; ++i)
+        known |=
+            rows[static_cast<std::size_t>((kBrick * x + i / kNodes) * kTileNodes + kBrick * y + i % kNodes)];
+      for (int z = 0; z < kTileBricks; ++z) {
+        const Index3 at(x, y, z);
+        if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
+        bricks.push_back({kBrick * at, layout_->cellIndex(layout_->low + low + at)});
+      }
+    }
+  return bricks;
 }
 
-/// The nearest triangle of a level's list within limit_m of p, if any.
-Voxeliser::Nearest Voxeliser::nearest(const Vec3& p, double limit_m, Work& work, int level) const {
-  TriangleBounds& list = work.lists[level];
-  const std::size_t first = list.ask(((p - work.center) / h_).cast<float>());
-  const std::span<const float> bound2 = list.bounds2();
-  Nearest best;
-  best.distance_m = limit_m;
-  double best2 = limit_m * limit_m;
-  float reach2 = 0;  // skip what is farther than the best, in the list's unit
-  const auto updateReach = [&] {
-    const float reach = static_cast<float>(best.distance_m / h_) * (1 + 1e-5f) + list.slack();
-    reach2 = reach * reach;
-  };
-  const auto attempt = [&](std::size_t i) {
-    const BoundedTriangle& t = bounded_[list.triangle(i)];
-    const TrianglePoint at = closestOnTriangleInline(p, t.a, t.b, t.c);
-    const double distance2 = (p - at.q).squaredNorm();
-    if (distance2 >= best2) return;
-    best2 = distance2;
-    best = {at, list.triangle(i), std::sqrt(distance2)};
-    updateReach();
-  };
-  updateReach();
-  // The one with the least bound first: most often it is the nearest, and the rest is skipped.
-  if (bound2.empty() || bound2[first] > reach2) return best;
-  attempt(first);
-  for (std::size_t i = 0; i < bound2.size(); ++i)
-    if (bound2[i] <= reach2 && i != first) attempt(i);
-  return best;
+/// Bit z of a brick's row: the node is so near the surface that it may be the nearest to a point of it.
+std::uint8_t nearBits(const float* row) {
+  constexpr auto kNearBits = std::bit_cast<std::uint32_t>(static_cast<float>(SurfaceBits::kNear));
+  unsigned bits = 0;
+  // Without their sign, floats sort as their bits do.
+  for (unsigned z = 0; z < kBrick; ++z)
+    bits |= (std::bit_cast<std::uint32_t>(row[z]) & 0x7FFFFFFFU) <= kNearBits ? 1U << z : 0U;
+  return static_cast<std::uint8_t>(bits);
 }
 
-/// A block of (8 >> level)^3 nodes at `low` in the brick.
-void Voxeliser::computeBlock(const Index3& low, int level, Work& work) const {
-  const int size = kBrick >> level;
-  const Vec3 middle = (work.low + low).cast<double>() + Vec3::Constant(0.5 * (size - 1));
-  const Vec3 center = h_ * middle;  // for a single node exactly its position
-  const double radius_m = 0.5 * (size - 1) * std::sqrt(3.0) * h_;
-  const Nearest best = nearest(center, (band_m_ + radius_m) * (1 + 1e-9), work, level);
-  if (best.triangle == UINT32_MAX) return;
-  if (size == 1) {
-    const auto distance_m = static_cast<float>(best.distance_m);
-    if (distance_m >= static_cast<float>(band_m_)) return;
-    const bool is_inside =
-        distance_.featureNormal(best.triangle, best.at.feature).dot(center - best.at.q) < 0;
-    (*work.nodes)[ownIndex(low.x(), low.y(), low.z())] = is_inside ? -distance_m : distance_m;
-    return;
+/// Copies a brick from its tile, and notes where the surface is.
+void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer) {
+  BrickNodes distance;
+  SurfaceBits& surface = surface_[static_cast<std::size_t>(brick_of_[brick.cell])];
+  for (int x = 0; x < kNodes; ++x)
+    for (int y = 0; y < kNodes; ++y) {
+      const float* from = &tile[tileIndex(brick.node.x() + x, brick.node.y() + y, brick.node.z())];
+      std::copy_n(from, kNodes, &distance[nodeIndex(x, y, 0)]);
+      if (x < kBrick && y < kBrick)
+        surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= nearBits(from);
+    }
+  writer.write(slot, brick.cell, distance);
+}
+
+/// A batch of tiles at a time, in the same memory: fresh pages for all of them would cost more than the work.
+void Voxeliser::splatTiles(const SurfaceFeatures& features) {
+  constexpr std::size_t kBatch = 16;
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i + 1 < first_.size(); ++i)
+    if (first_[i] < first_[i + 1]) wanted.push_back(i);
+  brick_of_.assign(layout_->bricks.size(), -1);
+  // A surface through a tile takes about a third of its bricks.
+  constexpr std::size_t kExpected = kTileBricks * kTileBricks * kTileBricks / 2;
+  BrickWriter writer(*layout_, h_ / quantumOf(band_m_),
+                     std::min(kExpected * wanted.size(), brick_of_.size()));
+  std::vector<Tile> tiles(std::min(kBatch, wanted.size()));
+  std::vector<std::vector<CutBrick>> bricks(tiles.size());
+  std::vector<std::size_t> slot(tiles.size());
+  tbb::enumerable_thread_specific<Splatter> splatters([&] { return Splatter(features, reach_); });
+  for (std::size_t begin = 0; begin < wanted.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, wanted.size() - begin);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      splatTile(splatters.local(), wanted[begin + i], tiles[i]);
+      bricks[i] = bricksOf(tiles[i], kTileBricks * tileAt(wanted[begin + i]));
+    });
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      slot[i] = taken;
+      for (const CutBrick& brick : bricks[i])
+        brick_of_[brick.cell] = static_cast<std::int32_t>(surface_.size() + taken++);
+    }
+    if (taken == 0) continue;
+    writer.take(taken);
+    surface_.resize(surface_.size() + taken);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      for (std::size_t k = 0; k < bricks[i].size(); ++k)
+        cutBrick(tiles[i], bricks[i][k], slot[i] + k, writer);
+    });
   }
-  // A triangle farther from the centre than the nearest one by the block's diameter is nearest to no node in
-  // it.
-  const TriangleBounds& list = work.lists[level];
-  TriangleBounds& kept = work.lists[level + 1];
-  const std::span<const float> bound2 = list.bounds2();
-  const auto reach =
-      static_cast<float>(std::min(best.distance_m + 2 * radius_m, band_m_ + radius_m) / h_) * (1 + 1e-5f) +
-      list.slack();
-  kept.reset(list.size(), list.slack());
-  for (std::size_t i = 0; i < list.size(); ++i)
-    if (bound2[i] <= reach * reach) kept.addFrom(list, i);
-  for (int child = 0; child < 8; ++child)
-    computeBlock(low + size / 2 * Index3(child >> 2, child >> 1 & 1, child & 1), level + 1, work);
 }
 
 void Voxeliser::boundCenters() {
-  const Index3 size = layout_->size;
-  tbb::parallel_for(0, size.x() * size.y(), [&](int row) {
-    double last_m = 1e300;
-    for (int z = 0; z < size.z(); ++z) {
-      const Index3 cell = layout_->low + Index3(row / size.y(), row % size.y(), z);
-      const std::size_t index = layout_->cellIndex(cell);
-      const Vec3 center = nodePosition(kBrick * cell + Index3::Constant(kBrick / 2));
-      // From the centre before, the surface can be farther by the way between at most: a good start for the
-      // search.
-      const double start_m = (last_m * (1 + kCenterSlack) + kBrick * h_) * (1 + 1e-9);
-      last_m = distance_.lowerBound(center, kCenterSlack, start_m);
-      const bool is_inside = layout_->nodesOf(index)[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)] < 0;
-      layout_->centers_m[index] = static_cast<float>(is_inside ? -last_m : last_m);
-    }
+  const std::vector<float> bound = boundCellCenters(layout_->size, brick_of_, surface_);
+  const double quantum_m = quantumOf(band_m_);
+  tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {
+    constexpr int kCenter = kBrick / 2;
+    const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
+    // Within the band the distance itself is known, but for rounding; beyond, it is at least nearly the band.
+    const double known_m = std::max(0.0, (std::abs(center) - 0.51) * quantum_m);
+    const double least_m = std::abs(center) < kFullBand ? known_m : std::max(known_m, bound[i] * h_);
+    layout_->centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
   });
 }
 
@@ -264,16 +278,16 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   };
   tell(0);
   layOutDirectory();
-  gather();
-  tell(0.2);
-  blocks_.nodes.resize(blocks_.cells.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks_.nodes.size()), [&](const auto& range) {
-    Work work;
-    for (std::size_t i = range.begin(); i < range.end(); ++i) computeNodes(i, work);
-  });
-  tell(0.7);
-  assembleBricks(*layout_, blocks_, band_m_);
+  {
+    const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
+    tell(0.1);
+    gather(features);
+    tell(0.3);
+    splatTiles(features);
+  }
   tell(0.8);
+  fillEmptyCells(*layout_);
+  tell(0.9);
   boundCenters();
   tell(1);
   return layout_;
@@ -285,20 +299,21 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
   const double cells = ((size_m.array() + 2 * band_voxels * h) / cell_m + 3).prod();
-  const double kWhileBuilding = sizeof(OwnNodes);  // as floats first
-  return bricks * (VoxPool::kBytes + kWhileBuilding) + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
+  return bricks * VoxPool::kBytes + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
 }
 
-void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
+void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings,
+                     const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
-  if (!(settings.band_voxels >= 3) || !(settings.band_voxels <= 64))
+  // A band read from a map is rounded, see quantumOf().
+  if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
   const double area_m2 = area(mesh);
-  const Vec3 size_m = bounds(mesh).size();
+  const Vec3 size_m = box.size();
   char text[160];
   // Indices are 32 bit; half of their range is left to the part's own size, which the memory bounds below it.
-  const double away_m = bounds(mesh).center().cwiseAbs().maxCoeff();
+  const double away_m = box.center().cwiseAbs().maxCoeff();
   if (!(away_m / settings.voxel_m < 1e9)) {
     std::snprintf(text, sizeof text,
                   "lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer", away_m,
@@ -323,14 +338,15 @@ void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                             const Progress& progress) {
   requireUsable(mesh, "", part);
-  requireSettings(mesh, settings, part);
+  const Box box = bounds(mesh);
+  requireSettings(mesh, box, settings, part);
   const Mesh shared = welded(mesh);  // signs need shared vertices
   VoxMap map;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
   map.quantum_m_ = quantumOf(map.band_m_);
-  map.bounds_ = bounds(mesh);
-  map.layout_ = Voxeliser(shared, settings).build(progress);
+  map.bounds_ = box;
+  map.layout_ = Voxeliser(shared, box, settings).build(progress);
   return map;
 }
 

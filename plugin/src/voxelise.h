@@ -6,14 +6,20 @@
 
 namespace vps {
 
+class AddedField;
+enum class Combine;
+
 /// What may look into a VoxMap while it is being made.
 class VoxMapBuilder {
  public:
   static VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                       const Progress& progress);
-  /// Union of two maps with the same voxel and band. The second's parts get the next owner numbers.
-  static VoxMap merge(const VoxMap& a, const VoxMap& b);
+  /// Two fields with the same voxel and band. The second's parts get the next owner numbers.
+  static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
+  static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
   static VoxMap packed(const VoxMap& map);
+  /// An empty map on a grid, to which fields are added.
+  static VoxMap empty(const VoxMapSettings& settings);
 };
 
 }  // namespace vps

@@ -39,6 +39,10 @@ VoxMap::VoxMap() {
   layout_ = empty;
 }
 
+double VoxMap::sampleError_m() const noexcept {
+  return (0.8661 + layout_->node_error) * voxel_m_ + 0.51 * quantum_m_;
+}
+
 std::size_t VoxMap::partCount() const noexcept {
   return layout_->parts.size();
 }

@@ -118,6 +118,9 @@ struct VoxLayout {
   /// The most by which neighbouring nodes differ, in voxels: 1 for true distances. More where signs change
   /// without a surface, or where a level set of others was none.
   float steepest = 1;
+  /// How far nodes may be from the distance they stand for, in voxels, beside rounding: 0 as voxelised, half
+  /// a cell's diagonal once resampled.
+  float node_error = 0;
 
   void resizeCells() {
     bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);

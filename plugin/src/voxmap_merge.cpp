@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several parts in one voxmap: the union, min over the parts' own distances.
+// Two fields on one grid become one: union, min over the parts' own distances, or difference.
 //
-// The result does not depend on the order, to the bit: nodes, centre distances and the box are minima over
-// the parts; a brick is stored where the merged nodes are not all one constant.
+// A union does not depend on the order, to the bit: nodes, centre distances and the box are minima over the
+// parts; a brick is stored where the merged nodes are not all one constant.
+#include "voxmap_merge.h"
+
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
-#include "voxelise.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -50,103 +53,177 @@ std::shared_ptr<VoxPool> poolWithRoom(const std::shared_ptr<VoxPool>& pool, std:
   return larger;
 }
 
-/// Two maps' cells and bricks on their way to become one.
+NodeValue flipped(NodeValue d) {
+  return static_cast<NodeValue>(-d);
+}
+
+/// A map's cells and an added field's on their way to become one.
 class Merger {
  public:
-  Merger(const VoxLayout& a, const VoxLayout& b, double voxel_m)
-      : a_(a), b_(b), voxel_m_(voxel_m), owner_offset_(static_cast<std::uint16_t>(a.parts.size())) {}
+  Merger(const VoxLayout& a, const AddedField& b, Combine combine, double voxel_m)
+      : a_(a),
+        b_(b),
+        is_union_(combine == Combine::Union),
+        voxel_m_(voxel_m),
+        owner_offset_(static_cast<std::uint16_t>(a.parts.size())) {}
 
   std::shared_ptr<VoxLayout> run() {
     layOut();
-    std::size_t new_bricks = 0, mixed_bricks = 0;
-    forEachCellOfB([&](std::uint32_t old, std::uint32_t added) {
-      if (old == kInside || isConstant(added)) return;
-      ++new_bricks;
-      mixed_bricks += old != kOutside || b_.pool->mixed(added) != nullptr;
+    findMeetings();
+    std::uint32_t first = 0;
+    out_->pool = poolWithRoom(a_.pool, meetings_.size(), first);
+    mixed_->resize(mixed_count_);
+    tbb::parallel_for(std::size_t{0}, meetings_.size(), [&](std::size_t i) {
+      fill(meetings_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
     });
-    out_->pool = poolWithRoom(a_.pool, new_bricks, next_);
-    mixed_->reserve(mixed_bricks);  // bricks point into it
-    forEachCellOfB([&](std::uint32_t& brick, std::uint32_t added) { brick = mergedBrick(brick, added); });
     if (!mixed_->empty()) out_->owners.push_back(mixed_);
     return out_;
   }
 
  private:
-  /// The directory over both, filled with a's cells and with bounds from the parts' boxes.
+  /// A cell that gets a new brick.
+  struct Meeting {
+    std::size_t cell = 0;  ///< in the result's directory
+    std::size_t cell_of_b = 0;
+    std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
+  };
+
+  /// The directory over both (a difference has a's), filled with a's cells and with bounds from the parts'
+  /// boxes.
   void layOut() {
-    const Index3 low = a_.low.cwiseMin(b_.low), high = (a_.low + a_.size).cwiseMax(b_.low + b_.size);
+    const Index3 end_of_a = a_.low + a_.size;
+    const Index3 low = is_union_ ? Index3(a_.low.cwiseMin(b_.low)) : a_.low;
+    const Index3 high = is_union_ ? Index3(end_of_a.cwiseMax(b_.low + b_.size)) : end_of_a;
     out_->low = low;
     out_->size = high - low;
     out_->owners = a_.owners;
     out_->parts = a_.parts;
     out_->parts.insert(out_->parts.end(), b_.parts.begin(), b_.parts.end());
+    out_->steepest = std::max(a_.steepest, b_.steepest);
+    out_->node_error = std::max(a_.node_error, b_.node_error);
     out_->resizeCells();
+    tbb::parallel_for(low.x(), high.x(), [&](int x) {
+      for (int y = low.y(); y < high.y(); ++y)
+        for (int z = low.z(); z < high.z(); ++z) layOutCell(Index3(x, y, z));
+    });
+  }
+
+  void layOutCell(const Index3& at) {
+    const std::size_t cell = out_->cellIndex(at);
+    const bool in_a = a_.holds(at), in_b = b_.holds(at);
+    if (in_a) out_->bricks[cell] = a_.bricks[a_.cellIndex(at)];
+    const float from_a = in_a ? a_.centers_m[a_.cellIndex(at)] : boxBound(a_.parts, at, voxel_m_);
+    const float from_b = in_b ? b_.centers_m[b_.cellIndex(at)] : boxBound(b_.parts, at, voxel_m_);
+    out_->centers_m[cell] = is_union_ ? std::min(from_a, from_b) : std::max(from_a, -from_b);
+  }
+
+  /// Settles the cells where one field is constant and wins; lists the others.
+  void findMeetings() {
+    const Index3 low = b_.low.cwiseMax(out_->low);
+    const Index3 high = (b_.low + b_.size).cwiseMin(out_->low + out_->size);
+    const std::uint32_t wins = is_union_ ? kInside : kOutside, yields = is_union_ ? kOutside : kInside;
     for (int x = low.x(); x < high.x(); ++x)
       for (int y = low.y(); y < high.y(); ++y)
         for (int z = low.z(); z < high.z(); ++z) {
           const Index3 at(x, y, z);
-          const std::size_t cell = out_->cellIndex(at);
-          const bool in_a = a_.holds(at), in_b = b_.holds(at);
-          if (in_a) out_->bricks[cell] = a_.bricks[a_.cellIndex(at)];
-          const float from_a = in_a ? a_.centers_m[a_.cellIndex(at)] : boxBound(a_.parts, at, voxel_m_);
-          const float from_b = in_b ? b_.centers_m[b_.cellIndex(at)] : boxBound(b_.parts, at, voxel_m_);
-          out_->centers_m[cell] = std::min(from_a, from_b);
+          Meeting meeting{out_->cellIndex(at), b_.cellIndex(at), SIZE_MAX};
+          std::uint32_t& brick = out_->bricks[meeting.cell];
+          const std::uint32_t kind = b_.kinds[meeting.cell_of_b];
+          if (brick == wins || kind == kOutside) continue;
+          if (kind == kInside) {
+            brick = wins;
+            continue;
+          }
+          if (brick != yields || b_.hasMixedOwners(meeting.cell_of_b)) meeting.mixed = mixed_count_++;
+          meetings_.push_back(meeting);
         }
   }
 
-  template <typename Visit>
-  void forEachCellOfB(Visit visit) {
-    for (int x = 0; x < b_.size.x(); ++x)
-      for (int y = 0; y < b_.size.y(); ++y)
-        for (int z = 0; z < b_.size.z(); ++z) {
-          const Index3 at = b_.low + Index3(x, y, z);
-          visit(out_->bricks[out_->cellIndex(at)], b_.bricks[b_.cellIndex(at)]);
-        }
-  }
-
-  std::uint32_t mergedBrick(std::uint32_t old, std::uint32_t added) {
-    if (old == kInside || added == kOutside) return old;
-    if (added == kInside) return kInside;
+  void fill(const Meeting& meeting, std::uint32_t brick) {
     VoxPool& pool = *out_->pool;
-    const std::uint32_t brick = next_;
-    const NodeValue *old_nodes = pool.nodes(old), *added_nodes = b_.pool->nodes(added);
+    const std::uint32_t old = out_->bricks[meeting.cell];
+    const NodeValue* old_nodes = pool.nodes(old);
     NodeValue* nodes = pool.nodes(brick);
-    pool.owner(brick) = static_cast<std::uint16_t>(b_.pool->owner(added) + owner_offset_);
+    b_.write(meeting.cell_of_b, nodes);
+    if (!is_union_) std::transform(nodes, nodes + kBrickStride, nodes, flipped);
+    pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, 0) + owner_offset_);
     pool.mixed(brick) = nullptr;
-    if (old == kOutside && b_.pool->mixed(added) == nullptr) {
-      std::copy_n(added_nodes, kBrickStride, nodes);
-      next_ += kBrickStride;
-      return brick;
+    out_->bricks[meeting.cell] = brick;
+    if (meeting.mixed == SIZE_MAX) return;
+
+    NodeOwners& owners = (*mixed_)[meeting.mixed];
+    bool is_won = true;
+    for (int i = 0; i < kBrickNodes; ++i) {
+      const bool takes_old = is_union_ ? old_nodes[i] <= nodes[i] : old_nodes[i] >= nodes[i];
+      owners[i] = takes_old ? pool.ownerOf(old, i)
+                            : static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, i) + owner_offset_);
+      if (takes_old) nodes[i] = old_nodes[i];
+      is_won = is_won && nodes[i] == (is_union_ ? -kFullBand : kFullBand);
     }
-    std::transform(old_nodes, old_nodes + kBrickStride, added_nodes, nodes,
-                   [](NodeValue a, NodeValue b) { return std::min(a, b); });
-    if (std::all_of(nodes, nodes + kBrickNodes, [](NodeValue d) { return d == -kFullBand; })) return kInside;
-    NodeOwners& owners = mixed_->emplace_back();
-    for (int i = 0; i < kBrickNodes; ++i)
-      owners[i] = old_nodes[i] <= added_nodes[i]
-                      ? pool.ownerOf(old, i)
-                      : static_cast<std::uint16_t>(b_.pool->ownerOf(added, i) + owner_offset_);
     pool.mixed(brick) = &owners;
-    next_ += kBrickStride;
-    return brick;
+    if (is_won) out_->bricks[meeting.cell] = is_union_ ? kInside : kOutside;
   }
 
-  const VoxLayout &a_, &b_;
+  const VoxLayout& a_;
+  const AddedField& b_;
+  const bool is_union_;
   const double voxel_m_;
   const std::uint16_t owner_offset_;
   std::shared_ptr<VoxLayout> out_ = std::make_shared<VoxLayout>();
+  std::vector<Meeting> meetings_;
+  std::size_t mixed_count_ = 0;
   std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
-  std::uint32_t next_ = 0;  ///< the brick to fill next
 };
+
+/// A field that is a map on the same grid.
+class AddedMap final : public AddedField {
+ public:
+  explicit AddedMap(const VoxLayout& layout) : layout_(layout) {
+    low = layout.low;
+    size = layout.size;
+    kinds = layout.bricks;
+    centers_m = layout.centers_m;
+    parts = layout.parts;
+    steepest = layout.steepest;
+    node_error = layout.node_error;
+  }
+  void write(std::size_t cell, NodeValue* nodes) const override {
+    std::copy_n(layout_.nodesOf(cell), kBrickStride, nodes);
+  }
+  [[nodiscard]] std::uint16_t ownerOf(std::size_t cell, int node) const override {
+    return layout_.pool->ownerOf(layout_.bricks[cell], node);
+  }
+  [[nodiscard]] bool hasMixedOwners(std::size_t cell) const override {
+    return layout_.pool->mixed(layout_.bricks[cell]) != nullptr;
+  }
+
+ private:
+  const VoxLayout& layout_;
+};
+
+void requireSameGrid(const VoxMap& a, const VoxMap& b) {
+  if (a.voxel_m() != b.voxel_m() || a.quantum_m() != b.quantum_m())
+    throw LoadError("", "",
+                    "two voxmaps of different voxel size or band cannot be combined; resample one onto the "
+                    "other's grid");
+}
 
 }  // namespace
 
-VoxMap VoxMapBuilder::merge(const VoxMap& a, const VoxMap& b) {
+VoxMap VoxMapBuilder::combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b,
+                               Combine combine) {
   VoxMap out = a;
-  out.bounds_.add(b.bounds_.min);
-  out.bounds_.add(b.bounds_.max);
-  out.layout_ = Merger(*a.layout_, *b.layout_, a.voxel_m_).run();
+  if (combine == Combine::Union) {
+    out.bounds_.add(bounds_of_b.min);
+    out.bounds_.add(bounds_of_b.max);
+  }
+  out.layout_ = Merger(*a.layout_, b, combine, a.voxel_m_).run();
   return out;
+}
+
+VoxMap VoxMapBuilder::combined(const VoxMap& a, const VoxMap& b, Combine combine) {
+  requireSameGrid(a, b);
+  return combined(a, AddedMap(*b.layout_), b.bounds_, combine);
 }
 
 /// The same map with its bricks close together: merging leaves bricks behind that nothing names any more.
@@ -175,6 +252,14 @@ VoxMap VoxMapBuilder::packed(const VoxMap& map) {
   return out;
 }
 
+VoxMap unionOf(const VoxMap& a, const VoxMap& b) {
+  return VoxMapBuilder::combined(a, b, Combine::Union);
+}
+
+VoxMap differenceOf(const VoxMap& a, const VoxMap& b) {
+  return VoxMapBuilder::combined(a, b, Combine::Difference);
+}
+
 VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
                   const Progress& progress) {
   if (parts.empty()) throw LoadError("", "", "no parts to cook into one voxmap; give at least one");
@@ -182,7 +267,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
     const VoxMap map = buildVoxMap(transformed(*parts[i].mesh, parts[i].X_MP), settings);
-    cooked = i == 0 ? map : VoxMapBuilder::merge(cooked, map);
+    cooked = i == 0 ? map : unionOf(cooked, map);
   }
   if (progress) progress("cooking", 1);
   return parts.size() > 1 ? VoxMapBuilder::packed(cooked) : cooked;
@@ -190,7 +275,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
   const VoxMapSettings settings = {cooked.voxel_m(), cooked.band_m() / cooked.voxel_m()};
-  return VoxMapBuilder::merge(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
+  return unionOf(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
 }
 
 }  // namespace vps

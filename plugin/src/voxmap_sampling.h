@@ -162,7 +162,7 @@ class VoxSampler {
   /// gone, so |sum w_i d(x_i) - d(p)| <= sum w_i |x_i - p| <= sqrt(sum w_i |x_i - p|^2) = h sqrt(sum over
   /// axes of t (1 - t)).
   [[nodiscard]] double interpolationError(const Place& at) const noexcept {
-    return voxel_m_ * std::sqrt((at.t.array() * (1 - at.t.array())).sum()) +
+    return voxel_m_ * (std::sqrt((at.t.array() * (1 - at.t.array())).sum()) + layout_.node_error) +
            0.51 * quantum_m_;  // half a quantum from storage, the rest for rounding
   }
 

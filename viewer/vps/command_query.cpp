@@ -100,13 +100,11 @@ void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
 struct Side {
   VoxMap map;
   PointShell shell;
-  ContactSet contacts;
 
   Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
        const std::string& points_name, const Progress& progress)
       : map(buildVoxMap(field, {.voxel_m = fidelity.voxel_m}, field_name, progress)),
-        shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)),
-        contacts(shell.size()) {}
+        shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)) {}
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
 };
 
@@ -116,12 +114,15 @@ struct SideAnswer {
   Wrench F_M;  ///< on the shell's part about p_MO
 };
 
-SideAnswer ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Fidelity& fidelity, double k_N_per_m3) {
+SideAnswer ask(const Side& side, const Pose& X_MP, const Vec3& p_MO, const Fidelity& fidelity,
+               double k_N_per_m3) {
   SideAnswer answer;
+  TouchSummary sum;
   answer.points_tested =
-      queryContacts(side.map, side.shell, X_MP, {.gradient = fidelity.gradient}, side.contacts).points_tested;
-  answer.contact_count = side.contacts.contacts.size();
-  answer.F_M = penaltyWrench(side.contacts.contacts, k_N_per_m3, p_MO);
+      queryWrench(side.map, side.shell, X_MP, {.gradient = fidelity.gradient}, k_N_per_m3, p_MO, sum)
+          .points_tested;
+  answer.contact_count = sum.count;
+  answer.F_M = sum.F_O_M;
   answer.distance = queryDistance(side.map, side.shell, X_MP);
   return answer;
 }
@@ -133,8 +134,8 @@ bool isSaturated(const QueryResult& found, const VoxMap& map) {
 
 /// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
 /// half.
-PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Fidelity& fidelity,
-                    double k_N_per_m3) {
+PoseAnswer answerAt(const Pose& X_AB, const Side& b_in_a, const std::optional<Side>& a_in_b,
+                    const Fidelity& fidelity, double k_N_per_m3) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
   const SideAnswer first = ask(b_in_a, X_AB, X_AB.p, fidelity, k_N_per_m3);

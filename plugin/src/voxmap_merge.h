@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What can be merged into a map: another map on the same grid, or one that is resampled on the way.
+#pragma once
+
+#include "voxelise.h"
+
+namespace vps {
+
+enum class Combine { Union, Difference };
+
+/// A field on a map's grid, brick by brick. Reading it is thread-safe.
+class AddedField {
+ public:
+  virtual ~AddedField() = default;
+  /// Writes the nodes of a cell that is not constant, all kBrickStride of them.
+  virtual void write(std::size_t cell, NodeValue* nodes) const = 0;
+  [[nodiscard]] virtual std::uint16_t ownerOf(std::size_t cell, int node) const = 0;
+  [[nodiscard]] virtual bool hasMixedOwners(std::size_t cell) const = 0;
+
+  [[nodiscard]] bool holds(const Index3& cell) const {
+    return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
+  }
+  [[nodiscard]] std::size_t cellIndex(const Index3& cell) const {
+    const Index3 i = cell - low;
+    return (static_cast<std::size_t>(i.x()) * static_cast<std::size_t>(size.y()) +
+            static_cast<std::size_t>(i.y())) *
+               static_cast<std::size_t>(size.z()) +
+           static_cast<std::size_t>(i.z());
+  }
+
+  Index3 low = Index3::Zero(), size = Index3::Zero();  ///< cells, as VoxLayout has them
+  std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or anything else for nodes
+  std::vector<float> centers_m;      ///< as VoxLayout has them
+  std::vector<VoxPartRange> parts;
+  float steepest = 1, node_error = 0;  ///< as VoxLayout has them
+};
+
+}  // namespace vps

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rigid resampling: a part's own field read at the nodes of another grid. Mounting a part does it on the way
+// into the cooked map, so that nothing is written twice.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "read_kernel.h"
+#include "voxmap_merge.h"
+#include "voxmap_sampling.h"
+#include "vps/load_error.h"
+
+namespace vps {
+namespace {
+
+constexpr int kBrick = VoxMap::kBrick;
+constexpr int kBlocksOfBrick = kBrickStride / kLanes;
+static_assert(kBrickStride % kLanes == 0);
+
+/// The nodes of a brick as blocks of points about the brick's centre.
+std::vector<ShellBlock> nodeBlocks(double voxel_m) {
+  std::vector<ShellBlock> blocks(kBlocksOfBrick);
+  for (int i = 0; i < static_cast<int>(kBrickStride); ++i) {
+    ShellBlock& block = blocks[static_cast<std::size_t>(i / kLanes)];
+    const int node = std::min(i, kBrickNodes - 1);  // the room after the last node repeats it
+    const Vec3 offset =
+        voxel_m * Vec3(node / (kNodes * kNodes) - 4, node / kNodes % kNodes - 4, node % kNodes - 4);
+    block.x[i % kLanes] = static_cast<float>(offset.x());
+    block.y[i % kLanes] = static_cast<float>(offset.y());
+    block.z[i % kLanes] = static_cast<float>(offset.z());
+    block.count = kLanes;
+    block.is_leaf = 1;
+    block.radius_m = std::max(block.radius_m, offset.norm() * (1 + 1e-6));
+  }
+  return blocks;
+}
+
+/// A map's field on another grid, at a pose.
+class ResampledField final : public AddedField {
+ public:
+  ResampledField(const PlacedMap& part, double voxel_m, double band_m, double quantum_m)
+      : map_(*part.map),
+        sampler_(map_),
+        X_PM_(part.X_MP.inverse()),
+        voxel_m_(voxel_m),
+        field_(map_),
+        kernels_(readKernels(Simd::Best)),
+        blocks_(nodeBlocks(voxel_m)),
+        quanta_(static_cast<float>(field_.quantum_m / quantum_m)) {
+    const double ratio = map_.voxel_m() / voxel_m;
+    // Nodes are off by the field's error; and two neighbours by no more than the field's slope over a voxel.
+    node_error = static_cast<float>(field_.error * ratio);
+    steepest = field_.slope;
+    for (int i = 0; i < 8; ++i) {
+      const Box& from = map_.bounds();
+      const Vec3 corner(i & 1 ? from.max.x() : from.min.x(), i & 2 ? from.max.y() : from.min.y(),
+                        i & 4 ? from.max.z() : from.min.z());
+      bounds_.add(part.X_MP * corner);
+    }
+    layOut(band_m);
+  }
+
+  [[nodiscard]] const Box& bounds() const { return bounds_; }
+
+  void write(std::size_t cell, NodeValue* nodes) const override {
+    // All bricks have the same blocks; the pose carries them to this one.
+    const Motion motion(field_, {X_PM_.R, X_PM_ * centerOf(cellAt(cell))});
+    const ShellBlock* batch[kBatch];
+    ReadBatch read;
+    for (int first = 0; first < kBlocksOfBrick; first += kBatch) {
+      const int count = std::min(kBatch, kBlocksOfBrick - first);
+      for (int i = 0; i < count; ++i) batch[i] = &blocks_[static_cast<std::size_t>(first + i)];
+      kernels_.read(field_, motion, batch, count, read);
+      toNodes(read.value, kLanes * count, nodes + kLanes * first);
+    }
+  }
+  [[nodiscard]] std::uint16_t ownerOf(std::size_t cell, int node) const override {
+    if (map_.partCount() <= 1) return 0;
+    const Index3 at(node / (kNodes * kNodes), node / kNodes % kNodes, node % kNodes);
+    return map_.owner(X_PM_ * (voxel_m_ * (kBrick * cellAt(cell) + at).cast<double>()));
+  }
+  [[nodiscard]] bool hasMixedOwners(std::size_t) const override { return map_.partCount() > 1; }
+
+ private:
+  [[nodiscard]] Index3 cellAt(std::size_t index) const {
+    const auto ny = static_cast<std::size_t>(size.y()), nz = static_cast<std::size_t>(size.z());
+    return low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
+                        static_cast<int>(index % nz));
+  }
+  [[nodiscard]] Vec3 centerOf(const Index3& cell) const {
+    return voxel_m_ * (kBrick * cell + Index3::Constant(kBrick / 2)).cast<double>();
+  }
+
+  /// From the map's quanta to the grid's, rounded to the nearest. The map's band is no narrower than the
+  /// grid's, so that what is saturated stays so.
+  void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
+    constexpr float kBand = kFullBand;
+    for (int i = 0; i < count; ++i) {
+      const float quanta = std::clamp(value[i] * quanta_, -kBand, kBand);
+      nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + 32768.5f) - 32768);
+    }
+  }
+
+  void layOut(double band_m) {
+    const double cell_m = kBrick * voxel_m_;
+    const Vec3 from = ((bounds_.min.array() - band_m) / cell_m).floor() - 1;
+    const Vec3 to = ((bounds_.max.array() + band_m) / cell_m).floor() + 2;
+    low = from.cast<int>();
+    size = (to - from).cast<int>();
+    parts = {{bounds_, low, low + size}};
+    for (std::size_t i = 1; i < map_.partCount(); ++i) parts.push_back(parts.front());
+    const auto cells = static_cast<std::size_t>(size.cast<std::int64_t>().prod());
+    kinds.assign(cells, kOutside);
+    centers_m.assign(cells, 0);
+    const double reach_m = band_m + std::sqrt(3.0) * (4 * voxel_m_ + 2 * map_.voxel_m()) +
+                           2 * map_.sampleError_m();  // a cell's own radius, and where readings saturate
+    tbb::parallel_for(0, size.x(), [&](int x) {
+      for (int y = 0; y < size.y(); ++y)
+        for (int z = 0; z < size.z(); ++z) layOutCell(low + Index3(x, y, z), reach_m);
+    });
+  }
+
+  void layOutCell(const Index3& at, double reach_m) {
+    const std::size_t cell = cellIndex(at);
+    const Vec3 p = X_PM_ * centerOf(at);
+    const VoxSampler::Place place = sampler_.place(p);
+    const double least_m = sampler_.leastDistance(p, place), most_m = sampler_.mostDistance(place);
+    const bool is_inside = sampler_.isInside(place);
+    const double bound_m = is_inside ? std::min(0.0, most_m) : std::max(0.0, least_m);
+    centers_m[cell] = static_cast<float>(bound_m * (1 - 2e-7));
+    const bool is_rim = ((at - low).array() == 0).any() || ((at - low).array() == size.array() - 1).any();
+    if (is_rim || (!is_inside && least_m > reach_m)) return;
+    kinds[cell] = is_inside && most_m < -reach_m ? kInside : kInside + kBrickStride;
+  }
+
+  const VoxMap& map_;
+  const VoxSampler sampler_;
+  const Pose X_PM_;
+  const double voxel_m_;
+  const FieldView field_;
+  const ReadKernels& kernels_;
+  const std::vector<ShellBlock> blocks_;
+  const float quanta_;  ///< the grid's quanta per quantum of the map
+  Box bounds_;
+};
+
+void requireBand(const VoxMap& map, double band_m) {
+  if (map.band_m() < band_m * (1 - 1e-6))
+    throw LoadError("", "",
+                    "the voxmap to be placed knows distances up to " + std::to_string(map.band_m() * 1e3) +
+                        " mm, and " + std::to_string(band_m * 1e3) +
+                        " mm are asked for; build it with a wider band");
+}
+
+}  // namespace
+
+VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
+  VoxMap map;
+  map.voxel_m_ = settings.voxel_m;
+  map.quantum_m_ = quantumOf(settings.band_voxels * settings.voxel_m);
+  map.band_m_ = kFullBand * map.quantum_m_;
+  return map;
+}
+
+VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
+  return mountVoxMap(VoxMapBuilder::empty(settings), part);
+}
+
+VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
+  requireBand(*part.map, cooked.band_m());
+  const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
+  return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);
+}
+
+}  // namespace vps

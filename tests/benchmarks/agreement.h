@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nothing is timed before both sides have given the same answers.
+#pragma once
+
+#include <string>
+
+#include "scene.h"
+#include "subject.h"
+
+namespace vps::bench {
+
+/// Walks `steps` steps of a motion with our engine and with OpenVDB reading the same values (the map, saved
+/// as a .vdb file). Throws std::runtime_error that names the first difference: points that touch, least
+/// distance, wrench. meshToVolume's own field is no judge: it errs by up to half a voxel near edges.
+void requireAgreement(const std::string& name, const VoxMap& map, const PointShell& shell,
+                      const SubjectOptions& options, const Motion& motion, int steps);
+
+}  // namespace vps::bench

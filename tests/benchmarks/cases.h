@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rows of the table.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "measure.h"
+
+namespace vps::bench {
+
+/// What a row is judged by.
+enum class Bar {
+  None,
+  RatioAtLeast,  ///< their time / ours
+  P99Below_us,
+  TimeBelow_us,
+  ShareAtMost,  ///< our bytes / theirs
+};
+
+struct Case {
+  std::string name;  ///< for --benchmark_filter: peg/0.1mm/185030
+  std::string row;   ///< for the table, in words
+  Bar bar = Bar::None;
+  double bar_value = 0;
+  std::function<void()> check;  ///< throws where answers differ; may be empty
+  std::function<Counters(int repetition)> measure;
+};
+
+/// All rows; nothing is built before a row is checked or measured. Rows on the same scene follow each other.
+std::vector<Case> tableCases(const SceneSize& size);
+
+}  // namespace vps::bench

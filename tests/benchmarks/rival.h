@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The libraries we are measured against, each used as a careful user of it would.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "answer.h"
+#include "vps/mesh.h"
+#include "vps/pointshell.h"
+
+namespace vps::bench {
+
+/// A field of someone else's: OpenVDB's, made by meshToVolume.
+class RivalField {
+ public:
+  virtual ~RivalField() = default;
+  [[nodiscard]] virtual std::size_t memoryBytes() const = 0;
+  /// Signed distance stored at grid node (x, y, z) times voxel_m [m].
+  [[nodiscard]] virtual double node(int x, int y, int z) const = 0;
+};
+
+/// All points of a shell against a field, one after the other: transform, trilinear distance, and for
+/// touching points its gradient, force and torque. No hierarchy, no memory of earlier poses.
+class RivalQuery {
+ public:
+  virtual ~RivalQuery() = default;
+  virtual Answer step(const Pose& X_MP) = 0;
+  /// Points whose distance is below level_m.
+  virtual std::size_t countBelow(const Pose& X_MP, double level_m) = 0;
+};
+
+struct RivalFieldSettings {
+  double voxel_m = 0;
+  double band_voxels = 4;
+  /// meshToVolume renormalises the distances by default, which makes them less exact and takes longer.
+  bool renormalize = true;
+};
+
+std::unique_ptr<RivalField> buildOpenVdb(const Mesh& mesh, const RivalFieldSettings& settings);
+/// The level set in a file, as saveVdb() writes it: the same values that a voxmap holds.
+std::unique_ptr<RivalField> readOpenVdb(const std::string& file);
+/// Ways to read it: an accessor with tools::BoxSampler for each point (`shared` reads the eight values once
+/// for distance and gradient; the other reads them again for the gradient of touching points).
+std::unique_ptr<RivalQuery> openVdbQuery(const RivalField& field, const PointShell& shell, bool shared);
+/// The same field as NanoVDB, with its cached trilinear sampler; null where NanoVDB is not installed.
+std::unique_ptr<RivalQuery> nanoVdbQuery(const RivalField& field, const PointShell& shell);
+/// Union with a second field at a pose, as OpenVDB's tools do it: resample, then csgUnion. The two stay as
+/// they were. Returns the number of active voxels, so that nothing is optimised away.
+std::size_t mergeOpenVdb(const RivalField& base, const RivalField& mounted, const Pose& X_BM);
+
+}  // namespace vps::bench

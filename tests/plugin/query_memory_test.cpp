@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Temporal coherence and shared queries give the exhaustive answer, to the bit, whatever the motion.
+#include "vps/query_memory.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/no_alloc.h"
+#include "vps/query.h"
+
+namespace vps {
+namespace {
+
+constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
+
+struct Scene {
+  const char* name;
+  VoxMap map;
+  PointShell shell;
+  Pose start;
+  double size_m;
+};
+
+const std::vector<Scene>& scenes() {
+  static const std::vector<Scene> all = [] {
+    const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
+    const Mesh box = makeBox({6 * kMm, 5 * kMm, 4 * kMm}), plate = makeBox({12 * kMm, 12 * kMm, 0.3 * kMm});
+    std::vector<Scene> s;
+    s.push_back({"peg in bore", buildVoxMap(bore, {0.25 * kMm, 4}), buildPointShell(peg, {0.15 * kMm, 0.35}),
+                 Pose(), 9 * kMm});
+    s.push_back({"box on thin plate", buildVoxMap(plate, {0.2 * kMm, 3}),
+                 buildPointShell(box, {0.25 * kMm, 0.35}), Pose::translation({0, 0, 2.2 * kMm}), 6 * kMm});
+    s.push_back({"one leaf", buildVoxMap(box, {0.5 * kMm, 3}),
+                 buildPointShell(makeBox({1 * kMm, 1 * kMm, 1 * kMm}), {1 * kMm, 0.35}),
+                 Pose::translation({0, 0, 2.4 * kMm}), 4 * kMm});
+    return s;
+  }();
+  return all;
+}
+
+/// Steps of every length from a nanometre to the part's size, drifting and jumping back, turning on the spot,
+/// and standing still.
+std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  std::vector<Pose> poses = {scene.start};
+  for (int i = 1; i < count; ++i) {
+    const double way_m = scene.size_m * std::pow(10.0, -3.5 + 3.5 * unit(random));
+    const Pose& last = poses.back();
+    const int kind = static_cast<int>(2.5 * (1 + unit(random)));
+    if (kind == 0) poses.push_back(last);
+    if (kind == 1) poses.emplace_back(last.R, last.p + way_m * vec());
+    if (kind == 2)
+      poses.emplace_back(Mat3(rotationFromVector(way_m / scene.size_m * vec()) * last.R), last.p);
+    if (kind == 3)
+      poses.emplace_back(Mat3(rotationFromVector(0.1 * way_m / scene.size_m * vec()) * last.R),
+                         last.p + 0.02 * kMm * vec());
+    if (kind >= 4) poses.emplace_back(scene.start.R, scene.start.p + 0.1 * way_m * vec());
+  }
+  return poses;
+}
+
+class QueryMemoryTest : public testing::TestWithParam<int> {
+ protected:
+  const Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
+
+TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotion) {
+  for (const double cutoff_m : {0.0, 30 * kUm, 0.9 * scene.map.band_m()}) {
+    QueryMemory memory(scene.map, scene.shell);
+    ContactSet coherent(scene.shell.size()), all(scene.shell.size());
+    QueryOptions options;
+    options.cutoff_m = cutoff_m;
+    std::size_t touching = 0, read = 0, visited = 0;
+    for (const Pose& X_MP : motion(scene, 600, 5)) {
+      options.is_exhaustive = false;
+      const QueryResult a = queryContacts(scene.map, scene.shell, X_MP, options, coherent, &memory);
+      options.is_exhaustive = true;
+      const QueryResult b = queryContacts(scene.map, scene.shell, X_MP, options, all);
+      ASSERT_EQ(coherent.contacts.size(), all.contacts.size()) << scene.name << " cutoff " << cutoff_m;
+      for (std::size_t i = 0; i < all.contacts.size(); ++i) {
+        const Contact &c = coherent.contacts[i], &e = all.contacts[i];
+        ASSERT_TRUE(c.id == e.id && c.distance_m == e.distance_m && c.n_M == e.n_M && c.p_M == e.p_M);
+      }
+      ASSERT_LE(a.min_distance_m, b.min_distance_m);
+      if (!all.contacts.empty()) {
+        ASSERT_EQ(a.min_distance_m, b.min_distance_m);
+      }
+      touching += all.contacts.size();
+      read += a.points_tested;
+      visited += b.points_tested;
+    }
+    EXPECT_GT(touching, 100u);
+    EXPECT_LT(read, visited);
+  }
+}
+
+TEST_P(QueryMemoryTest, TheWrenchHasTheSameBitsCulledCoherentAndShared) {
+  for (const Gradient gradient : {Gradient::Trilinear, Gradient::Continuous}) {
+    QueryMemory memory(scene.map, scene.shell), shared_memory(scene.map, scene.shell);
+    QueryTeam two(2), three(3);
+    const Vec3 p_MO(1 * kMm, 2 * kMm, -3 * kMm);
+    std::size_t touching = 0;
+    for (const Pose& X_MP : motion(scene, 300, 6)) {
+      TouchSummary expected, got;
+      QueryOptions options;
+      options.gradient = gradient;
+      options.is_exhaustive = true;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, expected);
+      const auto expectSame = [&](const char* how) {
+        ASSERT_EQ(got.count, expected.count) << how;
+        ASSERT_EQ(got.F_O_M.f, expected.F_O_M.f) << how;
+        ASSERT_EQ(got.F_O_M.tau, expected.F_O_M.tau) << how;
+        ASSERT_EQ(got.area_m2, expected.area_m2) << how;
+        ASSERT_EQ(got.volume_m3, expected.volume_m3) << how;
+        ASSERT_EQ(got.max_depth_m, expected.max_depth_m) << how;
+      };
+      options.team = &three;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
+      expectSame("exhaustive, three threads");
+      options.is_exhaustive = false;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
+      expectSame("culled, three threads");
+      options.team = &two;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got, &shared_memory);
+      expectSame("coherent, two threads");
+      options.team = nullptr;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
+      expectSame("culled");
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got, &memory);
+      expectSame("coherent");
+      touching += expected.count;
+    }
+    EXPECT_GT(touching, 100u);
+  }
+}
+
+TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
+  ContactSet set(scene.shell.size());
+  const Vec3 p_MO(1 * kMm, 2 * kMm, -3 * kMm);
+  for (const Gradient gradient : {Gradient::Trilinear, Gradient::Continuous})
+    for (const Pose& X_MP : motion(scene, 60, 7)) {
+      QueryOptions options;
+      options.gradient = gradient;
+      TouchSummary sum;
+      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, sum);
+      queryContacts(scene.map, scene.shell, X_MP, options, set);
+      std::size_t touching = 0;
+      double total_N = 0;
+      for (const Contact& c : set.contacts) {
+        touching += c.distance_m < 0;
+        total_N += kStiffness * c.area_m2 * std::max(0.0, -c.distance_m);
+      }
+      ASSERT_EQ(sum.count, touching);
+      const Wrench expected = penaltyWrench(set.contacts, kStiffness, p_MO);
+      // Floats in normals and arms: 1e-7 of each force, and where two normals nearly cancel a few quanta.
+      ASSERT_LE((sum.F_O_M.f - expected.f).norm(), 3e-6 * total_N);
+      ASSERT_LE((sum.F_O_M.tau - expected.tau).norm(), 3e-6 * total_N * 20 * kMm);
+    }
+}
+
+TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
+  const Scene &a = scenes()[0], &b = scenes()[1];
+  QueryMemory of_a(a.map, a.shell);
+  EXPECT_TRUE(of_a.isFor(a.map, a.shell));
+  EXPECT_FALSE(of_a.isFor(b.map, a.shell));
+  EXPECT_FALSE(of_a.isFor(a.map, b.shell));
+  TouchSummary with, without;
+  queryWrench(b.map, b.shell, b.start, {}, kStiffness, Vec3::Zero(), with, &of_a);
+  queryWrench(b.map, b.shell, b.start, {}, kStiffness, Vec3::Zero(), without);
+  EXPECT_EQ(with.count, without.count);
+}
+
+TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
+  const Scene& scene = scenes()[0];
+  QueryMemory memory(scene.map, scene.shell);
+  TouchSummary sum;
+  const Pose X_MP = Pose::translation({15 * kUm, 0, 0});  // free: 20 um of clearance
+  const QueryResult first =
+      queryWrench(scene.map, scene.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
+  QueryResult again;
+  for (int i = 0; i < 3; ++i)
+    again = queryWrench(scene.map, scene.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
+  EXPECT_GT(first.points_tested, 1000u);
+  // Facets and interpolation leave some leaves within the rounding that is allowed for.
+  EXPECT_LT(again.points_tested, first.points_tested / 4);
+}
+
+TEST(QueryMemory, NothingAllocates) {
+  const Scene& scene = scenes()[0];
+  QueryMemory memory(scene.map, scene.shell);
+  QueryTeam team(2);
+  ContactSet set(scene.shell.size());
+  TouchSummary sum;
+  const auto poses = motion(scene, 50, 8);
+  QueryOptions shared;
+  shared.team = &team;
+  vps_test::NoAllocScope guard;
+  for (const Pose& X_MP : poses) {
+    queryContacts(scene.map, scene.shell, X_MP, {}, set, &memory);
+    queryWrench(scene.map, scene.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
+    queryWrench(scene.map, scene.shell, X_MP, shared, kStiffness, Vec3::Zero(), sum, &memory);
+  }
+}
+
+}  // namespace
+}  // namespace vps

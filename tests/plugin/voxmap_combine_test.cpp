@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Union, difference and resampling against the fields they are made of.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/analytic.h"
+#include "vps/load_error.h"
+#include "vps/query.h"
+#include "vps/voxmap.h"
+
+namespace vps::test {
+namespace {
+
+constexpr double kVoxel_m = 0.25e-3;
+constexpr VoxMapSettings kSettings = {kVoxel_m, 3};
+
+/// A node's place is rounded, which moves the reading by 1e-15 of the distance between nodes.
+constexpr double kRounding_m = 1e-15;
+
+/// Grid nodes at random within a box.
+template <typename Visit>
+void forRandomNodes(int count, double reach_m, Visit visit) {
+  RandomPoints random(31);
+  for (int n = 0; n < count; ++n) {
+    const Vec3 p = random.inBox(Vec3::Constant(reach_m));
+    visit(Vec3(kVoxel_m * (p / kVoxel_m).array().round().matrix()));
+  }
+}
+
+TEST(CombinedVoxMap, UnionAndDifferenceAreMinAndMaxAtEveryNode) {
+  const VoxMap block = buildVoxMap(makeBox({0.012, 0.01, 0.008}), kSettings);
+  const VoxMap ball =
+      buildVoxMap(transformed(makeSphere(0.004, 4), Pose::translation({0.005, 0, 0.002})), kSettings);
+  const VoxMap both = unionOf(block, ball), cut = differenceOf(block, ball);
+  forRandomNodes(40000, 0.011, [&](const Vec3& p) {
+    ASSERT_NEAR(both.distance(p), std::min(block.distance(p), ball.distance(p)), kRounding_m);
+    ASSERT_NEAR(cut.distance(p), std::max(block.distance(p), -ball.distance(p)), kRounding_m);
+    if (std::abs(both.distance(p)) < both.band_m() - kRounding_m &&
+        std::abs(block.distance(p) - ball.distance(p)) > kRounding_m) {
+      ASSERT_EQ(both.owner(p), block.distance(p) <= ball.distance(p) ? 0 : 1);
+    }
+    ASSERT_LE(both.lowerBound(p), std::abs(std::min(block.distance(p), ball.distance(p))) + 1);
+    // Bounds tell far from near for the field that stands there.
+    const double true_m =
+        std::max(boxDistance(p, {0.006, 0.005, 0.004}), 0.004 - (p - Vec3(0.005, 0, 0.002)).norm());
+    const double sagitta_m = 2e-5;  // of a ball of 5120 triangles
+    ASSERT_LE(cut.lowerBound(p), std::abs(true_m) + sagitta_m);
+  });
+}
+
+TEST(CombinedVoxMap, MapsOnDifferentGridsAreRefused) {
+  const VoxMap a = buildVoxMap(makeBox({0.004, 0.004, 0.004}), kSettings);
+  const VoxMap b = buildVoxMap(makeBox({0.004, 0.004, 0.004}), {kVoxel_m, 4});
+  EXPECT_THROW(unionOf(a, b), LoadError);
+  EXPECT_THROW(resampledVoxMap({&a, Pose()}, {kVoxel_m, 4}), LoadError);
+}
+
+TEST(ResampledVoxMap, EveryNodeIsTheSourceReadThere) {
+  const VoxMap source = buildVoxMap(makeTube(0.006, 0.004, 0.005, 96), {kVoxel_m, 4});
+  for (const Pose& X_MP :
+       {Pose(), Pose::translation({0.1e-3, 0.2e-3, 0.05e-3}), RandomPoints(4).pose(0.003)}) {
+    const VoxMap moved = resampledVoxMap({&source, X_MP}, kSettings);
+    const Pose X_PM = X_MP.inverse();
+    forRandomNodes(40000, 0.012, [&](const Vec3& p) {
+      const double expected_m = std::clamp(source.distance(X_PM * p), -moved.band_m(), moved.band_m());
+      // Half a quantum of its own, and the rounding of positions in the fast reading: 1e-4 voxel.
+      ASSERT_NEAR(moved.distance(p), expected_m, 0.51 * moved.quantum_m() + 1e-4 * kVoxel_m);
+      ASSERT_LE(moved.lowerBound(p), std::abs(source.distance(X_PM * p)) < source.band_m()
+                                         ? std::abs(source.distance(X_PM * p)) + source.sampleError_m()
+                                         : 1.0);
+    });
+  }
+}
+
+TEST(ResampledVoxMap, SphereStaysWithinTwiceTheSmoothError) {
+  // Trilinear on a sphere: h^2/8 times 2/r, once in the source and once here.
+  constexpr double kRadius_m = 0.008;
+  const VoxMap source = buildVoxMap(makeSphere(kRadius_m, 6), {kVoxel_m, 4});
+  const Pose X_MP = RandomPoints(5).pose(0.002);
+  const VoxMap moved = resampledVoxMap({&source, X_MP}, kSettings);
+  const double sagitta_m = 2e-6;  // 81,920 triangles: r (1 - cos(edge / 2r)), edge 0.14 mm
+  const double tolerance_m =
+      2 * kVoxel_m * kVoxel_m / (4 * (kRadius_m - 3 * kVoxel_m)) + sagitta_m + 2 * moved.quantum_m();
+  RandomPoints random(6);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 direction = Vec3(random.unit(), random.unit(), random.unit()).normalized();
+    const double d = 2 * kVoxel_m * random.unit();
+    ASSERT_NEAR(moved.distance(X_MP * ((kRadius_m + d) * direction)), d, tolerance_m);
+  }
+}
+
+TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
+  const VoxMap plate = buildVoxMap(makeBox({0.02, 0.02, 0.004}), kSettings);
+  const VoxMap pin = buildVoxMap(makeCylinder(0.003, 0.01, 48), kSettings);
+  const Pose X_MP = RandomPoints(7).pose(0.003);
+  const VoxMap mounted = mountVoxMap(plate, PlacedMap{&pin, X_MP});
+  const VoxMap expected = unionOf(plate, resampledVoxMap({&pin, X_MP}, kSettings));
+  forRandomNodes(40000, 0.013, [&](const Vec3& p) {
+    ASSERT_EQ(mounted.distance(p), expected.distance(p));
+    ASSERT_EQ(mounted.owner(p), expected.owner(p));
+  });
+  EXPECT_EQ(mounted.partCount(), 2u);
+  // The map it was mounted on is as before.
+  const VoxMap again = buildVoxMap(makeBox({0.02, 0.02, 0.004}), kSettings);
+  forRandomNodes(5000, 0.013, [&](const Vec3& p) { ASSERT_EQ(plate.distance(p), again.distance(p)); });
+}
+
+TEST(ResampledVoxMap, CullingIsExactOnItToo) {
+  const VoxMap source = buildVoxMap(makeBox({0.01, 0.008, 0.006}), kSettings);
+  const VoxMap moved = resampledVoxMap({&source, RandomPoints(8).pose(0.003)}, kSettings);
+  const PointShell shell = buildPointShell(makeSphere(0.003, 3), {0.3e-3, 0.35});
+  ContactSet culled(shell.size()), all(shell.size());
+  RandomPoints random(9);
+  std::size_t touching = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Pose X_MP = random.pose(0.009);
+    QueryOptions options;
+    options.cutoff_m = n % 2 != 0 ? 0.1e-3 : 0;
+    queryContacts(moved, shell, X_MP, options, culled);
+    options.is_exhaustive = true;
+    queryContacts(moved, shell, X_MP, options, all);
+    ASSERT_EQ(culled.contacts.size(), all.contacts.size());
+    for (std::size_t i = 0; i < all.contacts.size(); ++i)
+      ASSERT_EQ(culled.contacts[i].id, all.contacts[i].id);
+    touching += all.contacts.size();
+  }
+  EXPECT_GT(touching, 1000u);
+}
+
+}  // namespace
+}  // namespace vps::test
