@@ -12,15 +12,13 @@ namespace {
 constexpr std::uint32_t kNoBricks[1] = {kOutside};
 constexpr float kNoCenters[1] = {0};
 
-/// Bytes of nodes that the second cache keeps near. Assumed: 1 MB on the machine that timings are from.
-constexpr std::size_t kSecondCache = 1 << 20;
-
 }  // namespace
 
 FieldView::FieldView(const VoxMap& map) noexcept
     : nodes(map.layout_->pool->nodes(0)),
       bricks(map.layout_->bricks.data()),
       centers_m(map.layout_->centers_m.data()),
+      is_far(map.layout_->is_far.empty() ? nullptr : map.layout_->is_far.data()),
       voxel_m(map.voxel_m_),
       quantum_m(map.quantum_m_) {
   const VoxLayout& layout = *map.layout_;
@@ -28,14 +26,13 @@ FieldView::FieldView(const VoxMap& map) noexcept
     size[k] = layout.size[k];
     low[k] = static_cast<double>(VoxMap::kBrick) * layout.low[k];
   }
-  is_large = layout.pool->size() * VoxPool::kBytes > kSecondCache;
   if (layout.bricks.empty()) {
     bricks = kNoBricks;
     centers_m = kNoCenters;
     size[0] = size[1] = size[2] = 1;
     voxel_m = voxel_m > 0 ? voxel_m : 1;
   }
-  for (int k = 0; k < 3; ++k) extent[k] = VoxMap::kBrick * size[k];
+  for (int k = 0; k < 3; ++k) half[k] = 0.5 * VoxMap::kBrick * size[k];
   for (int k = 0; k < 3; ++k) {
     box[0][k] = static_cast<float>(map.bounds_.min[k] / voxel_m - low[k]);
     box[1][k] = static_cast<float>(map.bounds_.max[k] / voxel_m - low[k]);

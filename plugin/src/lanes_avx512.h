@@ -12,6 +12,7 @@ namespace {
 constexpr int kWide = 16;
 using Ints [[gnu::vector_size(64), gnu::may_alias]] = std::int32_t;
 using Floats [[gnu::vector_size(64), gnu::may_alias]] = float;
+using Axes [[gnu::vector_size(32)]] = double;  // x, y, z, and one that stays 0
 
 /// low * low + high * high of the two halves of each lane.
 inline Ints sumOfProducts(Ints pairs, Ints weights) {
@@ -37,48 +38,52 @@ inline std::uint32_t bitsOf(Ints mask) {
   return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask);
 }
 
-/// Eight lanes of table[index + kOffsets], and the next 16 bits where T has so few. Loads that broadcast into
-/// one lane each take no shuffle, and no store as gathering by hand does.
-template <int... kOffsets, typename T>
-inline void eightAt(const T* table, const std::uint32_t* index, __m256i* out) {
-  const auto load = [](const T* p) { return _mm_loadu_si32(p); };
-  const T* at[8];
-  for (int i = 0; i < 8; ++i) at[i] = table + index[i];
-  const auto gather = [&](int offset) {
-    __m256i v = _mm256_castsi128_si256(load(at[0] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x02, load(at[1] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x04, load(at[2] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x08, load(at[3] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x10, load(at[4] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x20, load(at[5] + offset));
-    v = _mm256_mask_broadcastd_epi32(v, 0x40, load(at[6] + offset));
-    return _mm256_mask_broadcastd_epi32(v, 0x80, load(at[7] + offset));
+/// Whether x, y and z of four numbers are at least `least`.
+inline bool areAtLeast(Axes v, double least) {
+  return (_mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, _mm256_set1_pd(least), _CMP_GE_OQ)) & 7) == 7;
+}
+
+/// Nearest whole numbers, ties to even.
+inline Ints toNearest(Floats v) {
+  return (Ints)_mm512_maskz_cvtps_epi32(0xffff, (__m512)v);
+}
+
+/// Pairs of nodes at p and p + kY, of two lanes: four words of each 32 bytes. One load brings both pairs.
+template <int kY>
+inline __m128i twoLanes(const std::int16_t* p, const std::int16_t* q) {
+  const __m256i words = _mm256_setr_epi16(0, 1, 16, 17, kY, kY + 1, kY + 16, kY + 17, 0, 0, 0, 0, 0, 0, 0, 0);
+  const auto load = [](const std::int16_t* from) {
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i_u*>(from));
   };
-  ((*out++ = gather(kOffsets)), ...);
+  return _mm256_castsi256_si128(_mm256_permutex2var_epi16(load(p), words, load(q)));
 }
 
-inline Ints joined(__m256i low, __m256i high) {
+inline __m512i joined(__m128i a, __m128i b, __m128i c, __m128i d) {
+  using Four [[gnu::vector_size(16)]] = std::int32_t;
   using Eight [[gnu::vector_size(32)]] = std::int32_t;
-  return __builtin_shufflevector((Eight)low, (Eight)high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
-                                 15);
+  const auto two = [](__m128i low, __m128i high) -> Eight {
+    return __builtin_shufflevector((Four)low, (Four)high, 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  return (__m512i)__builtin_shufflevector(two(a, b), two(c, d), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+                                          14, 15);
 }
 
-/// table[index] of each lane.
-inline Ints lookedUp(const std::uint32_t* table, const std::uint32_t* index) {
-  __m256i low, high;
-  eightAt<0>(table, index, &low);
-  eightAt<0>(table, index + 8, &high);
-  return joined(low, high);
-}
-
-/// The nodes at kOffsets from each lane's element, and the next: low and high half.
-template <int... kOffsets>
-inline void fetchPairs(const std::int16_t* nodes, const std::uint32_t* element, Ints* pairs) {
-  __m256i low[sizeof...(kOffsets)], high[sizeof...(kOffsets)];
-  eightAt<kOffsets...>(nodes, element, low);
-  asm volatile("" ::: "memory");  // eight addresses are all that registers hold
-  eightAt<kOffsets...>(nodes, element + 8, high);
-  for (unsigned k = 0; k < sizeof...(kOffsets); ++k) pairs[k] = joined(low[k], high[k]);
+/// The node at(i) of each lane i and the next; the same kY further, kX further, and both.
+template <int kY, int kX, typename At>
+inline void fetchPairs(At at, Ints* pairs) {
+  __m128i low[8], high[8];
+  for (int i = 0; i < 8; ++i) {
+    const std::int16_t *p = at(2 * i), *q = at(2 * i + 1);
+    low[i] = twoLanes<kY>(p, q);
+    high[i] = twoLanes<kY>(p + kX, q + kX);
+  }
+  const auto split = [](const __m128i* two, Ints* out) {
+    const __m512i even = joined(two[0], two[2], two[4], two[6]), odd = joined(two[1], two[3], two[5], two[7]);
+    out[0] = (Ints)_mm512_maskz_unpacklo_epi64(0xff, even, odd);
+    out[1] = (Ints)_mm512_maskz_unpackhi_epi64(0xff, even, odd);
+  };
+  split(low, pairs);
+  split(high, pairs + 2);
 }
 
 }  // namespace

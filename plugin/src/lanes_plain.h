@@ -15,6 +15,7 @@ namespace {
 constexpr int kWide = 4;
 using Ints [[gnu::vector_size(16), gnu::may_alias]] = std::int32_t;
 using Floats [[gnu::vector_size(16), gnu::may_alias]] = float;
+using Axes [[gnu::vector_size(32)]] = double;
 
 inline Ints sumOfProducts(Ints pairs, Ints weights) {
 #ifdef __SSE2__
@@ -50,9 +51,18 @@ inline std::uint32_t bitsOf(Ints mask) {
 #endif
 }
 
-inline Ints lookedUp(const std::uint32_t* table, const std::uint32_t* index) {
-  const auto at = [&](int i) { return static_cast<std::int32_t>(table[index[i]]); };
-  return Ints{at(0), at(1), at(2), at(3)};
+inline bool areAtLeast(const Axes& v, double least) {
+  return v[0] >= least && v[1] >= least && v[2] >= least;
+}
+
+inline Ints toNearest(Floats v) {
+#ifdef __SSE2__
+  return (Ints)_mm_cvtps_epi32((__m128)v);
+#else
+  Ints n;
+  for (int i = 0; i < kWide; ++i) n[i] = static_cast<std::int32_t>(__builtin_rintf(v[i]));
+  return n;
+#endif
 }
 
 inline std::int32_t pairAt(const std::int16_t* node) {
@@ -61,13 +71,17 @@ inline std::int32_t pairAt(const std::int16_t* node) {
   return both;
 }
 
-template <int... kOffsets>
-inline void fetchPairs(const std::int16_t* nodes, const std::uint32_t* element, Ints* pairs) {
-  const std::int16_t* at[kWide];
-  for (int i = 0; i < kWide; ++i) at[i] = nodes + element[i];
-  ((*pairs++ = Ints{pairAt(at[0] + kOffsets), pairAt(at[1] + kOffsets), pairAt(at[2] + kOffsets),
-                    pairAt(at[3] + kOffsets)}),
-   ...);
+template <int kY, int kX, typename At>
+inline void fetchPairs(At at, Ints* pairs) {
+  const std::int16_t* p[kWide];
+  for (int i = 0; i < kWide; ++i) p[i] = at(i);
+  const auto gather = [&](int offset) {
+    return Ints{pairAt(p[0] + offset), pairAt(p[1] + offset), pairAt(p[2] + offset), pairAt(p[3] + offset)};
+  };
+  pairs[0] = gather(0);
+  pairs[1] = gather(kY);
+  pairs[2] = gather(kX);
+  pairs[3] = gather(kX + kY);
 }
 
 }  // namespace

@@ -19,13 +19,13 @@ namespace vps {
 /// What the kernels need of a map. It must outlive the view.
 struct FieldView {
   const std::int16_t* nodes = nullptr;
-  const std::uint32_t* bricks = nullptr;    ///< of each directory cell
-  const float* centers_m = nullptr;         ///< of each directory cell, see VoxLayout
-  std::int32_t size[3] = {0, 0, 0};         ///< of the directory, in cells
-  alignas(16) std::int32_t extent[4] = {};  ///< of the directory, in voxels
-  bool is_large = false;                    ///< nodes come from afar: ask for them ahead
-  double low[3] = {0, 0, 0};                ///< the directory's corner from the map's origin, in voxels
-  float box[2][3] = {};                     ///< of the surface, lowest and highest corner [voxels]
+  const std::uint32_t* bricks = nullptr;  ///< of each directory cell
+  const float* centers_m = nullptr;       ///< of each directory cell, see VoxLayout
+  const std::uint8_t* is_far = nullptr;   ///< of each directory cell, see VoxLayout; null: not known
+  std::int32_t size[3] = {0, 0, 0};       ///< of the directory, in cells
+  alignas(32) double half[4] = {};        ///< the directory's middle, in voxels; and 0
+  double low[3] = {0, 0, 0};              ///< the directory's corner from the map's origin, in voxels
+  float box[2][3] = {};                   ///< of the surface, lowest and highest corner [voxels]
   double voxel_m = 0, quantum_m = 0;
   float voxels_per_m = 0, quantum = 0;  ///< quantum in voxels
   float band = 0;                       ///< in voxels
@@ -65,8 +65,8 @@ struct alignas(64) ReadBatch {
                    [kBatchLanes];  ///< two neighbours along z each: of (x, y), (x, y+1), (x+1, y), (x+1, y+1)
   float value[kBatchLanes];        ///< trilinear distance [quanta]
   float least[kBatch];             ///< over a block's lanes
-  std::int32_t base[kBatch][3];    ///< whole cells from the directory's corner [voxels]
-  bool is_read[kBatch];            ///< false: all lanes lie outside, and x, pair and such hold nothing
+  alignas(16) std::int32_t base[kBatch][4];  ///< whole cells from the directory's corner [voxels]
+  bool is_read[kBatch];  ///< false: all lanes lie outside, and x, pair and such hold nothing
 };
 
 /// Bounds for sixteen spheres [voxels].

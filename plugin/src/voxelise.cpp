@@ -287,6 +287,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   }
   tell(0.8);
   fillEmptyCells(*layout_);
+  markFarCells(*layout_);
   tell(0.9);
   boundCenters();
   tell(1);
