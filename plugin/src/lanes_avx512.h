@@ -48,42 +48,46 @@ inline Ints toNearest(Floats v) {
   return (Ints)_mm512_maskz_cvtps_epi32(0xffff, (__m512)v);
 }
 
-/// Pairs of nodes at p and p + kY, of two lanes: four words of each 32 bytes. One load brings both pairs.
-template <int kY>
-inline __m128i twoLanes(const std::int16_t* p, const std::int16_t* q) {
-  const __m256i words = _mm256_setr_epi16(0, 1, 16, 17, kY, kY + 1, kY + 16, kY + 17, 0, 0, 0, 0, 0, 0, 0, 0);
+/// Pairs of nodes at p and p + kY, of two lanes: four words of each 32 bytes, so that one load brings both
+/// pairs. They go to the low or the high half.
+template <int kY, bool kIsHigh>
+inline __m256i twoLanes(const std::int16_t* p, const std::int16_t* q) {
+  constexpr int a = kY, b = kY + 1, c = kY + 16, d = kY + 17;
+  const __m256i words = kIsHigh ? _mm256_setr_epi16(0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 16, 17, a, b, c, d)
+                                : _mm256_setr_epi16(0, 1, 16, 17, a, b, c, d, 0, 0, 0, 0, 0, 0, 0, 0);
   const auto load = [](const std::int16_t* from) {
     return _mm256_loadu_si256(reinterpret_cast<const __m256i_u*>(from));
   };
-  return _mm256_castsi256_si128(_mm256_permutex2var_epi16(load(p), words, load(q)));
+  return _mm256_permutex2var_epi16(load(p), words, load(q));
 }
 
-inline __m512i joined(__m128i a, __m128i b, __m128i c, __m128i d) {
-  using Four [[gnu::vector_size(16)]] = std::int32_t;
-  using Eight [[gnu::vector_size(32)]] = std::int32_t;
-  const auto two = [](__m128i low, __m128i high) -> Eight {
-    return __builtin_shufflevector((Four)low, (Four)high, 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  return (__m512i)__builtin_shufflevector(two(a, b), two(c, d), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-                                          14, 15);
+/// The same of four lanes.
+template <int kY>
+inline __m256i fourLanes(const std::int16_t* a, const std::int16_t* b, const std::int16_t* c,
+                         const std::int16_t* d) {
+  return _mm256_blend_epi32(twoLanes<kY, false>(a, b), twoLanes<kY, true>(c, d), 0xf0);
 }
 
 /// The node at(i) of each lane i and the next; the same kY further, kX further, and both.
 template <int kY, int kX, typename At>
 inline void fetchPairs(At at, Ints* pairs) {
-  __m128i low[8], high[8];
-  for (int i = 0; i < 8; ++i) {
-    const std::int16_t *p = at(2 * i), *q = at(2 * i + 1);
-    low[i] = twoLanes<kY>(p, q);
-    high[i] = twoLanes<kY>(p + kX, q + kX);
+  __m256i even[2][2], odd[2][2];          // twos of lanes
+  for (int half = 0; half < 2; ++half) {  // all lanes' addresses would not fit the registers
+    const std::int16_t* p[8];
+    for (int i = 0; i < 8; ++i) p[i] = at(8 * half + i);
+    for (int x = 0; x < 2; ++x) {
+      const int k = kX * x;
+      even[x][half] = fourLanes<kY>(p[0] + k, p[1] + k, p[4] + k, p[5] + k);
+      odd[x][half] = fourLanes<kY>(p[2] + k, p[3] + k, p[6] + k, p[7] + k);
+    }
   }
-  const auto split = [](const __m128i* two, Ints* out) {
-    const __m512i even = joined(two[0], two[2], two[4], two[6]), odd = joined(two[1], two[3], two[5], two[7]);
-    out[0] = (Ints)_mm512_maskz_unpacklo_epi64(0xff, even, odd);
-    out[1] = (Ints)_mm512_maskz_unpackhi_epi64(0xff, even, odd);
+  const auto joined = [](const __m256i* half) {
+    return _mm512_maskz_inserti64x4(0xff, _mm512_castsi256_si512(half[0]), half[1], 1);
   };
-  split(low, pairs);
-  split(high, pairs + 2);
+  for (int x = 0; x < 2; ++x) {
+    pairs[2 * x] = (Ints)_mm512_maskz_unpacklo_epi64(0xff, joined(even[x]), joined(odd[x]));
+    pairs[2 * x + 1] = (Ints)_mm512_maskz_unpackhi_epi64(0xff, joined(even[x]), joined(odd[x]));
+  }
 }
 
 }  // namespace

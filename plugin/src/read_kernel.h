@@ -29,6 +29,7 @@ struct FieldView {
   double voxel_m = 0, quantum_m = 0;
   float voxels_per_m = 0, quantum = 0;  ///< quantum in voxels
   float band = 0;                       ///< in voxels
+  bool asks_ahead = false;              ///< nodes may come from beyond the second cache: ask for them early
   float slope = 0;        ///< the field changes by no more than this, in voxels per voxel of way
   float error = 0;        ///< the field differs from the distance it stands for by no more, in voxels
   float diagonal = 0;     ///< a distance of the band and this more reads as the band
@@ -55,17 +56,22 @@ inline constexpr int kBatchLanes = kBatch * kLanes;
 /// of a 32-bit product, and interpolation between nodes that are the same gives just that.
 inline constexpr int kStepBits = 14, kSteps = 1 << kStepBits;
 
+/// Of a batch's lanes. A cache line more keeps arrays side by side from agreeing in the low 12 bits of their
+/// addresses: processors that go by those take a store to one for a store to another (a third of a read's
+/// time, in some runs and not in others).
+template <typename T>
+using OfLanes = T[kBatchLanes + 64 / sizeof(T)];
+
 /// Scratch and result of a read; on the caller's stack.
 struct alignas(64) ReadBatch {
-  alignas(64) std::int32_t x[kBatchLanes];  ///< of each lane's point, from its block's base [steps], >= 0
-  std::int32_t y[kBatchLanes], z[kBatchLanes];
-  std::uint32_t cell[kBatchLanes];     ///< directory cell (clamped to the directory)
-  std::uint32_t element[kBatchLanes];  ///< the low node of the grid cell, in FieldView::nodes
-  std::int32_t pair[4]
-                   [kBatchLanes];  ///< two neighbours along z each: of (x, y), (x, y+1), (x+1, y), (x+1, y+1)
-  float value[kBatchLanes];        ///< trilinear distance [quanta]
-  float least[kBatch];             ///< over a block's lanes
-  alignas(16) std::int32_t base[kBatch][4];  ///< whole cells from the directory's corner [voxels]
+  alignas(64) OfLanes<std::int32_t> x, y, z;  ///< of each lane's point, from its block's base [steps]
+  OfLanes<std::uint32_t> cell;                ///< directory cell (clamped to the directory)
+  OfLanes<std::uint32_t> element;             ///< the low node of the grid cell, in its brick
+  /// Two neighbours along z each: of (x, y), (x, y + 1), (x + 1, y), (x + 1, y + 1).
+  OfLanes<std::int32_t> pair[4];
+  OfLanes<float> value;                      ///< trilinear distance [quanta]
+  float least[kBatch];                       ///< over a block's lanes
+  alignas(16) std::int32_t base[kBatch][4];  ///< a directory cell's corner, in voxels from the directory's
   bool is_read[kBatch];  ///< false: all lanes lie outside, and x, pair and such hold nothing
 };
 
@@ -80,10 +86,10 @@ struct SphereBounds {
 /// Sums over the touching points of the up to sixteen leaves of a row, lane by lane: floats do for so few.
 struct alignas(64) RowSums {
   float f[3][kLanes] = {};    ///< area times depth times normal [m^2 quanta]
-  float tau[3][kLanes] = {};  ///< the same, crossed with the arm from the reference [m^2 quanta voxels]
+  float tau[3][kLanes] = {};  ///< the same, crossed with the arm from the reference [m^2 quanta steps]
   float area_m2[kLanes] = {};
   float area_depth[kLanes] = {};  ///< [m^2 quanta]
-  std::uint32_t count[kLanes] = {};
+  std::uint32_t count = 0;        ///< over all lanes
 };
 
 /// Sums over rows, lane by lane: the order is the same for every processor.

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/voxmap.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 #include <new>
 
 #include "voxmap_layout.h"
@@ -11,9 +15,15 @@ namespace vps {
 VoxPool::VoxPool(std::size_t capacity)
     : capacity_(capacity + 2),
       nodes_(static_cast<NodeValue*>(
-          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{64}))),
+          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{kPage}))),
       owner_(new std::uint16_t[capacity_]),
       mixed_(new const NodeOwners*[capacity_]) {
+#ifdef __linux__
+  // Reads go all over the nodes: of small pages, more than the processor remembers (5 to 10 % of a read of
+  // 20 MB). A wish; where it is not granted, nothing else changes.
+  const std::size_t bytes = capacity_ * kBrickStride * sizeof(NodeValue);
+  if (bytes >= kPage) (void)madvise(nodes_.get(), bytes / kPage * kPage, MADV_HUGEPAGE);
+#endif
   used_ = 2;
   std::fill_n(nodes(kOutside), kBrickStride, static_cast<NodeValue>(kFullBand));
   std::fill_n(nodes(kInside), kBrickStride, static_cast<NodeValue>(-kFullBand));

@@ -48,6 +48,9 @@ constexpr bool isConstant(std::uint32_t brick) {
   return brick <= kInside;
 }
 
+/// A large page's bytes, where the system has such; nodes begin at one.
+inline constexpr std::size_t kPage = std::size_t{2} << 20;
+
 /// Who owns the nodes of a brick where parts meet.
 using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 
@@ -90,7 +93,7 @@ class VoxPool {
 
  private:
   struct Free {
-    void operator()(NodeValue* p) const { ::operator delete (p, std::align_val_t{64}); }
+    void operator()(NodeValue* p) const { ::operator delete (p, std::align_val_t{kPage}); }
   };
   std::size_t capacity_;  // constant bricks too
   std::atomic<std::size_t> used_ = 0;
