@@ -178,8 +178,11 @@ Mesh welded(const Mesh& mesh, double tolerance_m) {
 
 MeshReport checkMesh(const Mesh& mesh) {
   MeshReport report;
+  report.triangles = mesh.triangles.size();
   for (const auto& t : mesh.triangles) report.degenerate_triangles += isDegenerate(mesh, t);
 
+  const auto opposite = [&](const HalfEdge& e) { return mesh.triangles[e.triangle][(e.side + 2) % 3]; };
+  bool has_duplicates = false;
   Groups groups(mesh.triangles.size());
   const std::vector<HalfEdge> edges = sortedHalfEdges(mesh);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
@@ -187,9 +190,14 @@ MeshReport checkMesh(const Mesh& mesh) {
     if (same.size() == 1) ++report.open_edges;
     if (same.size() == 2 && same[0].is_forward == same[1].is_forward) ++report.flipped_edges;
     if (same.size() > 2) ++report.non_manifold_edges;
+    // Duplicates share their edges, so most meshes need no second sort.
+    for (std::size_t i = 1; i < same.size(); ++i)
+      has_duplicates |= opposite(same[i]) == opposite(same[i - 1]) || same.size() > 2;
   });
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
     report.shells += groups.find(i) == i && !hasRepeatedCorner(mesh.triangles[i]);
+  if (has_duplicates)
+    forEachTwin(mesh, [&](std::span<const Twin> same) { report.duplicate_triangles += same.size() - 1; });
   return report;
 }
 

@@ -25,6 +25,8 @@
 #include "triangle_distance.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
+#include "vps/mesh_repair.h"
+#include "winding_signs.h"
 
 namespace vps {
 namespace {
@@ -49,10 +51,13 @@ struct Gathered {
 
 class Voxeliser {
  public:
-  Voxeliser(const Mesh& mesh, const VoxMapSettings& settings)
-      : mesh_(mesh), distance_(mesh), h_(settings.voxel_m), band_m_(bandOf(settings)) {}
+  /// @param signer signs nodes by winding number; null: by pseudonormals
+  Voxeliser(const Mesh& mesh, const VoxMapSettings& settings, WindingSigner* signer)
+      : mesh_(mesh), distance_(mesh), h_(settings.voxel_m), band_m_(bandOf(settings)), signer_(signer) {}
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
+  /// False if pseudonormals turned out to contradict each other.
+  [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
 
   static double bandOf(const VoxMapSettings& settings) {
     // As the float that saturated nodes hold, so that a saturated distance equals band_m() exactly.
@@ -87,6 +92,8 @@ class Voxeliser {
   const Mesh& mesh_;
   const MeshDistance distance_;
   const double h_, band_m_;
+  WindingSigner* const signer_;
+  bool are_signs_sound_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
   Gathered gathered_;
   NodeBlocks blocks_;  // of gathered bricks
@@ -275,7 +282,12 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) computeNodes(i, work);
   });
   tell(0.7);
+  if (signer_ != nullptr)
+    signer_->signNodes(blocks_, *layout_, h_);
+  else
+    are_signs_sound_ = signsAgree(blocks_, h_);
   assembleBricks(*layout_, blocks_);
+  if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_);
   tell(0.8);
   boundCenters();
   tell(1);
@@ -324,21 +336,36 @@ void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std
 }  // namespace
 
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                            const Progress& progress) {
+                            const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
   requireSettings(mesh, settings, part);
-  const Mesh shared = welded(mesh);  // signs need shared vertices
   VoxMap map;
+  map.layout_ = nullptr;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
   map.bounds_ = bounds(mesh);
-  map.layout_ = Voxeliser(shared, settings).build(progress);
+  RepairedMesh repaired = repairMesh(welded(mesh));  // signs need shared vertices
+  if (repaired.is_sound) {
+    Voxeliser voxeliser(repaired.surface, settings, nullptr);
+    map.layout_ = voxeliser.build(progress);
+    if (!voxeliser.areSignsSound()) {
+      map.layout_ = nullptr;
+      repaired = repairMesh(welded(mesh), Crossing::Seen);
+    }
+  }
+  if (map.layout_ == nullptr) {
+    WindingSigner signer(repaired.solid);
+    map.layout_ = Voxeliser(repaired.surface, settings, &signer).build(progress);
+    repaired.report.signed_by_winding = true;
+    repaired.report.sure = signer.sure();
+  }
+  if (report != nullptr) *report = repaired.report;
   return map;
 }
 
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                   const Progress& progress) {
-  return VoxMapBuilder::build(mesh, settings, part, progress);
+                   const Progress& progress, MeshReport* report) {
+  return VoxMapBuilder::build(mesh, settings, part, progress, report);
 }
 
 }  // namespace vps

@@ -10,7 +10,7 @@ namespace vps {
 class VoxMapBuilder {
  public:
   static VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                      const Progress& progress);
+                      const Progress& progress, MeshReport* report);
   /// Union of two maps with the same voxel and band. The second's parts get the next owner numbers.
   static VoxMap merge(const VoxMap& a, const VoxMap& b);
   static VoxMap packed(const VoxMap& map);

@@ -21,7 +21,7 @@ namespace vps {
 /// Barill et al., Fast winding numbers for soups and clouds, 2018 (there "far" is a ratio, here an error).
 class WindingNumber {
  public:
-  /// A value, and the most by which it can be off (clusters used times cluster_error; typically 50 times
+  /// A value, and the most by which it can be off (clusters used times cluster_error; in tests 100 times
   /// less).
   struct Value {
     double w = 0;
@@ -29,9 +29,9 @@ class WindingNumber {
   };
 
   /// Copies what it needs. O(n log n), once. Triangles without area count nothing.
-  explicit WindingNumber(const Mesh& mesh, double cluster_error = 1e-3);
+  explicit WindingNumber(const Mesh& mesh, double cluster_error = 1e-2);
   /// Of some of a mesh's triangles.
-  WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cluster_error = 1e-3);
+  WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cluster_error = 1e-2);
 
   /// O(log n) typical. Thread-safe; never throws or allocates. The same bits on every thread.
   [[nodiscard]] Value at(const Vec3& p) const noexcept;
