@@ -134,7 +134,8 @@ WindingSigner::Count WindingSigner::signBrick(OwnNodes& nodes, const Index3& low
     for (int next = 0; next < end; ++next) {
       const int i = queue[next];
       const double left = margin[i] - loss - (i == seed ? kDoubt : 0);
-      count.sure += nodes[i] != kFar && margin[i] > kSure;
+      // On the surface itself both signs are right, and the winding number says so.
+      count.sure += nodes[i] != kFar && (margin[i] > kSure || size[i] < 1e-5f * step_m);
       nodes[i] = sign * size[i];
       if (!(left > kSure)) continue;
       forEachNeighbour(at(i), Index3::Constant(kBrick), [&](const Index3& other) {
