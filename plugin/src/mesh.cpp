@@ -177,6 +177,10 @@ Mesh welded(const Mesh& mesh, double tolerance_m) {
 }
 
 MeshReport checkMesh(const Mesh& mesh) {
+  return checkMesh(mesh, sortedHalfEdges(mesh));
+}
+
+MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   MeshReport report;
   report.triangles = mesh.triangles.size();
   for (const auto& t : mesh.triangles) report.degenerate_triangles += isDegenerate(mesh, t);
@@ -184,7 +188,6 @@ MeshReport checkMesh(const Mesh& mesh) {
   const auto opposite = [&](const HalfEdge& e) { return mesh.triangles[e.triangle][(e.side + 2) % 3]; };
   bool has_duplicates = false;
   Groups groups(mesh.triangles.size());
-  const std::vector<HalfEdge> edges = sortedHalfEdges(mesh);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
     for (const HalfEdge& e : same) groups.join(e.triangle, same.front().triangle);
     if (same.size() == 1) ++report.open_edges;

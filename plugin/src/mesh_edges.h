@@ -48,6 +48,9 @@ inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   return edges;
 }
 
+/// checkMesh() for who has the edges already.
+MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges);
+
 /// A triangle by its corners in ascending order.
 struct Twin {
   std::array<std::uint32_t, 3> corners;

@@ -62,13 +62,17 @@ class Repairer {
   }
 
   RepairedMesh run() {
-    result_.report = checkMesh(mesh());
+    edges_ = sortedHalfEdges(mesh());
+    result_.report = checkMesh(mesh(), edges_);
     const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
     if (is_whole && report().duplicate_triangles == 0) {
       findPatches();
       if (isSound()) return finish(true);
     }
-    if (report().duplicate_triangles > 0) dropDuplicates();
+    if (report().duplicate_triangles > 0) {
+      dropDuplicates();
+      edges_ = sortedHalfEdges(mesh());
+    }
     surveyOpenEdges();
     findPatches();
     turnClosed();
@@ -116,14 +120,13 @@ class Repairer {
   /// Every edge has two triangles that agree.
   bool agreesOnEdges() {
     bool agrees = true;
-    forEachEdge(sortedHalfEdges(mesh()), [&](std::span<const HalfEdge> same) {
-      agrees = agrees && same.size() == 2 && same[0].is_forward != same[1].is_forward;
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+      agrees = agrees && same.size() == 2 && isForward(same[0]) != isForward(same[1]);
     });
     return agrees;
   }
 
   void dropDuplicates() {
-    const std::vector<HalfEdge> edges = sortedHalfEdges(mesh());
     // Of each set of twins what stays: the majority's first, or, back to back, a pair to be judged below.
     std::vector<char> is_dropped(mesh().triangles.size(), 0), is_pair(mesh().triangles.size(), 0);
     forEachTwin(mesh(), [&](std::span<const Twin> same) {
@@ -146,7 +149,7 @@ class Repairer {
       return i;
     };
     std::vector<char> is_wall(mesh().triangles.size(), 0);
-    forEachEdge(edges, [&](std::span<const HalfEdge> same) {
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
       std::uint32_t first = UINT32_MAX;
       bool has_other = false;
       for (const HalfEdge& e : same) {
@@ -169,7 +172,7 @@ class Repairer {
 
   void surveyOpenEdges() {
     std::vector<std::array<std::uint32_t, 2>> open;
-    forEachEdge(sortedHalfEdges(mesh()), [&](std::span<const HalfEdge> same) {
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
       if (same.size() == 1) open.push_back({same[0].low, same[0].high});
     });
     std::vector<std::uint32_t> corners;
@@ -206,10 +209,9 @@ class Repairer {
   /// Turns facets to agree within each patch, the fewer to the more.
   void findPatches() {
     const std::size_t count = mesh().triangles.size();
-    const std::vector<HalfEdge> edges = sortedHalfEdges(mesh());
     std::vector<std::array<std::uint32_t, 3>> across(
         count, {UINT32_MAX, UINT32_MAX, UINT32_MAX});  // triangle * 2 + disagrees
-    forEachEdge(edges, [&](std::span<const HalfEdge> same) {
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
       if (same.size() != 2) return;
       const std::uint32_t disagrees = same[0].is_forward == same[1].is_forward;
       across[same[0].triangle][same[0].side] = 2 * same[1].triangle + disagrees;
@@ -239,10 +241,10 @@ class Repairer {
       for (const std::uint32_t i : patch.triangles)
         if (is_turned[i] != static_cast<char>(is_majority)) flip(i), ++report().flipped_facets;
     }
-    measurePatches(edges);
+    measurePatches();
   }
 
-  void measurePatches(const std::vector<HalfEdge>& edges) {
+  void measurePatches() {
     for (Patch& patch : patches_) {
       patch.is_closed = true;
       for (const std::uint32_t i : patch.triangles)
@@ -255,7 +257,7 @@ class Repairer {
         patch.volume_m3 += a.dot(b.cross(c)) / 6;
       }
     }
-    forEachEdge(edges, [&](std::span<const HalfEdge> same) {
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
       for (const HalfEdge& e : same) {
         int net = 0;  // few triangles share an edge, so trying all pairs costs little
         for (const HalfEdge& other : same)
@@ -462,6 +464,7 @@ class Repairer {
 
   const bool is_crossing_;
   RepairedMesh result_;
+  std::vector<HalfEdge> edges_;  // as the facets ran at first
   std::vector<Patch> patches_;
   std::vector<std::uint32_t> patch_of_;  // by triangle
   std::vector<Keep> is_kept_;            // by triangle
