@@ -65,7 +65,8 @@ struct Merger {
   void exact() {
     std::unordered_map<CellKey, std::uint32_t, CellHash> seen(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) {
-      const Vec3 q = p + Vec3::Zero();  // -0 becomes +0: equal numbers, equal bits
+      // Squares of numbers below 1e-150 vanish, and lengths with them (found by fuzzing). +0: -0 becomes +0.
+      const Vec3 q = (p.array().abs() < 1e-150).select(0.0, p.array()).matrix() + Vec3::Zero();
       CellKey key;
       for (int i = 0; i < 3; ++i) key[i] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(q[i]));
       const auto [it, is_new] = seen.try_emplace(key, static_cast<std::uint32_t>(kept.size()));

@@ -307,6 +307,9 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
 void requireSettings(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
+  // Distances are floats; far beyond any part, but a file of nonsense gets there.
+  if (!(settings.voxel_m > 1e-30) || !(settings.voxel_m < 1e30))
+    throw LoadError("", part, "voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
   if (!(settings.band_voxels >= 3) || !(settings.band_voxels <= 64))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
   const double area_m2 = area(mesh);
@@ -344,7 +347,9 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, co
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
   map.bounds_ = bounds(mesh);
-  RepairedMesh repaired = repairMesh(welded(mesh));  // signs need shared vertices
+  Mesh shared = welded(mesh);  // signs need shared vertices
+  requireUsable(shared, "", part);
+  RepairedMesh repaired = repairMesh(std::move(shared));
   if (repaired.is_sound) {
     Voxeliser voxeliser(repaired.surface, settings, nullptr);
     map.layout_ = voxeliser.build(progress);

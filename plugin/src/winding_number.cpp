@@ -47,7 +47,7 @@ std::pair<int, double> longestEdge(const Corners& t) {
 
 void halve(const Corners& t, double limit, std::vector<Corners>& out) {
   const auto [i, length] = longestEdge(t);
-  if (length <= limit) {
+  if (!(length > limit)) {
     out.push_back(t);
     return;
   }
@@ -57,16 +57,24 @@ void halve(const Corners& t, double limit, std::vector<Corners>& out) {
 }
 
 /// Cuts long triangles: a cluster is as wide as its longest one, and exporters make rods of slivers, which
-/// would all be near everywhere. The limit is the least that about doubles the count.
+/// would all be near everywhere. The limit is the least that
+/// makes three times as many at most.
 void cutSlivers(std::vector<Corners>& triangles) {
-  std::vector<double> length(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) length[i] = longestEdge(triangles[i]).second;
-  double low = 0, high = *std::max_element(length.begin(), length.end());
+  std::vector<std::array<double, 2>> sides(triangles.size());  // the longest edge, and the height on it
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Corners& t = triangles[i];
+    const double length = longestEdge(t).second;
+    sides[i] = {length, length > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / length : 0};
+    high = std::max(high, length);
+  }
   for (int n = 0; n < 30; ++n) {
     const double middle = 0.5 * (low + high);
     double pieces = 0;
-    for (const double l : length) pieces += std::max(1.0, std::ceil(l / middle));
-    (pieces > 2.0 * static_cast<double>(length.size()) + 64 ? low : high) = middle;
+    // Halves of halves: up to twice as many each way as the limit asks for.
+    for (const auto& [length, height] : sides)
+      pieces += length <= middle ? 1 : (1 + 2 * length / middle) * (1 + 2 * height / middle);
+    (pieces <= 3.0 * static_cast<double>(sides.size()) ? high : low) = middle;
   }
   if (!(high > 0)) return;
   std::vector<Corners> cut;
@@ -195,7 +203,8 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
     for (const Vec3& p : t) box.add(p);
   origin_ = box.center();
   const double size = box.size().maxCoeff();
-  scale_ = size > 0 ? std::exp2(-std::ceil(std::log2(size))) : 1;
+  // Within 1e-300 to 1e300, so that the scale is a number too.
+  scale_ = size > 1e-300 && size < 1e300 ? std::exp2(-std::ceil(std::log2(size))) : 1;
   for (Corners& t : triangles)
     for (Vec3& p : t) p = scale_ * (p - origin_);
   cutSlivers(triangles);

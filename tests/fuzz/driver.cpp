@@ -78,7 +78,10 @@ std::string changed(std::string bytes, const std::string& other, std::mt19937& r
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(keepInput);
+  if (__sanitizer_set_death_callback != nullptr)
+    __sanitizer_set_death_callback(keepInput);
+  else
+    std::signal(SIGSEGV, onSignal);
   std::signal(SIGALRM, onSignal);
   std::signal(SIGABRT, onSignal);
   for (int i = 2; i < argc; ++i) runOne(vps::fuzz::bytesOf(argv[i]));

@@ -44,6 +44,11 @@ TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsTaken) {
   }
 }
 
+TEST(BadInput, AVoxelThatNoFloatHoldsIsRefused) {  // found by fuzzing: the band became zero
+  Mesh mesh = makeSphere(1e-70, 1);
+  EXPECT_NE(refusal(mesh, {1e-71, 4}).find("is the unit right"), std::string::npos);
+}
+
 /// A turned tube of any size: signs and distances as exact as at the usual size.
 void expectRightAtSize(double size_m) {
   const Mesh unit = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(2).pose(1));
