@@ -79,6 +79,7 @@ class VoxMap {
 
  private:
   friend class VoxMapBuilder;
+  friend class VoxMapCacheFile;
   friend class VoxMapFile;
   friend class VoxSampler;
   friend struct FieldView;
