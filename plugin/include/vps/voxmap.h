@@ -53,6 +53,7 @@ class VoxMap {
   /// True if both are copies of one map.
   [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
   [[nodiscard]] std::size_t brickCount() const noexcept;
+  /// What this map keeps in memory; maps that were mounted one on another share the most of it.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
   /// Trilinear signed distance [m] at p_M, saturated at +-band_m().
@@ -79,6 +80,7 @@ class VoxMap {
 
  private:
   friend class VoxMapBuilder;
+  friend class VoxMapCacheFile;
   friend class VoxMapFile;
   friend class VoxSampler;
   friend struct FieldView;
@@ -87,11 +89,13 @@ class VoxMap {
   std::shared_ptr<const VoxLayout> layout_;  // never null
 };
 
-/// Builds the map of one mesh: exact distance to its triangles at every node within the band, sign by
-/// pseudonormals. O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel
-/// size that is not positive, or a grid that would not fit in memory (says which voxel size would).
+/// Builds the map of one mesh: exact distance to its triangles at every node within the band. Sign by
+/// pseudonormals where the mesh is closed, faces out and does not overlap itself; else by the winding number
+/// of what repairMesh() makes of it, and `report`, if given, tells what was found and how sure the sign is.
+/// O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size that is not
+/// positive, or a grid that would not fit in memory (says which voxel size would).
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
-                   const Progress& progress = {});
+                   const Progress& progress = {}, MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {
