@@ -178,11 +178,11 @@ BrickWriter::BrickWriter(VoxLayout& layout, double per_unit, std::size_t expecte
   layout_.pool = std::make_shared<VoxPool>(expected);
 }
 
-void BrickWriter::take(std::size_t count) {
-  first_ = layout_.pool->take(count);
-  if (first_ != 0) return;
+std::uint32_t takeBricks(VoxLayout& layout, std::size_t count) {
+  const std::uint32_t first = layout.pool->take(count);
+  if (first != 0) return first;
   // Bricks are named by their place, so that a copy keeps the names.
-  const VoxPool& old = *layout_.pool;
+  const VoxPool& old = *layout.pool;
   const std::size_t used = old.size() - 2;
   auto larger = std::make_shared<VoxPool>(used + used / 2 + count);
   const std::uint32_t begin = larger->take(used);
@@ -192,8 +192,12 @@ void BrickWriter::take(std::size_t count) {
     larger->owner(brick) = old.owner(brick);
     larger->mixed(brick) = old.mixed(brick);
   }
-  layout_.pool = larger;
-  first_ = larger->take(count);
+  layout.pool = larger;
+  return larger->take(count);
+}
+
+void BrickWriter::take(std::size_t count) {
+  first_ = takeBricks(layout_, count);
 }
 
 void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance) {

@@ -36,6 +36,9 @@ using BrickNodes = std::array<float, kBrickNodes>;
 /// node must be known.
 void saturate(BrickNodes& distance, float band);
 
+/// Room for bricks, one after the other, in a larger pool if need be: the first's name. Not thread-safe.
+std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
+
 /// Takes bricks that are whole, a batch at a time; the order of batches is the order of the bricks. Distances
 /// may be in any unit: `per_unit` quanta.
 class BrickWriter {

@@ -68,7 +68,8 @@ struct Merger {
     while (size < 2 * mesh.vertices.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
     for (const Vec3& p : mesh.vertices) {
-      const Vec3 q = p + Vec3::Zero();  // -0 becomes +0: equal numbers, equal bits
+      // Squares of numbers below 1e-150 vanish, and lengths with them (found by fuzzing). +0: -0 becomes +0.
+      const Vec3 q = (p.array().abs() < 1e-150).select(0.0, p.array()).matrix() + Vec3::Zero();
       CellKey key;
       for (int i = 0; i < 3; ++i) key[i] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(q[i]));
       std::size_t at = CellHash()(key) & (size - 1);
@@ -182,19 +183,30 @@ Mesh welded(const Mesh& mesh, double tolerance_m) {
 }
 
 MeshReport checkMesh(const Mesh& mesh) {
+  return checkMesh(mesh, sortedHalfEdges(mesh));
+}
+
+MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   MeshReport report;
+  report.triangles = mesh.triangles.size();
   for (const auto& t : mesh.triangles) report.degenerate_triangles += isDegenerate(mesh, t);
 
+  const auto opposite = [&](const HalfEdge& e) { return mesh.triangles[e.triangle][(e.side + 2) % 3]; };
+  bool has_duplicates = false;
   Groups groups(mesh.triangles.size());
-  const std::vector<HalfEdge> edges = sortedHalfEdges(mesh);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
     for (const HalfEdge& e : same) groups.join(e.triangle, same.front().triangle);
     if (same.size() == 1) ++report.open_edges;
     if (same.size() == 2 && same[0].is_forward == same[1].is_forward) ++report.flipped_edges;
     if (same.size() > 2) ++report.non_manifold_edges;
+    // Duplicates share their edges, so most meshes need no second sort.
+    for (std::size_t i = 1; i < same.size(); ++i)
+      has_duplicates |= opposite(same[i]) == opposite(same[i - 1]) || same.size() > 2;
   });
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
     report.shells += groups.find(i) == i && !hasRepeatedCorner(mesh.triangles[i]);
+  if (has_duplicates)
+    forEachTwin(mesh, [&](std::span<const Twin> same) { report.duplicate_triangles += same.size() - 1; });
   return report;
 }
 

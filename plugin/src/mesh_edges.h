@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The edges of a mesh, each with the triangles that share it.
+// The edges of a mesh, each with the triangles that share it; and triangles with the same corners.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "vps/mesh.h"
@@ -20,24 +22,67 @@ struct HalfEdge {
 };
 
 /// All sides of all triangles, those of one edge together and by triangle. Triangles with a repeated corner
-/// have none. O(n log n).
+/// have none. O(n): counted by their low vertex, which has few each, then sorted.
 inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& t = mesh.triangles[i];
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    for (std::uint8_t side = 0; side < 3; ++side) {
-      const std::uint32_t from = t[side], to = t[(side + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), i, side, from < to});
+  const auto forEachSide = [&](auto visit) {
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      const auto& t = mesh.triangles[i];
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+      for (std::uint8_t side = 0; side < 3; ++side) {
+        const std::uint32_t from = t[side], to = t[(side + 1) % 3];
+        visit(HalfEdge{std::min(from, to), std::max(from, to), i, side, from < to});
+      }
     }
-  }
-  std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.triangle < b.triangle;
-  });
+  };
+  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);  // of each low vertex's edges; first their start
+  forEachSide([&](const HalfEdge& e) { ++end[e.low + 1]; });
+  for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
+  std::vector<HalfEdge> edges(end.back());
+  forEachSide([&](const HalfEdge& e) { edges[end[e.low]++] = e; });
+  std::size_t first = 0;
+  for (std::size_t vertex = 0; vertex + 1 < end.size(); first = end[vertex++])
+    std::sort(edges.begin() + static_cast<std::ptrdiff_t>(first),
+              edges.begin() + static_cast<std::ptrdiff_t>(end[vertex]), [](const auto& a, const auto& b) {
+                return a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
+              });
   return edges;
+}
+
+/// checkMesh() for who has the edges already.
+MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges);
+
+/// A triangle by its corners in ascending order.
+struct Twin {
+  std::array<std::uint32_t, 3> corners;
+  std::uint32_t triangle;
+  bool is_even;  ///< runs through them in that order
+};
+
+/// Calls visit with the triangles of each set of corners that has more than one, by triangle. O(n log n).
+template <typename Visit>
+void forEachTwin(const Mesh& mesh, Visit visit) {
+  std::vector<Twin> twins;
+  twins.reserve(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    auto corners = mesh.triangles[i];
+    bool is_even = true;
+    const auto order = [&](int a, int b) {
+      if (corners[a] < corners[b]) return;
+      std::swap(corners[a], corners[b]);
+      is_even = !is_even;
+    };
+    order(0, 1), order(1, 2), order(0, 1);
+    twins.push_back({corners, i, is_even});
+  }
+  std::sort(twins.begin(), twins.end(), [](const Twin& a, const Twin& b) {
+    return a.corners != b.corners ? a.corners < b.corners : a.triangle < b.triangle;
+  });
+  for (std::size_t i = 0; i < twins.size();) {
+    std::size_t end = i + 1;
+    while (end < twins.size() && twins[end].corners == twins[i].corners) ++end;
+    if (end - i > 1) visit(std::span<const Twin>(twins).subspan(i, end - i));
+    i = end;
+  }
 }
 
 /// Calls visit with the half-edges of each edge in turn.

@@ -23,6 +23,8 @@
 #include "center_bounds.h"
 #include "splat.h"
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
+#include "winding_signs.h"
 
 namespace vps {
 namespace {
@@ -50,15 +52,19 @@ bool isFar(float d) {
 
 class Voxeliser {
  public:
-  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings)
+  /// @param signer signs nodes by winding number; null: by pseudonormals
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer)
       : mesh_(mesh),
         box_(box),
         h_(settings.voxel_m),
         band_m_(bandOf(settings)),
         // What rounds to the full band need not be computed.
-        reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_) {}
+        reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_),
+        signer_(signer) {}
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
+  /// False if pseudonormals turned out to contradict each other.
+  [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
 
   static double bandOf(const VoxMapSettings& settings) {
     // What a saturated node reads as, so that a saturated distance equals band_m() exactly.
@@ -92,6 +98,8 @@ class Voxeliser {
   const Box box_;
   const double h_, band_m_;
   const double reach_;  // of the nodes that are computed [voxels]
+  WindingSigner* const signer_;
+  bool are_signs_sound_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
   std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
   std::vector<std::uint32_t> features_;  // by tile, ascending within each
@@ -286,7 +294,12 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     splatTiles(features);
   }
   tell(0.8);
+  if (signer_ != nullptr)
+    signer_->signBricks(*layout_, h_, quantumOf(band_m_));
+  else
+    are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
   fillEmptyCells(*layout_);
+  if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   tell(0.9);
   boundCenters();
   tell(1);
@@ -306,6 +319,9 @@ void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& set
                      const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
+  // Distances are floats; far beyond any part, but a file of nonsense gets there.
+  if (!(settings.voxel_m > 1e-30) || !(settings.voxel_m < 1e30))
+    throw LoadError("", part, "voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
   // A band read from a map is rounded, see quantumOf().
   if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
@@ -336,23 +352,40 @@ void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& set
 }  // namespace
 
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                            const Progress& progress) {
+                            const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
   const Box box = bounds(mesh);
   requireSettings(mesh, box, settings, part);
-  const Mesh shared = welded(mesh);  // signs need shared vertices
   VoxMap map;
+  map.layout_ = nullptr;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
   map.quantum_m_ = quantumOf(map.band_m_);
   map.bounds_ = box;
-  map.layout_ = Voxeliser(shared, box, settings).build(progress);
+  Mesh shared = welded(mesh);  // signs need shared vertices
+  requireUsable(shared, "", part);
+  RepairedMesh repaired = repairMesh(std::move(shared));
+  if (repaired.is_sound) {
+    Voxeliser voxeliser(repaired.surface, box, settings, nullptr);
+    map.layout_ = voxeliser.build(progress);
+    if (!voxeliser.areSignsSound()) {
+      map.layout_ = nullptr;
+      repaired = repairMesh(welded(mesh), Crossing::Seen);
+    }
+  }
+  if (map.layout_ == nullptr) {
+    WindingSigner signer(repaired.solid);
+    map.layout_ = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
+    repaired.report.signed_by_winding = true;
+    repaired.report.sure = signer.sure();
+  }
+  if (report != nullptr) *report = repaired.report;
   return map;
 }
 
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                   const Progress& progress) {
-  return VoxMapBuilder::build(mesh, settings, part, progress);
+                   const Progress& progress, MeshReport* report) {
+  return VoxMapBuilder::build(mesh, settings, part, progress, report);
 }
 
 }  // namespace vps

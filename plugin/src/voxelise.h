@@ -13,7 +13,7 @@ enum class Combine;
 class VoxMapBuilder {
  public:
   static VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                      const Progress& progress);
+                      const Progress& progress, MeshReport* report);
   /// Two fields with the same voxel and band. The second's parts get the next owner numbers.
   static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
   static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);

@@ -37,16 +37,30 @@ struct MassProperties {
   Mat3 inertia_m5 = Mat3::Zero();
 };
 
-/// What a mesh is made of; see checkMesh().
+/// What a mesh is made of; see checkMesh(), and repairMesh() in mesh_repair.h for the lower half.
 struct MeshReport {
+  std::size_t triangles = 0;
   std::size_t degenerate_triangles = 0;
-  std::size_t open_edges = 0;          ///< edges with one triangle
-  std::size_t non_manifold_edges = 0;  ///< edges with more than two
-  std::size_t flipped_edges = 0;       ///< edges whose two triangles disagree on orientation
-  std::size_t shells = 0;              ///< connected components
+  std::size_t duplicate_triangles = 0;  ///< beyond the first with the same three corners, either way round
+  std::size_t open_edges = 0;           ///< edges with one triangle
+  std::size_t non_manifold_edges = 0;   ///< edges with more than two
+  std::size_t flipped_edges = 0;        ///< edges whose two triangles disagree on orientation
+  std::size_t shells = 0;               ///< connected components
   [[nodiscard]] bool isClosed() const {
     return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0;
   }
+
+  std::size_t holes = 0;               ///< groups of connected open edges
+  std::size_t t_junctions = 0;         ///< corners within an open edge: a crack without width
+  std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours
+  std::size_t turned_shells = 0;       ///< turned whole, since they faced in
+  std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
+  std::size_t internal_facets = 0;     ///< with solid on both sides: no surface, left out
+  std::size_t sheet_facets = 0;        ///< of free sheets: a surface without an inside
+  bool signed_by_winding = false;      ///< else by pseudonormals, which closed meshes allow
+  /// Share of the voxmap's nodes in the band whose winding number is more than 0.25 from 0.5; 1 for a closed
+  /// mesh.
+  double sure = 1;
 };
 
 Box bounds(const Mesh& mesh);
@@ -66,7 +80,8 @@ void append(Mesh& a, const Mesh& b);
 /// CAD exports repeat vertices for each face or triangle; connectivity needs them shared.
 Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 
-/// Counts edges and shells. Expects shared vertices (see welded()).
+/// Counts edges, shells, degenerate and duplicate triangles. O(n log n). Expects shared vertices (see
+/// welded()).
 MeshReport checkMesh(const Mesh& mesh);
 
 /// Refuses what nothing can be built from: no triangles, an index out of range, a coordinate that is not

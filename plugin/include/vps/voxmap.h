@@ -79,6 +79,7 @@ class VoxMap {
 
  private:
   friend class VoxMapBuilder;
+  friend class VoxMapCacheFile;
   friend class VoxMapFile;
   friend class VoxSampler;
   friend struct FieldView;
@@ -87,11 +88,13 @@ class VoxMap {
   std::shared_ptr<const VoxLayout> layout_;  // never null
 };
 
-/// Builds the map of one mesh: exact distance to its triangles at every node within the band, sign by
-/// pseudonormals. O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel
-/// size that is not positive, or a grid that would not fit in memory (says which voxel size would).
+/// Builds the map of one mesh: exact distance to its triangles at every node within the band. Sign by
+/// pseudonormals where the mesh is closed, faces out and does not overlap itself; else by the winding number
+/// of what repairMesh() makes of it, and `report`, if given, tells what was found and how sure the sign is.
+/// O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size that is not
+/// positive, or a grid that would not fit in memory (says which voxel size would).
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
-                   const Progress& progress = {});
+                   const Progress& progress = {}, MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {

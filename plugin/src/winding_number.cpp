@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/winding_number.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace vps {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::uint32_t kLeafTriangles = 8;
+/// Halving by count makes the depth 32 at most; one waiting child a level.
+constexpr int kStack = 64;
+
+using Corners = std::array<Vec3, 3>;
+
+/// Distance beyond which a cluster's series errs by at most `error`. The term of degree l of 1 / |d - s| is
+/// s^l P_l / R^(l + 1); its slope in s is at most l s^(l - 1) / R^(l + 1) (inequality of Bernstein and Szegö
+/// for the trigonometric polynomial P_l(cos)). What follows degree 3 sums to
+///   integral s^3 dA / (4 pi R^5) * (4 - 3t) / (1 - t)^2,   t = radius / R.
+double acceptDistance(double radius, double third_moment, double error) {
+  if (!(radius > 0)) return 0;
+  const auto bound = [&](double R) {
+    const double t = radius / R;
+    return third_moment / (4 * kPi * R * R * R * R * R) * (4 - 3 * t) / ((1 - t) * (1 - t));
+  };
+  double low = radius, high = 2 * radius;
+  while (bound(high) > error) high *= 2;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (bound(middle) > error ? low : high) = middle;
+  }
+  return high;
+}
+
+/// The longest edge, from corner .first to the next.
+std::pair<int, double> longestEdge(const Corners& t) {
+  std::pair<int, double> longest = {0, 0};
+  for (int i = 0; i < 3; ++i) {
+    const double length = (t[(i + 1) % 3] - t[i]).norm();
+    if (length > longest.second) longest = {i, length};
+  }
+  return longest;
+}
+
+void halve(const Corners& t, double limit, std::vector<Corners>& out) {
+  const auto [i, length] = longestEdge(t);
+  if (!(length > limit)) {
+    out.push_back(t);
+    return;
+  }
+  const Vec3 middle = 0.5 * (t[i] + t[(i + 1) % 3]);
+  halve({t[i], middle, t[(i + 2) % 3]}, limit, out);
+  halve({middle, t[(i + 1) % 3], t[(i + 2) % 3]}, limit, out);
+}
+
+/// Cuts long triangles: a cluster is as wide as its longest one, and exporters make rods of slivers, which
+/// would all be near everywhere. The limit is the least that
+/// makes three times as many at most.
+void cutSlivers(std::vector<Corners>& triangles) {
+  std::vector<std::array<double, 2>> sides(triangles.size());  // the longest edge, and the height on it
+  double low = 0, high = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Corners& t = triangles[i];
+    const double length = longestEdge(t).second;
+    sides[i] = {length, length > 0 ? (t[1] - t[0]).cross(t[2] - t[0]).norm() / length : 0};
+    high = std::max(high, length);
+  }
+  for (int n = 0; n < 30; ++n) {
+    const double middle = 0.5 * (low + high);
+    double pieces = 0;
+    // Halves of halves: up to twice as many each way as the limit asks for.
+    for (const auto& [length, height] : sides)
+      pieces += length <= middle ? 1 : (1 + 2 * length / middle) * (1 + 2 * height / middle);
+    (pieces <= 3.0 * static_cast<double>(sides.size()) ? high : low) = middle;
+  }
+  if (!(high > 0)) return;
+  std::vector<Corners> cut;
+  cut.reserve(3 * triangles.size());
+  for (const Corners& t : triangles) halve(t, high, cut);
+  triangles = std::move(cut);
+}
+
+}  // namespace
+
+/// Integrals of the normal n over a cluster, with the place s from a centre: n_i, s_i n_j, s_i s_j n_k.
+struct WindingNumber::Moments {
+  Vec3 center = Vec3::Zero();
+  Vec3 n = Vec3::Zero();
+  Mat3 sn = Mat3::Zero();
+  std::array<Mat3, 3> ssn = {Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};  // [k](i, j)
+  Vec3 place = Vec3::Zero();                                             // integral of |n| times place
+  double area = 0;
+
+  void add(const Corners& t) {
+    const Vec3 a = t[0] - center, b = t[1] - center, c = t[2] - center;
+    const Vec3 n_t = 0.5 * (b - a).cross(c - a), s = (a + b + c) / 3;
+    const Mat3 ss = (a * a.transpose() + b * b.transpose() + c * c.transpose() + 9 * s * s.transpose()) / 12;
+    n += n_t;
+    sn += s * n_t.transpose();
+    for (int k = 0; k < 3; ++k) ssn[k] += n_t[k] * ss;
+  }
+  void addArea(const Corners& t) {
+    const double area_t = 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+    area += area_t;
+    place += area_t * (t[0] + t[1] + t[2]) / 3;
+  }
+  /// Another cluster's moments, its centre moved to this one's: s becomes s + t.
+  void add(const Moments& o) {
+    const Vec3 t = o.center - center;
+    n += o.n;
+    sn += o.sn + t * o.n.transpose();
+    for (int k = 0; k < 3; ++k)
+      ssn[k] +=
+          o.ssn[k] + t * o.sn.col(k).transpose() + o.sn.col(k) * t.transpose() + o.n[k] * t * t.transpose();
+  }
+
+  /// Coefficients of the three polynomials, x < y < z.
+  [[nodiscard]] std::array<double, 19> series() const {
+    const double trace = sn.trace();
+    Vec3 v;  // what makes the cubic harmonic
+    for (int k = 0; k < 3; ++k) {
+      v[k] = ssn[k].trace();
+      for (int i = 0; i < 3; ++i) v[k] += 2 * ssn[i](k, i);
+    }
+    // The coefficient of d_i^2 d_j, and of x y z.
+    const auto square = [&](int i, int j) {
+      return 7.5 * (ssn[j](i, i) + (i == j ? 0 : 2 * ssn[i](i, j))) - 1.5 * v[j];
+    };
+    std::array<double, 19> c = {n.x(),
+                                n.y(),
+                                n.z(),
+                                3 * sn(0, 0) - trace,
+                                3 * sn(1, 1) - trace,
+                                3 * sn(2, 2) - trace,
+                                3 * (sn(0, 1) + sn(1, 0)),
+                                3 * (sn(0, 2) + sn(2, 0)),
+                                3 * (sn(1, 2) + sn(2, 1)),
+                                square(0, 0),
+                                square(0, 1),
+                                square(0, 2),
+                                square(1, 1),
+                                square(1, 0),
+                                square(1, 2),
+                                square(2, 2),
+                                square(2, 0),
+                                square(2, 1),
+                                15 * (ssn[2](0, 1) + ssn[1](0, 2) + ssn[0](1, 2))};
+    for (double& value : c) value /= -4 * kPi;
+    return c;
+  }
+};
+
+/// Adds solid angles by multiplying complex numbers, whose arguments are half the angles, and counts full
+/// turns: one arc tangent at the end instead of one a triangle.
+struct WindingNumber::Turn {
+  double x = 1, y = 0;
+  int turns = 0;
+
+  void add(const Corners& t, const Vec3& p) {
+    const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    const double im = a.dot(b.cross(c));
+    const double re = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    const double px = x * re - y * im, py = x * im + y * re;
+    const double size = std::abs(px) + std::abs(py);
+    if (!(size > 0)) return;  // the point is a corner, or on an edge: the triangle is seen from its own plane
+    if (y >= 0 && im >= 0 && py < 0) ++turns;
+    if (y < 0 && im < 0 && py >= 0) --turns;
+    x = px / size;
+    y = py / size;
+  }
+  /// Solid angle over 4 pi; the argument is half of it.
+  [[nodiscard]] double windings() const { return std::atan2(y, x) / (2 * kPi) + turns; }
+};
+
+WindingNumber::WindingNumber(const Mesh& mesh, double cluster_error) {
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  build(std::move(triangles), cluster_error);
+}
+
+WindingNumber::WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles,
+                             double cluster_error) {
+  std::vector<Corners> chosen;
+  chosen.reserve(triangles.size());
+  for (const std::uint32_t i : triangles) {
+    const auto& t = mesh.triangles[i];
+    chosen.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  }
+  build(std::move(chosen), cluster_error);
+}
+
+void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) {
+  cluster_error_ = cluster_error;
+  if (triangles.empty()) return;
+  Box box;
+  for (const Corners& t : triangles)
+    for (const Vec3& p : t) box.add(p);
+  origin_ = box.center();
+  const double size = box.size().maxCoeff();
+  // Within 1e-300 to 1e300, so that the scale is a number too.
+  scale_ = size > 1e-300 && size < 1e300 ? std::exp2(-std::ceil(std::log2(size))) : 1;
+  for (Corners& t : triangles)
+    for (Vec3& p : t) p = scale_ * (p - origin_);
+  cutSlivers(triangles);
+  split(triangles);
+  expand(cluster_error);
+}
+
+/// Halves the triangles along the longest side of their centres' box until a leaf holds few.
+void WindingNumber::split(std::vector<Corners>& triangles) {
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  std::vector<Vec3> middles(count);
+  for (std::uint32_t i = 0; i < count; ++i) middles[i] = triangles[i][0] + triangles[i][1] + triangles[i][2];
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  nodes_.reserve(2 * (count / (kLeafTriangles / 2) + 1));
+  nodes_.emplace_back().count = count;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const std::uint32_t first = nodes_[n].first, size = nodes_[n].count;
+    if (size <= kLeafTriangles) continue;
+    Box box;
+    for (std::uint32_t i = first; i < first + size; ++i) box.add(middles[order[i]]);
+    int axis = 0;
+    box.size().maxCoeff(&axis);
+    const std::uint32_t half = size / 2;
+    const auto range = order.begin() + first;
+    std::nth_element(range, range + half, range + size, [&](std::uint32_t a, std::uint32_t b) {
+      const double at_a = middles[a][axis], at_b = middles[b][axis];
+      return at_a != at_b ? at_a < at_b : a < b;  // a strict order, so that the tree is the same everywhere
+    });
+    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[n].count = 0;
+    nodes_.emplace_back().first = first;
+    nodes_.back().count = half;
+    nodes_.emplace_back().first = first + half;
+    nodes_.back().count = size - half;
+  }
+  corners_.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) corners_[i] = triangles[order[i]];
+}
+
+/// Moments from the leaves up, and from them each node's series and reach.
+void WindingNumber::expand(double cluster_error) {
+  std::vector<Moments> moments(nodes_.size());
+  std::vector<std::array<std::uint32_t, 2>> range(nodes_.size());
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    Moments& m = moments[n];
+    if (node.count > 0) {
+      range[n] = {node.first, node.first + node.count};
+      for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) m.addArea(corners_[i]);
+    } else {
+      range[n] = {range[node.first][0], range[node.first + 1][1]};
+      for (const std::uint32_t child : {node.first, node.first + 1}) {
+        m.area += moments[child].area;
+        m.place += moments[child].place;
+      }
+    }
+    // The middle of the area: for flat clusters the second term then vanishes.
+    m.center = node.center = m.area > 0 ? Vec3(m.place / m.area) : corners_[range[n][0]][0];
+    if (node.count > 0) {
+      for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) m.add(corners_[i]);
+    } else {
+      m.add(moments[node.first]);
+      m.add(moments[node.first + 1]);
+    }
+    node.series = m.series();
+    double radius2 = 0, third = 0;
+    for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) {
+      double cubes = 0;  // s^3 is convex: its mean over a triangle is at most that over the corners
+      for (const Vec3& p : corners_[i]) {
+        const double s2 = (p - node.center).squaredNorm();
+        radius2 = std::max(radius2, s2);
+        cubes += s2 * std::sqrt(s2);
+      }
+      third += cubes / 6 * (corners_[i][1] - corners_[i][0]).cross(corners_[i][2] - corners_[i][0]).norm();
+    }
+    const double accept = acceptDistance(std::sqrt(radius2), third, cluster_error);
+    node.accept2 = accept * accept;
+  }
+}
+
+WindingNumber::Value WindingNumber::at(const Vec3& p) const noexcept {
+  if (nodes_.empty()) return {};
+  const Vec3 x = scale_ * (p - origin_);
+  double far = 0;
+  int clusters = 0;
+  Turn near;
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const Node& node = nodes_[stack[--waiting]];
+    const Vec3 d = x - node.center;
+    const double R2 = d.squaredNorm();
+    if (R2 > node.accept2) {
+      const double per_R2 = 1 / R2, per_R = std::sqrt(per_R2);
+      const double X = d.x(), Y = d.y(), Z = d.z(), XX = X * X, YY = Y * Y, ZZ = Z * Z;
+      const auto& c = node.series;
+      const double first = c[0] * X + c[1] * Y + c[2] * Z;
+      const double second = c[3] * XX + c[4] * YY + c[5] * ZZ + X * (c[6] * Y + c[7] * Z) + c[8] * Y * Z;
+      const double third = XX * (c[9] * X + c[10] * Y + c[11] * Z) +
+                           YY * (c[12] * Y + c[13] * X + c[14] * Z) +
+                           ZZ * (c[15] * Z + c[16] * X + c[17] * Y) + c[18] * X * Y * Z;
+      far += (first + (second + third * per_R2) * per_R2) * per_R2 * per_R;
+      ++clusters;
+    } else if (node.count > 0) {
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) near.add(corners_[i], x);
+    } else {
+      stack[waiting++] = node.first + 1;
+      stack[waiting++] = node.first;
+    }
+  }
+  return {near.windings() + far, clusters * cluster_error_};
+}
+
+double WindingNumber::exact(const Vec3& p) const noexcept {
+  Turn all;
+  const Vec3 x = scale_ * (p - origin_);
+  for (const Corners& t : corners_) all.add(t, x);
+  return all.windings();
+}
+
+}  // namespace vps

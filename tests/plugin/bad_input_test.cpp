@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes that nobody should send: each gets a clear LoadError or the right answer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support/analytic.h"
+#include "vps/load_error.h"
+#include "vps/mesh_distance.h"
+#include "vps/voxmap.h"
+
+namespace vps::test {
+namespace {
+
+std::string refusal(const Mesh& mesh, const VoxMapSettings& settings) {
+  try {
+    buildVoxMap(mesh, settings, "hub");
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BadInput, WhatIsNoMeshIsRefusedWithAReason) {
+  const VoxMapSettings settings = {0.5e-3, 4};
+  EXPECT_EQ(refusal(Mesh{}, settings), "part 'hub': has no triangles; export it as a triangle mesh");
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()}) {
+    Mesh mesh = makeBox({0.01, 0.01, 0.01});
+    mesh.vertices[3].z() = bad;
+    EXPECT_EQ(refusal(mesh, settings), "part 'hub': vertex 3 is not a number; export it again");
+  }
+  Mesh flat = makeBox({0.01, 0.01, 0.01});
+  for (Vec3& p : flat.vertices) p = Vec3(p.x(), 0, 0);
+  EXPECT_NE(refusal(flat, settings).find("zero area"), std::string::npos);
+  EXPECT_NE(refusal(makeBox({1e200, 1e200, 1e200}), settings).find("too large"), std::string::npos);
+}
+
+TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsTaken) {
+  for (const double size_m : {1e-6, 0.01, 100.0}) {
+    const std::string text = refusal(makeBox(Vec3::Constant(size_m)), {1e-6 * size_m, 4});
+    EXPECT_NE(text.find("would fit"), std::string::npos) << text;
+  }
+}
+
+TEST(BadInput, AVoxelThatNoFloatHoldsIsRefused) {  // found by fuzzing: the band became zero
+  Mesh mesh = makeSphere(1e-70, 1);
+  EXPECT_NE(refusal(mesh, {1e-71, 4}).find("is the unit right"), std::string::npos);
+}
+
+/// A turned tube of any size: signs and distances as exact as at the usual size.
+void expectRightAtSize(double size_m) {
+  const Mesh unit = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(2).pose(1));
+  Mesh mesh = unit;
+  for (Vec3& p : mesh.vertices) p *= size_m;
+  MeshReport report;
+  const VoxMap map = buildVoxMap(mesh, {size_m / 20, 4}, "", {}, &report);
+  EXPECT_FALSE(report.signed_by_winding);
+  const MeshDistance truth(unit);
+  RandomPoints random(3);
+  for (int n = 0; n < 3000; ++n) {
+    const Vec3 at = (bounds(unit).center() + random.inBox(0.7 * bounds(unit).size())) * 20;
+    const Vec3 p = at.array().round() / 20;
+    const double expected = std::clamp(truth.signedDistance(p), -0.2, 0.2) * size_m;
+    // Half a quantum, a float's rounding at the band, and the node's own place.
+    ASSERT_NEAR(map.distance(size_m * p), expected, 0.51 * map.quantum_m()) << size_m;
+  }
+}
+TEST(BadInput, AMicrometrePartIsExact) {
+  expectRightAtSize(1e-6);
+}
+TEST(BadInput, AHundredMetrePartIsExact) {
+  expectRightAtSize(100);
+}
+TEST(BadInput, APicometrePartIsExact) {
+  expectRightAtSize(1e-12);
+}
+
+TEST(BadInput, AFaultyPartOfAnySizeHasTheSameSigns) {
+  Mesh unit = transformed(makeSphere(1, 3), RandomPoints(4).pose(1));
+  unit.triangles.resize(unit.triangles.size() - 40);
+  std::string first;
+  for (const double size_m : {1.0, 1e-12, 1e-6, 100.0}) {
+    Mesh mesh = unit;
+    for (Vec3& p : mesh.vertices) p *= size_m;
+    const VoxMap map = buildVoxMap(mesh, {size_m / 16, 4});
+    std::string signs;
+    RandomPoints random(5);
+    for (int n = 0; n < 2000; ++n) {
+      const Vec3 at = (bounds(unit).center() + random.inBox(0.7 * bounds(unit).size())) * 16;
+      signs.push_back(map.distance(size_m * Vec3(at.array().round() / 16)) < 0 ? '-' : '+');
+    }
+    if (first.empty()) first = signs;
+    EXPECT_EQ(signs, first) << size_m;
+  }
+}
+
+TEST(BadInput, AVoxelLargerThanThePartStillGivesASign) {
+  MeshReport report;
+  const VoxMap map = buildVoxMap(makeSphere(0.3, 2), {1.0, 3}, "", {}, &report);
+  EXPECT_LT(map.distance({0, 0, 0}), 0);
+  EXPECT_GT(map.distance({1, 0, 0}), 0);
+}
+
+TEST(BadInput, OneTriangleIsASheetWithoutAnInside) {
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0.1e-3}, {0.01, 0, 0.1e-3}, {0, 0.01, 0.1e-3}};
+  mesh.triangles = {{0, 1, 2}};
+  MeshReport report;
+  const VoxMap map = buildVoxMap(mesh, {0.5e-3, 4}, "", {}, &report);
+  EXPECT_EQ(report.sheet_facets, 1u);
+  for (int x = -10; x < 30; ++x)
+    for (int z = -10; z < 10; ++z) ASSERT_GE(map.distance(0.5e-3 * Vec3(x, 4, z)), 0);
+  EXPECT_NEAR(map.distance({2e-3, 2e-3, 1e-3}), 0.9e-3, 0.51 * map.quantum_m());
+}
+
+}  // namespace
+}  // namespace vps::test

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Voxmaps of faulty meshes against the closed mesh that they were made from.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <functional>
+
+#include "support/analytic.h"
+#include "support/lathe.h"
+#include "vps/mesh_distance.h"
+#include "vps/mesh_repair.h"
+#include "vps/voxmap.h"
+
+namespace vps::test {
+namespace {
+
+constexpr double kVoxel_m = 0.5e-3;
+constexpr VoxMapSettings kSettings = {kVoxel_m, 4};
+
+using Inside = std::function<bool(const Vec3&)>;
+
+/// Counts grid nodes around a map, up to 8 voxels off, on the wrong side; `skip` says which do not count.
+std::size_t wrongSigns(const VoxMap& map, const Inside& isInside, const Inside& skip = {}) {
+  const double h = map.voxel_m();
+  const Eigen::Array3i low = (map.bounds().min / h).array().floor().cast<int>() - 8;
+  const Eigen::Array3i high = (map.bounds().max / h).array().ceil().cast<int>() + 8;
+  std::size_t wrong = 0;
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z) {
+        const Vec3 p = h * Vec3(x, y, z);
+        if (!skip || !skip(p)) wrong += (map.distance(p) < 0) != isInside(p);
+      }
+  return wrong;
+}
+
+/// Of a closed mesh.
+Inside insideOf(const Mesh& closed) {
+  return [truth = std::make_shared<MeshDistance>(closed)](const Vec3& p) {
+    return truth->signedDistance(p) < 0;
+  };
+}
+
+MeshReport reportOf(const Mesh& mesh, VoxMap* map = nullptr) {
+  MeshReport report;
+  const VoxMap built = buildVoxMap(mesh, kSettings, "", {}, &report);
+  if (map != nullptr) *map = built;
+  return report;
+}
+
+/// A turned tube: nothing of it lies on the grid.
+Mesh tube() {
+  return transformed(makeTube(0.01, 0.006, 0.012, 48), RandomPoints(2).pose(0.01));
+}
+
+/// A plate of 20 x 20 x 6 mm whose upper face has a square hole of the given size in its middle, and the same
+/// closed; both moved by X.
+Mesh plateWithHole(double hole_m, bool is_closed, const Pose& X) {
+  const double a = 0.01, b = hole_m / 2, z = 0.003;
+  Mesh mesh;
+  const auto square = [&](double half, double height) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const auto& [sx, sy] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      mesh.vertices.emplace_back(sx * half, sy * half, height);
+    return first;
+  };
+  const auto join = [&](std::uint32_t outer, std::uint32_t inner) {
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t j = (i + 1) % 4;
+      mesh.triangles.push_back({outer + i, outer + j, inner + j});
+      mesh.triangles.push_back({outer + i, inner + j, inner + i});
+    }
+  };
+  const std::uint32_t bottom = square(a, -z), top = square(a, z), rim = square(b, z);
+  join(bottom, top);
+  join(top, rim);
+  mesh.triangles.push_back({bottom, bottom + 2, bottom + 1});
+  mesh.triangles.push_back({bottom, bottom + 3, bottom + 2});
+  if (is_closed) {
+    mesh.triangles.push_back({rim, rim + 1, rim + 2});
+    mesh.triangles.push_back({rim, rim + 2, rim + 3});
+  }
+  return transformed(mesh, X);
+}
+
+TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
+  // What is missing is plane, so it fills less than half the view from either side: w stays above 0.5 inside
+  // and below outside, all the way to the hole. Only the series' error (0.02 with a margin) blurs the hole's
+  // own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and more at its rim.
+  for (const double hole_voxels : {0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
+    const double hole_m = hole_voxels * kVoxel_m;
+    const Pose X = RandomPoints(3).pose(0.01), X_inverse = X.inverse();
+    const auto isInHole = [&](const Vec3& p) {
+      const Vec3 q = X_inverse * p;
+      return std::abs(q.z() - 0.003) < 0.02 * std::numbers::pi * hole_m;
+    };
+    VoxMap map;
+    const MeshReport report = reportOf(plateWithHole(hole_m, false, X), &map);
+    EXPECT_EQ(wrongSigns(map, insideOf(plateWithHole(hole_m, true, X)), isInHole), 0u) << hole_voxels;
+    EXPECT_EQ(report.open_edges, 4u);
+    EXPECT_EQ(report.holes, 1u);
+    EXPECT_TRUE(report.signed_by_winding);
+    // Unsure is what sees the hole under more than pi, a quarter of the whole: nearer than its size.
+    EXPECT_EQ(report.sure < 1, hole_voxels >= 3) << hole_voxels;
+    EXPECT_GT(report.sure, 0.8);
+  }
+}
+
+TEST(FaultyMesh, AHoleInARoundFaceIsClosedWithinItsSagitta) {
+  const Mesh sphere = makeSphere(0.01, 4);
+  for (const double hole_m : {0.001, 0.004, 0.01}) {
+    Mesh open = sphere;
+    std::erase_if(open.triangles, [&](const auto& t) {
+      return (sphere.vertices[t[0]] - Vec3(0, 0, 0.01)).norm() < hole_m / 2;
+    });
+    // The missing cap reaches one facet farther; its height is r^2 / 2R.
+    const double rim_m = hole_m / 2 + 0.8e-3, sagitta_m = rim_m * rim_m / (2 * 0.01);
+    const auto isNearHole = [&](const Vec3& p) {
+      return (p - Vec3(0, 0, 0.01)).norm() < rim_m + sagitta_m && std::abs(p.norm() - 0.01) < 1.5 * sagitta_m;
+    };
+    VoxMap map;
+    reportOf(open, &map);
+    EXPECT_EQ(wrongSigns(map, insideOf(sphere), isNearHole), 0u) << hole_m;
+  }
+}
+
+TEST(FaultyMesh, FlippedFacetsAreTurned) {
+  Mesh flipped = tube();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < flipped.triangles.size(); i += 50, ++count)
+    std::swap(flipped.triangles[i][0], flipped.triangles[i][1]);
+  VoxMap map;
+  const MeshReport report = reportOf(flipped, &map);
+  EXPECT_EQ(report.flipped_facets, count);
+  EXPECT_FALSE(report.signed_by_winding);  // a sound mesh again
+  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+}
+
+TEST(FaultyMesh, AShellThatFacesInIsTurnedAndACavityIsNot) {
+  const Pose X = RandomPoints(9).pose(0.01);
+  const Mesh sphere = transformed(makeSphere(0.008, 3), X);
+  Mesh ball = sphere;
+  for (auto& t : ball.triangles) std::swap(t[0], t[1]);
+  VoxMap map;
+  EXPECT_EQ(reportOf(ball, &map).turned_shells, 1u);
+  EXPECT_EQ(wrongSigns(map, insideOf(sphere)), 0u);
+
+  const Mesh outer = transformed(makeSphere(0.01, 3), X);
+  Mesh hollow = outer;
+  append(hollow, ball);
+  const auto isInside = [outside = insideOf(outer), cavity = insideOf(sphere)](const Vec3& p) {
+    return outside(p) && !cavity(p);
+  };
+  const MeshReport report = reportOf(hollow, &map);
+  EXPECT_EQ(report.turned_shells, 0u);
+  EXPECT_EQ(report.overlapping_shells, 0u);
+  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+  for (auto& t : hollow.triangles) std::swap(t[0], t[1]);  // all inside out
+  EXPECT_EQ(reportOf(hollow, &map).turned_shells, 2u);
+  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+}
+
+TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
+  const Mesh a = tube(),
+             b = transformed(makeBox({0.03, 0.006, 0.005}),
+                             Pose(Mat3::Identity(), bounds(a).center()) * RandomPoints(5).pose(1e-3));
+  Mesh both = a;
+  append(both, b);
+  VoxMap map;
+  const MeshReport report = reportOf(both, &map);
+  EXPECT_EQ(report.shells, 2u);
+  EXPECT_TRUE(report.signed_by_winding);
+  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(
+      wrongSigns(map, [in_a = insideOf(a), in_b = insideOf(b)](const Vec3& p) { return in_a(p) || in_b(p); }),
+      0u);
+}
+
+TEST(FaultyMesh, AShellWithinAnotherIsLeftOut) {
+  Mesh nested = makeSphere(0.01, 3);
+  append(nested, makeSphere(0.006, 3));
+  VoxMap map;
+  const MeshReport report = reportOf(nested, &map);
+  EXPECT_EQ(report.internal_facets, 1280u);
+  EXPECT_EQ(report.overlapping_shells, 1u);
+  EXPECT_EQ(wrongSigns(map, insideOf(makeSphere(0.01, 3))), 0u);
+  EXPECT_EQ(map.distance({0.006, 0, 0}), -map.band_m());  // 4 mm deep
+}
+
+TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
+  // One shell: a hose that is bent into itself, rings of 8 around a curve.
+  Mesh hose;
+  constexpr int kRings = 40, kSegments = 12;
+  for (int i = 0; i < kRings; ++i) {
+    const double s = 1.15 * 2 * std::numbers::pi * i / kRings;  // overlaps its beginning
+    const Vec3 radial(std::cos(s), std::sin(s), 0), middle = 0.012 * radial + Vec3(0, 0, 1e-4 * i);
+    for (int k = 0; k < kSegments; ++k) {
+      const double turn = 2 * std::numbers::pi * k / kSegments;
+      hose.vertices.push_back(middle + 0.004 * (std::cos(turn) * radial + std::sin(turn) * Vec3::UnitZ()));
+    }
+  }
+  const auto at = [](int ring, int k) {
+    return static_cast<std::uint32_t>(ring * kSegments + k % kSegments);
+  };
+  for (int i = 0; i + 1 < kRings; ++i)
+    for (int k = 0; k < kSegments; ++k) {
+      hose.triangles.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
+      hose.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
+    }
+  for (int k = 1; k + 1 < kSegments; ++k) {
+    hose.triangles.push_back({at(0, 0), at(0, k + 1), at(0, k)});
+    hose.triangles.push_back({at(kRings - 1, 0), at(kRings - 1, k), at(kRings - 1, k + 1)});
+  }
+  hose = transformed(hose, RandomPoints(4).pose(0.01));
+  if (massProperties(hose).volume_m3 < 0)
+    for (auto& t : hose.triangles) std::swap(t[0], t[1]);
+  ASSERT_TRUE(checkMesh(hose).isClosed());
+  VoxMap map;
+  const MeshReport report = reportOf(hose, &map);
+  EXPECT_TRUE(report.signed_by_winding);
+  // Truth: crossings of a ray, counted with their direction.
+  const auto isInside = [&](const Vec3& p) {
+    int windings = 0;
+    const Vec3 way = Vec3(0.3, 0.2, 0.93).normalized();
+    for (const auto& t : hose.triangles) {
+      const Vec3 a = hose.vertices[t[0]] - p, b = hose.vertices[t[1]] - p, c = hose.vertices[t[2]] - p;
+      const double u = way.dot(a.cross(b)), v = way.dot(b.cross(c)), w = way.dot(c.cross(a));
+      if (((u < 0) != (v < 0)) || ((v < 0) != (w < 0))) continue;
+      if (a.dot((b - a).cross(c - a)) * (u + v + w) <= 0) continue;  // behind
+      windings += u + v + w > 0 ? 1 : -1;
+    }
+    return windings > 0;
+  };
+  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+}
+
+TEST(FaultyMesh, AnInternalWallIsNoSurface) {
+  // A cuboid in two halves that share the four corners of a wall, once with one wall and once with two back
+  // to back.
+  Mesh closed;
+  for (const double x : {-0.01, 0.0, 0.01})
+    for (const auto& [y, z] : {std::pair{-0.004, -0.004}, {0.004, -0.004}, {0.004, 0.004}, {-0.004, 0.004}})
+      closed.vertices.emplace_back(x, y, z);
+  const auto quad = [](Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (const std::uint32_t ring : {0u, 4u})
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const std::uint32_t a = ring + i, b = ring + (i + 1) % 4;
+      quad(closed, a, a + 4, b + 4, b);
+    }
+  quad(closed, 0, 1, 2, 3);
+  quad(closed, 8, 11, 10, 9);
+  if (massProperties(closed).volume_m3 < 0)
+    for (auto& t : closed.triangles) std::swap(t[1], t[2]);
+  closed = transformed(closed, RandomPoints(6).pose(0.01));
+  ASSERT_TRUE(checkMesh(closed).isClosed());
+  Mesh one = closed, two = closed;
+  quad(one, 4, 5, 6, 7);
+  two.triangles.insert(two.triangles.end(), {{4, 5, 6}, {4, 6, 7}, {6, 5, 4}, {7, 6, 4}});
+  for (const Mesh& mesh : {one, two}) {
+    VoxMap map;
+    const MeshReport report = reportOf(mesh, &map);
+    EXPECT_EQ(report.non_manifold_edges, mesh.triangles.size() == one.triangles.size() ? 4u : 5u);
+    EXPECT_EQ(wrongSigns(map, insideOf(closed)), 0u);
+    EXPECT_EQ(map.distance(closed.vertices[4] * 0.5 + closed.vertices[6] * 0.5), -map.band_m());
+  }
+}
+
+TEST(FaultyMesh, DuplicateAndDegenerateTrianglesChangeNothing) {
+  Mesh mesh = tube();
+  for (std::size_t i = 0; i < 60; i += 3) mesh.triangles.push_back(mesh.triangles[i]);
+  VoxMap map;
+  EXPECT_EQ(reportOf(mesh, &map).duplicate_triangles, 20u);
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  // A side of a facet gets a corner in its middle and the sliver that fills the gap.
+  mesh = tube();
+  const auto [a, b, c] = mesh.triangles[7];
+  mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
+  const auto middle = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  mesh.triangles[7] = {a, middle, c};
+  mesh.triangles.push_back({middle, b, c});
+  mesh.triangles.push_back({a, b, middle});
+  ASSERT_TRUE(checkMesh(mesh).isClosed());
+  EXPECT_EQ(reportOf(mesh, &map).degenerate_triangles, 1u);
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+}
+
+TEST(FaultyMesh, ASurfaceExportedForBothSidesIsASolid) {
+  Mesh both = tube();
+  for (const auto& t : tube().triangles) both.triangles.push_back({t[0], t[2], t[1]});
+  VoxMap map;
+  EXPECT_EQ(reportOf(both, &map).duplicate_triangles, tube().triangles.size());
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+}
+
+TEST(FaultyMesh, TJunctionsAreNoHoles) {
+  Mesh mesh = tube();
+  for (const std::size_t i : {7u, 20u, 50u}) {  // a facet is cut and its neighbour is not
+    const auto [a, b, c] = mesh.triangles[i];
+    mesh.vertices.push_back(0.4 * mesh.vertices[a] + 0.6 * mesh.vertices[b]);
+    const auto middle = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    mesh.triangles[i] = {a, middle, c};
+    mesh.triangles.push_back({middle, b, c});
+  }
+  VoxMap map;
+  const MeshReport report = reportOf(mesh, &map);
+  EXPECT_EQ(report.t_junctions, 3u);
+  EXPECT_EQ(report.open_edges, 9u);
+  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+}
+
+TEST(FaultyMesh, OneShellAFaceIsASolidEvenIfSomeFaceIn) {
+  // A box of six faces with corners of their own, a hair apart, each face of 2 x 8 x 8 triangles.
+  RandomPoints random(7);
+  const Pose X = random.pose(0.01);
+  const Mesh box = transformed(makeBox({0.016, 0.012, 0.01}), X);
+  for (const bool has_flipped : {false, true}) {
+    Mesh faces;
+    for (std::size_t i = 0; i < 6; ++i) {
+      Mesh face;
+      const auto &t = box.triangles[2 * i], &u = box.triangles[2 * i + 1];
+      const Vec3 a = box.vertices[t[0]], ab = box.vertices[t[1]] - a, ad = box.vertices[u[2]] - a;
+      const Vec3 hair = random.inBox(Vec3::Constant(1e-7));
+      for (int x = 0; x <= 8; ++x)
+        for (int y = 0; y <= 8; ++y) face.vertices.push_back(a + hair + x / 8.0 * ab + y / 8.0 * ad);
+      for (std::uint32_t x = 0; x < 8; ++x)
+        for (std::uint32_t y = 0; y < 8; ++y) {
+          const std::uint32_t v = 9 * x + y;
+          face.triangles.push_back({v, v + 9, v + 10});
+          face.triangles.push_back({v, v + 10, v + 1});
+        }
+      if (has_flipped && i == 3)
+        for (auto& triangle : face.triangles) std::swap(triangle[0], triangle[1]);
+      append(faces, face);
+    }
+    VoxMap map;
+    const MeshReport report = reportOf(faces, &map);
+    EXPECT_EQ(report.shells, 6u);
+    EXPECT_EQ(report.turned_shells, has_flipped ? 1u : 0u);
+    // Cracks of 2 sqrt(3) 1e-7: nodes that near a face may be on either side.
+    const MeshDistance truth(box);
+    EXPECT_EQ(wrongSigns(map, insideOf(box),
+                         [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4e-7; }),
+              0u);
+  }
+}
+
+TEST(FaultyMesh, AFreeSheetHasNoInside) {
+  Mesh mesh = tube();
+  const Vec3 o = bounds(mesh).center() + Vec3(0.02, 0, 0);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {o, o + Vec3(0.01, 0, 0.001), o + Vec3(0, 0.01, 0)});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  VoxMap map;
+  const MeshReport report = reportOf(mesh, &map);
+  EXPECT_EQ(report.sheet_facets, 1u);
+  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  const Vec3 on_sheet = o + Vec3(0.003, 0.003, 0.0003);
+  EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // it is there all the same
+}
+
+TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
+  Mesh mesh = tube();
+  mesh.triangles.erase(mesh.triangles.begin() + 10, mesh.triangles.begin() + 30);
+  append(mesh, transformed(makeBox({0.02, 0.004, 0.004}), Pose(Mat3::Identity(), bounds(mesh).center())));
+  MeshReport report_many, report_one;
+  const VoxMap many = buildVoxMap(mesh, kSettings, "", {}, &report_many);
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const VoxMap one = buildVoxMap(mesh, kSettings, "", {}, &report_one);
+  EXPECT_EQ(describe(report_many), describe(report_one));
+  EXPECT_EQ(report_many.sure, report_one.sure);
+  RandomPoints random(8);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p = many.bounds().center() + random.inBox(many.bounds().size());
+    ASSERT_EQ(many.distance(p), one.distance(p));
+  }
+}
+
+TEST(FaultyMesh, ItsReportReadsAsASentence) {
+  MeshReport report;
+  report.shells = 12;
+  report.open_edges = 34;
+  report.flipped_facets = 1;
+  report.sure = 0.99876;
+  EXPECT_EQ(describe(report),
+            "12 shells, 34 open edges, 1 flipped facet turned; the sign is sure for 99.87 %");
+}
+
+}  // namespace
+}  // namespace vps::test
