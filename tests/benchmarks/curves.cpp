@@ -145,8 +145,16 @@ std::string percent(double part) {
   return number(100 * part) + " %";
 }
 
+/// The motions touch as lightly as they can; a hand presses.
+Motion moved(const Motion& motion, const Vec3& by_m) {
+  return [=](int step) {
+    const Pose X_MP = motion(step);
+    return Pose(X_MP.R, X_MP.p + by_m);
+  };
+}
+
 void budgetCurves(const std::filesystem::path& dir) {
-  constexpr int kPoses = 100;
+  constexpr int kPoses = 60;
   std::vector<std::size_t> budgets;
   for (std::size_t points = 500; points <= 256'000; points *= 2) budgets.push_back(points);
   std::ofstream table(dir / "budget.md");
@@ -157,8 +165,11 @@ void budgetCurves(const std::filesystem::path& dir) {
     Pair pair;
     Motion motion;
   } scenes[] = {{"peg", Pair::PegInPlate, pegMotion(0.1 * kMm)},
+                {"peg_pressed", Pair::PegInPlate, moved(pegMotion(0.1 * kMm), {30e-6, 0, 0})},
                 {"gears", Pair::PlanetInRing, gearMotion(0.1 * kMm)},
-                {"screw", Pair::RodInNut, screwMotion(0.1 * kMm)}};
+                {"gears_pressed", Pair::PlanetInRing, moved(gearMotion(0.1 * kMm), {60e-6, 0, 0})},
+                {"screw", Pair::RodInNut, screwMotion(0.1 * kMm)},
+                {"screw_pressed", Pair::RodInNut, moved(screwMotion(0.1 * kMm), {0, 0, 20e-6})}};
   for (const auto& [name, pair, motion] : scenes) {
     std::ofstream data(dir / (std::string("budget_") + name + ".dat"));
     data << "# max_points read force_rms force_most torque_rms bound complete median_us\n";
