@@ -63,8 +63,8 @@ class LeafReader {
   [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
 
  private:
-  /// Radius of a leaf, in voxels, up to which float offsets keep 3e-5 voxel.
-  static constexpr double kFineEnough = 256;
+  /// Radius of a leaf, in voxels, up to which rounding of floats stays within a step, 6e-5 voxel.
+  static constexpr double kFineEnough = 100;
 
   [[nodiscard]] std::size_t countPoints() const noexcept {
     std::size_t points = 0;

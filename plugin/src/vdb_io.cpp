@@ -438,6 +438,7 @@ class VoxMapFile {
     map.band_m_ = reader.band_m_;
     map.quantum_m_ = quantumOf(map.band_m_);
     map.bounds_ = reader.bounds_;
+    markFarCells(*reader.layout_);
     map.layout_ = reader.layout_;
     return map;
   }

@@ -300,6 +300,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
+  markFarCells(*layout_);
   tell(0.9);
   boundCenters();
   tell(1);

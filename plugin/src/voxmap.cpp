@@ -53,7 +53,8 @@ std::size_t VoxMap::brickCount() const noexcept {
 }
 
 std::size_t VoxMap::memoryBytes() const noexcept {
-  std::size_t bytes = sizeof(VoxLayout) + layout_->bricks.size() * (sizeof(std::uint32_t) + sizeof(float)) +
+  std::size_t bytes = sizeof(VoxLayout) +
+                      layout_->bricks.size() * (sizeof(std::uint32_t) + sizeof(float) + 1) +
                       layout_->pool->size() * VoxPool::kBytes;
   for (const auto& owners : layout_->owners) bytes += owners->size() * sizeof(NodeOwners);
   return bytes;

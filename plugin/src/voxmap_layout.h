@@ -112,6 +112,9 @@ struct VoxLayout {
   std::vector<std::uint32_t> bricks;  ///< of each cell
   /// Of each cell, at its centre: the sign, and a value [m] that the distance to the surface is not below.
   std::vector<float> centers_m;
+  /// Of each cell: it and all those around it are the outer constant. What markFarCells() makes of `bricks`;
+  /// empty where it was not called, which costs queries time alone.
+  std::vector<std::uint8_t> is_far;
   std::shared_ptr<VoxPool> pool;
   std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< what mixed bricks point to
   std::vector<VoxPartRange> parts;
@@ -146,6 +149,9 @@ struct VoxLayout {
     return pool->nodes(bricks[cell]);
   }
 };
+
+/// Fills VoxLayout::is_far, once the bricks are final. What lies beyond the directory is outer constant too.
+void markFarCells(VoxLayout& layout);
 
 /// What a node's unit is worth. A float, so that its product with any node is exact in double, and the full
 /// band exactly VoxMap::band_m().

@@ -77,6 +77,7 @@ class Merger {
       fill(meetings_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
     });
     if (!mixed_->empty()) out_->owners.push_back(mixed_);
+    markFarCells(*out_);
     return out_;
   }
 
