@@ -342,6 +342,14 @@ TEST(ClusterSamples, ASampleIsAPointOfItsClusterAndStandsForItsArea) {
   }
 }
 
+TEST(BudgetQuery, TakesNoMoreRoomThanItSays) {
+  for (const Scene& scene : scenes()) {
+    const double leaves = static_cast<double>(scene.shell.size()) / 16;
+    // Beside the buckets, which every one has.
+    EXPECT_LE(static_cast<double>(BudgetQuery(scene.map, scene.shell).memoryBytes()), 130 * leaves + 20e3);
+  }
+}
+
 TEST(BudgetQuery, AnEmptyShellOrMapTouchesNothing) {
   const PointShell none;
   BudgetQuery without_points(scenes()[0].map, none), without_map(VoxMap(), scenes()[0].shell);
