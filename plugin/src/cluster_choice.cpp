@@ -55,7 +55,7 @@ int ClusterChoice::level(std::uint32_t block) const noexcept {
 }
 
 std::size_t ClusterChoice::memoryBytes() const noexcept {
-  return clusters_.capacity() * sizeof(Cluster) + sorted_.capacity() * sizeof(std::uint64_t) + sizeof *this;
+  return clusters_.capacity() * sizeof(Cluster) + sorted_.capacity() * sizeof(std::uint64_t);
 }
 
 std::size_t ClusterChoice::costOf(std::uint32_t block) const noexcept {

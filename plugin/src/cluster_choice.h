@@ -64,6 +64,7 @@ class ClusterChoice {
   /// What the clusters taken cost.
   [[nodiscard]] std::size_t cost() const noexcept { return cost_; }
   [[nodiscard]] bool wasCutByTime() const noexcept { return is_out_of_time_; }
+  /// Beside its own size.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
  private:

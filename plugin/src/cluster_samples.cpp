@@ -86,6 +86,14 @@ void addBlock(const PointShell& shell, const ShellBlock& block, ClusterSamples& 
 
 ClusterSamples clusterSamples(const PointShell& shell) {
   ClusterSamples samples;
+  const std::size_t blocks = shell.blocks.size() - shell.leaf_blocks;
+  const std::size_t count =
+      shell.blocks.empty() ? 0 : shell.blocks.size() - 1;  // every block's but the root's
+  samples.points.points.reserve(count);
+  samples.points.inward.reserve(count);
+  samples.points.area_m2.reserve(count);
+  samples.points.blocks.reserve(blocks);
+  samples.spheres.reserve(blocks);
   samples.points.spacing_m = shell.spacing_m;
   for (std::size_t b = shell.leaf_blocks; b < shell.blocks.size(); ++b)
     addBlock(shell, shell.blocks[b], samples);

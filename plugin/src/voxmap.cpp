@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/voxmap.h"
 
+#include <algorithm>
 #include <new>
 
 #include "voxmap_layout.h"
@@ -9,7 +10,7 @@
 namespace vps {
 
 VoxPool::VoxPool(std::size_t capacity)
-    : capacity_(capacity + 2),
+    : capacity_(std::min<std::size_t>(2 * capacity + 2, UINT32_MAX / kBrickStride)),
       nodes_(static_cast<NodeValue*>(
           ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{64}))),
       owner_(new std::uint16_t[capacity_]),
@@ -22,11 +23,42 @@ VoxPool::VoxPool(std::size_t capacity)
 }
 
 std::uint32_t VoxPool::take(std::size_t count) noexcept {
+  if (count == 0) return 0;
+  const std::lock_guard lock(mutex_);
   std::size_t first = used_;
-  do {
+  const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
+  if (run != free_.end()) {
+    // From its end: what is left keeps its place in the list, and nothing is allocated.
+    first = run->first + (run->second -= count);
+    if (run->second == 0) free_.erase(run);
+  } else {
     if (first + count > capacity_) return 0;
-  } while (!used_.compare_exchange_weak(first, first + count));
+    used_ = first + count;
+  }
   return static_cast<std::uint32_t>(first * kBrickStride);
+}
+
+void VoxPool::giveBack(std::uint32_t first, std::size_t count) noexcept {
+  const std::lock_guard lock(mutex_);
+  std::size_t begin = first / kBrickStride, end = begin + count;
+  const auto after = free_.find(end);
+  if (after != free_.end()) {
+    end += after->second;
+    free_.erase(after);
+  }
+  auto before = free_.lower_bound(begin);
+  if (before != free_.begin() && (--before)->first + before->second == begin) {
+    begin = before->first;
+    free_.erase(before);
+  }
+  if (end == used_) {
+    used_ = begin;
+    return;
+  }
+  try {
+    free_[begin] = end - begin;
+  } catch (const std::bad_alloc&) {  // lost until the pool goes
+  }
 }
 
 VoxMap::VoxMap() {

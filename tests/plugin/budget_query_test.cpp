@@ -280,9 +280,10 @@ Steepest steepest(double from_m, double step_m, int count, const Force& force) {
 TEST_P(BudgetQueryTest, TheForceHasNoStepsHoweverFineThePosesLie) {
   // Wherever the force changes most over a micrometre, it is looked at in steps of a tenth, and of a
   // hundredth where that changes most. A step of the force would be ten times as steep each time.
+  // A field that places points to whole steps of its own has small ones, with a budget or without.
   constexpr double kLength_m = 400 * kUm;
-  const auto all = steepest(-kLength_m / 2, 1 * kUm, 400,
-                            [&](double s_m) -> Vec3 { return exact(along(scene, s_m)).F_O_M.f; });
+  const auto unlimited = [&](double s_m) -> Vec3 { return exact(along(scene, s_m)).F_O_M.f; };
+  const Steepest all = steepest(-kLength_m / 2, 1 * kUm, 400, unlimited);
   for (const std::size_t max_points : {100u, 500u, 1000u, 2000u, 4000u, 8000u}) {
     const auto force = [&](double s_m) -> Vec3 {
       BudgetReport report;
@@ -294,7 +295,8 @@ TEST_P(BudgetQueryTest, TheForceHasNoStepsHoweverFineThePosesLie) {
     std::printf(
         "  %s, %zu points: %.3g N/m at 1 um, %.3g at 0.1 um, %.3g at 0.01 um; without a budget %.3g\n",
         scene.name, max_points, coarse.N_per_m, fine.N_per_m, finest.N_per_m, all.N_per_m);
-    EXPECT_LE(finest.N_per_m, 3 * std::max(coarse.N_per_m, all.N_per_m));
+    const Steepest here = steepest(fine.at_m, 0.01 * kUm, 10, unlimited);
+    EXPECT_LE(finest.N_per_m, 3 * std::max({coarse.N_per_m, all.N_per_m, here.N_per_m}));
   }
 }
 
@@ -339,6 +341,14 @@ TEST(ClusterSamples, ASampleIsAPointOfItsClusterAndStandsForItsArea) {
     for (std::uint32_t id = leaf.first; id < leaf.first + leaf.count; ++id)
       is_found |= shell.points[id] == samples.points.points[i];
     EXPECT_TRUE(is_found) << i;
+  }
+}
+
+TEST(BudgetQuery, TakesNoMoreRoomThanItSays) {
+  for (const Scene& scene : scenes()) {
+    const double leaves = static_cast<double>(scene.shell.size()) / 16;
+    // Beside the buckets, which every one has.
+    EXPECT_LE(static_cast<double>(BudgetQuery(scene.map, scene.shell).memoryBytes()), 130 * leaves + 20e3);
   }
 }
 

@@ -26,14 +26,15 @@ struct BudgetReport {
   bool is_out_of_time = false;    ///< the clock cut it short, not the choice made beforehand
   std::size_t points_read = 0;    ///< readings of the field, never more than max_points
   std::size_t clusters_left = 0;  ///< clusters that may touch, some of whose share is one sample's
-  double area_left_m2 = 0;      ///< surface of which one sample answers for many points; blended ones in part
-  int coarsest_level = 0;       ///< a sample stood for up to 16^coarsest_level points; 0 when complete
-  double force_error_N = 0;     ///< |f of queryWrench() - f| is no more
-  double torque_error_Nm = 0;   ///< |tau of queryWrench() - tau| is no more
-  double depth_bound_m = 0;     ///< no point of the shell is deeper
-  double least_distance_m = 0;  ///< no point reads less; up to the band, which means that far or farther
-  double nearest_read_m =
-      std::numeric_limits<double>::infinity();  ///< least reading; infinite beyond the band
+  double area_left_m2 = 0;     ///< surface of which one sample answers for many points; blended ones in part
+  int coarsest_level = 0;      ///< a sample stood for up to 16^coarsest_level points; 0 when complete
+  double force_error_N = 0;    ///< |f of queryWrench() - f| is no more
+  double torque_error_Nm = 0;  ///< |tau of queryWrench() - tau| is no more
+  double depth_bound_m = 0;    ///< no point of the shell is deeper
+  /// The shell's least reading lies between these, and is known where they are equal: no point reads less
+  /// than the first (the band means that far or farther), some point reads the second (infinite beyond the
+  /// band). Budget that is left over does not go into it: queryDistance() is for that.
+  double least_distance_m = 0, nearest_read_m = std::numeric_limits<double>::infinity();
   double time_us = 0;
 };
 
@@ -52,7 +53,7 @@ struct BudgetReport {
 /// queryWrench() with a QueryMemory may cost less, and is exact.
 class BudgetQuery {
  public:
-  /// Makes all the room it needs: about 125 bytes for each 16 points. The shell must outlive it and not
+  /// Makes all the room it needs: about 130 bytes for each 16 points. The shell must outlive it and not
   /// change.
   BudgetQuery(const VoxMap& map, const PointShell& shell);
   ~BudgetQuery();
@@ -61,9 +62,9 @@ class BudgetQuery {
 
   /// As queryWrench(), within the budget. With max_points alone the same input gives the same bits, on every
   /// processor. With max_us it does not: time is turned into points by the rate of the calls before (which
-  /// moves slowly, and the force with it), and the clock is looked at before each 256 points, so that it
-  /// ends by a batch of these after max_us at most, if the system lets it run; what is not read by then is
-  /// answered for by its coarser samples. A budget too small for the sixteen coarsest samples gives a zero
+  /// moves slowly, and the force with it), and the clock is looked at before each 256 points, so that it ends
+  /// a batch of these after max_us at most, if the system lets it run; what is not read by then is answered
+  /// for by its coarser samples. A budget too small for the sixteen coarsest samples gives a zero
   /// wrench, and its error. One thread at a time. Never throws, allocates, locks.
   /// @param options  gradient and simd; the others are not used
   /// @param out      wrench, area and volume estimate the whole shell; count and max_depth_m are of the
