@@ -44,8 +44,10 @@ class LeafReader {
  public:
   LeafReader(const Reading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
 
-  void add(std::uint32_t leaf) noexcept {
-    const ShellBlock& block = reading_.shell.blocks[leaf];
+  void add(std::uint32_t leaf) noexcept { add(reading_.shell.blocks[leaf], leaf); }
+
+  /// A leaf with other weights than the shell's. The block is looked at until kBatch more have been added.
+  void add(const ShellBlock& block, std::uint32_t leaf) noexcept {
     if (block.radius_m > kFineEnough * reading_.field.voxel_m) {
       flush();
       readOneByOne(block, leaf);

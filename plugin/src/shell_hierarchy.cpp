@@ -119,18 +119,6 @@ void repeatFirstLane(ShellBlock& block) {
   }
 }
 
-ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf) {
-  ShellBlock block;
-  setSphere(block, leaf.center, leaf.radius_m);
-  block.first = leaf.first;
-  block.count = leaf.count;
-  block.is_leaf = 1;
-  for (std::uint32_t i = 0; i < leaf.count; ++i)
-    setLane(block, i, shell.points[leaf.first + i], shell.area_m2[leaf.first + i]);
-  repeatFirstLane(block);
-  return block;
-}
-
 /// Around up to sixteen blocks in a row.
 ShellBlock parentBlock(std::span<const ShellBlock> children, std::size_t first) {
   const auto centerOf = [](const ShellBlock& b) { return Vec3(b.center[0], b.center[1], b.center[2]); };
@@ -181,6 +169,18 @@ std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points) {
   nodes.reserve(2 * (points.size() / kLeafPoints + 1));
   addNodes(points, 0, points.size(), nodes);
   return nodes;
+}
+
+ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf) {
+  ShellBlock block;
+  setSphere(block, leaf.center, leaf.radius_m);
+  block.first = leaf.first;
+  block.count = leaf.count;
+  block.is_leaf = 1;
+  for (std::uint32_t i = 0; i < leaf.count; ++i)
+    setLane(block, i, shell.points[leaf.first + i], shell.area_m2[leaf.first + i]);
+  repeatFirstLane(block);
+  return block;
 }
 
 void layOutBlocks(PointShell& shell) {

@@ -19,6 +19,9 @@ std::vector<std::uint32_t> sortedOrder(std::span<const Vec3> points);
 /// fewer.
 std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points);
 
+/// Up to sixteen points in a row of a shell as a block, about the node's centre.
+ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf);
+
 /// Fills shell.blocks from its points, areas and the leaves of its nodes.
 void layOutBlocks(PointShell& shell);
 
