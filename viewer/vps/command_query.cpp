@@ -15,6 +15,7 @@
 #include "progress_bar.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps/budget_query.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps/query.h"
@@ -110,6 +111,7 @@ VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string
 struct Side {
   VoxMap map;
   PointShell shell;
+  std::optional<BudgetQuery> within_budget;  ///< made when first asked for
 
   Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
        const std::string& points_name, const std::optional<VoxMapCache>& cache, const Progress& progress)
@@ -118,19 +120,40 @@ struct Side {
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
 };
 
+/// How a wrench is asked for: all of it, or within a budget.
+struct Asking {
+  Gradient gradient = Gradient::Continuous;
+  double k_N_per_m3 = 0;
+  std::optional<QueryBudget> budget;
+
+  Asking(const QueryArguments& given, const Fidelity& fidelity)
+      : gradient(fidelity.gradient), k_N_per_m3(given.stiffness_N_per_m3) {
+    if (given.budget_points == 0 && given.budget_us == 0) return;
+    budget.emplace();
+    if (given.budget_points > 0) budget->max_points = given.budget_points;
+    if (given.budget_us > 0) budget->max_us = given.budget_us;
+  }
+};
+
 struct SideAnswer {
   QueryResult distance;
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_M;  ///< on the shell's part about p_MO
+  BudgetReport left;
 };
 
-SideAnswer ask(const Side& side, const Pose& X_MP, const Vec3& p_MO, const Fidelity& fidelity,
-               double k_N_per_m3) {
+SideAnswer ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Asking& asking) {
   SideAnswer answer;
   TouchSummary sum;
-  answer.points_tested =
-      queryWrench(side.map, side.shell, X_MP, {.gradient = fidelity.gradient}, k_N_per_m3, p_MO, sum)
-          .points_tested;
+  const QueryOptions options = {.gradient = asking.gradient};
+  if (asking.budget) {
+    if (!side.within_budget) side.within_budget.emplace(side.map, side.shell);
+    answer.left = side.within_budget->run(X_MP, options, asking.k_N_per_m3, p_MO, *asking.budget, sum);
+    answer.points_tested = answer.left.points_read;
+  } else {
+    answer.points_tested =
+        queryWrench(side.map, side.shell, X_MP, options, asking.k_N_per_m3, p_MO, sum).points_tested;
+  }
   answer.contact_count = sum.count;
   answer.F_M = sum.F_O_M;
   answer.distance = queryDistance(side.map, side.shell, X_MP);
@@ -144,20 +167,22 @@ bool isSaturated(const QueryResult& found, const VoxMap& map) {
 
 /// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
 /// half.
-PoseAnswer answerAt(const Pose& X_AB, const Side& b_in_a, const std::optional<Side>& a_in_b,
-                    const Fidelity& fidelity, double k_N_per_m3) {
+PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Asking& asking) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
-  const SideAnswer first = ask(b_in_a, X_AB, X_AB.p, fidelity, k_N_per_m3);
+  const SideAnswer first = ask(b_in_a, X_AB, X_AB.p, asking);
   answer.min_distance_m = first.distance.min_distance_m;
   answer.is_beyond = first.distance.is_beyond_band;
   answer.is_saturated = isSaturated(first.distance, b_in_a.map);
   answer.contact_count = first.contact_count;
   answer.points_tested = first.points_tested;
   answer.F_Bo_A = first.F_M;
+  answer.clusters_left = first.left.clusters_left;
+  answer.area_left_m2 = first.left.area_left_m2;
+  answer.force_error_N = first.left.force_error_N;
   if (!a_in_b) return answer;
 
-  const SideAnswer second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), fidelity, k_N_per_m3);
+  const SideAnswer second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), asking);
   answer.min_distance_m = std::min(answer.min_distance_m, second.distance.min_distance_m);
   answer.is_beyond = answer.is_beyond && second.distance.is_beyond_band;
   answer.is_saturated = answer.is_saturated || isSaturated(second.distance, a_in_b->map);
@@ -165,6 +190,9 @@ PoseAnswer answerAt(const Pose& X_AB, const Side& b_in_a, const std::optional<Si
   answer.points_tested += second.points_tested;
   const Wrench F_Ao_B = second.F_M;  // on A about B's origin, in B: B gets the opposite
   answer.F_Bo_A = first.F_M * 0.5 + rotated(X_AB.R, -F_Ao_B) * 0.5;
+  answer.clusters_left += second.left.clusters_left;
+  answer.area_left_m2 += second.left.area_left_m2;
+  answer.force_error_N = 0.5 * (first.left.force_error_N + second.left.force_error_N);
   return answer;
 }
 
@@ -186,14 +214,23 @@ double spacingFor(const Mesh& mesh, std::size_t points) {
 }
 
 std::string tableOf(const QueryAnswer& answer) {
-  Table table({"pose", "distance [um]", "depth [um]", "contacts", "tested", "force [N]", "torque [N m]"});
+  std::vector<std::string> head = {"pose",   "distance [um]", "depth [um]",  "contacts",
+                                   "tested", "force [N]",     "torque [N m]"};
+  if (answer.has_budget) head.insert(head.end(), {"left coarse [mm2]", "force off by at most [N]"});
+  Table table(head);
   for (std::size_t i = 0; i < answer.poses.size(); ++i) {
     const PoseAnswer& pose = answer.poses[i];
     const char* const bound = pose.is_beyond ? "> " : pose.is_saturated ? "< " : "";
-    table.add({std::to_string(i + 1), bound + fixed(pose.min_distance_m * 1e6, 2),
-               (pose.is_saturated ? "> " : "") + fixed(pose.maxDepth_m() * 1e6, 2),
-               std::to_string(pose.contact_count), std::to_string(pose.points_tested),
-               fixed(pose.F_Bo_A.f.norm(), 4), fixed(pose.F_Bo_A.tau.norm(), 6)});
+    std::vector<std::string> row = {std::to_string(i + 1),
+                                    bound + fixed(pose.min_distance_m * 1e6, 2),
+                                    (pose.is_saturated ? "> " : "") + fixed(pose.maxDepth_m() * 1e6, 2),
+                                    std::to_string(pose.contact_count),
+                                    std::to_string(pose.points_tested),
+                                    fixed(pose.F_Bo_A.f.norm(), 4),
+                                    fixed(pose.F_Bo_A.tau.norm(), 6)};
+    if (answer.has_budget)
+      row.insert(row.end(), {fixed(pose.area_left_m2 * 1e6, 2), fixed(pose.force_error_N, 2)});
+    table.add(row);
   }
   return table.text();
 }
@@ -217,6 +254,8 @@ int runQuery(const QueryArguments& given) {
   answer.mesh_b = given.mesh_b;
   answer.voxel_m = fidelity.voxel_m;
   answer.point_spacing_m = fidelity.spacing_m;
+  const Asking asking(given, fidelity);
+  answer.has_budget = asking.budget.has_value();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   const auto begun = Clock::now();
   Side b_in_a(mesh_a, mesh_b, fidelity, given.mesh_a, given.mesh_b, cache, bar.progress());
@@ -236,7 +275,7 @@ int runQuery(const QueryArguments& given) {
     PoseAnswer pose;
     for (std::size_t run = 0; run < repeats; ++run) {
       const auto asked = Clock::now();
-      pose = answerAt(poses[i], b_in_a, a_in_b, fidelity, given.stiffness_N_per_m3);
+      pose = answerAt(poses[i], b_in_a, a_in_b, asking);
       us.push_back(secondsSince(asked) * 1e6);
     }
     answer.poses.push_back(pose);
