@@ -31,9 +31,6 @@ namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
-/// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
-constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
-
 /// A feature that reaches a tile.
 struct Reached {
   std::uint32_t tile, feature;

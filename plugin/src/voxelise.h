@@ -18,6 +18,10 @@ class VoxMapBuilder {
   static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
   static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
   static VoxMap packed(const VoxMap& map);
+  static void save(const VoxMap& map, const std::string& file);
+  /// A layout as a map, whose box of the surface is known.
+  static VoxMap wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+                     const Box& bounds);
   /// An empty map on a grid, to which fields are added.
   static VoxMap empty(const VoxMapSettings& settings);
 };

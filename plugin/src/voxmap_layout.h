@@ -48,6 +48,9 @@ constexpr bool isConstant(std::uint32_t brick) {
   return brick <= kInside;
 }
 
+/// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
+inline constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
+
 /// Who owns the nodes of a brick where parts meet.
 using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 
@@ -119,8 +122,11 @@ struct VoxLayout {
   /// without a surface, or where a level set of others was none.
   float steepest = 1;
   /// How far nodes may be from the distance they stand for, in voxels, beside rounding: 0 as voxelised, half
-  /// a cell's diagonal once resampled.
+  /// a cell's diagonal once resampled, what was measured (field_proof.h) in a level set of others.
   float node_error = 0;
+  /// False where signs contradict each other: nodes then stand for no distance at all, and only `steepest` is
+  /// known of them.
+  bool is_metric = true;
 
   void resizeCells() {
     bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);
@@ -152,9 +158,12 @@ struct VoxLayout {
 inline double quantumOf(double band_m) {
   return static_cast<float>(band_m / kFullBand);
 }
-inline NodeValue toNode(double distance_m, double quantum_m) {
-  return static_cast<NodeValue>(
-      std::lround(std::clamp<double>(distance_m / quantum_m, -kFullBand, kFullBand)));
+/// A distance in quanta, |quanta| <= kFullBand, as a node holds it: the nearest whole number, halves away
+/// from zero. Nodes are rounded here and nowhere else; plain arithmetic, so that loops over it become
+/// vectors.
+template <typename Real>
+inline NodeValue nodeOf(Real quanta) {
+  return static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(Real{0.5}, quanta)));
 }
 
 }  // namespace vps

@@ -101,6 +101,7 @@ class Merger {
     out_->parts.insert(out_->parts.end(), b_.parts.begin(), b_.parts.end());
     out_->steepest = std::max(a_.steepest, b_.steepest);
     out_->node_error = std::max(a_.node_error, b_.node_error);
+    out_->is_metric = a_.is_metric && b_.is_metric;
     out_->resizeCells();
     tbb::parallel_for(low.x(), high.x(), [&](int x) {
       for (int y = low.y(); y < high.y(); ++y)
@@ -186,6 +187,7 @@ class AddedMap final : public AddedField {
     parts = layout.parts;
     steepest = layout.steepest;
     node_error = layout.node_error;
+    is_metric = layout.is_metric;
   }
   void write(std::size_t cell, NodeValue* nodes) const override {
     std::copy_n(layout_.nodesOf(cell), kBrickStride, nodes);
