@@ -486,7 +486,7 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
   const double begun_s = wallSeconds();
-  buildModels(scene, options.progress);
+  buildModels(scene, options);
   Procedure procedure(scene, options);
   const double built_s = wallSeconds() - begun_s;
   AssembleResult result = procedure.run();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
 
 namespace vps {
 
@@ -11,6 +12,19 @@ namespace {
 
 bool isEqualGeometry(const Mesh& a, const Mesh& b) {
   return a.triangles == b.triangles && a.vertices == b.vertices;
+}
+
+/// Builds a part's map, or takes it from the cache.
+std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings& settings,
+                                    const ModelOptions& options) {
+  const std::string& name = part.part.name;
+  MeshReport report;
+  auto map = std::make_shared<VoxMap>(options.cache != nullptr
+                                          ? options.cache->build(part.part.mesh, settings, name, {}, &report)
+                                          : buildVoxMap(part.part.mesh, settings, name, {}, &report));
+  if (report.signed_by_winding && options.warn)
+    options.warn(part.file + ": part '" + name + "' is no closed surface: " + describe(report));
+  return map;
 }
 
 }  // namespace
@@ -27,7 +41,8 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity) {
   return settings;
 }
 
-void buildModels(Scene& scene, const Progress& progress) {
+void buildModels(Scene& scene, const ModelOptions& options) {
+  const Progress& progress = options.progress;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     Part& part = scene.parts[i].part;
     if (part.map && part.shell) continue;
@@ -42,8 +57,7 @@ void buildModels(Scene& scene, const Progress& progress) {
         break;
       }
     }
-    if (!part.map)
-      part.map = std::make_shared<VoxMap>(buildVoxMap(part.mesh, voxMapSettings(scene.fidelity), part.name));
+    if (!part.map) part.map = mapOf(scene.parts[i], voxMapSettings(scene.fidelity), options);
     if (!part.shell)
       part.shell = std::make_shared<PointShell>(
           buildPointShell(part.mesh, pointShellSettings(scene.fidelity), part.name));

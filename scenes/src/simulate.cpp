@@ -15,7 +15,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
   const auto begun = std::chrono::steady_clock::now();
-  buildModels(scene, options.progress);
+  buildModels(scene, options);
   Simulation simulation(scene);
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < scene.parts.size(); ++i)

@@ -153,10 +153,11 @@ TEST_F(ContactPatches, GrowFromNothingAndKeepTheirIds) {
 
 TEST_F(ContactPatches, NothingAllocates) {
   const Pose X_MP = sunkBall(0.3 * kMm);
+  const PairSide on_block = block().side(), on_ball = ball().side();  // built here, if not before
   vps_test::NoAllocScope guard;
   summarise(X_MP, 256, patches_);
   TouchSummary sum;
-  queryBothSides(block().side(), ball().side(), X_MP, {}, kStiffness, Vec3::Zero(), sum);
+  queryBothSides(on_block, on_ball, X_MP, {}, kStiffness, Vec3::Zero(), sum);
 }
 
 }  // namespace

@@ -173,8 +173,30 @@ TEST_F(Program, ADepthBeyondTheBandIsSaidToBeABound) {
   EXPECT_NE(deep.out.find("< -1000.00"), std::string::npos) << deep.out;
   EXPECT_EQ(json::parse(slurp(folder_ / "a.json"))["poses"][0]["is_depth_saturated"], true);
   const Ran shallow = run(call + "0.25mm --pose 0,0,0.0085,0,0,0,1");
-  EXPECT_NE(shallow.out.find(" -500.00"), std::string::npos) << shallow.out;
-  EXPECT_EQ(json::parse(slurp(folder_ / "a.json"))["poses"][0]["is_depth_saturated"], false);
+  const json pose = json::parse(slurp(folder_ / "a.json"))["poses"][0];
+  EXPECT_EQ(shallow.out.find("< -"), std::string::npos) << shallow.out;
+  // Half the step in which the map stores distances: the 1 mm band / 32767.
+  EXPECT_NEAR(pose["min_distance_m"], -500e-6, 0.51e-3 / 32767);
+  EXPECT_EQ(pose["is_depth_saturated"], false);
+}
+
+TEST_F(Program, ACacheGivesTheSameAnswerAndADamagedOneAWarning) {
+  const std::string call =
+      "query plate.stl pin.stl --units mm --spacing 1mm --voxel 0.25mm --repeats 1 --cache maps";
+  const auto answer = [](const Ran& ran) { return ran.out.substr(0, ran.out.find("voxel ")); };
+  const Ran without = run(call.substr(0, call.find(" --cache"))), first = run(call), second = run(call);
+  EXPECT_EQ(answer(first), answer(without));
+  EXPECT_EQ(answer(second), answer(without));
+  EXPECT_EQ(second.err, "");
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "maps")) {
+    std::filesystem::resize_file(entry.path(), 1000);
+    ++files;
+  }
+  EXPECT_GE(files, 1u);
+  const Ran third = run(call);
+  EXPECT_EQ(answer(third), answer(without));
+  EXPECT_NE(third.err.find("built again"), std::string::npos) << third.err;
 }
 
 TEST_F(Program, APartFarAwayIsSaidToBeFar) {

@@ -52,6 +52,9 @@ int runAssemble(const AssembleArguments& given) {
 
   AssembleOptions options;
   options.progress = bar.progress();
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  options.cache = cache ? &*cache : nullptr;
+  options.warn = warn;
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
   const AssembleResult result = assemble(scene, options);

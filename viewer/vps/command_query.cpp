@@ -16,6 +16,7 @@
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
 #include "vps/query.h"
 #include "vps_scenes/import.h"
 
@@ -96,14 +97,23 @@ void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
          fixed(voxel_m * 1e3, 3) + " mm: depths in it mean little; take a finer --voxel");
 }
 
+VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string& file,
+             const std::optional<VoxMapCache>& cache, const Progress& progress) {
+  MeshReport report;
+  VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
+                     : buildVoxMap(mesh, settings, file, progress, &report);
+  if (report.signed_by_winding) warn(file + ": is no closed surface: " + describe(report));
+  return map;
+}
+
 /// One side of the test: the points of one mesh against the field of the other.
 struct Side {
   VoxMap map;
   PointShell shell;
 
   Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
-       const std::string& points_name, const Progress& progress)
-      : map(buildVoxMap(field, {.voxel_m = fidelity.voxel_m}, field_name, progress)),
+       const std::string& points_name, const std::optional<VoxMapCache>& cache, const Progress& progress)
+      : map(mapOf(field, {.voxel_m = fidelity.voxel_m}, field_name, cache, progress)),
         shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)) {}
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
 };
@@ -207,11 +217,12 @@ int runQuery(const QueryArguments& given) {
   answer.mesh_b = given.mesh_b;
   answer.voxel_m = fidelity.voxel_m;
   answer.point_spacing_m = fidelity.spacing_m;
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   const auto begun = Clock::now();
-  Side b_in_a(mesh_a, mesh_b, fidelity, given.mesh_a, given.mesh_b, bar.progress());
+  Side b_in_a(mesh_a, mesh_b, fidelity, given.mesh_a, given.mesh_b, cache, bar.progress());
   std::optional<Side> a_in_b;
   if (fidelity.sides == Sides::Both)
-    a_in_b.emplace(mesh_b, mesh_a, fidelity, given.mesh_b, given.mesh_a, bar.progress());
+    a_in_b.emplace(mesh_b, mesh_a, fidelity, given.mesh_b, given.mesh_a, cache, bar.progress());
   answer.build_wall_s = secondsSince(begun);
   answer.points_total = b_in_a.shell.size() + (a_in_b ? a_in_b->shell.size() : 0);
   answer.memory_bytes = b_in_a.memoryBytes() + (a_in_b ? a_in_b->memoryBytes() : 0);

@@ -47,6 +47,9 @@ int runSimulate(const SimulateArguments& given) {
   std::string rows;
   SimulateOptions options;
   options.progress = bar.progress();
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  options.cache = cache ? &*cache : nullptr;
+  options.warn = warn;
   if (!given.trace.empty())
     options.trace = [&rows](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
       if (rows.empty()) rows = traceHead(bodies);

@@ -4,10 +4,12 @@
 // line and 2.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vps/fidelity.h"
+#include "vps/voxmap_cache.h"
 #include "vps_scenes/scene.h"
 
 namespace vps {
@@ -28,6 +30,7 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
 
 struct AssembleArguments {
   std::string scene;
+  std::string cache;  ///< folder for voxmaps; empty: none
   std::string out = "out";
   std::string json;
   FidelityArguments fidelity;
@@ -38,6 +41,7 @@ int runAssemble(const AssembleArguments& given);
 
 struct SimulateArguments {
   std::string scene;
+  std::string cache;  ///< as in AssembleArguments
   double seconds = 1;
   std::string trace, json;
   FidelityArguments fidelity;
@@ -48,6 +52,7 @@ struct QueryArguments {
   std::string mesh_a, mesh_b;
   std::string pose, poses;  ///< "x,y,z,qx,qy,qz,qw", or a file of such lines
   std::string units, json;
+  std::string cache;  ///< as in AssembleArguments
   FidelityArguments fidelity;
   double stiffness_N_per_m3 = 1e12;
   int repeats = 0;  ///< timed runs of each pose; 0: as many as make 100 in all
@@ -70,6 +75,9 @@ struct SnapshotArguments {
   int tolerance = 2;
 };
 int runSnapshot(const SnapshotArguments& given);
+
+/// The cache in a folder, telling of its troubles on stderr; none for an empty name.
+std::optional<VoxMapCache> cacheFrom(const std::string& folder);
 
 /// The views that --view knows.
 std::vector<std::string> viewNames();

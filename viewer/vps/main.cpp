@@ -88,6 +88,10 @@ class CommandLine {
                         "one: moving points against the fixed field; both: the reverse too");
   }
 
+  static void addCache(CLI::App* command, std::string& folder) {
+    command->add_option("--cache", folder, "keep voxmaps there, and take them from there")->type_name("DIR");
+  }
+
   static void addJson(CLI::App* command, std::string& json) {
     command->add_option("--json", json, "write the numbers there")->type_name("FILE");
   }
@@ -104,6 +108,7 @@ class CommandLine {
     command->add_flag("!--no-pictures", assemble_.has_pictures, "tables, plots and data only");
     command->add_flag("--stop-at-failure", assemble_.stops_at_failure, "end at the first step that fails");
     addFidelity(command, assemble_.fidelity);
+    addCache(command, assemble_.cache);
     addJson(command, assemble_.json);
   }
 
@@ -117,6 +122,7 @@ class CommandLine {
         ->type_name("S");
     command->add_option("--trace", simulate_.trace, "one CSV row per step")->type_name("FILE");
     addFidelity(command, simulate_.fidelity);
+    addCache(command, simulate_.cache);
     addJson(command, simulate_.json);
   }
 
@@ -140,6 +146,7 @@ class CommandLine {
     command->add_option("--repeats", query_.repeats, "timed runs of each pose (left out: 100 runs in all)")
         ->check(CLI::Range(1, 1000000));
     addFidelity(command, query_.fidelity);
+    addCache(command, query_.cache);
     points->excludes(command->get_option("--spacing"))->check(CLI::Range(1, 100000000));
     addJson(command, query_.json);
   }

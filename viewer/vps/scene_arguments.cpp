@@ -29,6 +29,11 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
   return base;
 }
 
+std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
+  if (folder.empty()) return std::nullopt;
+  return VoxMapCache(folder, warn);
+}
+
 Scene sceneFrom(const std::string& file, const FidelityArguments& given,
                 const std::vector<std::string>& outputs) {
   Scene scene = loadScene(file);

@@ -79,6 +79,7 @@ class VoxMap {
 
  private:
   friend class VoxMapBuilder;
+  friend class VoxMapCacheFile;
   friend class VoxSampler;
   friend struct FieldView;
   double voxel_m_ = 0, band_m_ = 0, quantum_m_ = 0;

@@ -4,14 +4,13 @@
 
 #include <atomic>
 
-#include "vps/progress.h"
+#include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
 namespace vps {
 
-struct AssembleOptions {
-  Progress progress;
+struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< place a part that failed at its target and go on with the next step
   const std::atomic<bool>* stop = nullptr;  ///< set it to end early; the result then says "stopped"
 };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vps/progress.h"
+#include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
@@ -18,8 +18,7 @@ struct BodyState {
   Twist V_WP_W;  ///< of the part's origin, in W
 };
 
-struct SimulateOptions {
-  Progress progress;
+struct SimulateOptions : ModelOptions {
   /// Called after every step; empty: no trace.
   std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
 };

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cache gives what building gives, to the bit, whatever has happened to its files.
+#include "vps/voxmap_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <thread>
+
+#include "support/analytic.h"
+#include "support/temporary_folder.h"
+#include "vps/load_error.h"
+#include "vps/mesh_repair.h"
+
+namespace vps::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr VoxMapSettings kSettings = {0.5e-3, 4};
+
+Mesh part() {
+  return transformed(makeTube(0.01, 0.006, 0.012, 48), RandomPoints(2).pose(0.01));
+}
+
+std::string bytesOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+void write(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// Everything that can be asked of two maps is the same, to the bit.
+void expectSame(const VoxMap& a, const VoxMap& b) {
+  ASSERT_EQ(a.brickCount(), b.brickCount());
+  EXPECT_EQ(a.voxel_m(), b.voxel_m());
+  EXPECT_EQ(a.band_m(), b.band_m());
+  EXPECT_EQ(a.quantum_m(), b.quantum_m());
+  EXPECT_EQ(a.bounds().min, b.bounds().min);
+  EXPECT_EQ(a.bounds().max, b.bounds().max);
+  EXPECT_EQ(a.sampleError_m(), b.sampleError_m());
+  RandomPoints random(7);
+  for (int n = 0; n < 5000; ++n) {
+    const Vec3 p = a.bounds().center() + random.inBox(0.8 * a.bounds().size());
+    ASSERT_EQ(a.distance(p), b.distance(p));
+    ASSERT_EQ(a.normal(p), b.normal(p));
+    ASSERT_EQ(a.lowerBound(p), b.lowerBound(p));
+    ASSERT_EQ(a.leastDistance(p), b.leastDistance(p));
+    ASSERT_EQ(a.owner(p), b.owner(p));
+  }
+}
+
+class VoxMapCacheTest : public testing::Test {
+ protected:
+  VoxMap build(const Mesh& mesh, MeshReport* report = nullptr) {
+    return cache_.build(mesh, kSettings, "hub", {}, report);
+  }
+  /// What is built from `bytes` in place of the file of part().
+  VoxMap rebuilt(const std::string& bytes) {
+    warnings_.clear();
+    write(cache_.fileOf(part(), kSettings), bytes);
+    return build(part());
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::string> warnings_;
+  VoxMapCache cache_{folder_.path() / "maps", [this](const std::string& w) { warnings_.push_back(w); }};
+};
+
+TEST_F(VoxMapCacheTest, TheSecondMapIsTheFirstToTheBitAndIsNotBuilt) {
+  const VoxMap direct = buildVoxMap(part(), kSettings);
+  expectSame(build(part()), direct);
+  ASSERT_TRUE(fs::exists(cache_.fileOf(part(), kSettings)));
+  int calls = 0;
+  const VoxMap kept = cache_.build(part(), kSettings, "hub", [&](std::string_view, double) { ++calls; });
+  EXPECT_EQ(calls, 0);
+  expectSame(kept, direct);
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(VoxMapCacheTest, AFaultyMeshKeepsItsReport) {
+  Mesh open = part();
+  open.triangles.resize(open.triangles.size() - 3);
+  MeshReport first, second;
+  const VoxMap built = build(open, &first);
+  expectSame(build(open, &second), built);
+  EXPECT_TRUE(first.signed_by_winding);
+  EXPECT_EQ(describe(first), describe(second));
+  EXPECT_EQ(first.sure, second.sure);
+}
+
+TEST_F(VoxMapCacheTest, ADifferenceInTheLastBitIsAnotherPart) {
+  Mesh other = part();
+  other.vertices[5].x() = std::nextafter(other.vertices[5].x(), 1.0);
+  Mesh turned = part();
+  std::rotate(turned.triangles[0].begin(), turned.triangles[0].begin() + 1, turned.triangles[0].end());
+  std::set<fs::path> files = {cache_.fileOf(part(), kSettings), cache_.fileOf(other, kSettings),
+                              cache_.fileOf(turned, kSettings), cache_.fileOf(part(), {0.5e-3, 3}),
+                              cache_.fileOf(part(), {0.4e-3, 4})};
+  EXPECT_EQ(files.size(), 5u);
+}
+
+TEST_F(VoxMapCacheTest, EveryDamagedFileIsBuiltAgainWithAWarningAndReplaced) {
+  const VoxMap direct = build(part());
+  const fs::path file = cache_.fileOf(part(), kSettings);
+  const std::string good = bytesOf(file);
+  std::vector<std::string> damaged = {"", "vpscache", std::string(5000, 'x'), good + "x"};
+  for (const std::size_t length : {good.size() / 2, good.size() - 1, std::size_t{144}, std::size_t{150}})
+    damaged.push_back(good.substr(0, length));
+  // Any bit of the header, and some of what follows.
+  for (std::size_t i = 0; i < good.size(); i += i < 160 ? 1 : good.size() / 40) {
+    damaged.push_back(good);
+    damaged.back()[i] = static_cast<char>(damaged.back()[i] ^ (1 << i % 8));
+  }
+  for (const std::string& bytes : damaged) {
+    const VoxMap map = rebuilt(bytes);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("built again"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(map.distance({0.002, 0, 0}), direct.distance({0.002, 0, 0}));
+    ASSERT_EQ(bytesOf(file), good);
+  }
+}
+
+TEST_F(VoxMapCacheTest, AFileOfAnotherPartUnderItsNameIsNotTrusted) {
+  build(makeBox({0.01, 0.01, 0.01}));
+  const VoxMap map = rebuilt(bytesOf(cache_.fileOf(makeBox({0.01, 0.01, 0.01}), kSettings)));
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_NE(warnings_[0].find("of another part"), std::string::npos) << warnings_[0];
+  expectSame(map, buildVoxMap(part(), kSettings));
+}
+
+TEST_F(VoxMapCacheTest, AFolderThatCannotBeMadeCostsAWarningNotTheMap) {
+  write(folder_.path() / "maps", "a file where the folder should be");
+  expectSame(build(part()), buildVoxMap(part(), kSettings));
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_NE(warnings_[0].find("could not be kept"), std::string::npos) << warnings_[0];
+  EXPECT_EQ(bytesOf(folder_.path() / "maps"), "a file where the folder should be");
+}
+
+TEST_F(VoxMapCacheTest, WhatBuildingRefusesIsRefusedAndNotKept) {
+  EXPECT_THROW(build(Mesh{}), LoadError);
+  EXPECT_FALSE(fs::exists(folder_.path() / "maps"));
+}
+
+TEST_F(VoxMapCacheTest, ManyAtOnceLeaveOneWholeFile) {
+  std::vector<std::thread> threads;
+  std::vector<VoxMap> maps(4);
+  for (VoxMap& map : maps)
+    threads.emplace_back([&] {
+      const VoxMapCache own(folder_.path() / "maps");
+      for (int n = 0; n < 5; ++n) map = own.build(part(), kSettings);
+    });
+  for (std::thread& t : threads) t.join();
+  for (const VoxMap& map : maps) expectSame(map, maps[0]);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "maps"), {}), 1);
+  expectSame(build(part()), maps[0]);
+  EXPECT_TRUE(warnings_.empty());
+}
+
+}  // namespace
+}  // namespace vps::test
