@@ -137,7 +137,7 @@ void BrickWriter::take(std::size_t count) {
   first_ = takeBricks(layout_, count);
 }
 
-void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance) {
+std::uint32_t BrickWriter::write(std::size_t slot, BrickNodes& distance) {
   saturate(distance, static_cast<float>(kFullBand / per_unit_));
   const std::uint32_t brick = first_ + static_cast<std::uint32_t>(slot) * kBrickStride;
   NodeValue* nodes = layout_.pool->nodes(brick);
@@ -145,7 +145,7 @@ void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance
   std::fill(nodes + kBrickNodes, nodes + kBrickStride, NodeValue{0});
   layout_.pool->owner(brick) = 0;
   layout_.pool->mixed(brick) = nullptr;
-  layout_.bricks[cell] = brick;
+  return brick;
 }
 
 void fillEmptyCells(VoxLayout& layout) {

@@ -33,9 +33,9 @@ class BrickWriter {
 
   /// Makes room for a batch. Not thread-safe.
   void take(std::size_t count);
-  /// Stores a brick in place `slot` of the last batch, saturated, and names it in the directory. Thread-safe
-  /// for different slots and cells. Known nodes must be within the band.
-  void write(std::size_t slot, std::size_t cell, BrickNodes& distance);
+  /// Stores a brick in place `slot` of the last batch, saturated; its name. Thread-safe for different slots.
+  /// Known nodes must be within the band.
+  std::uint32_t write(std::size_t slot, BrickNodes& distance);
 
  private:
   VoxLayout& layout_;

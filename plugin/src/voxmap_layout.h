@@ -127,6 +127,12 @@ struct VoxLayout {
   /// False where signs contradict each other: nodes then stand for no distance at all, and only `steepest` is
   /// known of them.
   bool is_metric = true;
+  /// Where a map is fine in regions only (coarse_nodes.h): the field of all other cells, on a grid coarser by
+  /// 2^coarse_shift with the same quantum; null elsewhere. Such cells are named `elsewhere`, a brick of
+  /// -band, which is a bound of everything.
+  std::shared_ptr<const VoxLayout> coarse;
+  int coarse_shift = 0;
+  std::uint32_t elsewhere = kOutside;
 
   void resizeCells() {
     bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);
@@ -146,6 +152,10 @@ struct VoxLayout {
   }
   [[nodiscard]] bool holds(const Index3& cell) const noexcept {
     return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
+  }
+  /// Whether a brick holds its cell's nodes.
+  [[nodiscard]] bool hasOwnNodes(std::uint32_t brick) const noexcept {
+    return !isConstant(brick) && brick != elsewhere;
   }
   /// The nodes of a cell's brick.
   [[nodiscard]] const NodeValue* nodesOf(std::size_t cell) const noexcept {

@@ -177,6 +177,8 @@ VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
+  VoxMapBuilder::requireOneGrid(cooked, "combined");
+  VoxMapBuilder::requireOneGrid(*part.map, "resampled");
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
   return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);
