@@ -115,13 +115,12 @@ void readElsewhere(const FieldView& field, int count, ReadBatch& batch) noexcept
     for (int i = kLanes * slot; i < kLanes * (slot + 1); ++i) {
       if (field.bricks[batch.cell[i]] != layout.elsewhere) continue;
       has_any = true;
-      const float at[3] = {batch.x[i], batch.y[i], batch.z[i]};
+      const std::int32_t at[3] = {batch.x[i], batch.y[i], batch.z[i]};
       Index3 low = origin;
       float t[3];
       for (int k = 0; k < 3; ++k) {
-        const int whole = static_cast<int>(at[k]);
-        low[k] += batch.base[slot][k] + whole;
-        t[k] = at[k] - static_cast<float>(whole);
+        low[k] += batch.base[slot][k] + (at[k] >> kStepBits);
+        t[k] = static_cast<float>(at[k] & (kSteps - 1)) / kSteps;
       }
       NodeValue d[8];
       coarse.corners(low, d);

@@ -48,7 +48,7 @@ class CoherentWalk {
 
  private:
   /// What positions, readings and sums are rounded by at most, generously: it only costs a little culling.
-  static constexpr double kRounding = 1e-4;
+  static constexpr double kRounding = 3e-4;
 
   struct Reader {
     CoherentWalk* self;

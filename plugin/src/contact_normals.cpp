@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_normals.h"
 
-#include <cmath>
-
 namespace vps {
 namespace {
 
 float mix(float a, float b, float t) {
   return a + t * (b - a);
+}
+
+/// Of a voxel, of a position in steps.
+float fractionOf(std::int32_t steps) {
+  return static_cast<float>(steps & (kSteps - 1)) / kSteps;
 }
 
 /// Derivative of the trilinear distance, in quanta, from the corners that the leaf's read fetched.
@@ -18,9 +21,8 @@ void trilinearGradient(const ReadLeaf& leaf, int i, float g[3]) {
     d[2 * k] = static_cast<float>(static_cast<std::int16_t>(pair & 0xffff));
     d[2 * k + 1] = static_cast<float>(pair >> 16);
   }
-  const float x = leaf.batch.x[i] - std::floor(leaf.batch.x[i]);
-  const float y = leaf.batch.y[i] - std::floor(leaf.batch.y[i]);
-  const float z = leaf.batch.z[i] - std::floor(leaf.batch.z[i]);
+  const float x = fractionOf(leaf.batch.x[i]), y = fractionOf(leaf.batch.y[i]),
+              z = fractionOf(leaf.batch.z[i]);
   g[0] = mix(mix(d[4] - d[0], d[5] - d[1], z), mix(d[6] - d[2], d[7] - d[3], z), y);
   g[1] = mix(mix(d[2] - d[0], d[3] - d[1], z), mix(d[6] - d[4], d[7] - d[5], z), x);
   g[2] = mix(mix(d[1] - d[0], d[3] - d[2], y), mix(d[5] - d[4], d[7] - d[6], y), x);
@@ -37,13 +39,12 @@ void ContactNormals::add(const ReadLeaf& leaf, int lane) noexcept {
     ++count_;
     return;
   }
-  const float at[3] = {leaf.batch.x[i], leaf.batch.y[i], leaf.batch.z[i]};
+  const std::int32_t at[3] = {leaf.batch.x[i], leaf.batch.y[i], leaf.batch.z[i]};
   for (int k = 0; k < kReads; ++k)
     for (int axis = 0; axis < 3; ++axis) {
-      const auto whole = static_cast<std::int32_t>(at[axis]);
       const int step = k / 2 != axis ? 0 : k % 2 != 0 ? 1 : -1;
-      whole_[axis][kReads * count_ + k] = leaf.batch.base[leaf.slot][axis] + whole + step;
-      t_[axis][kReads * count_ + k] = at[axis] - static_cast<float>(whole);
+      whole_[axis][kReads * count_ + k] = leaf.batch.base[leaf.slot][axis] + (at[axis] >> kStepBits) + step;
+      t_[axis][kReads * count_ + k] = fractionOf(at[axis]);
     }
   ++count_;
 }

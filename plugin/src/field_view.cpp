@@ -18,6 +18,7 @@ FieldView::FieldView(const VoxMap& map) noexcept
     : nodes(map.layout_->pool->nodes(0)),
       bricks(map.layout_->bricks.data()),
       centers_m(map.layout_->centers_m.data()),
+      is_far(map.layout_->is_far.empty() ? nullptr : map.layout_->is_far.data()),
       voxel_m(map.voxel_m_),
       quantum_m(map.quantum_m_) {
   const VoxLayout& layout = *map.layout_;
@@ -31,6 +32,7 @@ FieldView::FieldView(const VoxMap& map) noexcept
     size[0] = size[1] = size[2] = 1;
     voxel_m = voxel_m > 0 ? voxel_m : 1;
   }
+  for (int k = 0; k < 3; ++k) half[k] = 0.5 * VoxMap::kBrick * size[k];
   for (int k = 0; k < 3; ++k) {
     box[0][k] = static_cast<float>(map.bounds_.min[k] / voxel_m - low[k]);
     box[1][k] = static_cast<float>(map.bounds_.max[k] / voxel_m - low[k]);
@@ -49,11 +51,12 @@ FieldView::FieldView(const VoxMap& map) noexcept
 Motion::Motion(const FieldView& field, const Pose& X_MP) noexcept {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      R[3 * i + j] = X_MP.R(i, j) / field.voxel_m;
-      r[3 * i + j] = static_cast<float>(R[3 * i + j]);
+      R[3 * i + j] = column[j][i] = X_MP.R(i, j) / field.voxel_m;
+      r[3 * i + j] = static_cast<float>(kSteps * R[3 * i + j]);
     }
     p[i] = X_MP.p[i] / field.voxel_m - field.low[i];
   }
+  p[3] = column[0][3] = column[1][3] = column[2][3] = 0;
 }
 
 }  // namespace vps

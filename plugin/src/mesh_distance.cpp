@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "mesh_edges.h"
@@ -12,6 +13,10 @@ namespace vps {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 4;
+/// Twice the area over the longest edge's square, below which corners are collinear but for rounding.
+constexpr double kLeastSlimness = 1e-10;
+/// How near is touching, in sizes of the mesh: above the height of what is thin.
+constexpr double kTouch = 1e-9;
 /// Halving by count makes the depth log2(2^32 / kLeafTriangles) at most; one waiting child a level.
 constexpr int kStack = 64;
 
@@ -23,6 +28,12 @@ double boxDistance2(const Vec3& p, const Vec3& min, const Vec3& max) {
 Vec3 unitOrZero(const Vec3& v) {
   const double length = v.norm();
   return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = (b - a).cross(c - a);
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
+  return n.norm() > kLeastSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
 }
 
 /// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
@@ -45,11 +56,17 @@ void MeshDistance::computeNormals() {
   const std::size_t count = mesh_.triangles.size();
   face_normals_.resize(count);
   edge_normals_.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  is_thin_.assign(count, 0);
+  is_edge_of_thin_.assign(count, 0);
+  is_corner_of_thin_.assign(mesh_.vertices.size(), 0);
+  if (count > 0) touch_m_ = kTouch * bounds(mesh_).size().norm();
   vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& t = mesh_.triangles[i];
     const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-    face_normals_[i] = unitOrZero((corner[1] - corner[0]).cross(corner[2] - corner[0]));
+    face_normals_[i] = normalOrZero(corner[0], corner[1], corner[2]);
+    is_thin_[i] = face_normals_[i].isZero(0);
+    for (int k = 0; k < 3 && is_thin_[i] != 0; ++k) is_corner_of_thin_[t[k]] = 1;
     for (int k = 0; k < 3; ++k) {
       const double angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
       vertex_normals_[t[k]] += angle_rad * face_normals_[i];
@@ -58,7 +75,12 @@ void MeshDistance::computeNormals() {
   forEachEdge(sortedHalfEdges(mesh_), [&](std::span<const HalfEdge> same) {
     Vec3 sum = Vec3::Zero();
     for (const HalfEdge& e : same) sum += face_normals_[e.triangle];
-    for (const HalfEdge& e : same) edge_normals_[e.triangle][e.side] = unitOrZero(sum);
+    const bool is_beside_thin =
+        std::any_of(same.begin(), same.end(), [&](const HalfEdge& e) { return is_thin_[e.triangle] != 0; });
+    for (const HalfEdge& e : same) {
+      edge_normals_[e.triangle][e.side] = unitOrZero(sum);
+      if (is_beside_thin) is_edge_of_thin_[e.triangle] |= static_cast<std::uint8_t>(1 << e.side);
+    }
   });
   for (Vec3& n : vertex_normals_) n = unitOrZero(n);
 }
@@ -152,7 +174,9 @@ MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const n
     feature = at.feature;
   });
   best.distance_m = best.found ? std::sqrt(best2) : max_m;
-  if (best.found) best.normal = featureNormal(best.triangle, feature);
+  if (best.found)
+    best.normal =
+        isBesideThin(best.triangle, feature) ? normalThrough(best.q) : featureNormal(best.triangle, feature);
   return best;
 }
 
@@ -166,6 +190,40 @@ double MeshDistance::signedDistance(const Vec3& p, double max_m) const noexcept 
   const Closest nearest = closest(p, max_m);
   const bool is_inside = nearest.found && nearest.normal.dot(p - nearest.q) < 0;
   return is_inside ? -nearest.distance_m : nearest.distance_m;
+}
+
+bool MeshDistance::isBesideThin(std::uint32_t triangle, int feature) const noexcept {
+  if (is_thin_[triangle] != 0) return true;
+  if (feature == 0) return false;
+  if (feature <= 3) return (is_edge_of_thin_[triangle] >> (feature - 1) & 1) != 0;
+  return is_corner_of_thin_[mesh_.triangles[triangle][feature - 4]] != 0;
+}
+
+/// The pseudonormal at a point of the surface, from all facets that touch it: each by the angle that it takes
+/// of the directions around.
+Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
+  Vec3 sum = Vec3::Zero();
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const Node& node = nodes_[stack[--waiting]];
+    if (boxDistance2(q, node.min, node.max) > touch_m_ * touch_m_) continue;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& t = mesh_.triangles[order_[i]];
+      const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+      if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_) continue;
+      double angle_rad = std::numbers::pi;
+      for (int k = 0; k < 3; ++k)
+        if ((corner[k] - q).norm() <= touch_m_)
+          angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+      sum += angle_rad * face_normals_[order_[i]];
+    }
+    if (node.count > 0) continue;
+    stack[waiting++] = node.first;
+    stack[waiting++] = node.first + 1;
+  }
+  return unitOrZero(sum);
 }
 
 Vec3 MeshDistance::featureNormal(std::uint32_t triangle, int feature) const noexcept {

@@ -2,8 +2,8 @@
 // The wrench of all touching points without a list of them: what a haptic loop needs.
 //
 // Sums have one order for every processor and every way of culling: sixteen lanes, leaf by leaf in ascending
-// order within a group of 256 leaves; lanes by halves; groups in ascending order. A leaf that does not touch
-// adds nothing.
+// order within a row of sixteen leaves; rows in ascending order within a group of 256 leaves; lanes by
+// halves; groups in ascending order. A leaf that does not touch adds nothing.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -54,12 +54,9 @@ class WrenchCollector {
   void take(const ReadLeaf& leaf) noexcept {
     least_ = std::min(least_, leaf.least());
     if (!(leaf.least() < 0)) return;
-    const std::uint32_t group = leaf.index / kGroupLeaves;
-    if (group != group_) finishGroup();
-    group_ = group;
-    has_sums_ = true;
+    startRow(leaf.index / kLanes);
     if (gradient_ == Gradient::Trilinear) {
-      std::uint32_t lost = reading_.kernels.touch(leaf.batch, leaf.slot, leaf.block, reference_, sums_);
+      std::uint32_t lost = reading_.kernels.touch(leaf.batch, leaf.slot, leaf.block, reference_, row_sums_);
       for (int lane = 0; lost != 0; ++lane, lost >>= 1)
         if (lost & 1) addForce(entryOf(leaf, lane), inwardOf(leaf, lane));
     } else {
@@ -68,7 +65,10 @@ class WrenchCollector {
     }
   }
 
-  void finish() noexcept { finishGroup(); }
+  void finish() noexcept {
+    finishRow();
+    finishGroup();
+  }
 
   /// Least reading since it was last taken [quanta].
   [[nodiscard]] float takeLeast() noexcept {
@@ -92,6 +92,8 @@ class WrenchCollector {
   }
 
  private:
+  static constexpr std::uint32_t kGroupRows = kGroupLeaves / kLanes;
+
   struct Entry {
     int lane;
     double arm[3];     ///< from the reference [voxels]
@@ -101,11 +103,12 @@ class WrenchCollector {
 
   [[nodiscard]] Entry entryOf(const ReadLeaf& leaf, int lane) const noexcept {
     const int i = kLanes * leaf.slot + lane;
-    const float at[3] = {leaf.batch.x[i], leaf.batch.y[i], leaf.batch.z[i]};
+    const std::int32_t at[3] = {leaf.batch.x[i], leaf.batch.y[i], leaf.batch.z[i]};
     Entry entry;
     entry.lane = lane;
     for (int k = 0; k < 3; ++k)
-      entry.arm[k] = static_cast<double>(leaf.batch.base[leaf.slot][k] - reference_[k]) + at[k];
+      entry.arm[k] =
+          static_cast<double>(leaf.batch.base[leaf.slot][k] - reference_[k]) + at[k] * (1.0 / kSteps);
     entry.weight = static_cast<double>(leaf.block.weight[lane]) * -static_cast<double>(leaf.value(lane));
     entry.id = leaf.block.first + static_cast<std::uint32_t>(lane);
     return entry;
@@ -145,6 +148,20 @@ class WrenchCollector {
     waiting_count_ = 0;
   }
 
+  void startRow(std::uint32_t row) noexcept {
+    if (row == row_ && has_sums_) return;
+    if (has_sums_) finishRow();
+    if (row / kGroupRows != row_ / kGroupRows) finishGroup();
+    row_ = row;
+    has_sums_ = true;
+  }
+
+  void finishRow() noexcept {
+    if (gradient_ != Gradient::Trilinear) return;
+    reading_.kernels.addRow(row_sums_, sums_);
+    row_sums_ = RowSums();
+  }
+
   void finishGroup() noexcept {
     if (!has_sums_) return;
     addForces();
@@ -166,9 +183,10 @@ class WrenchCollector {
   const Gradient gradient_;
   std::int32_t reference_[3];
   Vec3 from_reference_;
+  RowSums row_sums_;
   TouchSums sums_;
   bool has_sums_ = false;
-  std::uint32_t group_ = 0;
+  std::uint32_t row_ = 0;
   ContactNormals normals_;
   Entry waiting_[kBatchLanes];
   int waiting_count_ = 0;

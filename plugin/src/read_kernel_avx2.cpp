@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels as compiled for processors with AVX2 (flags: CMakeLists.txt).
+#include "lanes_avx2.h"
 #include "read_kernel.h"
 
 namespace vps {
@@ -8,6 +9,6 @@ namespace {
 }  // namespace
 
 extern const ReadKernels kAvx2Kernels;
-const ReadKernels kAvx2Kernels = {read, bound, touch, readAt};
+const ReadKernels kAvx2Kernels = {read, bound, touch, addRow, readAt};
 
 }  // namespace vps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels as compiled for processors with AVX-512 (flags: CMakeLists.txt).
+#include "lanes_avx512.h"
 #include "read_kernel.h"
 
 namespace vps {
@@ -8,6 +9,6 @@ namespace {
 }  // namespace
 
 extern const ReadKernels kAvx512Kernels;
-const ReadKernels kAvx512Kernels = {read, bound, touch, readAt};
+const ReadKernels kAvx512Kernels = {read, bound, touch, addRow, readAt};
 
 }  // namespace vps

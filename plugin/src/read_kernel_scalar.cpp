@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels as compiled for any processor.
+#include "lanes_plain.h"
 #include "read_kernel.h"
 
 namespace vps {
@@ -8,6 +9,6 @@ namespace {
 }  // namespace
 
 extern const ReadKernels kScalarKernels;
-const ReadKernels kScalarKernels = {read, bound, touch, readAt};
+const ReadKernels kScalarKernels = {read, bound, touch, addRow, readAt};
 
 }  // namespace vps

@@ -52,6 +52,7 @@ class OwnFile {
     readNodes(surface_->tree(), quantumOf(band_m), file_, *layout_);
     readCenters();
     readParts();
+    markFarCells(*layout_);
     return VoxMapBuilder::wrap(layout_, voxel_m, band_m, boxOf("vps_bounds_"));
   }
 
@@ -132,6 +133,7 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
   readNodes(level_set.grid->tree(), quantum_m, file, *layout);
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
   if (bounds.isEmpty()) refuse(file, "has no surface: its values change sign nowhere; export it again");
+  markFarCells(*layout);
   return {VoxMapBuilder::wrap(layout, level_set.voxel_m, band_m, bounds), level_set.X_FM};
 }
 

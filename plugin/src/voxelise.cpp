@@ -354,11 +354,13 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     layout_->coarse = regions_->layout;
     layout_->coarse_shift = std::countr_zero(static_cast<unsigned>(regions_->regions.coarsening));
     joinCoarse(*layout_, regions_->coarse, h_, quantumOf(band_m_));
+    markFarCells(*layout_);
     tell(1);
     return layout_;
   }
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
+  markFarCells(*layout_);
   tell(0.9);
   boundCenters();
   tell(1);

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/voxmap.h"
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+#include <algorithm>
 #include <new>
 
 #include "voxmap_layout.h"
@@ -9,11 +14,17 @@
 namespace vps {
 
 VoxPool::VoxPool(std::size_t capacity)
-    : capacity_(capacity + 2),
+    : capacity_(std::min<std::size_t>(2 * capacity + 2, UINT32_MAX / kBrickStride)),
       nodes_(static_cast<NodeValue*>(
-          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{64}))),
+          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{kPage}))),
       owner_(new std::uint16_t[capacity_]),
       mixed_(new const NodeOwners*[capacity_]) {
+#ifdef __linux__
+  // Reads go all over the nodes: of small pages, more than the processor remembers (5 to 10 % of a read of
+  // 20 MB). A wish; where it is not granted, nothing else changes.
+  const std::size_t bytes = capacity_ * kBrickStride * sizeof(NodeValue);
+  if (bytes >= kPage) (void)madvise(nodes_.get(), bytes / kPage * kPage, MADV_HUGEPAGE);
+#endif
   used_ = 2;
   std::fill_n(nodes(kOutside), kBrickStride, static_cast<NodeValue>(kFullBand));
   std::fill_n(nodes(kInside), kBrickStride, static_cast<NodeValue>(-kFullBand));
@@ -22,11 +33,42 @@ VoxPool::VoxPool(std::size_t capacity)
 }
 
 std::uint32_t VoxPool::take(std::size_t count) noexcept {
+  if (count == 0) return 0;
+  const std::lock_guard lock(mutex_);
   std::size_t first = used_;
-  do {
+  const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
+  if (run != free_.end()) {
+    // From its end: what is left keeps its place in the list, and nothing is allocated.
+    first = run->first + (run->second -= count);
+    if (run->second == 0) free_.erase(run);
+  } else {
     if (first + count > capacity_) return 0;
-  } while (!used_.compare_exchange_weak(first, first + count));
+    used_ = first + count;
+  }
   return static_cast<std::uint32_t>(first * kBrickStride);
+}
+
+void VoxPool::giveBack(std::uint32_t first, std::size_t count) noexcept {
+  const std::lock_guard lock(mutex_);
+  std::size_t begin = first / kBrickStride, end = begin + count;
+  const auto after = free_.find(end);
+  if (after != free_.end()) {
+    end += after->second;
+    free_.erase(after);
+  }
+  auto before = free_.lower_bound(begin);
+  if (before != free_.begin() && (--before)->first + before->second == begin) {
+    begin = before->first;
+    free_.erase(before);
+  }
+  if (end == used_) {
+    used_ = begin;
+    return;
+  }
+  try {
+    free_[begin] = end - begin;
+  } catch (const std::bad_alloc&) {  // lost until the pool goes
+  }
 }
 
 VoxMap::VoxMap() {
@@ -56,7 +98,7 @@ std::size_t VoxMap::brickCount() const noexcept {
 namespace {
 
 std::size_t bytesOf(const VoxLayout& layout) {
-  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * (sizeof(std::uint32_t) + sizeof(float)) +
+  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * (sizeof(std::uint32_t) + sizeof(float) + 1) +
                       layout.pool->size() * VoxPool::kBytes;
   for (const auto& owners : layout.owners) bytes += owners->size() * sizeof(NodeOwners);
   return layout.coarse != nullptr ? bytes + bytesOf(*layout.coarse) : bytes;

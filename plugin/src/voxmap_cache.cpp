@@ -248,6 +248,7 @@ class VoxMapCacheFile {
     reader.read(layout->pool->nodes(2 * kBrickStride), header.bricks * kBrickStride * sizeof(NodeValue));
     if (!reader.isGood() || !reader.endsWell() || !areNamesGood(*layout)) return std::nullopt;
     report = kept;
+    markFarCells(*layout);
     map.layout_ = layout;
     return map;
   }

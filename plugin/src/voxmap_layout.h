@@ -17,7 +17,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "vps/voxmap.h"
@@ -51,20 +53,26 @@ constexpr bool isConstant(std::uint32_t brick) {
 /// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
 inline constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
+/// A large page's bytes, where the system has such; nodes begin at one.
+inline constexpr std::size_t kPage = std::size_t{2} << 20;
+
 /// Who owns the nodes of a brick where parts meet.
 using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 
 /// Bricks, one after the other; a brick is named by the place of its first node. Room is taken once and
-/// filled from the front, and what is filled never changes: maps that were mounted one on another share a
-/// pool, so that mounting costs what the new part costs. Memory that is not filled yet costs nothing on
-/// systems that give pages on first touch.
+/// filled from the front, and what is filled never changes while a map names it: maps that were mounted one
+/// on another share a pool, so that mounting costs what the new part costs. Memory that is not filled yet
+/// costs nothing on systems that give pages on first touch.
 class VoxPool {
  public:
-  /// Room for so many bricks beside the two constant ones, which it makes.
+  /// Room for so many bricks beside the two constant ones, which it makes; and for as many again, to be
+  /// mounted.
   explicit VoxPool(std::size_t capacity);
 
   /// Takes `count` bricks that lie one after the other: the first's name; 0 if there is no room. Thread-safe.
   [[nodiscard]] std::uint32_t take(std::size_t count) noexcept;
+  /// Makes the room of a take() free for another. Thread-safe.
+  void giveBack(std::uint32_t first, std::size_t count) noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return used_; }  ///< bricks, constant ones too
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
@@ -93,13 +101,30 @@ class VoxPool {
 
  private:
   struct Free {
-    void operator()(NodeValue* p) const { ::operator delete (p, std::align_val_t{64}); }
+    void operator()(NodeValue* p) const { ::operator delete (p, std::align_val_t{kPage}); }
   };
   std::size_t capacity_;  // constant bricks too
   std::atomic<std::size_t> used_ = 0;
+  std::mutex mutex_;                         // of take() and giveBack()
+  std::map<std::size_t, std::size_t> free_;  // runs given back: first and count, in bricks; no two touch
   std::unique_ptr<NodeValue[], Free> nodes_;
   std::unique_ptr<std::uint16_t[]> owner_;
   std::unique_ptr<const NodeOwners*[]> mixed_;
+};
+
+/// Bricks of a pool for as long as a map names them: a mounting that was only tried leaves room for the next.
+class BrickLease {
+ public:
+  BrickLease(std::shared_ptr<VoxPool> pool, std::uint32_t first, std::size_t count)
+      : pool_(std::move(pool)), first_(first), count_(count) {}
+  ~BrickLease() { pool_->giveBack(first_, count_); }
+  BrickLease(const BrickLease&) = delete;
+  BrickLease& operator=(const BrickLease&) = delete;
+
+ private:
+  std::shared_ptr<VoxPool> pool_;
+  std::uint32_t first_;
+  std::size_t count_;
 };
 
 /// What mounting must know of the parts already there.
@@ -115,8 +140,12 @@ struct VoxLayout {
   std::vector<std::uint32_t> bricks;  ///< of each cell
   /// Of each cell, at its centre: the sign, and a value [m] that the distance to the surface is not below.
   std::vector<float> centers_m;
+  /// Of each cell: it and all those around it are the outer constant. What markFarCells() makes of `bricks`;
+  /// empty where it was not called, which costs queries time alone.
+  std::vector<std::uint8_t> is_far;
   std::shared_ptr<VoxPool> pool;
   std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< what mixed bricks point to
+  std::vector<std::shared_ptr<const BrickLease>> leases;               ///< of bricks that were mounted
   std::vector<VoxPartRange> parts;
   /// The most by which neighbouring nodes differ, in voxels: 1 for true distances. More where signs change
   /// without a surface, or where a level set of others was none.
@@ -162,6 +191,9 @@ struct VoxLayout {
     return pool->nodes(bricks[cell]);
   }
 };
+
+/// Fills VoxLayout::is_far, once the bricks are final. What lies beyond the directory is outer constant too.
+void markFarCells(VoxLayout& layout);
 
 /// What a node's unit is worth. A float, so that its product with any node is exact in double, and the full
 /// band exactly VoxMap::band_m().

@@ -33,15 +33,15 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
-/// The pool that takes `count` bricks more: a's own if it has room, else a copy with room for as many again,
-/// so that mounting one part after another copies each brick a few times at most.
+/// The pool that takes `count` bricks more: a's own if it has room, else a copy. Pools double, so that
+/// mounting one part after another copies each brick a few times at most.
 std::shared_ptr<VoxPool> poolWithRoom(const std::shared_ptr<VoxPool>& pool, std::size_t count,
                                       std::uint32_t& first) {
   if (count == 0) return pool;
   first = pool->take(count);
   if (first != 0) return pool;
   const std::size_t old_count = pool->size();
-  auto larger = std::make_shared<VoxPool>(2 * (old_count + count));
+  auto larger = std::make_shared<VoxPool>(old_count + count);
   (void)larger->take(old_count - 2);
   std::copy_n(pool->nodes(0), old_count * kBrickStride, larger->nodes(0));
   for (std::uint32_t brick = kInside + kBrickStride; brick < old_count * kBrickStride;
@@ -72,11 +72,14 @@ class Merger {
     findMeetings();
     std::uint32_t first = 0;
     out_->pool = poolWithRoom(a_.pool, meetings_.size(), first);
+    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, meetings_.size()));
+    if (out_->pool == a_.pool) out_->leases.insert(out_->leases.end(), a_.leases.begin(), a_.leases.end());
     mixed_->resize(mixed_count_);
     tbb::parallel_for(std::size_t{0}, meetings_.size(), [&](std::size_t i) {
       fill(meetings_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
     });
     if (!mixed_->empty()) out_->owners.push_back(mixed_);
+    markFarCells(*out_);
     return out_;
   }
 
@@ -257,6 +260,7 @@ VoxMap VoxMapBuilder::packed(const VoxMap& map) {
   }
   layout->pool = pool;
   layout->owners = {mixed};
+  layout->leases.clear();
   VoxMap out = map;
   out.layout_ = layout;
   return out;

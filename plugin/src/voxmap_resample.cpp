@@ -111,8 +111,9 @@ class ResampledField final : public AddedField {
     const auto cells = static_cast<std::size_t>(size.cast<std::int64_t>().prod());
     kinds.assign(cells, kOutside);
     centers_m.assign(cells, 0);
-    const double reach_m = band_m + std::sqrt(3.0) * (4 * voxel_m_ + 2 * map_.voxel_m()) +
-                           2 * map_.sampleError_m();  // a cell's own radius, and where readings saturate
+    // A cell's own radius, and where the eight nodes of a reading are all saturated.
+    const double reach_m =
+        band_m + std::sqrt(3.0) * (4 * voxel_m_ + map_.voxel_m()) + sampler_.nodeError_m() + 1e-6 * band_m;
     tbb::parallel_for(0, size.x(), [&](int x) {
       for (int y = 0; y < size.y(); ++y)
         for (int z = 0; z < size.z(); ++z) layOutCell(low + Index3(x, y, z), reach_m);
@@ -123,13 +124,25 @@ class ResampledField final : public AddedField {
     const std::size_t cell = cellIndex(at);
     const Vec3 p = X_PM_ * centerOf(at);
     const VoxSampler::Place place = sampler_.place(p);
-    const double least_m = sampler_.leastDistance(p, place), most_m = sampler_.mostDistance(place);
-    const bool is_inside = sampler_.isInside(place);
-    const double bound_m = is_inside ? std::min(0.0, most_m) : std::max(0.0, least_m);
-    centers_m[cell] = static_cast<float>(bound_m * (1 - 2e-7));
+    VoxSampler::Range d = {sampler_.leastDistance(p, place), sampler_.mostDistance(place)};
+    const auto isFar = [&] { return field_.is_metric && (d.least_m > reach_m || d.most_m < -reach_m); };
     const bool is_rim = ((at - low).array() == 0).any() || ((at - low).array() == size.array() - 1).any();
-    if (is_rim || (!is_inside && least_m > reach_m)) return;
-    kinds[cell] = is_inside && most_m < -reach_m ? kInside : kInside + kBrickStride;
+    if (!is_rim && !isFar()) {
+      const VoxSampler::Range around = sampler_.rangeAround(p);
+      d = {std::max(d.least_m, around.least_m), std::min(d.most_m, around.most_m)};
+    }
+    const bool is_inside = sampler_.isInside(place);
+    const double bound_m = is_inside ? std::min(0.0, d.most_m) : std::max(0.0, d.least_m);
+    centers_m[cell] = static_cast<float>(bound_m * (1 - 2e-7));
+    if (is_rim) return;
+    const std::uint32_t constant = isFar() ? (is_inside ? kInside : kOutside) : constantAround(p);
+    kinds[cell] = constant == VoxSampler::kMixed ? kInside + kBrickStride : constant;
+  }
+
+  /// What all nodes of the cell centred at p_P read, where that is one constant; else VoxSampler::kMixed.
+  [[nodiscard]] std::uint32_t constantAround(const Vec3& p_P) const {
+    const Vec3 half = X_PM_.R.cwiseAbs() * Vec3::Constant((4 + 1e-3) * voxel_m_);
+    return sampler_.constantIn({p_P - half, p_P + half});
   }
 
   const VoxMap& map_;

@@ -97,6 +97,50 @@ class VoxSampler {
     return field_m < band_m_ ? std::min(most_m, field_m) : most_m;
   }
 
+  struct Range {
+    double least_m = -std::numeric_limits<double>::infinity();
+    double most_m = std::numeric_limits<double>::infinity();
+  };
+  /// What the signed distance at p_M is not below and not above, by the centres of the eight cells around it:
+  /// the one that lies straight away from the surface tells most. For true distances only.
+  [[nodiscard]] Range rangeAround(const Vec3& p_M) const noexcept {
+    const Vec3 x = (p_M * per_voxel_ - low_) / VoxMap::kBrick - Vec3::Constant(0.5);
+    const Vec3 low = x.array().floor();
+    Range range;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 cell = low + Vec3(i >> 2, i >> 1 & 1, i & 1);
+      if (!((cell.array() >= 0).all() && (VoxMap::kBrick * cell.array() < size_.array()).all())) continue;
+      const double way_m = (x - cell).norm() * (VoxMap::kBrick * voxel_m_);
+      const double center_m = layout_.centers_m[layout_.cellIndex(layout_.low + cell.cast<int>())];
+      if (center_m > 0) range.least_m = std::max(range.least_m, center_m * kRoundDown - way_m);
+      if (center_m < 0) range.most_m = std::min(range.most_m, center_m * kRoundDown + way_m);
+    }
+    return range;
+  }
+
+  /// The constant brick that all cells of a box are; kMixed if they are not.
+  static constexpr std::uint32_t kMixed = UINT32_MAX;
+  [[nodiscard]] std::uint32_t constantIn(const Box& box_M) const noexcept {
+    const Vec3 last = size_ / VoxMap::kBrick - Vec3::Ones();
+    const Vec3 from = ((box_M.min * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
+    const Vec3 to = ((box_M.max * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
+    if ((to.array() < 0).any() || (from.array() > last.array()).any()) return kOutside;
+    // The directory's rim is outside, as is all beyond.
+    const Index3 low = from.cwiseMax(0).cast<int>(), high = to.cwiseMin(last).cast<int>();
+    const std::uint32_t all = bricks_[layout_.cellIndex(layout_.low + low)];
+    if (!isConstant(all)) return kMixed;
+    for (int i = low.x(); i <= high.x(); ++i)
+      for (int j = low.y(); j <= high.y(); ++j)
+        for (int k = low.z(); k <= high.z(); ++k)
+          if (bricks_[layout_.cellIndex(layout_.low + Index3(i, j, k))] != all) return kMixed;
+    return all;
+  }
+
+  /// How far nodes may be from the distance they stand for [m].
+  [[nodiscard]] double nodeError_m() const noexcept {
+    return voxel_m_ * layout_.node_error + 0.51 * quantum_m_;
+  }
+
   [[nodiscard]] bool isInside(const Place& at) const noexcept {
     return at.brick != kOutside && distance(at) < 0;
   }

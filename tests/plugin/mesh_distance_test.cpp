@@ -89,6 +89,37 @@ TEST(MeshDistance, SignIsRightAtSharpSpikesWhereFaceNormalsFail) {
   }
 }
 
+/// A blade along y whose ridge x = 0, z = 1 has a corner C in its middle on one side only: a triangle without
+/// area, ACB, fills the crack.
+Mesh bladeWithCollinearFiller(double half_width) {
+  Mesh mesh;
+  const double w = half_width;
+  mesh.vertices = {{0, -1, 1}, {0, 1, 1}, {0, 0.1, 1}, {-w, -1, 0}, {-w, 1, 0}, {w, -1, 0}, {w, 1, 0}};
+  enum : std::uint32_t { A, B, C, L0, L1, R0, R1 };
+  mesh.triangles = {{A, B, L1},   {A, L1, L0},               // left flank: the whole ridge
+                    {A, R0, C},   {C, R0, R1},  {C, R1, B},  // right flank, with C
+                    {A, C, B},                               // the filler
+                    {L0, L1, R1}, {L0, R1, R0},              // bottom
+                    {A, L0, R0},  {B, R1, L1}};              // ends
+  return mesh;
+}
+
+TEST(MeshDistance, SignIsRightBesideTrianglesWithoutArea) {
+  const Mesh plain = bladeWithCollinearFiller(0.1);
+  ASSERT_TRUE(checkMesh(plain).isClosed());
+  ASSERT_GT(massProperties(plain).volume_m3, 0);
+  for (const int seed : {1, 2, 3}) {
+    const Pose X = RandomPoints(seed).pose(1);  // rounds C off the line
+    const MeshDistance blade(transformed(plain, X));
+    RandomPoints random(seed + 10);
+    for (int n = 0; n < 20000; ++n) {
+      const Vec3 p = Vec3(0, 0, 0.9) + random.inBox({0.3, 0.9, 0.4});
+      const bool is_inside = p.z() > 0 && std::abs(p.x()) < 0.1 * (1 - p.z());
+      ASSERT_EQ(blade.signedDistance(X * p) < 0, is_inside) << p.transpose();
+    }
+  }
+}
+
 TEST(MeshDistance, BeyondTheLimitNothingIsFound) {
   const MeshDistance distance(makeBox({2, 2, 2}));
   EXPECT_FALSE(distance.closest({3, 0, 0}, 1.9).found);

@@ -107,6 +107,53 @@ TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
   forRandomNodes(5000, 0.013, [&](const Vec3& p) { ASSERT_EQ(plate.distance(p), again.distance(p)); });
 }
 
+TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
+  const Mesh block = makeBox({0.012, 0.01, 0.008});
+  const VoxMap base = cookVoxMap({{&block, Pose()}}, kSettings);
+  const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
+  const auto mounted = [&](double x_m) {
+    return mountVoxMap(base, PlacedMap{&ball, Pose::translation({x_m, 0, 0.002})});
+  };
+  const auto readings = [](const VoxMap& map) {
+    std::vector<double> d;
+    forRandomNodes(2000, 0.011, [&](const Vec3& p) { d.push_back(map.distance(p)); });
+    return d;
+  };
+  const std::size_t bytes = base.memoryBytes();
+  const std::vector<double> base_reads = readings(base), first_reads = readings(mounted(0.005));
+  VoxMap kept;
+  for (int n = 0; n < 40; ++n) {
+    const VoxMap tried = mounted(0.003 + 1e-4 * n);
+    // One that is mounted on a map outlives it.
+    kept = mountVoxMap(tried, PlacedMap{&ball, Pose::translation({0.005, 0, 0.002})});
+  }
+  const std::vector<double> kept_reads = readings(kept);
+  VoxMap other = mounted(0.005);
+  EXPECT_EQ(readings(kept), kept_reads);
+  kept = VoxMap();
+  EXPECT_EQ(readings(other), first_reads);
+  EXPECT_EQ(readings(base), base_reads);
+  EXPECT_GT(base.memoryBytes(), bytes);  // shares its pool with `other`
+  other = VoxMap();
+  EXPECT_EQ(base.memoryBytes(), bytes);
+}
+
+TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
+  // What is laid out as constant without reading it must read so: every node of the resampled map, beyond the
+  // band too, is the source there.
+  for (const int seed : {3, 4, 5}) {
+    const Pose X = RandomPoints(seed).pose(0.003), X_inverse = X.inverse();
+    const VoxMap ring = buildVoxMap(makeTube(0.005, 0.003, 0.006, 64), kSettings);
+    const VoxMap moved = resampledVoxMap({&ring, X}, kSettings);
+    const double one_m = 1.01 * moved.quantum_m();  // rounding, twice
+    forRandomNodes(40000, 0.012, [&](const Vec3& p) {
+      ASSERT_NEAR(moved.distance(p), ring.distance(X_inverse * p), one_m + 1e-4 * kVoxel_m);
+      if (std::abs(moved.distance(p)) < moved.band_m()) return;
+      ASSERT_EQ(moved.distance(p) < 0, ring.distance(X_inverse * p) < 0);
+    });
+  }
+}
+
 TEST(ResampledVoxMap, CullingIsExactOnItToo) {
   const VoxMap source = buildVoxMap(makeBox({0.01, 0.008, 0.006}), kSettings);
   const VoxMap moved = resampledVoxMap({&source, RandomPoints(8).pose(0.003)}, kSettings);

@@ -19,6 +19,7 @@ TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, con
 
 /// A bounding-volume hierarchy over a mesh. Answers are exact to floating point; the sign is that of the
 /// angle-weighted pseudonormal of the nearest feature, right for closed, consistently oriented meshes.
+/// Triangles without an area, which fill cracks of exports, have no normal: the facets beyond them count.
 /// Source: Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
 class MeshDistance {
  public:
@@ -48,6 +49,8 @@ class MeshDistance {
  private:
   void computeNormals();
   void buildTree();
+  [[nodiscard]] bool isBesideThin(std::uint32_t triangle, int feature) const noexcept;
+  [[nodiscard]] Vec3 normalThrough(const Vec3& q) const noexcept;
   template <typename Visit>
   double search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept;
 
@@ -62,6 +65,10 @@ class MeshDistance {
   std::vector<Vec3> face_normals_;
   std::vector<std::array<Vec3, 3>> edge_normals_;
   std::vector<Vec3> vertex_normals_;
+  double touch_m_ = 0;                           // what lies so near to a point touches it
+  std::vector<std::uint8_t> is_thin_;            // by triangle: too thin to have a normal
+  std::vector<std::uint8_t> is_edge_of_thin_;    // by triangle, a bit for each edge
+  std::vector<std::uint8_t> is_corner_of_thin_;  // by vertex
 };
 
 }  // namespace vps

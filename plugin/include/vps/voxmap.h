@@ -55,6 +55,7 @@ class VoxMap {
   /// True if both are copies of one map.
   [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
   [[nodiscard]] std::size_t brickCount() const noexcept;
+  /// What this map keeps in memory; maps that were mounted one on another share the most of it.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
   /// Trilinear signed distance [m] at p_M, saturated at +-band_m().
