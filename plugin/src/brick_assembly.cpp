@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "brick_assembly.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -27,67 +25,6 @@ void takeSigns(float* __restrict nodes, int count, int back, float band_m) {
   const float* __restrict from = nodes - back;  // as many nodes, but none of them
   for (int i = 0; i < count; ++i) nodes[i] = signedFar(nodes[i], from[i], band_m);
 }
-
-class Assembler {
- public:
-  Assembler(VoxLayout& layout, const NodeBlocks& blocks, double band_m)
-      : layout_(layout), blocks_(blocks), band_m_(static_cast<float>(band_m)) {
-    block_of_.assign(layout.bricks.size(), -1);
-    for (std::size_t i = 0; i < blocks.cells.size(); ++i)
-      block_of_[blocks.cells[i]] = static_cast<std::int32_t>(i);
-  }
-
-  void makeBricks() {
-    const std::size_t count = blocks_.cells.size();
-    std::vector<std::int32_t> slot(count);  // 1 if the brick is kept, then its place
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      BrickNodes nodes;
-      collect(i, nodes);
-      slot[i] = std::any_of(nodes.begin(), nodes.end(), [](float d) { return d != kFar; });
-    });
-    std::int32_t kept = 0;
-    for (std::int32_t& s : slot) s = s != 0 ? kept++ : -1;
-
-    layout_.pool = std::make_shared<VoxPool>(static_cast<std::size_t>(kept));
-    const std::uint32_t first = layout_.pool->take(static_cast<std::size_t>(kept));
-    const double quantum_m = quantumOf(band_m_);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      if (slot[i] < 0) return;
-      const std::uint32_t brick = first + static_cast<std::uint32_t>(slot[i]) * kBrickStride;
-      BrickNodes distance_m;
-      collect(i, distance_m);
-      saturate(distance_m, band_m_);
-      NodeValue* nodes = layout_.pool->nodes(brick);
-      std::fill(std::transform(distance_m.begin(), distance_m.end(), nodes,
-                               [&](float d) { return toNode(d, quantum_m); }),
-                nodes + kBrickStride, NodeValue{0});
-      layout_.pool->owner(brick) = 0;
-      layout_.pool->mixed(brick) = nullptr;
-      layout_.bricks[blocks_.cells[i]] = brick;
-    });
-  }
-
- private:
-  /// The nodes of a brick: its own, and the first ones of seven neighbours as its border.
-  void collect(std::size_t i, BrickNodes& distance_m) const {
-    const Index3 cell = layout_.cellAt(blocks_.cells[i]);
-    for (int part = 0; part < 8; ++part) {
-      const Index3 step(part >> 2, part >> 1 & 1, part & 1);
-      const Index3 neighbour = cell + step;
-      const std::int32_t block = layout_.holds(neighbour) ? block_of_[layout_.cellIndex(neighbour)] : -1;
-      for (int x = 0; x < (step.x() ? 1 : kBrick); ++x)
-        for (int y = 0; y < (step.y() ? 1 : kBrick); ++y)
-          for (int z = 0; z < (step.z() ? 1 : kBrick); ++z)
-            distance_m[nodeIndex(x + kBrick * step.x(), y + kBrick * step.y(), z + kBrick * step.z())] =
-                block < 0 ? kFar : blocks_.nodes[block][ownIndex(x, y, z)];
-    }
-  }
-
-  VoxLayout& layout_;
-  const NodeBlocks& blocks_;
-  const float band_m_;
-  std::vector<std::int32_t> block_of_;  // by directory index; -1: none
-};
 
 /// Spreads signs over empty cells.
 class Filler {
@@ -200,29 +137,19 @@ void BrickWriter::take(std::size_t count) {
   first_ = takeBricks(layout_, count);
 }
 
-void BrickWriter::write(std::size_t slot, std::size_t cell, BrickNodes& distance) {
+std::uint32_t BrickWriter::write(std::size_t slot, BrickNodes& distance) {
   saturate(distance, static_cast<float>(kFullBand / per_unit_));
   const std::uint32_t brick = first_ + static_cast<std::uint32_t>(slot) * kBrickStride;
   NodeValue* nodes = layout_.pool->nodes(brick);
-  for (int i = 0; i < kBrickNodes; ++i) {
-    // As toNode() rounds, half away from zero, but many at a time.
-    const double quanta = distance[i] * per_unit_;
-    nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(0.5, quanta)));
-  }
+  for (int i = 0; i < kBrickNodes; ++i) nodes[i] = nodeOf(distance[i] * per_unit_);
   std::fill(nodes + kBrickNodes, nodes + kBrickStride, NodeValue{0});
   layout_.pool->owner(brick) = 0;
   layout_.pool->mixed(brick) = nullptr;
-  layout_.bricks[cell] = brick;
+  return brick;
 }
 
 void fillEmptyCells(VoxLayout& layout) {
   Filler(layout).run();
-}
-
-void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m) {
-  Assembler assembler(layout, blocks, band_m);
-  assembler.makeBricks();
-  fillEmptyCells(layout);
 }
 
 }  // namespace vps

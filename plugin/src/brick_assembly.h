@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From distances at nodes within the band to a sampled map: borders, signs beyond the band, inside and
-// outside. Shared by the voxeliser and the reader of files.
+// outside.
 #pragma once
 
 #include <cfloat>
@@ -10,23 +10,8 @@
 
 namespace vps {
 
-/// A brick's own 8^3 nodes, z fastest, before its neighbours' border is added.
-inline constexpr int kOwnNodes = VoxMap::kBrick * VoxMap::kBrick * VoxMap::kBrick;
-using OwnNodes = std::array<float, kOwnNodes>;
-constexpr int ownIndex(int x, int y, int z) {
-  return (x * VoxMap::kBrick + y) * VoxMap::kBrick + z;
-}
-
 /// Beyond the band, not signed yet.
 inline constexpr float kFar = FLT_MAX;
-
-/// Nodes computed so far: directory cells, ascending, and the own nodes of each. Must hold every cell that
-/// has a node within the band, border included (so also the low neighbours of cells with such nodes on their
-/// low faces).
-struct NodeBlocks {
-  std::vector<std::size_t> cells;
-  std::vector<OwnNodes> nodes;
-};
 
 /// All nodes of a brick, border included.
 using BrickNodes = std::array<float, kBrickNodes>;
@@ -48,9 +33,9 @@ class BrickWriter {
 
   /// Makes room for a batch. Not thread-safe.
   void take(std::size_t count);
-  /// Stores a brick in place `slot` of the last batch, saturated, and names it in the directory. Thread-safe
-  /// for different slots and cells. Known nodes must be within the band.
-  void write(std::size_t slot, std::size_t cell, BrickNodes& distance);
+  /// Stores a brick in place `slot` of the last batch, saturated; its name. Thread-safe for different slots.
+  /// Known nodes must be within the band.
+  std::uint32_t write(std::size_t slot, BrickNodes& distance);
 
  private:
   VoxLayout& layout_;
@@ -60,9 +45,5 @@ class BrickWriter {
 
 /// Empty cells, after all bricks are in: outside or inside.
 void fillEmptyCells(VoxLayout& layout);
-
-/// Gives the directory its bricks, in a pool of their own: one where a node is within the band, else outside
-/// or inside. Distances are rounded to the band's quantum (voxmap_layout.h).
-void assembleBricks(VoxLayout& layout, const NodeBlocks& blocks, double band_m);
 
 }  // namespace vps

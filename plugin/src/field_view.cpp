@@ -40,8 +40,8 @@ FieldView::FieldView(const VoxMap& map) noexcept
   voxels_per_m = static_cast<float>(1 / voxel_m);
   quantum = static_cast<float>(quantum_m / voxel_m);
   band = kFullBand * quantum;
-  // Nodes of true distances, however resampled, stay near a function that changes by the way gone.
-  is_metric = layout.steepest <= 1 || layout.node_error > 0;
+  is_metric = layout.is_metric;
+  this->layout = layout.coarse != nullptr ? &layout : nullptr;
   error = 0.8661f + layout.node_error + quantum;
   diagonal = 1.7322f + 2 * layout.node_error + quantum;
   // Along each axis nodes differ by `steepest` at most, and each is rounded by half a quantum.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "read_kernel.h"
+#include "coarse_nodes.h"
 #include "vps/pointshell.h"
 
 namespace vps {
@@ -61,6 +61,7 @@ class LeafReader {
   void flush() noexcept {
     if (count_ == 0) return;
     reading_.kernels.read(reading_.field, reading_.motion, blocks_, count_, batch_);
+    if (reading_.field.layout != nullptr) readElsewhere(reading_.field, count_, batch_);
     points_ += countPoints();
     for (int i = 0; i < count_; ++i) consume_(ReadLeaf{*blocks_[i], leaves_[i], batch_, i});
     count_ = 0;

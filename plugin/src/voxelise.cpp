@@ -21,19 +21,25 @@
 
 #include "brick_assembly.h"
 #include "center_bounds.h"
+#include "coarse_nodes.h"
 #include "splat.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "winding_signs.h"
 
 namespace vps {
+
+/// What a map that is fine in regions only is like elsewhere.
+struct CoarseRest {
+  const FineRegions& regions;
+  const VoxMap& coarse;
+  std::shared_ptr<const VoxLayout> layout;  ///< of the coarse map
+};
+
 namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
-/// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
-constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
-
 /// A feature that reaches a tile.
 struct Reached {
   std::uint32_t tile, feature;
@@ -52,10 +58,13 @@ bool isFar(float d) {
 
 class Voxeliser {
  public:
-  /// @param signer signs nodes by winding number; null: by pseudonormals
-  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer)
+  /// @param signer   signs nodes by winding number; null: by pseudonormals
+  /// @param regions  where to build; null: everywhere
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer,
+            const CoarseRest* regions)
       : mesh_(mesh),
         box_(box),
+        regions_(regions),
         h_(settings.voxel_m),
         band_m_(bandOf(settings)),
         // What rounds to the full band need not be computed.
@@ -73,6 +82,13 @@ class Voxeliser {
 
  private:
   void layOutDirectory();
+  void findWanted();
+  [[nodiscard]] bool wantsTile(std::uint32_t tile) const {
+    return tile_wanted_.empty() || tile_wanted_[tile] != 0;
+  }
+  [[nodiscard]] bool wantsCell(std::size_t cell) const {
+    return cell_wanted_.empty() || cell_wanted_[cell] != 0;
+  }
   void gather(const SurfaceFeatures& features);
   void gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const;
   void gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low, const Index3& size,
@@ -96,11 +112,13 @@ class Voxeliser {
 
   const Mesh& mesh_;
   const Box box_;
+  const CoarseRest* const regions_;
   const double h_, band_m_;
   const double reach_;  // of the nodes that are computed [voxels]
   WindingSigner* const signer_;
   bool are_signs_sound_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
+  std::vector<std::uint8_t> cell_wanted_, tile_wanted_;  // empty: all
   std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
   std::vector<std::uint32_t> features_;  // by tile, ascending within each
   std::vector<std::int32_t> brick_of_;   // by cell; -1: none
@@ -110,12 +128,37 @@ class Voxeliser {
 void Voxeliser::layOutDirectory() {
   const double cell_m = kBrick * h_;
   // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
-  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - 1;
-  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
+  // And one more where a coarse field, which is blurred by a cell at most, is read at the fine nodes.
+  const double margin = regions_ != nullptr ? 2 : 1;
+  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - margin;
+  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + (margin + 1);
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
   layout_->resizeCells();
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
+}
+
+/// Cells that meet a region, and tiles that hold one.
+void Voxeliser::findWanted() {
+  if (regions_ == nullptr) return;
+  cell_wanted_.assign(layout_->bricks.size(), 0);
+  tile_wanted_.assign(static_cast<std::size_t>(tiles().prod()), 0);
+  const double cell_m = kBrick * h_;
+  for (const Box& box : regions_->regions.boxes_M) {
+    // One more than the directory has on each side, so that a conversion cannot overflow.
+    const auto cellOf = [&](const Vec3& p) -> Index3 {
+      const Vec3 cell = (p.array() / cell_m).floor() - layout_->low.cast<double>().array();
+      return cell.cwiseMax(-1.0).cwiseMin(layout_->size.cast<double>()).cast<int>();
+    };
+    const Index3 from = cellOf(box.min).cwiseMax(0),
+                 to = cellOf(box.max).cwiseMin(layout_->size - Index3::Ones());
+    for (int x = from.x(); x <= to.x(); ++x)
+      for (int y = from.y(); y <= to.y(); ++y)
+        for (int z = from.z(); z <= to.z(); ++z) {
+          cell_wanted_[layout_->cellIndex(layout_->low + Index3(x, y, z))] = 1;
+          tile_wanted_[tileNumber(Index3(x, y, z) / kTileBricks)] = 1;
+        }
+  }
 }
 
 /// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
@@ -126,7 +169,7 @@ void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, con
   if (!splatter.reaches(feature, kTile * low.cast<double>() + half, half.norm())) return;
   int axis = 0;
   if (size.maxCoeff(&axis) == 1) {
-    out.push_back({tileNumber(low), feature});
+    if (wantsTile(tileNumber(low))) out.push_back({tileNumber(low), feature});
     return;
   }
   Index3 near = size, far = size, middle = low;
@@ -148,7 +191,8 @@ void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::ve
   // Few: cheaper to take all of them than to look.
   for (int x = low.x(); x <= high.x(); ++x)
     for (int y = low.y(); y <= high.y(); ++y)
-      for (int z = low.z(); z <= high.z(); ++z) out.push_back({tileNumber({x, y, z}), feature});
+      for (int z = low.z(); z <= high.z(); ++z)
+        if (const std::uint32_t tile = tileNumber({x, y, z}); wantsTile(tile)) out.push_back({tile, feature});
 }
 
 void Voxeliser::gather(const SurfaceFeatures& features) {
@@ -200,7 +244,8 @@ std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) c
       for (int z = 0; z < kTileBricks; ++z) {
         const Index3 at(x, y, z);
         if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
-        bricks.push_back({kBrick * at, layout_->cellIndex(layout_->low + low + at)});
+        const std::size_t cell = layout_->cellIndex(layout_->low + low + at);
+        if (wantsCell(cell)) bricks.push_back({kBrick * at, cell});
       }
     }
   return bricks;
@@ -227,7 +272,7 @@ void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t sl
       if (x < kBrick && y < kBrick)
         surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= nearBits(from);
     }
-  writer.write(slot, brick.cell, distance);
+  layout_->bricks[brick.cell] = writer.write(slot, distance);
 }
 
 /// A batch of tiles at a time, in the same memory: fresh pages for all of them would cost more than the work.
@@ -241,6 +286,12 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   constexpr std::size_t kExpected = kTileBricks * kTileBricks * kTileBricks / 2;
   BrickWriter writer(*layout_, h_ / quantumOf(band_m_),
                      std::min(kExpected * wanted.size(), brick_of_.size()));
+  if (regions_ != nullptr) {
+    writer.take(1);
+    BrickNodes inside;
+    inside.fill(static_cast<float>(-band_m_ / h_));
+    layout_->elsewhere = writer.write(0, inside);
+  }
   std::vector<Tile> tiles(std::min(kBatch, wanted.size()));
   std::vector<std::vector<CutBrick>> bricks(tiles.size());
   std::vector<std::size_t> slot(tiles.size());
@@ -286,6 +337,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   };
   tell(0);
   layOutDirectory();
+  findWanted();
   {
     const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
     tell(0.1);
@@ -298,6 +350,14 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
     signer_->signBricks(*layout_, h_, quantumOf(band_m_));
   else
     are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
+  if (regions_ != nullptr) {
+    layout_->coarse = regions_->layout;
+    layout_->coarse_shift = std::countr_zero(static_cast<unsigned>(regions_->regions.coarsening));
+    joinCoarse(*layout_, regions_->coarse, h_, quantumOf(band_m_));
+    markFarCells(*layout_);
+    tell(1);
+    return layout_;
+  }
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   markFarCells(*layout_);
@@ -316,7 +376,27 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   return bricks * VoxPool::kBytes + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
 }
 
-void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& settings,
+/// The box's surface, twice: a region may hold folds of the part's.
+double areaWithin(const FineRegions& regions, double area_m2) {
+  double sum_m2 = 0;
+  for (const Box& box : regions.boxes_M) {
+    const Vec3 s = box.size().cwiseMax(0.0);
+    sum_m2 += 4 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
+  }
+  return std::min(sum_m2, area_m2);
+}
+
+void requireRegions(const FineRegions& regions, const std::string& part) {
+  if (regions.coarsening != 2 && regions.coarsening != 4 && regions.coarsening != 8)
+    throw LoadError("", part, "a map can be coarser by 2, 4 or 8 outside its fine regions, by nothing else");
+  if (regions.boxes_M.empty())
+    throw LoadError("", part, "no fine region is given; give one, or build with larger voxels");
+  for (const Box& box : regions.boxes_M)
+    if (box.isEmpty() || !box.min.allFinite() || !box.max.allFinite())
+      throw LoadError("", part, "a fine region is no box; give its lowest and its highest corner");
+}
+
+void requireSettings(const Box& box, double area_m2, const VoxMapSettings& settings,
                      const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
@@ -326,7 +406,6 @@ void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& set
   // A band read from a map is rounded, see quantumOf().
   if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
     throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
-  const double area_m2 = area(mesh);
   const Vec3 size_m = box.size();
   char text[160];
   // Indices are 32 bit; half of their range is left to the part's own size, which the memory bounds below it.
@@ -352,31 +431,62 @@ void requireSettings(const Mesh& mesh, const Box& box, const VoxMapSettings& set
 
 }  // namespace
 
+namespace {
+
+/// Ready to be voxelised: signs need shared vertices.
+RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
+  Mesh shared = welded(mesh);
+  requireUsable(shared, "", part);
+  return repairMesh(std::move(shared));
+}
+
+}  // namespace
+
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                             const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
+  requireSettings(bounds(mesh), area(mesh), settings, part);
+  RepairedMesh repaired = prepared(mesh, part);
+  return build(mesh, repaired, settings, progress, report, nullptr);
+}
+
+VoxMap VoxMapBuilder::buildInRegions(const Mesh& mesh, const VoxMapSettings& settings,
+                                     const FineRegions& regions, const std::string& part,
+                                     const Progress& progress, MeshReport* report) {
+  requireUsable(mesh, "", part);
+  requireRegions(regions, part);
+  const int steps = regions.coarsening;
+  const VoxMapSettings fine = {settings.voxel_m, std::max(settings.band_voxels, 3.0 * steps)};
+  const VoxMapSettings rest = {fine.voxel_m * steps, fine.band_voxels / steps};
+  requireSettings(bounds(mesh), area(mesh), rest, part);
+  requireSettings(bounds(mesh), areaWithin(regions, area(mesh)), fine, part);
+  RepairedMesh repaired = prepared(mesh, part);
+  const VoxMap coarse = build(mesh, repaired, rest, progress, report, nullptr);
+  const CoarseRest elsewhere{regions, coarse, coarse.layout_};
+  return build(mesh, repaired, fine, progress, report, &elsewhere);
+}
+
+VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
+                            const Progress& progress, MeshReport* report, const CoarseRest* regions) {
   const Box box = bounds(mesh);
-  requireSettings(mesh, box, settings, part);
   VoxMap map;
   map.layout_ = nullptr;
   map.voxel_m_ = settings.voxel_m;
   map.band_m_ = Voxeliser::bandOf(settings);
   map.quantum_m_ = quantumOf(map.band_m_);
   map.bounds_ = box;
-  Mesh shared = welded(mesh);  // signs need shared vertices
-  requireUsable(shared, "", part);
-  RepairedMesh repaired = repairMesh(std::move(shared));
   if (repaired.is_sound) {
-    Voxeliser voxeliser(repaired.surface, box, settings, nullptr);
+    Voxeliser voxeliser(repaired.surface, box, settings, nullptr, regions);
     map.layout_ = voxeliser.build(progress);
     if (!voxeliser.areSignsSound()) {
       map.layout_ = nullptr;
       repaired = repairMesh(welded(mesh), Crossing::Seen);
+      repaired.is_sound = false;
     }
   }
   if (map.layout_ == nullptr) {
     WindingSigner signer(repaired.solid);
-    map.layout_ = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
+    map.layout_ = Voxeliser(repaired.surface, box, settings, &signer, regions).build(progress);
     repaired.report.signed_by_winding = true;
     repaired.report.sure = signer.sure();
   }
@@ -387,6 +497,11 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, co
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                    const Progress& progress, MeshReport* report) {
   return VoxMapBuilder::build(mesh, settings, part, progress, report);
+}
+
+VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
+                            const std::string& part, const Progress& progress, MeshReport* report) {
+  return VoxMapBuilder::buildInRegions(mesh, settings, regions, part, progress, report);
 }
 
 }  // namespace vps

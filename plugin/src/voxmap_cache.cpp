@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 /// Reads as something else on a machine whose bytes run the other way.
 constexpr std::uint32_t kByteOrder = 0x01020304;
@@ -51,9 +51,10 @@ struct Header {
   std::array<double, 6> bounds_m = {};
   std::array<std::int32_t, 3> low = {}, size = {};
   float steepest = 1, node_error = 0;
+  std::uint64_t is_metric = 1;
   std::uint64_t bricks = 0;  ///< without the constant ones
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 144);  // no gaps
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 152);  // no gaps
 
 /// All members of a report: a gap between them would put chance bytes into the file.
 template <typename Report>
@@ -203,6 +204,7 @@ class VoxMapCacheFile {
     }
     header.steepest = layout.steepest;
     header.node_error = layout.node_error;
+    header.is_metric = layout.is_metric ? 1 : 0;
     header.bricks = layout.pool->size() - 2;
     Writer writer(file);
     writer.write(&header, sizeof header);
@@ -229,6 +231,7 @@ class VoxMapCacheFile {
     }
     layout->steepest = header.steepest;
     layout->node_error = header.node_error;
+    layout->is_metric = header.is_metric != 0;
     layout->parts = {{map.bounds_, layout->low, layout->low + layout->size}};
     layout->resizeCells();
     MeshReport kept;

@@ -50,6 +50,9 @@ constexpr bool isConstant(std::uint32_t brick) {
   return brick <= kInside;
 }
 
+/// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
+inline constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
+
 /// A large page's bytes, where the system has such; nodes begin at one.
 inline constexpr std::size_t kPage = std::size_t{2} << 20;
 
@@ -148,8 +151,17 @@ struct VoxLayout {
   /// without a surface, or where a level set of others was none.
   float steepest = 1;
   /// How far nodes may be from the distance they stand for, in voxels, beside rounding: 0 as voxelised, half
-  /// a cell's diagonal once resampled.
+  /// a cell's diagonal once resampled, what was measured (field_proof.h) in a level set of others.
   float node_error = 0;
+  /// False where signs contradict each other: nodes then stand for no distance at all, and only `steepest` is
+  /// known of them.
+  bool is_metric = true;
+  /// Where a map is fine in regions only (coarse_nodes.h): the field of all other cells, on a grid coarser by
+  /// 2^coarse_shift with the same quantum; null elsewhere. Such cells are named `elsewhere`, a brick of
+  /// -band, which is a bound of everything.
+  std::shared_ptr<const VoxLayout> coarse;
+  int coarse_shift = 0;
+  std::uint32_t elsewhere = kOutside;
 
   void resizeCells() {
     bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);
@@ -170,6 +182,10 @@ struct VoxLayout {
   [[nodiscard]] bool holds(const Index3& cell) const noexcept {
     return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
   }
+  /// Whether a brick holds its cell's nodes.
+  [[nodiscard]] bool hasOwnNodes(std::uint32_t brick) const noexcept {
+    return !isConstant(brick) && brick != elsewhere;
+  }
   /// The nodes of a cell's brick.
   [[nodiscard]] const NodeValue* nodesOf(std::size_t cell) const noexcept {
     return pool->nodes(bricks[cell]);
@@ -184,9 +200,12 @@ void markFarCells(VoxLayout& layout);
 inline double quantumOf(double band_m) {
   return static_cast<float>(band_m / kFullBand);
 }
-inline NodeValue toNode(double distance_m, double quantum_m) {
-  return static_cast<NodeValue>(
-      std::lround(std::clamp<double>(distance_m / quantum_m, -kFullBand, kFullBand)));
+/// A distance in quanta, |quanta| <= kFullBand, as a node holds it: the nearest whole number, halves away
+/// from zero. Nodes are rounded here and nowhere else; plain arithmetic, so that loops over it become
+/// vectors.
+template <typename Real>
+inline NodeValue nodeOf(Real quanta) {
+  return static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(Real{0.5}, quanta)));
 }
 
 }  // namespace vps

@@ -104,6 +104,7 @@ class Merger {
     out_->parts.insert(out_->parts.end(), b_.parts.begin(), b_.parts.end());
     out_->steepest = std::max(a_.steepest, b_.steepest);
     out_->node_error = std::max(a_.node_error, b_.node_error);
+    out_->is_metric = a_.is_metric && b_.is_metric;
     out_->resizeCells();
     tbb::parallel_for(low.x(), high.x(), [&](int x) {
       for (int y = low.y(); y < high.y(); ++y)
@@ -189,6 +190,7 @@ class AddedMap final : public AddedField {
     parts = layout.parts;
     steepest = layout.steepest;
     node_error = layout.node_error;
+    is_metric = layout.is_metric;
   }
   void write(std::size_t cell, NodeValue* nodes) const override {
     std::copy_n(layout_.nodesOf(cell), kBrickStride, nodes);
@@ -205,6 +207,7 @@ class AddedMap final : public AddedField {
 };
 
 void requireSameGrid(const VoxMap& a, const VoxMap& b) {
+  for (const VoxMap* map : {&a, &b}) VoxMapBuilder::requireOneGrid(*map, "combined");
   if (a.voxel_m() != b.voxel_m() || a.quantum_m() != b.quantum_m())
     throw LoadError("", "",
                     "two voxmaps of different voxel size or band cannot be combined; resample one onto the "
@@ -212,6 +215,13 @@ void requireSameGrid(const VoxMap& a, const VoxMap& b) {
 }
 
 }  // namespace
+
+void VoxMapBuilder::requireOneGrid(const VoxMap& map, const char* what) {
+  if (map.layout_->coarse == nullptr) return;
+  throw LoadError("", "",
+                  std::string("a voxmap that is fine in regions only cannot be ") + what +
+                      "; build it with one voxel size, or cook the meshes in regions");
+}
 
 VoxMap VoxMapBuilder::combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b,
                                Combine combine) {

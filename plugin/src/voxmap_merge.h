@@ -33,6 +33,7 @@ class AddedField {
   std::vector<float> centers_m;      ///< as VoxLayout has them
   std::vector<VoxPartRange> parts;
   float steepest = 1, node_error = 0;  ///< as VoxLayout has them
+  bool is_metric = true;
 };
 
 }  // namespace vps

@@ -52,6 +52,7 @@ class ResampledField final : public AddedField {
     // Nodes are off by the field's error; and two neighbours by no more than the field's slope over a voxel.
     node_error = static_cast<float>(field_.error * ratio);
     steepest = field_.slope;
+    is_metric = field_.is_metric;
     for (int i = 0; i < 8; ++i) {
       const Box& from = map_.bounds();
       const Vec3 corner(i & 1 ? from.max.x() : from.min.x(), i & 2 ? from.max.y() : from.min.y(),
@@ -96,10 +97,7 @@ class ResampledField final : public AddedField {
   /// grid's, so that what is saturated stays so.
   void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
     constexpr float kBand = kFullBand;
-    for (int i = 0; i < count; ++i) {
-      const float quanta = std::clamp(value[i] * quanta_, -kBand, kBand);
-      nodes[i] = static_cast<NodeValue>(static_cast<int>(quanta + 32768.5f) - 32768);
-    }
+    for (int i = 0; i < count; ++i) nodes[i] = nodeOf(std::clamp(value[i] * quanta_, -kBand, kBand));
   }
 
   void layOut(double band_m) {
@@ -168,6 +166,17 @@ void requireBand(const VoxMap& map, double band_m) {
 
 }  // namespace
 
+VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+                           const Box& bounds) {
+  VoxMap map;
+  map.voxel_m_ = voxel_m;
+  map.band_m_ = band_m;
+  map.quantum_m_ = quantumOf(band_m);
+  map.bounds_ = bounds;
+  map.layout_ = std::move(layout);
+  return map;
+}
+
 VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
   VoxMap map;
   map.voxel_m_ = settings.voxel_m;
@@ -181,6 +190,8 @@ VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
+  VoxMapBuilder::requireOneGrid(cooked, "combined");
+  VoxMapBuilder::requireOneGrid(*part.map, "resampled");
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
   return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);

@@ -196,6 +196,7 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
   // Rounding alone makes a quantum of difference.
   const double steps = (steepest - 1) * quantum_m / voxel_m;
   layout.steepest = std::max(layout.steepest, static_cast<float>(steps * (1 + 1e-6)));
+  layout.is_metric = layout.steepest <= 1;
 }
 
 std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m,

@@ -5,13 +5,11 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 
 #include "support/analytic.h"
+#include "support/same_map.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
 
@@ -274,22 +272,6 @@ TEST(VoxMap, SampleIsDistanceAndNormal) {
   }
 }
 
-/// Equal to the bit, as far as sampling can tell.
-void expectSame(const VoxMap& a, const VoxMap& b) {
-  EXPECT_EQ(a.brickCount(), b.brickCount());
-  EXPECT_EQ(a.bounds().min, b.bounds().min);
-  EXPECT_EQ(a.bounds().max, b.bounds().max);
-  RandomPoints random(16);
-  for (int n = 0; n < 40000; ++n) {
-    const Vec3 p = a.bounds().center() + random.inBox(a.bounds().size());
-    ASSERT_EQ(a.distance(p), b.distance(p));
-    ASSERT_EQ(a.lowerBound(p), b.lowerBound(p));
-    ASSERT_EQ(a.leastDistance(p), b.leastDistance(p));
-    ASSERT_EQ(a.isInsideCoarse(p), b.isInsideCoarse(p));
-    ASSERT_EQ(a.normal(p), b.normal(p));
-  }
-}
-
 TEST(VoxMap, ManyThreadsGiveTheBitsOfOne) {
   const Mesh mesh = transformed(makeTube(0.01, 0.006, 0.02, 200), RandomPoints(17).pose(0.01));
   const VoxMap many = buildVoxMap(mesh, kSettings);
@@ -434,99 +416,6 @@ TEST(VoxMap, TheVoxelSizeThatIsSaidToFitDoes) {
     EXPECT_GT(fits_mm, 1e-3);
     EXPECT_LT(fits_mm, 0.1);
   }
-}
-
-class VdbFile : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("vps_vdb_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    std::filesystem::create_directories(folder_);
-    file_ = (folder_ / "part.vdb").string();
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  static std::string bytesOf(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  static void write(const std::string& file, const std::string& bytes) {
-    std::ofstream(file, std::ios::binary) << bytes;
-  }
-
-  std::filesystem::path folder_;
-  std::string file_;
-};
-
-TEST_F(VdbFile, ReloadsToTheSameBits) {
-  const VoxMap map =
-      buildVoxMap(transformed(makeTube(0.01, 0.006, 0.02, 64), RandomPoints(24).pose(0.01)), kSettings);
-  saveVdb(map, file_);
-  const VoxMap loaded = loadVdb(file_);
-  EXPECT_EQ(loaded.voxel_m(), map.voxel_m());
-  EXPECT_EQ(loaded.band_m(), map.band_m());
-  expectSame(map, loaded);
-  EXPECT_FALSE(std::filesystem::exists(file_ + ".unfinished"));
-}
-
-TEST_F(VdbFile, ACookedMapKeepsItsOwnersAndTakesFurtherParts) {
-  const Mesh tube = makeTube(0.01, 0.006, 0.012, 64), pin = makeCylinder(0.005, 0.03, 64);
-  const Mesh box = makeBox({0.01, 0.01, 0.01});
-  const Pose X_box = Pose::translation({0.02, 0.01, 0});
-  const VoxMap cooked = cookVoxMap({{&tube, {}}, {&pin, {}}}, kSettings);
-  saveVdb(cooked, file_);
-  const VoxMap loaded = loadVdb(file_);
-  expectSame(cooked, loaded);
-  RandomPoints random(25);
-  for (int n = 0; n < 20000; ++n) {
-    const Vec3 p = random.inBox({0.013, 0.013, 0.018});
-    if (std::abs(cooked.distance(p)) < 2 * kVoxel_m) {
-      ASSERT_EQ(cooked.owner(p), loaded.owner(p));
-    }
-  }
-  expectSame(mountVoxMap(cooked, {&box, X_box}), mountVoxMap(loaded, {&box, X_box}));
-}
-
-TEST_F(VdbFile, ReplacesAnEarlierFileWhole) {
-  saveVdb(buildVoxMap(makeBox({0.01, 0.01, 0.01}), kSettings), file_);
-  const VoxMap sphere = buildVoxMap(makeSphere(0.004, 3), kSettings);
-  saveVdb(sphere, file_);
-  expectSame(sphere, loadVdb(file_));
-}
-
-TEST_F(VdbFile, EveryCutIsRefused) {
-  saveVdb(buildVoxMap(makeSphere(0.002, 2), {kVoxel_m, 3}), file_);
-  ASSERT_NO_THROW(static_cast<void>(loadVdb(file_)));
-  const std::string whole = bytesOf(file_);
-  const std::string cut = (folder_ / "cut.vdb").string();
-  for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 400) {
-    write(cut, whole.substr(0, length));
-    ASSERT_THROW(static_cast<void>(loadVdb(cut)), LoadError) << length << " of " << whole.size();
-  }
-}
-
-TEST_F(VdbFile, EveryWrongByteIsRefused) {
-  saveVdb(buildVoxMap(makeSphere(0.002, 2), {kVoxel_m, 3}), file_);
-  const std::string whole = bytesOf(file_);
-  const std::string wrong = (folder_ / "wrong.vdb").string();
-  for (std::size_t at = 0; at < whole.size(); at += 1 + whole.size() / 300) {
-    std::string bytes = whole;
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
-    write(wrong, bytes);
-    ASSERT_THROW(static_cast<void>(loadVdb(wrong)), LoadError) << at << " of " << whole.size();
-  }
-}
-
-TEST_F(VdbFile, OtherFilesAreRefused) {
-  EXPECT_THROW(static_cast<void>(loadVdb((folder_ / "missing.vdb").string())), LoadError);
-  write(file_, "");
-  EXPECT_THROW(static_cast<void>(loadVdb(file_)), LoadError);
-  write(file_, std::string(10000, 'x'));
-  EXPECT_THROW(static_cast<void>(loadVdb(file_)), LoadError);
-  EXPECT_THROW(
-      saveVdb(buildVoxMap(makeBox({0.01, 0.01, 0.01}), kSettings), (folder_ / "no/such.vdb").string()),
-      LoadError);
-  EXPECT_THROW(saveVdb(VoxMap(), file_), LoadError);
 }
 
 }  // namespace

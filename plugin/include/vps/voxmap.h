@@ -44,6 +44,8 @@ class VoxMap {
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
   [[nodiscard]] double band_m() const noexcept { return band_m_; }
+  /// The voxel size at a point: larger than voxel_m() where a map is coarse, see buildVoxMapInRegions().
+  [[nodiscard]] double voxelAt(const Vec3& p_M) const noexcept;
   /// The step in which nodes store distances: band_m() / 32767.
   [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
@@ -81,7 +83,6 @@ class VoxMap {
  private:
   friend class VoxMapBuilder;
   friend class VoxMapCacheFile;
-  friend class VoxMapFile;
   friend class VoxSampler;
   friend struct FieldView;
   double voxel_m_ = 0, band_m_ = 0, quantum_m_ = 0;
@@ -96,6 +97,22 @@ class VoxMap {
 /// positive, or a grid that would not fit in memory (says which voxel size would).
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                    const Progress& progress = {}, MeshReport* report = nullptr);
+
+/// Where a map is fine, and how much coarser it is elsewhere.
+struct FineRegions {
+  std::vector<Box> boxes_M;  ///< in the part's frame; each grows to whole bricks of 8 voxels
+  int coarsening = 4;        ///< 2, 4 or 8 times voxel_m outside
+};
+
+/// As buildVoxMap(), but fine only in regions, as where a path passes: memory and time follow what they hold
+/// of the surface. Elsewhere the field is that of a map with larger voxels; it meets the fine one without a
+/// jump. The band is at least 3 of the larger voxels wide. sampleError_m() and bounds hold for the larger
+/// voxels. Queries are as exact as on any map: culled is exhaustive. Points elsewhere cost more to read than
+/// fine ones. Such maps cannot be combined, resampled or saved: LoadError, which also refuses what is no
+/// region.
+VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
+                            const std::string& part = "", const Progress& progress = {},
+                            MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {
@@ -135,10 +152,27 @@ VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 VoxMap unionOf(const VoxMap& a, const VoxMap& b);
 VoxMap differenceOf(const VoxMap& a, const VoxMap& b);
 
-/// Writes/reads an ordinary OpenVDB level set ("surface", float, narrow band); opens in Houdini and Blender.
-/// Throws LoadError on a file that is missing, damaged, or not a uniform level set. Writing goes to a
-/// temporary name first: an existing file is replaced whole or not at all.
+/// Writes an ordinary OpenVDB level set ("surface", float, narrow band) that opens in Houdini and Blender.
+/// Goes to a temporary name first: an existing file is replaced whole or not at all. Throws LoadError.
 void saveVdb(const VoxMap& map, const std::string& file);
-VoxMap loadVdb(const std::string& file);
+
+/// Reads a level set of any program: values of 16, 32 or 64 bit; cubes for voxels. Files of ours come back to
+/// the bit. Of others, `grid` names the one to read; unnamed, the only level set is taken, or the only grid
+/// that looks like one. Its band is kept up to 32 voxels; one thinner than 3 is extended by fast sweeping, a
+/// first-order solution that leaves what is there as it is. Values need not be true distances: how far they
+/// are from any function that changes by the way gone is measured, and widens sampleError_m() and what
+/// culling allows for. A grid that is turned or moved off the lattice through the origin is resampled (see
+/// resampledVoxMap()); loadPlacedVdb() leaves it as it is. Throws LoadError on a file that is missing or
+/// damaged, that holds no such grid or several, and on what would not fit in memory (before taking it).
+VoxMap loadVdb(const std::string& file, const std::string& grid = "");
+
+/// A level set on its own lattice, and where that lies in the file's frame F.
+struct PlacedVdb {
+  VoxMap map;
+  Pose X_FM;
+};
+
+/// As loadVdb(), but every node is a value of the file, rounded to the map's quantum.
+PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
 
 }  // namespace vps
