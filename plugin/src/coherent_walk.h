@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -49,6 +50,7 @@ class CoherentWalk {
  private:
   /// What positions, readings and sums are rounded by at most, generously: it only costs a little culling.
   static constexpr double kRounding = 3e-4;
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   struct Reader {
     CoherentWalk* self;
@@ -59,49 +61,53 @@ class CoherentWalk {
     }
   };
 
+  /// What a leaf, row or group waits for is lowered by note() as its leaves are read, at once or with a later
+  /// batch.
   void visitGroup(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
     group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9);
     if (group.way < group.next) return;
-    const std::size_t leaves = memory_.leaf_next_.size(), first = g * kGroupLeaves;
-    double next = std::numeric_limits<double>::infinity();
-    for (std::size_t leaf = first; leaf < std::min(leaves, first + kGroupLeaves); leaf += kLanes) {
-      double& row_next = memory_.row_next_[leaf / kLanes];
-      if (group.way >= row_next) row_next = visitRow(leaf, group.way);
-      next = std::min(next, row_next);
+    group.next = kNever;
+    constexpr std::size_t kRows = kGroupLeaves / kLanes;
+    for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
+      if (group.way >= memory_.row_next_[row]) visitRow(row, group.way);
+      group.next = std::min(group.next, memory_.row_next_[row]);
     }
-    group.next = next;
   }
 
-  /// Up to sixteen leaves; returns when to look at them again.
-  double visitRow(std::size_t first, double way) noexcept {
-    const std::size_t count = std::min<std::size_t>(kLanes, memory_.leaf_next_.size() - first);
-    bool has_spheres = false;
-    SphereBounds bounds;
-    double next = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < count; ++i) {
-      double& leaf_next = memory_.leaf_next_[first + i];
-      if (way >= leaf_next) {
-        if (!memory_.is_near_[first + i]) {
-          if (!has_spheres) boundRow(first, bounds);
-          has_spheres = true;
-          leaf_next = way + static_cast<double>(bounds.free[i]) - kRounding;
-        }
-        if (way >= leaf_next) {
-          leaf_next = way;
-          reader_.add(static_cast<std::uint32_t>(first + i));
-        }
-      }
-      next = std::min(next, leaf_next);
+  /// Up to sixteen leaves: those whose time has come are read, unless their spheres tell enough.
+  void visitRow(std::size_t row, double way) noexcept {
+    double* next = &memory_.leaf_next_[row * kLanes];
+    const auto due = [&] {
+      std::uint32_t bits = 0;
+      for (int i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(way >= next[i]) << i;
+      return bits;
+    };
+    std::uint32_t waiting = due();
+    if ((waiting & ~std::uint32_t{memory_.row_near_[row]}) != 0) {
+      SphereBounds bounds;
+      boundRow(row, bounds);
+      for (int i = 0; i < kLanes; ++i)
+        next[i] = std::max(next[i], way + (static_cast<double>(bounds.free[i]) - kRounding));
+      waiting = due();
     }
-    return next;
+    memory_.row_next_[row] = kNever;
+    for (; waiting != 0; waiting &= waiting - 1) {
+      const auto leaf = row * kLanes + static_cast<std::size_t>(std::countr_zero(waiting));
+      memory_.leaf_next_[leaf] = kNever;
+      reader_.add(static_cast<std::uint32_t>(leaf));
+    }
+    double least[4] = {kNever, kNever, kNever, kNever};
+    for (int i = 0; i < kLanes; ++i) least[i % 4] = std::min(least[i % 4], next[i]);
+    const double earliest = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+    memory_.row_next_[row] = std::min(memory_.row_next_[row], earliest);
   }
 
-  void boundRow(std::size_t first, SphereBounds& bounds) const noexcept {
+  void boundRow(std::size_t row, SphereBounds& bounds) const noexcept {
     const auto& shell = reading_.shell;
     const auto cutoff = static_cast<float>(cutoff_);
-    const std::size_t parent = shell.leaf_blocks + first / kLanes;
+    const std::size_t parent = shell.leaf_blocks + row;
     if (parent < shell.blocks.size()) {
       reading_.kernels.bound(reading_.field, reading_.motion, shell.blocks[parent], cutoff, bounds);
       return;
@@ -115,16 +121,19 @@ class CoherentWalk {
     const double least = static_cast<double>(leaf.least()) * reading_.field.quantum;
     double free = (least - cutoff_) / reading_.field.slope;
     if (reading_.field.is_metric) free = std::max(free, least - error_ - beyond_);
+    QueryMemory::Group& group = memory_.groups_[leaf.index / kGroupLeaves];
     double& leaf_next = memory_.leaf_next_[leaf.index];
-    const double way = memory_.groups_[leaf.index / kGroupLeaves].way;
     // A leaf may be read in pieces: the first sets, the others lower.
-    const double until = way + std::max(0.0, free - kRounding);
+    const double until = group.way + std::max(0.0, free - kRounding);
     leaf_next = leaf.index == noted_ ? std::min(leaf_next, until) : until;
     noted_ = leaf.index;
-    memory_.is_near_[leaf.index] =
-        free * reading_.field.voxel_m < leaf.block.radius_m || leaf.block.count == 1;
-    double& row_next = memory_.row_next_[leaf.index / kLanes];
-    row_next = std::min(row_next, leaf_next);
+    const std::size_t row = leaf.index / kLanes;
+    const bool is_near = free * reading_.field.voxel_m < leaf.block.radius_m || leaf.block.count == 1;
+    const auto bit = static_cast<std::uint16_t>(1U << leaf.index % kLanes);
+    std::uint16_t& near = memory_.row_near_[row];
+    near = static_cast<std::uint16_t>(is_near ? near | bit : near & ~bit);
+    memory_.row_next_[row] = std::min(memory_.row_next_[row], leaf_next);
+    group.next = std::min(group.next, leaf_next);
   }
 
   const Reading& reading_;

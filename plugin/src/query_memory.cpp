@@ -2,6 +2,7 @@
 #include "vps/query_memory.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "coherent_walk.h"
 
@@ -21,23 +22,24 @@ QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
                                 (sphere(shell.blocks[i]) - group.center).norm() + shell.blocks[i].radius_m);
     groups_.push_back(group);
   }
-  leaf_next_.resize(shell.leaf_blocks);
   row_next_.resize((shell.leaf_blocks + kLanes - 1) / kLanes);
-  is_near_.resize(shell.leaf_blocks);
+  row_near_.resize(row_next_.size());
+  leaf_next_.resize(row_next_.size() * kLanes);
   clear();
 }
 
 void QueryMemory::clear() noexcept {
   for (Group& group : groups_) group.way = 0, group.next = -1;
   std::fill(row_next_.begin(), row_next_.end(), -1.0);
-  std::fill(leaf_next_.begin(), leaf_next_.end(), -1.0);
-  std::fill(is_near_.begin(), is_near_.end(), std::uint8_t{0});
+  std::fill(leaf_next_.begin(), leaf_next_.end(), std::numeric_limits<double>::infinity());
+  std::fill_n(leaf_next_.begin(), shell_->leaf_blocks, -1.0);
+  std::fill(row_near_.begin(), row_near_.end(), std::uint16_t{0});
   cutoff_ = -1e300;  // no query's
 }
 
 bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexcept {
   return map_.isSame(map) && shell_ == &shell && blocks_ == shell.blocks.data() &&
-         leaf_next_.size() == shell.leaf_blocks;
+         row_next_.size() == (shell.leaf_blocks + kLanes - 1) / kLanes;
 }
 
 }  // namespace vps

@@ -43,9 +43,9 @@ class QueryMemory {
   const PointShell* shell_;
   const ShellBlock* blocks_;
   std::vector<Group> groups_;
-  std::vector<double> row_next_;       ///< the same for each sixteen leaves
-  std::vector<double> leaf_next_;      ///< and for each leaf
-  std::vector<std::uint8_t> is_near_;  ///< of a leaf: its sphere told nothing last time, only reading does
+  std::vector<double> row_next_;         ///< the same for each sixteen leaves
+  std::vector<double> leaf_next_;        ///< and for each leaf, in whole rows
+  std::vector<std::uint16_t> row_near_;  ///< bit i: leaf i's sphere told nothing last time, only reading does
   Pose X_MP_;
   double cutoff_ = 0;
 };
