@@ -29,6 +29,34 @@ double boxGap2(const Box& a, const Box& b) {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
 }
 
+/// Nodes that may be inside. A band or more from the box of the surface nothing is, whatever the winding
+/// number says: walls that face the wrong way put it above 0.5 far out in the open. It makes the directory's
+/// rim outside, whose lowest and highest nodes are that far; and with it what lies beyond, which reads as the
+/// rim. A coarser map of the surface agrees, so that where it stands for a finer one the rim is outside too.
+class Within {
+ public:
+  Within(const VoxLayout& layout, double voxel_m, double quantum_m) {
+    const Box& box = layout.parts.front().bounds;
+    const double band_m = kFullBand * quantum_m;
+    // As the directory is laid out: a cell is eight voxels, so that both round alike.
+    low_ = ((box.min.array() - band_m) / voxel_m).floor().cast<int>();
+    high_ = ((box.max.array() + band_m) / voxel_m).ceil().cast<int>();
+  }
+  [[nodiscard]] bool holds(const Index3& node) const {
+    return (node.array() > low_.array()).all() && (node.array() < high_.array()).all();
+  }
+  [[nodiscard]] bool holdsAllOf(const Index3& cell) const {
+    return holds(kBrick * cell) && holds(kBrick * (cell + Index3::Ones()));
+  }
+  [[nodiscard]] bool holdsNoneOf(const Index3& cell) const {
+    return (kBrick * cell.array() >= high_.array()).any() ||
+           (kBrick * (cell.array() + 1) <= low_.array()).any();
+  }
+
+ private:
+  Index3 low_, high_;
+};
+
 /// Calls visit(other) for the up to six neighbours of one of size^3 nodes.
 template <typename Visit>
 void forEachNeighbour(const Index3& at, const Index3& size, Visit visit) {
@@ -127,7 +155,6 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
     if (margin[seed] >= 0) continue;
     const double w = winding_.at(voxel_m * (low + at(seed)).cast<double>()).w;
     const int sign = w > 0.5 ? -1 : 1;
-    ++count.asked;
     margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMostMargin));
     int end = 0;
     queue[end++] = static_cast<std::int16_t>(seed);
@@ -162,6 +189,15 @@ void forEachStep(const NodeValue* nodes, Visit visit) {
     }
 }
 
+/// Makes those nodes of a brick outside that cannot be inside.
+void clip(NodeValue* nodes, const Index3& cell, const Within& within) {
+  if (within.holdsAllOf(cell)) return;
+  for (int i = 0; i < kBrickNodes; ++i) {
+    const Index3 at(i / (kNodes * kNodes), i / kNodes % kNodes, i % kNodes);
+    if (!within.holds(kBrick * cell + at)) nodes[i] = static_cast<NodeValue>(std::abs(int{nodes[i]}));
+  }
+}
+
 std::vector<std::size_t> cellsWithBricks(const VoxLayout& layout) {
   std::vector<std::size_t> cells;
   for (std::size_t i = 0; i < layout.bricks.size(); ++i)
@@ -177,14 +213,15 @@ void WindingSigner::signBricks(VoxLayout& layout, double voxel_m, double quantum
 
 void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>& cells, double voxel_m,
                               double quantum_m) {
-  std::atomic<std::size_t> nodes = 0, sure = 0, asked = 0;
+  std::atomic<std::size_t> nodes = 0, sure = 0;
   std::atomic<int> steepest = 0;
+  const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
     NodeValue* of_brick = layout.pool->nodes(layout.bricks[cells[i]]);
     const Count count = signBrick(of_brick, kBrick * layout.cellAt(cells[i]), voxel_m, quantum_m);
+    clip(of_brick, layout.cellAt(cells[i]), within);
     nodes += count.nodes;
     sure += count.sure;
-    asked += count.asked;
     int most = 0;
     forEachStep(of_brick, [&](int a, int b) { most = std::max(most, std::abs(a - b)); });
     for (int seen = steepest; most > seen && !steepest.compare_exchange_weak(seen, most);) {
@@ -192,14 +229,13 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
   });
   count_.nodes += nodes;
   count_.sure += sure;
-  count_.asked += asked;
   // Rounding alone makes a quantum of difference.
   const double steps = (steepest - 1) * quantum_m / voxel_m;
   layout.steepest = std::max(layout.steepest, static_cast<float>(steps * (1 + 1e-6)));
   layout.is_metric = layout.steepest <= 1;
 }
 
-std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m,
+std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
                                                  const std::vector<std::uint8_t>& is_unsure) const {
   const Index3 corners = layout.size + Index3::Ones();
   const auto cornerOf = [&](std::size_t cell, int corner) {
@@ -213,11 +249,13 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
   std::vector<std::uint8_t> side(static_cast<std::size_t>(corners.cast<std::int64_t>().prod()), NotAsked);
   for (std::size_t i = 0; i < is_unsure.size(); ++i)
     for (int k = 0; k < 8 && is_unsure[i] != 0; ++k) side[cornerOf(i, k)] = Asked;
+  const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
     if (side[i] != Asked) return;
     const auto ny = static_cast<std::size_t>(corners.y()), nz = static_cast<std::size_t>(corners.z());
     const Index3 at(static_cast<int>(i / (ny * nz)), static_cast<int>(i / nz % ny), static_cast<int>(i % nz));
-    side[i] = winding_.at(voxel_m * kBrick * (layout.low + at).cast<double>()).w > 0.5 ? In : Out;
+    const Index3 node = kBrick * (layout.low + at);
+    side[i] = within.holds(node) && winding_.at(voxel_m * node.cast<double>()).w > 0.5 ? In : Out;
   });
   std::vector<std::size_t> cut;
   for (std::size_t i = 0; i < is_unsure.size(); ++i) {
@@ -265,11 +303,18 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
     }
   }
 
-  // From a cell's centre to its corners: half its diagonal.
+  const Within within(layout, voxel_m, quantum_m);
   std::vector<std::uint8_t> is_unsure(layout.bricks.size());
-  for (std::size_t i = 0; i < is_unsure.size(); ++i)
-    is_unsure[i] = isConstant(layout.bricks[i]) && margin[i] < 0.87f * loss[i] + float{kDoubt};
-  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, is_unsure);
+  for (std::size_t i = 0; i < is_unsure.size(); ++i) {
+    if (!isConstant(layout.bricks[i])) continue;
+    if (within.holdsNoneOf(layout.cellAt(i))) {
+      layout.bricks[i] = kOutside;
+      continue;
+    }
+    // From a cell's centre to its corners: half its diagonal. Where it is cut off, corners may disagree.
+    is_unsure[i] = margin[i] < 0.87f * loss[i] + float{kDoubt} || !within.holdsAllOf(layout.cellAt(i));
+  }
+  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, quantum_m, is_unsure);
   if (cut.empty()) return;
   std::uint32_t brick = takeBricks(layout, cut.size());
   for (const std::size_t cell : cut) {

@@ -30,7 +30,8 @@ class WindingSlope {
   std::vector<std::pair<Box, double>> edges_;  // box and length [m]
 };
 
-/// Signs nodes: inside is where the winding number exceeds 0.5. Between neighbouring nodes farther from the
+/// Signs nodes: inside is where the winding number exceeds 0.5, less than a band from the surface's box.
+/// Beyond all is outside, so the directory's rim is. Between neighbouring nodes farther from the
 /// surface than their step it changes by no more than its slope, so one value serves many nodes: all of a
 /// brick's on one side of a closed surface. Near a border, every node has its own.
 class WindingSigner {
@@ -50,10 +51,10 @@ class WindingSigner {
 
  private:
   struct Count {
-    std::size_t nodes = 0, sure = 0, asked = 0;
+    std::size_t nodes = 0, sure = 0;
   };
   /// The cells, ascending, that a hole's middle passes; `is_unsure` by cell.
-  [[nodiscard]] std::vector<std::size_t> cutCells(const VoxLayout& layout, double voxel_m,
+  [[nodiscard]] std::vector<std::size_t> cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
                                                   const std::vector<std::uint8_t>& is_unsure) const;
   /// Signs the nodes of these cells' bricks.
   void signCells(VoxLayout& layout, const std::vector<std::size_t>& cells, double voxel_m, double quantum_m);

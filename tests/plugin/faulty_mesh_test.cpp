@@ -10,7 +10,9 @@
 #include "support/lathe.h"
 #include "vps/mesh_distance.h"
 #include "vps/mesh_repair.h"
+#include "vps/query.h"
 #include "vps/voxmap.h"
+#include "vps/winding_number.h"
 
 namespace vps::test {
 namespace {
@@ -348,6 +350,83 @@ TEST(FaultyMesh, OneShellAFaceIsASolidEvenIfSomeFaceIn) {
     EXPECT_EQ(wrongSigns(map, insideOf(box),
                          [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4e-7; }),
               0u);
+  }
+}
+
+/// A pipe of two open walls, r = 10 and 9 mm, both facing out: its inner wall is flipped, so that winding
+/// numbers are near 2 within, and still above 0.5 some millimetres before its mouths.
+Mesh pipeWithAFlippedWall() {
+  Mesh pipe;
+  for (const double radius_m : {0.01, 0.009}) {
+    constexpr std::uint32_t kSides = 64;
+    Mesh wall;
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+      const double angle_rad = 2 * std::numbers::pi * i / kSides;
+      const double x = radius_m * std::cos(angle_rad), y = radius_m * std::sin(angle_rad);
+      wall.vertices.insert(wall.vertices.end(), {Vec3(x, y, -0.02), Vec3(x, y, 0.02)});
+      const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+      wall.triangles.insert(wall.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    }
+    append(pipe, wall);
+  }
+  return pipe;
+}
+
+/// Readings a band or more from the surface's box, up to beyond the directory. Normals look into two voxels.
+void expectOutsideBeyondTheBox(const VoxMap& map, double coarsest_m) {
+  RandomPoints random(71);
+  const Box& box = map.bounds();
+  for (int n = 0; n < 50000; ++n) {
+    const Vec3 p = box.center() + random.inBox(0.5 * box.size() + Vec3::Constant(0.01));
+    const Vec3 way = (box.min - p).cwiseMax(p - box.max);
+    if (way.maxCoeff() < map.band_m() + 2 * coarsest_m) continue;
+    ASSERT_EQ(map.distance(p), map.band_m()) << p.transpose();
+    ASSERT_TRUE(map.normal(p, Gradient::Continuous).isZero()) << p.transpose();
+  }
+}
+
+/// Culled and coherent answers are the exhaustive one, about the mouth of a part that lies along z.
+void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
+  QueryMemory memory(map, shell);
+  RandomPoints random(72);
+  std::size_t touching = 0;
+  for (int n = 0; n < 60; ++n) {
+    const Pose X_MP(random.pose(0).R, Vec3(0, 0, 0.021) + random.inBox({0.012, 0.012, 0.006}));
+    QueryOptions options;
+    TouchSummary culled, coherent, all;
+    queryWrench(map, shell, X_MP, options, 1e11, Vec3::Zero(), culled);
+    queryWrench(map, shell, X_MP, options, 1e11, Vec3::Zero(), coherent, &memory);
+    options.is_exhaustive = true;
+    queryWrench(map, shell, X_MP, options, 1e11, Vec3::Zero(), all);
+    for (const TouchSummary* sum : {&culled, &coherent}) {
+      ASSERT_EQ(sum->count, all.count);
+      ASSERT_EQ(sum->F_O_M.f, all.F_O_M.f);
+      ASSERT_EQ(sum->F_O_M.tau, all.F_O_M.tau);
+      ASSERT_EQ(sum->max_depth_m, all.max_depth_m);
+    }
+    touching += all.count;
+  }
+  EXPECT_GT(touching, 1000u);
+}
+
+TEST(FaultyMesh, BeyondTheBandAllIsOutsideWhateverTheWindingNumberSays) {
+  const Mesh pipe = pipeWithAFlippedWall();
+  ASSERT_GT(WindingNumber(pipe).at({0, 0, 0.0235}).w, 0.5);  // the rim is nearer than that, at 0.25 mm
+  const PointShell shell = buildPointShell(makeSphere(0.003, 4), {0.2e-3, 0.35});
+  const VoxMap map = buildVoxMap(pipe, {0.25e-3, 4});
+  expectOutsideBeyondTheBox(map, 0.25e-3);
+  expectSameAnswers(map, shell);
+  // Where a coarse map stands for the fine one, its rim is nearer than the fine one's or farther.
+  for (const int coarsening : {2, 8}) {
+    FineRegions regions;
+    Box mouth;
+    mouth.add({0.005, -0.002, 0.018});
+    mouth.add({0.012, 0.002, 0.03});
+    regions.boxes_M = {mouth};
+    regions.coarsening = coarsening;
+    const VoxMap by_regions = buildVoxMapInRegions(pipe, {0.25e-3, 4}, regions);
+    expectOutsideBeyondTheBox(by_regions, coarsening * 0.25e-3);
+    expectSameAnswers(by_regions, shell);
   }
 }
 
