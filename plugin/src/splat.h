@@ -43,11 +43,6 @@ class Splatter {
   struct Face;
   struct Edge;
   struct Corner;
-  /// A region and the range it can hold, before it is cut to a tile.
-  struct Bounded {
-    SplatRegion planes;
-    Box box;
-  };
   template <typename Visit>
   auto withFeature(std::uint32_t feature, const Vec3& origin, Visit visit);
 
