@@ -15,13 +15,16 @@ struct Place {
   float p[3];  ///< in voxels from the directory's corner
 };
 
+/// Of a lane's point, along one axis [voxels from the directory's corner].
+double positionOf(const Motion& m, const ShellBlock& block, std::uint32_t lane, int axis) noexcept {
+  const double* R = m.R + 3 * axis;
+  return m.p[axis] + R[0] * (block.center[0] + block.x[lane]) + R[1] * (block.center[1] + block.y[lane]) +
+         R[2] * (block.center[2] + block.z[lane]);
+}
+
 Place placeOf(const Motion& m, const ShellBlock& block, std::uint32_t lane) noexcept {
-  const double offset[3] = {block.center[0] + block.x[lane], block.center[1] + block.y[lane],
-                            block.center[2] + block.z[lane]};
   Place place;
-  for (int k = 0; k < 3; ++k)
-    place.p[k] = static_cast<float>(m.p[k] + m.R[3 * k] * offset[0] + m.R[3 * k + 1] * offset[1] +
-                                    m.R[3 * k + 2] * offset[2]);
+  for (int k = 0; k < 3; ++k) place.p[k] = static_cast<float>(positionOf(m, block, lane, k));
   return place;
 }
 
@@ -94,16 +97,44 @@ float depthBound(const Reading& reading, const ShellBlock& spheres, std::uint32_
   return std::clamp(depth, -leastRead(f, -depth), f.band);
 }
 
+/// The field at the spheres' centres [voxels], in a map that is fine in regions only. Its bricks alone do not
+/// tell: elsewhere they are -band, a bound for all, by which every cluster there would seem as deep as can
+/// be, and beside a region depths would jump to that.
+void readCenters(const Reading& reading, const ShellBlock& spheres, float* value) noexcept {
+  const FieldView& f = reading.field;
+  std::int32_t whole[3][kLanes];
+  float t[3][kLanes];
+  for (int k = 0; k < 3; ++k) {
+    // Farther off all is the same; also for what is not a number.
+    const double low = -VoxMap::kBrick, high = VoxMap::kBrick * (f.size[k] + 1.0);
+    for (std::uint32_t i = 0; i < spheres.count; ++i) {
+      const double p = positionOf(reading.motion, spheres, i, k), near = p > low ? std::min(p, high) : low;
+      whole[k][i] = static_cast<std::int32_t>(std::floor(near));
+      t[k][i] = static_cast<float>(near - whole[k][i]);
+    }
+  }
+  const std::int32_t* const at[3] = {whole[0], whole[1], whole[2]};
+  const float* const parts[3] = {t[0], t[1], t[2]};
+  const int count = static_cast<int>(spheres.count);
+  reading.kernels.readAt(f, at, parts, count, value);
+  readElsewhereAt(f, at, parts, count, value);
+  for (int i = 0; i < count; ++i) value[i] *= f.quantum;
+}
+
 }  // namespace
 
 void boundClusters(const Reading& reading, const ShellBlock& spheres, ClusterBounds& out) noexcept {
   const FieldView& f = reading.field;
-  SphereBounds bounds;
-  reading.kernels.bound(f, reading.motion, spheres, 0, bounds);
+  if (f.layout != nullptr) {
+    readCenters(reading, spheres, out.value);
+  } else {
+    SphereBounds bounds;
+    reading.kernels.bound(f, reading.motion, spheres, 0, bounds);
+    std::copy_n(bounds.center, spheres.count, out.value);
+  }
   // Positions are floats, and may be rounded to steps.
   const float rounding = 1e-3f + 2e-6f * static_cast<float>(spheres.radius_m / f.voxel_m);
   for (std::uint32_t i = 0; i < spheres.count; ++i) {
-    out.value[i] = bounds.center[i];
     out.radius[i] = spheres.weight[i] * f.voxels_per_m * (1 + 1e-6f) + rounding;
     out.depth[i] = depthBound(reading, spheres, i, out.value[i], out.radius[i]);
   }

@@ -7,6 +7,7 @@
 #include "read_kernel.h"
 #include "support/analytic.h"
 #include "support/no_alloc.h"
+#include "vps/budget_query.h"
 #include "vps/load_error.h"
 #include "vps/query.h"
 
@@ -235,6 +236,62 @@ TEST_P(RegionsTest, NoReadingIsBelowWhatABoundAllows) {
     const double least_m = std::min(map_.leastDistance(p) - way.norm(), map_.band_m()) - map_.sampleError_m();
     ASSERT_GE(map_.distance(p + way), least_m) << p.transpose() << " by " << way.transpose();
   }
+}
+
+TEST_P(RegionsTest, ABudgetThatSufficesIsTheWrenchToTheBitAndLessIsWithinItsBound) {
+  const PointShell shell = buildPointShell(case_.other, {0.15e-3, 0.35});
+  BudgetQuery query(map_, shell);
+  std::size_t touching = 0;
+  for (const Gradient gradient : {Gradient::Trilinear, Gradient::Continuous})
+    for (const Pose& X_MP : motion(40, 57)) {
+      QueryOptions options;
+      options.gradient = gradient;
+      TouchSummary all, got;
+      queryWrench(map_, shell, X_MP, options, 1e11, Vec3::Zero(), all);
+      EXPECT_TRUE(query.run(X_MP, options, 1e11, Vec3::Zero(), {}, got).is_complete);
+      ASSERT_EQ(got.count, all.count);
+      ASSERT_EQ(got.F_O_M.f, all.F_O_M.f);
+      ASSERT_EQ(got.F_O_M.tau, all.F_O_M.tau);
+      ASSERT_EQ(got.max_depth_m, all.max_depth_m);
+      for (const std::size_t max_points : {100u, 1000u}) {
+        const BudgetReport report =
+            query.run(X_MP, options, 1e11, Vec3::Zero(), {.max_points = max_points}, got);
+        // Sums of floats' roundings: 1e-6 of the force.
+        ASSERT_LE((got.F_O_M.f - all.F_O_M.f).norm(), report.force_error_N + 1e-6 * all.F_O_M.f.norm());
+        ASSERT_LE(all.max_depth_m, report.depth_bound_m);
+      }
+      touching += all.count;
+    }
+  EXPECT_GT(touching, 1000u);
+}
+
+TEST(Regions, ABudgetIsSpentWhereItTouches) {
+  // A peg in a bore that touches at its +x side, where the region is. All else is as near as the clearance.
+  const Mesh bore = makeTube(8e-3, kBore_m, 10e-3, 96), peg = makeCylinder(5e-3, 6e-3, 96);
+  const VoxMap by_regions =
+      buildVoxMapInRegions(bore, {kVoxel_m, 4}, within({boxOf({3e-3, -4e-3, -4e-3}, {6e-3, 4e-3, 4e-3})}, 4));
+  const VoxMap whole = buildVoxMap(bore, {kVoxel_m, 12});
+  const PointShell shell = buildPointShell(peg, {0.1e-3, 0.35});
+  BudgetQuery in_regions(by_regions, shell), in_whole(whole, shell);
+  const auto run = [&](const VoxMap& map, BudgetQuery& query, const Pose& X_MP, std::size_t max_points,
+                       BudgetReport& report) {
+    TouchSummary all, got;
+    queryWrench(map, shell, X_MP, {}, 1e11, Vec3::Zero(), all);
+    EXPECT_GT(all.count, 3000u);
+    report = query.run(X_MP, {}, 1e11, Vec3::Zero(), {.max_points = max_points}, got);
+    return (got.F_O_M.f - all.F_O_M.f).norm();
+  };
+  // Twice is allowed for: the coarse field is off by up to 4.3 voxels where the fine one is by 0.9, so that
+  // depths are bounded less well. About 4000 points it costs more, since there the fine map's budget begins
+  // to suffice for all but the peg's end faces.
+  for (const double x_um : {22.0, 26.0, 30.0})
+    for (const std::size_t max_points : {500u, 1000u, 2000u, 8000u}) {
+      const Pose X_MP = Pose::translation({x_um * 1e-6, 0, 0});
+      BudgetReport of_fine, of_regions;
+      const double fine_N = run(whole, in_whole, X_MP, max_points, of_fine);
+      EXPECT_LE(run(by_regions, in_regions, X_MP, max_points, of_regions), 2 * fine_N) << max_points;
+      EXPECT_LE(of_regions.force_error_N, 2 * of_fine.force_error_N) << max_points;
+    }
 }
 
 TEST(Regions, TheyTakeLessMemory) {
