@@ -102,17 +102,6 @@ struct Merger {
   }
 };
 
-/// Disjoint sets with path halving.
-struct Groups {
-  std::vector<std::uint32_t> parent;
-  explicit Groups(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent[find(a)] = find(b); }
-};
-
 }  // namespace
 
 Box bounds(const Mesh& mesh) {
@@ -186,7 +175,8 @@ MeshReport checkMesh(const Mesh& mesh) {
   return checkMesh(mesh, sortedHalfEdges(mesh));
 }
 
-MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
+MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
+                     std::vector<std::uint32_t>* shell_of) {
   MeshReport report;
   report.triangles = mesh.triangles.size();
   for (const auto& t : mesh.triangles) report.degenerate_triangles += isDegenerate(mesh, t);
@@ -195,7 +185,7 @@ MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   bool has_duplicates = false;
   Groups groups(mesh.triangles.size());
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
-    for (const HalfEdge& e : same) groups.join(e.triangle, same.front().triangle);
+    for (const HalfEdge& e : same.subspan(1)) groups.join(e.triangle, same.front().triangle);
     if (same.size() == 1) ++report.open_edges;
     if (same.size() == 2 && same[0].is_forward == same[1].is_forward) ++report.flipped_edges;
     if (same.size() > 2) ++report.non_manifold_edges;
@@ -205,6 +195,8 @@ MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   });
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
     report.shells += groups.find(i) == i && !hasRepeatedCorner(mesh.triangles[i]);
+  if (shell_of != nullptr && report.shells > 1) *shell_of = groups.numbered();
+  if (shell_of != nullptr && report.shells <= 1) shell_of->assign(mesh.triangles.size(), 0);
   if (has_duplicates)
     forEachTwin(mesh, [&](std::span<const Twin> same) { report.duplicate_triangles += same.size() - 1; });
   return report;

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <optional>
 
+#include "box_tree.h"
 #include "mesh_edges.h"
+#include "mesh_survey.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 
@@ -48,11 +49,23 @@ Facet facetOf(const Mesh& mesh, std::uint32_t triangle) {
   return {(a + b + c) / 3, area_m2 > 0 ? Vec3(n / area_m2) : Vec3(Vec3::Zero()), area_m2};
 }
 
-bool meet(const Box& a, const Box& b) {
-  return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+/// Six times the volume of the tetrahedron from o to a triangle.
+double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3 a = mesh.vertices[t[0]] - o, b = mesh.vertices[t[1]] - o, c = mesh.vertices[t[2]] - o;
+  return a.dot(b.cross(c));
 }
-bool holds(const Box& box, const Vec3& p) {
-  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+
+/// Whether shells that are closed, and whose facets agree, all face out, and no two shells' boxes meet.
+bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std::size_t count) {
+  std::vector<Box> boxes(count);
+  for (std::size_t i = 0; i < shell_of.size(); ++i)
+    for (const std::uint32_t v : mesh.triangles[i]) boxes[shell_of[i]].add(mesh.vertices[v]);
+  std::vector<double> volume_m3(count, 0);
+  for (std::uint32_t i = 0; i < shell_of.size(); ++i)
+    volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
+  return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
+         !BoxTree(boxes).hasMeeting();
 }
 
 class Repairer {
@@ -63,17 +76,16 @@ class Repairer {
 
   RepairedMesh run() {
     edges_ = sortedHalfEdges(mesh());
-    result_.report = checkMesh(mesh(), edges_);
+    std::vector<std::uint32_t> shell_of;
+    result_.report = checkMesh(mesh(), edges_, &shell_of);
     const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
-    if (is_whole && report().duplicate_triangles == 0) {
-      findPatches();
-      if (isSound()) return finish(true);
-    }
+    if (is_whole && report().duplicate_triangles == 0 && areSound(mesh(), shell_of, report().shells))
+      return finish(true);
     if (report().duplicate_triangles > 0) {
-      dropDuplicates();
+      dropDuplicates(mesh(), edges_);
       edges_ = sortedHalfEdges(mesh());
     }
-    surveyOpenEdges();
+    surveyOpenEdges(mesh(), edges_, report());
     findPatches();
     turnClosed();
     is_kept_.assign(mesh().triangles.size(), Keep::Both);
@@ -109,12 +121,15 @@ class Repairer {
   }
 
   [[nodiscard]] bool isSound() const {
-    for (std::size_t i = 0; i < patches_.size(); ++i) {
-      if (!patches_[i].is_closed || !(patches_[i].volume_m3 > 0)) return false;
-      for (std::size_t j = 0; j < i; ++j)
-        if (meet(patches_[i].box, patches_[j].box)) return false;
-    }
-    return true;
+    const auto facesOut = [](const Patch& p) { return p.is_closed && p.volume_m3 > 0; };
+    const std::vector<Box> boxes = boxesOfClosed();
+    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasMeeting();
+  }
+  [[nodiscard]] std::vector<Box> boxesOfClosed() const {
+    std::vector<Box> boxes;
+    for (const Patch& patch : patches_)
+      if (patch.is_closed) boxes.push_back(patch.box);
+    return boxes;
   }
 
   /// Every edge has two triangles that agree.
@@ -124,86 +139,6 @@ class Repairer {
       agrees = agrees && same.size() == 2 && isForward(same[0]) != isForward(same[1]);
     });
     return agrees;
-  }
-
-  void dropDuplicates() {
-    // Of each set of twins what stays: the majority's first, or, back to back, a pair to be judged below.
-    std::vector<char> is_dropped(mesh().triangles.size(), 0), is_pair(mesh().triangles.size(), 0);
-    forEachTwin(mesh(), [&](std::span<const Twin> same) {
-      const auto even = static_cast<std::size_t>(
-          std::count_if(same.begin(), same.end(), [](const Twin& t) { return t.is_even; }));
-      const bool is_balanced = 2 * even == same.size();
-      bool has_kept = false;
-      for (const Twin& t : same) {
-        const bool is_first = !has_kept && (is_balanced || t.is_even == (2 * even > same.size()));
-        has_kept |= is_first;
-        is_dropped[t.triangle] = !is_first;
-        is_pair[t.triangle] = is_balanced;
-      }
-    });
-    // A pair that other facets end at is a wall between solids; joined pairs share their fate.
-    std::vector<std::uint32_t> parent(mesh().triangles.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    std::vector<char> is_wall(mesh().triangles.size(), 0);
-    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
-      std::uint32_t first = UINT32_MAX;
-      bool has_other = false;
-      for (const HalfEdge& e : same) {
-        has_other |= !is_pair[e.triangle];
-        if (!is_pair[e.triangle]) continue;
-        if (first == UINT32_MAX) first = e.triangle;
-        parent[root(e.triangle)] = root(first);
-      }
-      if (first != UINT32_MAX && has_other) is_wall[first] = 1;
-    });
-    for (std::uint32_t i = 0; i < is_wall.size(); ++i)
-      if (is_wall[i]) is_wall[root(i)] = 1;
-    std::size_t next = 0;
-    for (std::uint32_t i = 0; i < is_dropped.size(); ++i) {
-      const bool is_in_wall = is_pair[i] && is_wall[root(i)];
-      if (!is_dropped[i] && !is_in_wall) mesh().triangles[next++] = mesh().triangles[i];
-    }
-    mesh().triangles.resize(next);
-  }
-
-  void surveyOpenEdges() {
-    std::vector<std::array<std::uint32_t, 2>> open;
-    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
-      if (same.size() == 1) open.push_back({same[0].low, same[0].high});
-    });
-    std::vector<std::uint32_t> corners;
-    for (const auto& e : open) corners.insert(corners.end(), e.begin(), e.end());
-    const auto x = [&](std::uint32_t v) { return mesh().vertices[v].x(); };
-    std::sort(corners.begin(), corners.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return x(a) != x(b) ? x(a) < x(b) : a < b; });
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    // Exporters round to floats: 1e-7 of the size, and some more after a rotation.
-    const double tolerance_m = 1e-6 * bounds(mesh()).size().norm();
-    std::vector<std::uint32_t> parent(mesh().vertices.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
-    for (const auto& [a, b] : open) {
-      parent[root(a)] = root(b);
-      const Vec3 &from = mesh().vertices[a], &to = mesh().vertices[b];
-      const auto first =
-          std::lower_bound(corners.begin(), corners.end(), std::min(from.x(), to.x()) - tolerance_m,
-                           [&](std::uint32_t v, double at) { return x(v) < at; });
-      for (auto v = first; v != corners.end() && x(*v) <= std::max(from.x(), to.x()) + tolerance_m; ++v) {
-        if (*v == a || *v == b) continue;
-        const Vec3 along = to - from, p = mesh().vertices[*v] - from;
-        const double t = p.dot(along) / along.squaredNorm();
-        const double ends = tolerance_m / along.norm();
-        report().t_junctions += t > ends && t < 1 - ends && (p - t * along).norm() < tolerance_m;
-      }
-    }
-    for (const std::uint32_t v : corners) report().holes += root(v) == v;
   }
 
   /// Turns facets to agree within each patch, the fewer to the more.
@@ -250,19 +185,18 @@ class Repairer {
       for (const std::uint32_t i : patch.triangles)
         for (const std::uint32_t v : mesh().triangles[i]) patch.box.add(mesh().vertices[v]);
       const Vec3 o = patch.box.center();
-      for (const std::uint32_t i : patch.triangles) {
-        const auto& t = mesh().triangles[i];
-        const Vec3 a = mesh().vertices[t[0]] - o, b = mesh().vertices[t[1]] - o,
-                   c = mesh().vertices[t[2]] - o;
-        patch.volume_m3 += a.dot(b.cross(c)) / 6;
-      }
+      for (const std::uint32_t i : patch.triangles) patch.volume_m3 += determinant(mesh(), i, o) / 6;
     }
+    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and which way
     forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
-      for (const HalfEdge& e : same) {
-        int net = 0;  // few triangles share an edge, so trying all pairs costs little
-        for (const HalfEdge& other : same)
-          if (patch_of_[other.triangle] == patch_of_[e.triangle]) net += isForward(other) ? 1 : -1;
-        if (net != 0) patches_[patch_of_[e.triangle]].is_closed = false;
+      uses.clear();
+      for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
+      std::sort(uses.begin(), uses.end());
+      for (std::size_t i = 0; i < uses.size();) {
+        const std::uint32_t patch = uses[i].first;
+        int net = 0;
+        for (; i < uses.size() && uses[i].first == patch; ++i) net += uses[i].second;
+        if (net != 0) patches_[patch].is_closed = false;
       }
     });
   }
@@ -284,22 +218,28 @@ class Repairer {
       const double va = std::abs(patches_[a].volume_m3), vb = std::abs(patches_[b].volume_m3);
       return va != vb ? va > vb : a < b;
     });
-    std::vector<char> is_turned(patches_.size(), 0);
-    std::vector<std::size_t> outermost;
-    std::vector<std::optional<WindingNumber>> windings(patches_.size());
-    for (const std::size_t i : closed) {
-      const Vec3& p = mesh().vertices[mesh().triangles[patches_[i].triangles[0]][0]];
-      const std::size_t* around = nullptr;
-      for (std::size_t k = 0; k < outermost.size() && around == nullptr; ++k) {
-        const Patch& outer = patches_[outermost[k]];
-        if (!holds(outer.box, p)) continue;
-        std::optional<WindingNumber>& winding = windings[outermost[k]];
-        if (!winding) winding.emplace(mesh(), outer.triangles);
-        if (winding->at(p).w > 0.75) around = &outermost[k];
-      }
-      if (around == nullptr) outermost.push_back(i);
-      is_turned[i] = around == nullptr ? patches_[i].volume_m3 < 0 : is_turned[*around];
-      if (is_turned[i]) flip(patches_[i]);
+    std::vector<Box> boxes;
+    for (const std::size_t i : closed) boxes.push_back(patches_[i].box);
+    const BoxTree tree(boxes);
+    std::vector<char> is_turned(closed.size(), 0), is_outermost(closed.size(), 0);
+    std::vector<std::optional<WindingNumber>> windings(closed.size());
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = 0; i < closed.size(); ++i) {
+      Patch& patch = patches_[closed[i]];
+      const Vec3& p = mesh().vertices[mesh().triangles[patch.triangles[0]][0]];
+      around.clear();
+      tree.forEachMeeting({p, p}, [&](std::uint32_t k) {
+        if (is_outermost[k]) around.push_back(k);
+        return true;
+      });
+      std::sort(around.begin(), around.end());
+      const auto outer = std::find_if(around.begin(), around.end(), [&](std::uint32_t k) {
+        if (!windings[k]) windings[k].emplace(mesh(), patches_[closed[k]].triangles);
+        return windings[k]->at(p).w > 0.75;
+      });
+      is_outermost[i] = outer == around.end();
+      is_turned[i] = is_outermost[i] ? patch.volume_m3 < 0 : is_turned[*outer];
+      if (is_turned[i]) flip(patch);
     }
   }
 
@@ -424,10 +364,8 @@ class Repairer {
 
   bool mayOverlap(const WindingNumber& w) {
     if (is_crossing_) return true;
-    for (std::size_t i = 0; i < patches_.size() && patches_.size() < 2000; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (patches_[i].is_closed && patches_[j].is_closed && meet(patches_[i].box, patches_[j].box))
-          return true;
+    const std::vector<Box> boxes = boxesOfClosed();
+    if (BoxTree(boxes).hasMeeting()) return true;
     for (const Patch& patch : patches_)
       for (const Facet& f : samplesOf(patch, kSamples))
         if (inPlane(w, f) > kInternal) return true;
@@ -449,10 +387,14 @@ class Repairer {
 
   RepairedMesh finish(bool is_sound) {
     result_.is_sound = is_sound;
+    if (is_kept_.empty()) {
+      result_.surface = mesh();
+      return std::move(result_);
+    }
     result_.surface.vertices = mesh().vertices;
     std::vector<std::array<std::uint32_t, 3>> solid;
     for (std::size_t i = 0; i < mesh().triangles.size(); ++i) {
-      const Keep keep = is_kept_.empty() ? Keep::Both : is_kept_[i];
+      const Keep keep = is_kept_[i];
       if (keep == Keep::Both || keep == Keep::Solid) solid.push_back(mesh().triangles[i]);
       if (keep == Keep::Both || keep == Keep::Surface)
         result_.surface.triangles.push_back(mesh().triangles[i]);

@@ -462,6 +462,56 @@ TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
   }
 }
 
+/// A cube of tetrahedra, `along` each way, a tetrahedron's size apart.
+Mesh tetrahedra(int along) {
+  Mesh mesh;
+  for (int n = 0; n < along * along * along; ++n) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const Vec3 o = 2e-3 * Vec3(n / (along * along), n / along % along, n % along);
+    mesh.vertices.insert(mesh.vertices.end(),
+                         {o, o + Vec3(1e-3, 0, 0), o + Vec3(0, 1e-3, 0), o + Vec3(0, 0, 1e-3)});
+    for (const auto& [a, b, c] : {std::array{0u, 2u, 1u}, {0u, 1u, 3u}, {1u, 2u, 3u}, {2u, 0u, 3u}})
+      mesh.triangles.push_back({first + a, first + b, first + c});
+  }
+  return mesh;
+}
+
+TEST(FaultyMesh, ManyShellsApartAreSoundAndAreTurned) {
+  // Where every two were compared, half a million took minutes.
+  const Mesh apart = tetrahedra(31);
+  const RepairedMesh sound = repairMesh(apart);
+  EXPECT_TRUE(sound.is_sound);
+  EXPECT_EQ(sound.report.shells, 29791u);
+  EXPECT_EQ(sound.surface.triangles, apart.triangles);
+  EXPECT_EQ(sound.solid.triangles, apart.triangles);
+  Mesh facing_in = apart;
+  for (auto& t : facing_in.triangles) std::swap(t[1], t[2]);
+  const RepairedMesh turned = repairMesh(facing_in);
+  EXPECT_TRUE(turned.is_sound);
+  EXPECT_EQ(turned.report.turned_shells, 29791u);
+  EXPECT_EQ(turned.surface.triangles, apart.triangles);
+}
+
+TEST(FaultyMesh, TwoOfManyShellsThatMeetAreFound) {
+  const Mesh apart = tetrahedra(12);
+  for (const std::uint32_t shell : {1u, 700u, 1727u}) {
+    // One reaches into its neighbour, one faces in and lies within its neighbour: a cavity.
+    Mesh meeting = apart, hollow = apart;
+    for (std::uint32_t v = 4 * shell; v < 4 * shell + 4; ++v) {
+      meeting.vertices[v].z() -= 1.5e-3;
+      hollow.vertices[v] = apart.vertices[4 * shell - 4] + Vec3::Constant(0.1e-3) +
+                           0.2 * (apart.vertices[v] - apart.vertices[4 * shell]);
+    }
+    for (std::uint32_t i = 4 * shell; i < 4 * shell + 4; ++i)
+      std::swap(hollow.triangles[i][1], hollow.triangles[i][2]);
+    EXPECT_FALSE(repairMesh(meeting).is_sound) << shell;
+    const RepairedMesh cavity = repairMesh(hollow);
+    EXPECT_FALSE(cavity.is_sound) << shell;
+    EXPECT_EQ(cavity.report.turned_shells, 0u) << shell;
+    EXPECT_EQ(cavity.surface.triangles, hollow.triangles) << shell;
+  }
+}
+
 TEST(FaultyMesh, ItsReportReadsAsASentence) {
   MeshReport report;
   report.shells = 12;
