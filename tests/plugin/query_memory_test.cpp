@@ -164,15 +164,36 @@ TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
 }
 
 TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
-  const Scene &a = scenes()[0], &b = scenes()[1];
-  QueryMemory of_a(a.map, a.shell);
-  EXPECT_TRUE(of_a.isFor(a.map, a.shell));
-  EXPECT_FALSE(of_a.isFor(b.map, a.shell));
-  EXPECT_FALSE(of_a.isFor(a.map, b.shell));
-  TouchSummary with, without;
-  queryWrench(b.map, b.shell, b.start, {}, kStiffness, Vec3::Zero(), with, &of_a);
-  queryWrench(b.map, b.shell, b.start, {}, kStiffness, Vec3::Zero(), without);
-  EXPECT_EQ(with.count, without.count);
+  // Alike in all but place: what one pair remembers to be far touches in the other, at the same pose.
+  const Pose moved = Pose::translation({40 * kMm, 0, 0}), X_MP = Pose::translation({30 * kUm, 0, 0});
+  const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
+  const VoxMap here = buildVoxMap(bore, {0.25 * kMm, 4}),
+               there = buildVoxMap(transformed(bore, moved), {0.25 * kMm, 4});
+  const PointShell shell = buildPointShell(peg, {0.15 * kMm, 0.35});
+  PointShell away = shell;
+  for (Vec3& p : away.points) p.x() += 40 * kMm;
+  for (ShellBlock& block : away.blocks) block.center[0] += 40 * kMm;
+  struct Pair {
+    const VoxMap& map;
+    const PointShell& shell;
+  };
+  TouchSummary expected;
+  queryWrench(here, shell, X_MP, {}, kStiffness, Vec3::Zero(), expected);
+  ASSERT_GT(expected.count, 100u);
+  for (const Pair& other : {Pair{there, shell}, Pair{here, away}}) {
+    QueryMemory memory(other.map, other.shell);
+    EXPECT_TRUE(memory.isFor(other.map, other.shell));
+    EXPECT_FALSE(memory.isFor(here, shell));
+    TouchSummary sum;
+    queryWrench(other.map, other.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
+    EXPECT_EQ(sum.count, 0u);
+    queryWrench(here, shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
+    EXPECT_EQ(sum.count, expected.count);
+    EXPECT_EQ(sum.F_O_M.f, expected.F_O_M.f);
+    ContactSet contacts(shell.size());
+    queryContacts(here, shell, X_MP, {}, contacts, &memory);
+    EXPECT_EQ(contacts.contacts.size(), expected.count);
+  }
 }
 
 TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
