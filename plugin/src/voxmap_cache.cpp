@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 /// Reads as something else on a machine whose bytes run the other way.
 constexpr std::uint32_t kByteOrder = 0x01020304;
