@@ -91,12 +91,19 @@ class Merger {
     std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
   };
 
+  /// Over both; a difference has a's. A directory without cells lies nowhere, whatever its `low` says.
+  [[nodiscard]] VoxPartRange rangeOfBoth() const {
+    const VoxPartRange a = {{}, a_.low, a_.low + a_.size}, b = {{}, b_.low, b_.low + b_.size};
+    if (!is_union_ || b_.size.minCoeff() == 0) return a;
+    if (a_.size.minCoeff() == 0) return b;
+    return {{}, a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+  }
+
   /// The directory over both (a difference has a's), filled with a's cells and with bounds from the parts'
   /// boxes.
   void layOut() {
-    const Index3 end_of_a = a_.low + a_.size;
-    const Index3 low = is_union_ ? Index3(a_.low.cwiseMin(b_.low)) : a_.low;
-    const Index3 high = is_union_ ? Index3(end_of_a.cwiseMax(b_.low + b_.size)) : end_of_a;
+    const VoxPartRange range = rangeOfBoth();
+    const Index3 low = range.low, high = range.high;
     out_->low = low;
     out_->size = high - low;
     out_->owners = a_.owners;

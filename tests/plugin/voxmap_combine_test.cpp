@@ -138,6 +138,16 @@ TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
   EXPECT_EQ(base.memoryBytes(), bytes);
 }
 
+TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsNearIt) {
+  const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
+  const auto moved = [&](double cells) {
+    return resampledVoxMap({&ball, Pose::translation(cells * 8 * kVoxel_m * Vec3::Ones())}, kSettings);
+  };
+  // By whole cells: the same grid about the part, and the same bricks but for the rounding of places.
+  EXPECT_LT(static_cast<double>(moved(50).memoryBytes()), 1.01 * static_cast<double>(moved(0).memoryBytes()));
+  EXPECT_LT(moved(50).distance(50 * 8 * kVoxel_m * Vec3::Ones()), 0);
+}
+
 TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
   // What is laid out as constant without reading it must read so: every node of the resampled map, beyond the
   // band too, is the source there.
