@@ -132,6 +132,18 @@ void findLattice(const std::string& file, LevelSet& out) {
 
 constexpr double kLeastBand = 3, kMostBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
 
+[[noreturn]] void refuseNan(const std::string& file) {
+  refuse(file, "holds values that are not numbers; export it again");
+}
+
+/// Values that stand for many voxels, where the tree has no leaf; values of leaves are looked at one by one.
+void requireTiles(const std::string& file, const FloatGrid& grid) {
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (std::isnan(*tile)) refuseNan(file);
+}
+
 void requireValues(const std::string& file, const FloatGrid& grid) {
   const double background = static_cast<double>(grid.background());
   if (grid.tree().leafCount() == 0) refuse(file, "is empty: no value lies within a band; export it again");
@@ -139,11 +151,12 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
   if (!(background > 0))
     refuse(file, "looks like a fog volume: its background is 0; convert it to a level set");
   if (!std::isfinite(background)) refuse(file, "has no band: its background is not a number");
+  requireTiles(file, grid);
   bool has_inside = false, has_outside = false;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
     for (openvdb::Index i = 0; i < FloatGrid::TreeType::LeafNodeType::SIZE; ++i) {
       const float d = leaf->getValue(i);
-      if (std::isnan(d)) refuse(file, "holds values that are not numbers; export it again");
+      if (std::isnan(d)) refuseNan(file);
       has_inside = has_inside || d < 0;
       has_outside = has_outside || d >= 0;
     }

@@ -363,6 +363,11 @@ TEST_F(ForeignVdb, WhatIsNoLevelSetIsRefusedWithARemedy) {
   grid = ball();
   grid->tree().setValue({0, 0, 16}, std::nanf(""));
   expect(grid, "not numbers");
+  for (const bool is_active : {true, false}) {  // where no leaf is
+    grid = ball();
+    grid->tree().addTile(1, {64, 0, 0}, std::nanf(""), is_active);
+    expect(grid, "not numbers");
+  }
   grid = ball(2);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(2.5 * kVoxel_m));
   expect(grid, "band of 0.8 voxels; at least 1 is needed");
