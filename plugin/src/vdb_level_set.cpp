@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "map_limits.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -85,13 +86,6 @@ const Entry& choose(const std::vector<Entry>& entries, const std::string& file, 
 FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
   if (grid->isType<FloatGrid>()) return openvdb::gridPtrCast<FloatGrid>(grid);
   return std::make_shared<FloatGrid>(*openvdb::gridPtrCast<DoubleGrid>(grid));
-}
-
-void requireMemory(const Entry& entry, const std::string& file) {
-  if (entry.bytes() <= kMemoryLimit_bytes) return;
-  constexpr double kGiB = 1024.0 * 1024 * 1024;
-  refuse(file, "grid '" + entry.name() + "' needs " + digits(entry.bytes() / kGiB) + " GiB, the limit is " +
-                   digits(kMemoryLimit_bytes / kGiB) + "; resample it with larger voxels");
 }
 
 // Where its lattice lies
@@ -204,7 +198,7 @@ LevelSet asLevelSet(const FloatGrid::Ptr& grid, const std::string& file) {
 LevelSet levelSetOf(VdbArchive& archive, const std::string& file, const std::string& name) {
   const std::vector<Entry>& entries = archive.entries();
   const Entry& entry = choose(entries, file, name);
-  requireMemory(entry, file);
+  requireMemory(entry.bytes(), " for grid '" + entry.name() + "'", "resample it with larger voxels", file);
   return asLevelSet(asFloats(archive.read(static_cast<std::size_t>(&entry - entries.data()))), file);
 }
 

@@ -173,7 +173,9 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   const PlacedVdb placed = loadPlacedVdb(file, grid);
   if (placed.X_FM.R.isIdentity(0) && placed.X_FM.p.isZero(0)) return placed.map;
   const VoxMap& map = placed.map;
-  return resampledVoxMap({&map, placed.X_FM}, {map.voxel_m(), map.band_m() / map.voxel_m()});
+  // Not resampledVoxMap(): a band that is 3 voxels but for the rounding of floats would be none.
+  const VoxMapSettings settings = {map.voxel_m(), map.band_m() / map.voxel_m()};
+  return mountVoxMap(VoxMapBuilder::empty(settings), PlacedMap{&map, placed.X_FM});
 }
 
 }  // namespace vps

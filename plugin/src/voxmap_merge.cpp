@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "map_limits.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -104,6 +105,7 @@ class Merger {
   void layOut() {
     const VoxPartRange range = rangeOfBoth();
     const Index3 low = range.low, high = range.high;
+    requireDirectory(high.cast<double>() - low.cast<double>());
     out_->low = low;
     out_->size = high - low;
     out_->owners = a_.owners;
@@ -287,6 +289,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
   VoxMap cooked;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
+    requirePose(parts[i].X_MP);
     const VoxMap map = buildVoxMap(transformed(*parts[i].mesh, parts[i].X_MP), settings);
     cooked = i == 0 ? map : unionOf(cooked, map);
   }
@@ -295,6 +298,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
+  requirePose(part.X_MP);
   const VoxMapSettings settings = {cooked.voxel_m(), cooked.band_m() / cooked.voxel_m()};
   return unionOf(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
 }

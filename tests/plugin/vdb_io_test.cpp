@@ -409,7 +409,8 @@ TEST_F(ForeignVdb, WhatWouldNotFitInMemoryIsRefusedBeforeItIsTaken) {
   FloatGrid::Ptr grid = ball();
   grid->insertMeta("file_mem_bytes", openvdb::Int64Metadata(std::int64_t{1} << 40));
   store({grid}, false);
-  EXPECT_NE(complaint().find("needs 1024 GiB, the limit is 4; resample"), std::string::npos) << complaint();
+  EXPECT_NE(complaint().find("needs 1024 GiB for grid '[0]', the limit is 4; resample"), std::string::npos)
+      << complaint();
   // Two leaves as far apart as can be.
   grid = ball();
   grid->tree().setValue({1 << 24, 1 << 24, 1 << 24}, 0.0F);
