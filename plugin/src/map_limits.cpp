@@ -12,8 +12,7 @@ namespace {
 /// Its brick, its centre's distance, whether it is far.
 constexpr double kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
 static_assert(kMemoryLimit_bytes / kCellBytes < 2147483648.0, "kernels count cells in int");
-static_assert(kMemoryLimit_bytes / VoxPool::kBytes < UINT32_MAX / kBrickStride - 2.0,
-              "every brick that memory holds has a name");
+static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMost, "all bricks that fit have a name");
 
 }  // namespace
 

@@ -144,7 +144,7 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
     cells *= static_cast<std::uint64_t>(n);
     if (cells > kMost) return std::nullopt;
   }
-  if (header.bricks > UINT32_MAX / kBrickStride - 2) return std::nullopt;
+  if (header.bricks > VoxPool::kMost) return std::nullopt;
   return sizeof(Header) + kReportBytes + cells * (sizeof(std::uint32_t) + sizeof(float)) +
          header.bricks * kBrickStride * sizeof(NodeValue) + sizeof(Digest);
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "support/analytic.h"
+#include "voxmap_layout.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"
@@ -130,6 +131,15 @@ TEST(BadInput, PartsTooFarApartForOneDirectoryAreRefusedBeforeMemoryIsTaken) {
                                     static_cast<void>(mountVoxMap(box, PlacedMap{&box, X_MP}));
                                   })})
     EXPECT_NE(said.find("for its directory"), std::string::npos) << said;
+}
+
+TEST(BadInput, MoreBricksThanCanBeNamedAreRefusedBeforeMemoryIsTaken) {
+  VoxLayout layout;
+  layout.pool = std::make_shared<VoxPool>(0);
+  const std::string said = refusalOf([&] { takeBricks(layout, VoxPool::kMost + 1); });
+  EXPECT_NE(said.find("5835552 bricks"), std::string::npos)
+      << said;  // (2^32 - 1) / 736, less the two constant ones, and one too many
+  EXPECT_NE(takeBricks(layout, 1), 0u);
 }
 
 TEST(BadInput, AVoxelThatNoFloatHoldsIsRefused) {  // found by fuzzing: the band became zero
