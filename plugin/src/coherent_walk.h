@@ -3,6 +3,7 @@
 // since the last pose.
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -28,8 +29,7 @@ class CoherentWalk {
                                                      : reading.field.band + reading.field.diagonal),
         turn_(X_MP.R - memory.X_MP_.R),
         shift_(X_MP.p - memory.X_MP_.p),
-        // The largest singular value: a difference of rotations has two equal ones and a zero.
-        turn_norm_(turn_.norm() * (0.70710678118654757 * (1 + 1e-6)) + 1e-15),
+        turn_norm_(largestStretch(turn_)),
         reader_(reading, Reader{this, consume}) {}
 
   /// Before a pose's first group: with another cutoff than before the memory starts anew.
@@ -50,7 +50,21 @@ class CoherentWalk {
  private:
   /// What positions, readings and sums are rounded by at most, generously: it only costs a little culling.
   static constexpr double kRounding = 3e-4;
+  /// Where odometers start anew [voxels], and half the last place of a double there.
+  static constexpr double kFarthestWay = 1 << 20, kRoundingOfWay = 1.3e-10;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// The largest singular value of a matrix, or a little more: the root of the largest eigenvalue of its
+  /// square. For any matrix, since poses may be rotations to a few digits only.
+  static double largestStretch(const Mat3& m) noexcept {
+    const double scale = m.cwiseAbs().maxCoeff();
+    if (!(scale > 0)) return 0;
+    const Mat3 unit = m / scale, square = unit.transpose() * unit;
+    Eigen::SelfAdjointEigenSolver<Mat3> solver;
+    solver.computeDirect(square, Eigen::EigenvaluesOnly);
+    // Two largest eigenvalues that are equal, as of a difference of rotations, are exact to 1e-8.
+    return scale * std::sqrt(solver.eigenvalues()[2]) * (1 + 1e-6);
+  }
 
   struct Reader {
     CoherentWalk* self;
@@ -66,7 +80,9 @@ class CoherentWalk {
   void visitGroup(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
-    group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9);
+    // Rounding of the sum, below kFarthest, is made up for by the last term.
+    group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfWay;
+    if (!(group.way < kFarthestWay)) startAnew(g);
     if (group.way < group.next) return;
     group.next = kNever;
     constexpr std::size_t kRows = kGroupLeaves / kLanes;
@@ -74,6 +90,16 @@ class CoherentWalk {
       if (group.way >= memory_.row_next_[row]) visitRow(row, group.way);
       group.next = std::min(group.next, memory_.row_next_[row]);
     }
+  }
+
+  /// Odometers that have gone far would swallow small steps: back to zero, and look at everything.
+  void startAnew(std::size_t g) noexcept {
+    const std::size_t first = g * kGroupLeaves,
+                      end = std::min(reading_.shell.leaf_blocks, first + kGroupLeaves);
+    memory_.groups_[g].way = 0;
+    memory_.groups_[g].next = -1;
+    std::fill(&memory_.leaf_next_[first], &memory_.leaf_next_[first] + (end - first), -1.0);
+    for (std::size_t row = first / kLanes; row * kLanes < end; ++row) memory_.row_next_[row] = -1;
   }
 
   /// Up to sixteen leaves: those whose time has come are read, unless their spheres tell enough.

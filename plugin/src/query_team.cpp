@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/query_team.h"
 
+#include <system_error>
+
 namespace vps {
 namespace {
 
@@ -15,10 +17,20 @@ void rest() noexcept {
 }  // namespace
 
 QueryTeam::QueryTeam(int threads) : shares_(kMostGroups) {
-  for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { wait(i); });
+  try {
+    for (int i = 1; i < threads; ++i) others_.emplace_back([this, i] { wait(i); });
+  } catch (const std::system_error&) {  // as many as there are
+  } catch (...) {
+    stop();
+    throw;
+  }
 }
 
 QueryTeam::~QueryTeam() {
+  stop();
+}
+
+void QueryTeam::stop() noexcept {
   is_over_ = true;
   round_.fetch_add(1);
   round_.notify_all();
@@ -28,11 +40,12 @@ QueryTeam::~QueryTeam() {
 void QueryTeam::run(void (*task)(void*, int), void* context) noexcept {
   task_ = task;
   context_ = context;
-  busy_.store(static_cast<int>(others_.size()));
+  at_work_.fetch_and(~kClosed);
   round_.fetch_add(1);
   round_.notify_all();
   task(context, 0);
-  while (busy_.load() > 0) rest();
+  at_work_.fetch_or(kClosed);
+  while (at_work_.load() != kClosed) rest();
 }
 
 void QueryTeam::wait(int index) noexcept {
@@ -42,8 +55,9 @@ void QueryTeam::wait(int index) noexcept {
     round_.wait(seen);
     seen = round_.load();
     if (is_over_) return;
-    task_(context_, index);
-    busy_.fetch_sub(1);
+    // The task is there to read for whoever finds the round open, and stays until all have left.
+    if ((at_work_.fetch_add(1) & kClosed) == 0) task_(context_, index);
+    at_work_.fetch_sub(1);
   }
 }
 

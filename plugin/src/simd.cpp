@@ -22,10 +22,14 @@ Simd widest() noexcept {
   return Simd::Scalar;
 }
 
+/// Found when the program starts, so that no query waits for another's first one. What asks before that, from
+/// another constant's making, gets zero: Best, and with it the scalar path.
+const Simd kWidest = widest();
+
 }  // namespace
 
 Simd availableSimd(Simd wanted) noexcept {
-  static const Simd widest_here = widest();
+  const Simd widest_here = kWidest;
   return wanted == Simd::Best || wanted > widest_here ? widest_here : wanted;
 }
 

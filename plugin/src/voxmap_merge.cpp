@@ -155,11 +155,15 @@ class Merger {
     if (meeting.mixed == SIZE_MAX) return;
 
     NodeOwners& owners = (*mixed_)[meeting.mixed];
+    const bool has_one_owner = !b_.hasMixedOwners(meeting.cell_of_b);
+    const std::uint16_t owner = pool.owner(brick);
     bool is_won = true;
     for (int i = 0; i < kBrickNodes; ++i) {
       const bool takes_old = is_union_ ? old_nodes[i] <= nodes[i] : old_nodes[i] >= nodes[i];
       owners[i] = takes_old ? pool.ownerOf(old, i)
-                            : static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, i) + owner_offset_);
+                  : has_one_owner
+                      ? owner
+                      : static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, i) + owner_offset_);
       if (takes_old) nodes[i] = old_nodes[i];
       is_won = is_won && nodes[i] == (is_union_ ? -kFullBand : kFullBand);
     }

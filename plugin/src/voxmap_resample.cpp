@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "map_limits.h"
@@ -97,8 +98,14 @@ class ResampledField final : public AddedField {
   /// From the map's quanta to the grid's, rounded to the nearest. The map's band is no narrower than the
   /// grid's, so that what is saturated stays so.
   void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
-    constexpr float kBand = kFullBand;
-    for (int i = 0; i < count; ++i) nodes[i] = nodeOf(std::clamp(value[i] * quanta_, -kBand, kBand));
+    // On the bits, where floats of one sign sort as their bits do: compilers do not put comparisons of floats
+    // into vectors by default.
+    constexpr auto kBand = std::bit_cast<std::int32_t>(float{kFullBand});
+    for (int i = 0; i < count; ++i) {
+      const auto bits = std::bit_cast<std::int32_t>(value[i] * quanta_);
+      const std::int32_t size = bits & INT32_MAX, sign = bits & INT32_MIN;
+      nodes[i] = nodeOf(std::bit_cast<float>((size < kBand ? size : kBand) | sign));
+    }
   }
 
   void layOut(double band_m) {

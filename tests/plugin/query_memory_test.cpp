@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <set>
 
 #include "support/no_alloc.h"
 #include "vps/query.h"
@@ -68,6 +69,29 @@ class QueryMemoryTest : public testing::TestWithParam<int> {
   const Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
+
+TEST_P(QueryMemoryTest, CreepingIsNoticedAfterAJumpToTheEndOfTheWorld) {
+  QueryMemory memory(scene.map, scene.shell);
+  TouchSummary coherent, all;
+  const auto ask = [&](const Pose& X_MP) {
+    queryWrench(scene.map, scene.shell, X_MP, {}, 1e12, Vec3::Zero(), coherent, &memory);
+  };
+  ask(scene.start);
+  ask({scene.start.R, scene.start.p + Vec3(1e9, 0, 0)});
+  // A double near that way, in voxels, has steps of 2^-11 at least: 100 nm or more, and steps are 50 nm.
+  const Vec3 aside(0.6, 0, 0.8);
+  std::set<std::size_t> counts;
+  for (int i = 0; i <= 6000; ++i) {
+    const Pose X_MP(scene.start.R, scene.start.p + (150 * kUm - i * 0.05 * kUm) * aside);
+    ask(X_MP);
+    if (i % 100 != 0) continue;
+    queryWrench(scene.map, scene.shell, X_MP, {.is_exhaustive = true}, 1e12, Vec3::Zero(), all);
+    ASSERT_EQ(coherent.count, all.count) << i;
+    ASSERT_EQ(coherent.F_O_M.f, all.F_O_M.f) << i;
+    counts.insert(all.count);
+  }
+  EXPECT_GT(counts.size(), 1u);
+}
 
 TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotion) {
   for (const double cutoff_m : {0.0, 30 * kUm, 0.9 * scene.map.band_m()}) {

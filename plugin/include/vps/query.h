@@ -81,7 +81,8 @@ struct TouchSummary {
 
 /// The penalty wrench (see penaltyWrench()) of all touching points, without a list of them: for haptic rates.
 /// Same points and distances as queryContacts() with cutoff 0 (the options' own is not used); sums in a fixed
-/// order, so that culling, coherence and processor change no bit.
+/// order, so that culling, coherence and processor change no bit. min_distance_m is as queryContacts() says:
+/// exact when something touches, else a bound; with a memory no more than 0.
 QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
                         const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO, TouchSummary& out,
                         QueryMemory* memory = nullptr) noexcept;

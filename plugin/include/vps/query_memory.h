@@ -15,8 +15,8 @@ namespace vps {
 /// sum over poses of the most that any of its points has moved. Until the odometer has gone that far, the
 /// leaf is not looked at. Proof: for the field I as it is read, |I(p') - I(p)| <= s |p' - p| with s the
 /// steepest slope of its nodes times sqrt 3; and the way between two poses is at most the sum of the ways
-/// between those in between (triangle inequality). So no touching point is ever missed: the answer is the
-/// exhaustive one, whatever the motion, jumps included.
+/// between those in between (triangle inequality); rounding only ever makes an odometer go farther. So no
+/// touching point is ever missed: the answer is the exhaustive one, whatever the motion, jumps included.
 ///
 /// One memory serves one pair and one thread at a time. With another cutoff it starts anew; given to a query
 /// of another map or shell it is not used. Made once; queries with it do not allocate.
