@@ -115,24 +115,6 @@ BrickWriter::BrickWriter(VoxLayout& layout, double per_unit, std::size_t expecte
   layout_.pool = std::make_shared<VoxPool>(expected);
 }
 
-std::uint32_t takeBricks(VoxLayout& layout, std::size_t count) {
-  const std::uint32_t first = layout.pool->take(count);
-  if (first != 0) return first;
-  // Bricks are named by their place, so that a copy keeps the names.
-  const VoxPool& old = *layout.pool;
-  const std::size_t used = old.size() - 2;
-  auto larger = std::make_shared<VoxPool>(used + used / 2 + count);
-  const std::uint32_t begin = larger->take(used);
-  std::copy_n(old.nodes(begin), used * kBrickStride, larger->nodes(begin));
-  for (std::size_t i = 0; i < used; ++i) {
-    const std::uint32_t brick = begin + static_cast<std::uint32_t>(i) * kBrickStride;
-    larger->owner(brick) = old.owner(brick);
-    larger->mixed(brick) = old.mixed(brick);
-  }
-  layout.pool = larger;
-  return larger->take(count);
-}
-
 void BrickWriter::take(std::size_t count) {
   first_ = takeBricks(layout_, count);
 }

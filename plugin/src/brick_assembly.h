@@ -21,9 +21,6 @@ using BrickNodes = std::array<float, kBrickNodes>;
 /// node must be known.
 void saturate(BrickNodes& distance, float band);
 
-/// Room for bricks, one after the other, in a larger pool if need be: the first's name. Not thread-safe.
-std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
-
 /// Takes bricks that are whole, a batch at a time; the order of batches is the order of the bricks. Distances
 /// may be in any unit: `per_unit` quanta.
 class BrickWriter {
@@ -31,7 +28,7 @@ class BrickWriter {
   /// @param expected  bricks to make room for at first; more cost a copy
   BrickWriter(VoxLayout& layout, double per_unit, std::size_t expected);
 
-  /// Makes room for a batch. Not thread-safe.
+  /// Makes room for a batch; as takeBricks(), so that the bricks of batches before must be in the layout.
   void take(std::size_t count);
   /// Stores a brick in place `slot` of the last batch, saturated; its name. Thread-safe for different slots.
   /// Known nodes must be within the band.

@@ -4,7 +4,6 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +14,7 @@
 #include <string_view>
 
 #include "shell_hierarchy.h"
+#include "unfinished_file.h"
 #include "vps/load_error.h"
 #include "vps/pointshell.h"
 
@@ -292,15 +292,14 @@ void savePly(const PointShell& shell, const std::string& file) {
     content.append(reinterpret_cast<const char*>(row.data()), sizeof row);
   }
 
-  // Under another name first: an existing file is replaced whole or not at all.
-  const std::string temporary = file + ".part";
-  std::ofstream out(temporary, std::ios::binary);
+  const std::filesystem::path unfinished = unfinishedName(file);
+  std::ofstream out(unfinished, std::ios::binary);
   out.write(content.data(), static_cast<std::streamsize>(content.size()));
   out.close();
   std::error_code error;
-  if (out) std::filesystem::rename(temporary, file, error);
+  if (out) std::filesystem::rename(unfinished, file, error);
   if (!out || error) {
-    std::remove(temporary.c_str());
+    std::filesystem::remove(unfinished, error);
     throw LoadError(file, "", "cannot be written; check the folder, its rights and the free space");
   }
 }

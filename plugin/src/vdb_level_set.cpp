@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "map_limits.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -87,13 +88,6 @@ FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
   return std::make_shared<FloatGrid>(*openvdb::gridPtrCast<DoubleGrid>(grid));
 }
 
-void requireMemory(const Entry& entry, const std::string& file) {
-  if (entry.bytes() <= kMemoryLimit_bytes) return;
-  constexpr double kGiB = 1024.0 * 1024 * 1024;
-  refuse(file, "grid '" + entry.name() + "' needs " + digits(entry.bytes() / kGiB) + " GiB, the limit is " +
-                   digits(kMemoryLimit_bytes / kGiB) + "; resample it with larger voxels");
-}
-
 // Where its lattice lies
 // -------------------------------------------------------------------------------------------------------------
 
@@ -132,6 +126,18 @@ void findLattice(const std::string& file, LevelSet& out) {
 
 constexpr double kLeastBand = 3, kMostBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
 
+[[noreturn]] void refuseNan(const std::string& file) {
+  refuse(file, "holds values that are not numbers; export it again");
+}
+
+/// Values that stand for many voxels, where the tree has no leaf; values of leaves are looked at one by one.
+void requireTiles(const std::string& file, const FloatGrid& grid) {
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile)
+    if (std::isnan(*tile)) refuseNan(file);
+}
+
 void requireValues(const std::string& file, const FloatGrid& grid) {
   const double background = static_cast<double>(grid.background());
   if (grid.tree().leafCount() == 0) refuse(file, "is empty: no value lies within a band; export it again");
@@ -139,11 +145,12 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
   if (!(background > 0))
     refuse(file, "looks like a fog volume: its background is 0; convert it to a level set");
   if (!std::isfinite(background)) refuse(file, "has no band: its background is not a number");
+  requireTiles(file, grid);
   bool has_inside = false, has_outside = false;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
     for (openvdb::Index i = 0; i < FloatGrid::TreeType::LeafNodeType::SIZE; ++i) {
       const float d = leaf->getValue(i);
-      if (std::isnan(d)) refuse(file, "holds values that are not numbers; export it again");
+      if (std::isnan(d)) refuseNan(file);
       has_inside = has_inside || d < 0;
       has_outside = has_outside || d >= 0;
     }
@@ -191,7 +198,7 @@ LevelSet asLevelSet(const FloatGrid::Ptr& grid, const std::string& file) {
 LevelSet levelSetOf(VdbArchive& archive, const std::string& file, const std::string& name) {
   const std::vector<Entry>& entries = archive.entries();
   const Entry& entry = choose(entries, file, name);
-  requireMemory(entry, file);
+  requireMemory(entry.bytes(), " for grid '" + entry.name() + "'", "resample it with larger voxels", file);
   return asLevelSet(asFloats(archive.read(static_cast<std::size_t>(&entry - entries.data()))), file);
 }
 

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "map_limits.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -19,15 +19,6 @@ constexpr int kBrick = VoxMap::kBrick;
 using Accessor = openvdb::FloatGrid::ConstAccessor;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 static_assert(Leaf::DIM == kBrick);
-
-void requireMemory(double bytes, const char* what, const std::string& file) {
-  if (bytes <= kMemoryLimit_bytes) return;
-  constexpr double kGiB = 1024.0 * 1024 * 1024;
-  char text[160];
-  std::snprintf(text, sizeof text, "needs %.3g GiB for %s, the limit is %.0f; resample it with larger voxels",
-                bytes / kGiB, what, kMemoryLimit_bytes / kGiB);
-  throw LoadError(file, "", text);
-}
 
 class Bricks {
  public:
@@ -41,7 +32,8 @@ class Bricks {
     findMeetings();
     const auto count =
         static_cast<std::size_t>(std::count(is_wanted_.begin(), is_wanted_.end(), std::uint8_t{1}));
-    requireMemory(static_cast<double>(count) * VoxPool::kBytes, "its bricks", file_);
+    requireMemory(static_cast<double>(count) * VoxPool::kBytes, " for its bricks",
+                  "resample it with larger voxels", file_);
     std::vector<std::size_t> cells;
     cells.reserve(count);
     for (std::size_t i = 0; i < is_wanted_.size(); ++i)
@@ -52,8 +44,7 @@ class Bricks {
  private:
   void checkSize() const {
     if (layout_.size.minCoeff() <= 0) throw LoadError(file_, "", "is damaged or cut short; build it again");
-    requireMemory(layout_.size.cast<double>().prod() * (sizeof(std::uint32_t) + sizeof(float)),
-                  "its directory, since its values lie far apart", file_);
+    requireDirectory(layout_.size.cast<double>(), file_);
   }
 
   [[nodiscard]] NodeValue nodeAt(float distance_m) const {

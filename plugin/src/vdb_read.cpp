@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <new>
 
 #include "field_proof.h"
 #include "vdb_level_set.h"
@@ -138,13 +139,13 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
 }
 
 PlacedVdb read(const std::string& file, const std::string& name) {
-  std::string bytes = bytesOf(file);
-  const Origin origin = originOf(bytes);
-  if (origin == Origin::Changed)
-    refuse(file,
-           "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
-           "build it again, or remove them");
   try {
+    std::string bytes = bytesOf(file);
+    const Origin origin = originOf(bytes);
+    if (origin == Origin::Changed)
+      refuse(file,
+             "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
+             "build it again, or remove them");
     VdbArchive archive(std::move(bytes), kMemoryLimit_bytes);
     if (origin == Origin::Ours) return {OwnFile(file, archive).read(), Pose()};
     return readOthers(file, archive, name);
@@ -152,6 +153,10 @@ PlacedVdb read(const std::string& file, const std::string& name) {
     throw;
   } catch (const openvdb::LookupError&) {
     refuse(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
+  } catch (const std::bad_alloc&) {
+    refuse(file,
+           "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
+           "it again: it is damaged");
   } catch (const std::exception&) {
     refuse(file, "is not a whole OpenVDB file; build it again");
   }
@@ -168,7 +173,9 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   const PlacedVdb placed = loadPlacedVdb(file, grid);
   if (placed.X_FM.R.isIdentity(0) && placed.X_FM.p.isZero(0)) return placed.map;
   const VoxMap& map = placed.map;
-  return resampledVoxMap({&map, placed.X_FM}, {map.voxel_m(), map.band_m() / map.voxel_m()});
+  // Not resampledVoxMap(): a band that is 3 voxels but for the rounding of floats would be none.
+  const VoxMapSettings settings = {map.voxel_m(), map.band_m() / map.voxel_m()};
+  return mountVoxMap(VoxMapBuilder::empty(settings), PlacedMap{&map, placed.X_FM});
 }
 
 }  // namespace vps

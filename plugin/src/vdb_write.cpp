@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "unfinished_file.h"
 #include "vdb_format.h"
 #include "voxelise.h"
 #include "vps/load_error.h"
@@ -101,8 +102,7 @@ void addExactData(const VoxLayout& layout, double band_m, const Box& bounds, ope
 }
 
 void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
-  // Under another name first: whoever reads `file` finds the old one or the new one, never half of it.
-  const std::string unfinished = file + ".unfinished";
+  const std::filesystem::path unfinished = unfinishedName(file);
   try {
     std::ostringstream stream;
     openvdb::io::Stream(stream).write(grids);

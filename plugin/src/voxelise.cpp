@@ -22,6 +22,7 @@
 #include "brick_assembly.h"
 #include "center_bounds.h"
 #include "coarse_nodes.h"
+#include "map_limits.h"
 #include "splat.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
@@ -372,8 +373,9 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
 double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
-  const double cells = ((size_m.array() + 2 * band_voxels * h) / cell_m + 3).prod();
-  return bricks * VoxPool::kBytes + cells * (sizeof(std::uint32_t) + sizeof(float) + 16);
+  const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
+  constexpr double kOnTheWay = 15;  // bytes a cell, assumed: what is made beside the directory and dropped
+  return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kOnTheWay;
 }
 
 /// The box's surface, twice: a region may hold folds of the part's.
@@ -396,42 +398,18 @@ void requireRegions(const FineRegions& regions, const std::string& part) {
       throw LoadError("", part, "a fine region is no box; give its lowest and its highest corner");
 }
 
-void requireSettings(const Box& box, double area_m2, const VoxMapSettings& settings,
-                     const std::string& part) {
-  if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
-    throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
-  // Distances are floats; far beyond any part, but a file of nonsense gets there.
-  if (!(settings.voxel_m > 1e-30) || !(settings.voxel_m < 1e30))
-    throw LoadError("", part, "voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
-  // A band read from a map is rounded, see quantumOf().
-  if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
-    throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
-  const Vec3 size_m = box.size();
-  char text[160];
-  // Indices are 32 bit; half of their range is left to the part's own size, which the memory bounds below it.
-  const double away_m = box.center().cwiseAbs().maxCoeff();
-  if (!(away_m / settings.voxel_m < 1e9)) {
-    std::snprintf(text, sizeof text,
-                  "lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer", away_m,
-                  settings.voxel_m * 1e3);
-    throw LoadError("", part, text);
-  }
-  const auto fits = [&](double h) {
-    return estimatedBytes(area_m2, size_m, h, settings.band_voxels) <= kMemoryLimit_bytes;
-  };
-  if (fits(settings.voxel_m)) return;
+/// Before memory is taken: refuses what no map can be of, or none that fits.
+void requireFits(const Box& box, double area_m2, const VoxMapSettings& settings, const std::string& part) {
+  requireSettings(settings, part);
+  requireNear(box, settings.voxel_m, part);
+  const auto bytesAt = [&](double h) { return estimatedBytes(area_m2, box.size(), h, settings.band_voxels); };
   double h = settings.voxel_m;
-  while (!fits(h)) h *= 1.05;
-  std::snprintf(
-      text, sizeof text, "needs %.0f GiB at %.3g mm voxels, the limit is %.0f; %.2g mm would fit",
-      estimatedBytes(area_m2, size_m, settings.voxel_m, settings.band_voxels) / (1024.0 * 1024 * 1024),
-      settings.voxel_m * 1e3, kMemoryLimit_bytes / (1024.0 * 1024 * 1024), h * 1.05e3);
-  throw LoadError("", part, text);
+  while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
+  char what_for[48], remedy[48];
+  std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
+  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
+  requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
 }
-
-}  // namespace
-
-namespace {
 
 /// Ready to be voxelised: signs need shared vertices.
 RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
@@ -445,7 +423,7 @@ RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
 VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                             const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
-  requireSettings(bounds(mesh), area(mesh), settings, part);
+  requireFits(bounds(mesh), area(mesh), settings, part);
   RepairedMesh repaired = prepared(mesh, part);
   return build(mesh, repaired, settings, progress, report, nullptr);
 }
@@ -458,8 +436,8 @@ VoxMap VoxMapBuilder::buildInRegions(const Mesh& mesh, const VoxMapSettings& set
   const int steps = regions.coarsening;
   const VoxMapSettings fine = {settings.voxel_m, std::max(settings.band_voxels, 3.0 * steps)};
   const VoxMapSettings rest = {fine.voxel_m * steps, fine.band_voxels / steps};
-  requireSettings(bounds(mesh), area(mesh), rest, part);
-  requireSettings(bounds(mesh), areaWithin(regions, area(mesh)), fine, part);
+  requireFits(bounds(mesh), area(mesh), rest, part);
+  requireFits(bounds(mesh), areaWithin(regions, area(mesh)), fine, part);
   RepairedMesh repaired = prepared(mesh, part);
   const VoxMap coarse = build(mesh, repaired, rest, progress, report, nullptr);
   const CoarseRest elsewhere{regions, coarse, coarse.layout_};

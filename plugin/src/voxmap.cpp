@@ -14,7 +14,7 @@
 namespace vps {
 
 VoxPool::VoxPool(std::size_t capacity)
-    : capacity_(std::min<std::size_t>(2 * capacity + 2, UINT32_MAX / kBrickStride)),
+    : capacity_(std::min<std::size_t>(2 * capacity, kMost) + 2),
       nodes_(static_cast<NodeValue*>(
           ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{kPage}))),
       owner_(new std::uint16_t[capacity_]),

@@ -4,16 +4,15 @@
 #define XXH_INLINE_ALL
 #include "vps/voxmap_cache.h"
 
-#include <unistd.h>
 #include <xxhash.h>
 
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <optional>
 #include <tuple>
 
+#include "unfinished_file.h"
 #include "voxmap_layout.h"
 
 namespace vps {
@@ -145,7 +144,7 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
     cells *= static_cast<std::uint64_t>(n);
     if (cells > kMost) return std::nullopt;
   }
-  if (header.bricks > UINT32_MAX / kBrickStride - 2) return std::nullopt;
+  if (header.bricks > VoxPool::kMost) return std::nullopt;
   return sizeof(Header) + kReportBytes + cells * (sizeof(std::uint32_t) + sizeof(float)) +
          header.bricks * kBrickStride * sizeof(NodeValue) + sizeof(Digest);
 }
@@ -155,14 +154,6 @@ bool areNamesGood(const VoxLayout& layout) {
   for (const std::uint32_t brick : layout.bricks)
     if (brick % kBrickStride != 0 || brick >= end) return false;
   return true;
-}
-
-/// One file at a time is made under a name of its own: by its program, and within that by a count.
-fs::path unfinishedName(const fs::path& file) {
-  static std::atomic<unsigned> count = 0;
-  fs::path name = file;
-  name += "." + std::to_string(getpid()) + "." + std::to_string(count++) + ".unfinished";
-  return name;
 }
 
 }  // namespace

@@ -65,6 +65,9 @@ using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 /// costs nothing on systems that give pages on first touch.
 class VoxPool {
  public:
+  /// The most bricks that can have a name, beside the two constant ones.
+  static constexpr std::size_t kMost = UINT32_MAX / kBrickStride - 2;
+
   /// Room for so many bricks beside the two constant ones, which it makes; and for as many again, to be
   /// mounted.
   explicit VoxPool(std::size_t capacity);
@@ -191,6 +194,16 @@ struct VoxLayout {
     return pool->nodes(bricks[cell]);
   }
 };
+
+/// Room for bricks, one after the other: the first's name; 0 for none. Where the pool has no room, the layout
+/// moves to a larger one first, and its bricks get new names. Not thread-safe for one layout; other layouts
+/// of the same pool may be read and written meanwhile. Throws LoadError for more bricks than can be named.
+std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
+
+/// Copies the bricks that a layout names, and no others, to a pool of its own with `room` for more: mounting
+/// leaves bricks behind that nothing names any more, and a shared pool has those of other maps, which may
+/// just be written. As takeBricks().
+void moveToNewPool(VoxLayout& layout, std::size_t room);
 
 /// Fills VoxLayout::is_far, once the bricks are final. What lies beyond the directory is outer constant too.
 void markFarCells(VoxLayout& layout);

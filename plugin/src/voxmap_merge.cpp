@@ -9,6 +9,7 @@
 
 #include <algorithm>
 
+#include "map_limits.h"
 #include "vps/load_error.h"
 
 namespace vps {
@@ -33,26 +34,6 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
-/// The pool that takes `count` bricks more: a's own if it has room, else a copy. Pools double, so that
-/// mounting one part after another copies each brick a few times at most.
-std::shared_ptr<VoxPool> poolWithRoom(const std::shared_ptr<VoxPool>& pool, std::size_t count,
-                                      std::uint32_t& first) {
-  if (count == 0) return pool;
-  first = pool->take(count);
-  if (first != 0) return pool;
-  const std::size_t old_count = pool->size();
-  auto larger = std::make_shared<VoxPool>(old_count + count);
-  (void)larger->take(old_count - 2);
-  std::copy_n(pool->nodes(0), old_count * kBrickStride, larger->nodes(0));
-  for (std::uint32_t brick = kInside + kBrickStride; brick < old_count * kBrickStride;
-       brick += kBrickStride) {
-    larger->owner(brick) = pool->owner(brick);
-    larger->mixed(brick) = pool->mixed(brick);
-  }
-  first = larger->take(count);
-  return larger;
-}
-
 NodeValue flipped(NodeValue d) {
   return static_cast<NodeValue>(-d);
 }
@@ -70,10 +51,7 @@ class Merger {
   std::shared_ptr<VoxLayout> run() {
     layOut();
     findMeetings();
-    std::uint32_t first = 0;
-    out_->pool = poolWithRoom(a_.pool, meetings_.size(), first);
-    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, meetings_.size()));
-    if (out_->pool == a_.pool) out_->leases.insert(out_->leases.end(), a_.leases.begin(), a_.leases.end());
+    const std::uint32_t first = takeRoom();
     mixed_->resize(mixed_count_);
     tbb::parallel_for(std::size_t{0}, meetings_.size(), [&](std::size_t i) {
       fill(meetings_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
@@ -84,6 +62,20 @@ class Merger {
   }
 
  private:
+  /// Bricks for the meetings, in a's own pool if it has room: the first's name.
+  std::uint32_t takeRoom() {
+    out_->pool = a_.pool;
+    out_->owners = a_.owners;
+    out_->leases = a_.leases;
+    const auto kept = std::count_if(out_->bricks.begin(), out_->bricks.end(),
+                                    [](std::uint32_t brick) { return !isConstant(brick); });
+    requireMemory((static_cast<double>(kept) + static_cast<double>(meetings_.size())) * VoxPool::kBytes,
+                  " for its bricks", "larger voxels would do");
+    const std::uint32_t first = takeBricks(*out_, meetings_.size());
+    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, meetings_.size()));
+    return first;
+  }
+
   /// A cell that gets a new brick.
   struct Meeting {
     std::size_t cell = 0;  ///< in the result's directory
@@ -91,15 +83,22 @@ class Merger {
     std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
   };
 
+  /// Over both; a difference has a's. A directory without cells lies nowhere, whatever its `low` says.
+  [[nodiscard]] VoxPartRange rangeOfBoth() const {
+    const VoxPartRange a = {{}, a_.low, a_.low + a_.size}, b = {{}, b_.low, b_.low + b_.size};
+    if (!is_union_ || b_.size.minCoeff() == 0) return a;
+    if (a_.size.minCoeff() == 0) return b;
+    return {{}, a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
+  }
+
   /// The directory over both (a difference has a's), filled with a's cells and with bounds from the parts'
   /// boxes.
   void layOut() {
-    const Index3 end_of_a = a_.low + a_.size;
-    const Index3 low = is_union_ ? Index3(a_.low.cwiseMin(b_.low)) : a_.low;
-    const Index3 high = is_union_ ? Index3(end_of_a.cwiseMax(b_.low + b_.size)) : end_of_a;
+    const VoxPartRange range = rangeOfBoth();
+    const Index3 low = range.low, high = range.high;
+    requireDirectory(high.cast<double>() - low.cast<double>());
     out_->low = low;
     out_->size = high - low;
-    out_->owners = a_.owners;
     out_->parts = a_.parts;
     out_->parts.insert(out_->parts.end(), b_.parts.begin(), b_.parts.end());
     out_->steepest = std::max(a_.steepest, b_.steepest);
@@ -246,25 +245,7 @@ VoxMap VoxMapBuilder::combined(const VoxMap& a, const VoxMap& b, Combine combine
 /// The same map with its bricks close together: merging leaves bricks behind that nothing names any more.
 VoxMap VoxMapBuilder::packed(const VoxMap& map) {
   auto layout = std::make_shared<VoxLayout>(*map.layout_);
-  const VoxPool& from = *map.layout_->pool;
-  const std::size_t count = map.brickCount();
-  auto pool = std::make_shared<VoxPool>(count);
-  std::uint32_t next = pool->take(count);
-  auto mixed = std::make_shared<std::vector<NodeOwners>>();
-  mixed->reserve(static_cast<std::size_t>(
-      std::count_if(layout->bricks.begin(), layout->bricks.end(),
-                    [&](std::uint32_t brick) { return from.mixed(brick) != nullptr; })));
-  for (std::uint32_t& brick : layout->bricks) {
-    if (isConstant(brick)) continue;
-    std::copy_n(from.nodes(brick), kBrickStride, pool->nodes(next));
-    pool->owner(next) = from.owner(brick);
-    pool->mixed(next) = from.mixed(brick) != nullptr ? &mixed->emplace_back(*from.mixed(brick)) : nullptr;
-    brick = next;
-    next += kBrickStride;
-  }
-  layout->pool = pool;
-  layout->owners = {mixed};
-  layout->leases.clear();
+  moveToNewPool(*layout, 0);
   VoxMap out = map;
   out.layout_ = layout;
   return out;
@@ -284,6 +265,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
   VoxMap cooked;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
+    requirePose(parts[i].X_MP);
     const VoxMap map = buildVoxMap(transformed(*parts[i].mesh, parts[i].X_MP), settings);
     cooked = i == 0 ? map : unionOf(cooked, map);
   }
@@ -292,6 +274,7 @@ VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& se
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
+  requirePose(part.X_MP);
   const VoxMapSettings settings = {cooked.voxel_m(), cooked.band_m() / cooked.voxel_m()};
   return unionOf(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
 }

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 
+#include "map_limits.h"
 #include "read_kernel.h"
 #include "voxmap_merge.h"
 #include "voxmap_sampling.h"
@@ -108,9 +109,11 @@ class ResampledField final : public AddedField {
   }
 
   void layOut(double band_m) {
+    requireNear(bounds_, voxel_m_);
     const double cell_m = kBrick * voxel_m_;
     const Vec3 from = ((bounds_.min.array() - band_m) / cell_m).floor() - 1;
     const Vec3 to = ((bounds_.max.array() + band_m) / cell_m).floor() + 2;
+    requireDirectory(to - from);
     low = from.cast<int>();
     size = (to - from).cast<int>();
     parts = {{bounds_, low, low + size}};
@@ -193,12 +196,16 @@ VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
 }
 
 VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
+  requireSettings(settings);
   return mountVoxMap(VoxMapBuilder::empty(settings), part);
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
   VoxMapBuilder::requireOneGrid(cooked, "combined");
   VoxMapBuilder::requireOneGrid(*part.map, "resampled");
+  if (!(cooked.voxel_m() > 0))
+    throw LoadError("", "", "there is no voxmap to mount on, an empty one has no grid; cook one first");
+  requirePose(part.X_MP);
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
   return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);

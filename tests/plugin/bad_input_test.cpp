@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "support/analytic.h"
+#include "voxmap_layout.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"
@@ -42,6 +44,102 @@ TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsTaken) {
     const std::string text = refusal(makeBox(Vec3::Constant(size_m)), {1e-6 * size_m, 4});
     EXPECT_NE(text.find("would fit"), std::string::npos) << text;
   }
+}
+
+/// What is said when something is refused.
+template <typename Do>
+std::string refusalOf(Do what) {
+  try {
+    what();
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BadInput, ResamplingTooFinelyIsRefusedBeforeMemoryIsTaken) {
+  const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.1)), {1e-3, 4});
+  // Bricks of 8 um over 50 mm and the band on each side: floor(6250.4) + 2 to the right, the same to the
+  // left.
+  const std::string text = refusalOf([&] { static_cast<void>(resampledVoxMap({&box, {}}, {1e-6, 3})); });
+  EXPECT_NE(text.find("12504 x 12504 x 12504"), std::string::npos) << text;
+  double times = 0;
+  ASSERT_EQ(std::sscanf(text.c_str() + text.find("voxels "), "voxels %lf times", &times), 1) << text;
+  EXPECT_GT(times, 10);
+  EXPECT_LT(times, 40);
+}
+
+TEST(BadInput, ResamplingOntoNoGridIsRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.01)), {0.5e-3, 4});
+  const auto refusal = [&](const VoxMapSettings& settings) {
+    return refusalOf([&] { static_cast<void>(resampledVoxMap({&box, {}}, settings)); });
+  };
+  for (const double voxel_m : {0.0, -1e-3, kNan, std::numeric_limits<double>::infinity(), 1e-35})
+    EXPECT_NE(refusal({voxel_m, 3}).find("voxel size must"), std::string::npos) << refusal({voxel_m, 3});
+  for (const double band_voxels : {0.0, 2.9, 65.0, kNan})
+    EXPECT_NE(refusal({0.1e-3, band_voxels}).find("band must be"), std::string::npos) << band_voxels;
+}
+
+TEST(BadInput, MountingOnNoMapOrNoMapIsRefused) {
+  const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.01)), {0.5e-3, 4});
+  const VoxMap none;
+  const auto refusal = [](const VoxMap& cooked, const VoxMap& part) {
+    return refusalOf([&] { static_cast<void>(mountVoxMap(cooked, PlacedMap{&part, {}})); });
+  };
+  EXPECT_NE(refusal(none, box).find("no voxmap to mount on"), std::string::npos) << refusal(none, box);
+  EXPECT_NE(refusal(none, none).find("no voxmap to mount on"), std::string::npos) << refusal(none, none);
+  EXPECT_NE(refusal(box, none).find("distances up to 0"), std::string::npos) << refusal(box, none);
+}
+
+TEST(BadInput, APoseThatIsNowhereIsRefused) {
+  const Mesh mesh = makeBox(Vec3::Constant(0.01));
+  const VoxMap box = buildVoxMap(mesh, {0.5e-3, 4});
+  const auto expect = [&](const Pose& X_MP, const char* text) {
+    for (const std::string& said : {refusalOf([&] {
+                                      static_cast<void>(mountVoxMap(box, PlacedMap{&box, X_MP}));
+                                    }),
+                                    refusalOf([&] {
+                                      static_cast<void>(mountVoxMap(box, PlacedMesh{&mesh, X_MP}));
+                                    }),
+                                    refusalOf([&] {
+                                      static_cast<void>(cookVoxMap({{&mesh, X_MP}}, {0.5e-3, 4}));
+                                    }),
+                                    refusalOf([&] {
+                                      static_cast<void>(resampledVoxMap({&box, X_MP}, {0.5e-3, 4}));
+                                    })})
+      EXPECT_NE(said.find(text), std::string::npos) << said;
+  };
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    expect(Pose::translation({0, bad, 0}), "is not a number");
+    Pose X_MP;
+    X_MP.R(1, 2) = bad;
+    expect(X_MP, "is not a number");
+  }
+  expect(Pose::translation({1e9, 0, 0}), "too far");
+}
+
+TEST(BadInput, PartsTooFarApartForOneDirectoryAreRefusedBeforeMemoryIsTaken) {
+  const Mesh mesh = makeBox(Vec3::Constant(0.01));
+  const VoxMap box = buildVoxMap(mesh, {0.1e-3, 4});
+  const Pose X_MP = Pose::translation({1.2, -1.2, 1.2});  // 2.1 m
+  for (const std::string& said : {refusalOf([&] {
+                                    static_cast<void>(cookVoxMap({{&mesh, {}}, {&mesh, X_MP}}, {0.1e-3, 4}));
+                                  }),
+                                  refusalOf([&] {
+                                    static_cast<void>(mountVoxMap(box, PlacedMap{&box, X_MP}));
+                                  })})
+    EXPECT_NE(said.find("for its directory"), std::string::npos) << said;
+}
+
+TEST(BadInput, MoreBricksThanCanBeNamedAreRefusedBeforeMemoryIsTaken) {
+  VoxLayout layout;
+  layout.pool = std::make_shared<VoxPool>(0);
+  const std::string said = refusalOf([&] { takeBricks(layout, VoxPool::kMost + 1); });
+  EXPECT_NE(said.find("5835552 bricks"), std::string::npos)
+      << said;  // (2^32 - 1) / 736, less the two constant ones, and one too many
+  EXPECT_NE(takeBricks(layout, 1), 0u);
 }
 
 TEST(BadInput, AVoxelThatNoFloatHoldsIsRefused) {  // found by fuzzing: the band became zero

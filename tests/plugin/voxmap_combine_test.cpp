@@ -140,6 +140,36 @@ TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
   EXPECT_EQ(base.memoryBytes(), bytes);
 }
 
+TEST(ResampledVoxMap, AChainOfMountingsKeepsTheBricksThatItNeeds) {
+  const VoxMap base = buildVoxMap(makeBox({0.012, 0.01, 0.008}), kSettings);
+  const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
+  const auto mounted = [&](const VoxMap& on) {
+    return mountVoxMap(on, PlacedMap{&ball, Pose::translation({0.005, 0, 0.002})});
+  };
+  const VoxMap once = mounted(base);
+  VoxMap chain = once;
+  for (int n = 0; n < 60; ++n) chain = mounted(chain);
+  forRandomNodes(5000, 0.011, [&](const Vec3& p) {
+    ASSERT_EQ(chain.distance(p), once.distance(p));
+    ASSERT_EQ(chain.owner(p), once.owner(p));
+  });
+  // A pool has room for twice the bricks that the map has and the mounting brings, no more than it has; each
+  // has 736 nodes and owners of 2 bytes and 10 bytes more. The cells are those of `once`.
+  const double cells_bytes = static_cast<double>(once.memoryBytes());
+  EXPECT_LT(static_cast<double>(chain.memoryBytes()),
+            2 * 2 * static_cast<double>(chain.brickCount()) * (2 * 736 * 2 + 10) + cells_bytes);
+}
+
+TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsNearIt) {
+  const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
+  const auto moved = [&](double cells) {
+    return resampledVoxMap({&ball, Pose::translation(cells * 8 * kVoxel_m * Vec3::Ones())}, kSettings);
+  };
+  // By whole cells: the same grid about the part, and the same bricks but for the rounding of places.
+  EXPECT_LT(static_cast<double>(moved(50).memoryBytes()), 1.01 * static_cast<double>(moved(0).memoryBytes()));
+  EXPECT_LT(moved(50).distance(50 * 8 * kVoxel_m * Vec3::Ones()), 0);
+}
+
 TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
   // What is laid out as constant without reading it must read so: every node of the resampled map, beyond the
   // band too, is the source there.

@@ -122,7 +122,8 @@ struct PlacedMesh {
 
 /// "Cooks" mounted parts into one voxmap (paper, section 5): the union, min over the parts' own exact
 /// distances on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells
-/// the parts apart.
+/// the parts apart. Throws LoadError as buildVoxMap(), for a pose that is not finite, and for parts so far
+/// apart that one map of them would not fit in memory; so do mounting, resampling and uniting.
 VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
                   const Progress& progress = {});
 
