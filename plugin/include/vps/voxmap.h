@@ -138,8 +138,8 @@ struct PlacedMap {
 };
 
 /// The field of a placed map on the grid of settings: every node is read from the map's own field, so it is
-/// off by that field's error and adds its own; sampleError_m() says how much. Much quicker than building anew.
-/// Throws LoadError if the map's band is narrower than the one asked for, or as buildVoxMap().
+/// off by that field's error and adds its own; sampleError_m() says how much. Much quicker than building
+/// anew. Throws LoadError if the map's band is narrower than the one asked for, or as buildVoxMap().
 VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
 /// As mountVoxMap() for a mesh, from the part's own field: milliseconds where the mesh takes a tenth of a
