@@ -36,8 +36,10 @@ static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
       low = low < kFar ? low : kFar;
       high = high > kBelow ? high : kBelow;
       const Ints from = __builtin_convertvector(low + (1 - 2 * kMargin), Ints);
-      const Ints to = __builtin_convertvector(high + (1 + 2 * kMargin), Ints) - 1;
-      const Ints is_row = from <= to;
+      const Ints end = __builtin_convertvector(high + (1 + 2 * kMargin), Ints);
+      // What is not a number, from features too thin or far for floats, converts to the least integer: no
+      // row.
+      const Ints is_row = (from < end) & (from >= 0);
       using Pairs = long long __attribute__((vector_size(32)));
       const auto pairs = reinterpret_cast<Pairs>(is_row);
       if ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0) continue;
@@ -45,7 +47,7 @@ static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
       for (int i = 0; i < lanes; ++i) {
         if (is_row[i] == 0) continue;
         rows[count++] = {static_cast<unsigned char>(x), static_cast<unsigned char>(y + i),
-                         static_cast<unsigned char>(from[i]), static_cast<unsigned char>(to[i])};
+                         static_cast<unsigned char>(from[i]), static_cast<unsigned char>(end[i] - 1)};
       }
     }
   }
