@@ -125,8 +125,6 @@ std::uint32_t BrickWriter::write(std::size_t slot, BrickNodes& distance) {
   NodeValue* nodes = layout_.pool->nodes(brick);
   for (int i = 0; i < kBrickNodes; ++i) nodes[i] = nodeOf(distance[i] * per_unit_);
   std::fill(nodes + kBrickNodes, nodes + kBrickStride, NodeValue{0});
-  layout_.pool->owner(brick) = 0;
-  layout_.pool->mixed(brick) = nullptr;
   return brick;
 }
 

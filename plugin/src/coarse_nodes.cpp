@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "node_steps.h"
 #include "voxmap_sampling.h"
 
 namespace vps {
@@ -31,15 +32,6 @@ std::int32_t pairOf(NodeValue low, NodeValue high) {
                                    static_cast<std::uint32_t>(static_cast<std::uint16_t>(high)) << 16);
 }
 
-/// The most by which neighbours in a brick differ [quanta].
-int steepestIn(const NodeValue* nodes) {
-  int most = 0;
-  for (const int stride : {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)})
-    for (int i = 0; i < kBrickNodes; ++i)
-      if (i / stride % kNodes < kNodes - 1) most = std::max(most, std::abs(nodes[i + stride] - nodes[i]));
-  return most;
-}
-
 /// Gives a brick the coarse part's nodes where it meets that; how steep it is then [quanta].
 int joinBrick(VoxLayout& layout, const CoarseNodes& coarse, std::size_t index) {
   const Index3 cell = layout.cellAt(index);
@@ -54,7 +46,7 @@ int joinBrick(VoxLayout& layout, const CoarseNodes& coarse, std::size_t index) {
         for (int z = from.z(); z <= to.z(); ++z)
           nodes[nodeIndex(x, y, z)] = coarse.node(kBrick * cell + Index3(x, y, z));
   }
-  return steepestIn(nodes);
+  return mostAlongAxes(nodes);
 }
 
 int joinBricks(VoxLayout& layout) {
@@ -153,13 +145,13 @@ void readElsewhereAt(const FieldView& field, const std::int32_t* const whole[3],
 void joinCoarse(VoxLayout& layout, const VoxMap& coarse, double voxel_m, double quantum_m) {
   const FieldView field(coarse);
   nameOtherCells(layout);
-  const double steps = 1 << layout.coarse_shift, quantum = quantum_m / voxel_m;
+  const double steps = 1 << layout.coarse_shift;
   // Neighbours among coarse nodes differ by `steepest` a coarse voxel, and so do nodes read between them by
   // it a fine one, but for rounding. Bricks that meet them may be steeper: measured, since adding what their
-  // nodes changed said 3.9 for 2.5. Rounding alone makes a quantum of difference.
-  const double in_bricks = (joinBricks(layout) - 1) * quantum * (1 + 1e-6);
-  const double between = static_cast<double>(layout.coarse->steepest) + quantum;
-  layout.steepest = std::max(layout.steepest, static_cast<float>(std::max(between, in_bricks)));
+  // nodes changed said 3.9 for 2.5.
+  const float in_bricks = steepnessOf(joinBricks(layout), voxel_m, quantum_m);
+  const auto between = static_cast<float>(static_cast<double>(layout.coarse->steepest) + quantum_m / voxel_m);
+  layout.steepest = std::max({layout.steepest, between, in_bricks});
   layout.node_error =
       std::max(layout.node_error, static_cast<float>(steps * static_cast<double>(field.error)));
   layout.is_metric = layout.is_metric && layout.coarse->is_metric;

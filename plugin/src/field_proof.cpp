@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "center_bounds.h"
+#include "node_steps.h"
 
 namespace vps {
 namespace {
@@ -17,20 +18,6 @@ namespace {
 constexpr int kBrick = VoxMap::kBrick;
 /// The longest way over grid cells, for a straight way of 1: |(1, sqrt 2 - 1, sqrt 3 - sqrt 2)|.
 constexpr double kLattice = 1.1281;
-
-/// The most by which nodes differ that are one step apart, over a brick [quanta].
-template <int X, int Y, int Z>
-int mostDifference(const NodeValue* nodes) {
-  constexpr int kStep = nodeIndex(X, Y, Z);
-  int most = 0;
-  for (int x = 0; x < kNodes - X; ++x)
-    for (int y = std::max(0, -Y); y < kNodes - std::max(0, Y); ++y)
-      for (int z = std::max(0, -Z); z < kNodes - std::max(0, Z); ++z) {
-        const NodeValue* node = nodes + nodeIndex(x, y, z);
-        most = std::max(most, std::abs(int{node[kStep]} - int{node[0]}));
-      }
-  return most;
-}
 
 /// What is measured over bricks; minima and maxima, so that their order does not matter.
 struct Measure {
@@ -46,8 +33,7 @@ struct Measure {
     surface.add(other.surface.max);
   }
   void addSteps(const NodeValue* n) {
-    along =
-        std::max({along, mostDifference<1, 0, 0>(n), mostDifference<0, 1, 0>(n), mostDifference<0, 0, 1>(n)});
+    along = std::max(along, mostAlongAxes(n));
     across =
         std::max({across, mostDifference<0, 1, 1>(n), mostDifference<0, 1, -1>(n), mostDifference<1, 0, 1>(n),
                   mostDifference<1, 0, -1>(n), mostDifference<1, 1, 0>(n), mostDifference<1, -1, 0>(n)});
@@ -57,7 +43,7 @@ struct Measure {
   /// Zeros between a node and the next along an axis.
   void addZeros(const NodeValue* nodes, const Index3& first) {
     for (int i = 0; i < kBrickNodes; ++i) {
-      const Index3 at(i / (kNodes * kNodes), i / kNodes % kNodes, i % kNodes);
+      const Index3 at = nodeAt(i);
       for (int axis = 0; axis < 3; ++axis) {
         if (at[axis] == kBrick) continue;
         const int a = nodes[i], b = nodes[i + nodeIndex(axis == 0, axis == 1, axis == 2)];

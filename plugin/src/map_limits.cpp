@@ -9,9 +9,7 @@
 namespace vps {
 namespace {
 
-/// Its brick, its centre's distance, whether it is far.
-constexpr double kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
-static_assert(kMemoryLimit_bytes / kCellBytes < 2147483648.0, "kernels count cells in int");
+static_assert(kMemoryLimit_bytes / VoxLayout::kCellBytes < 2147483648.0, "kernels count cells in int");
 static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMost, "all bricks that fit have a name");
 
 }  // namespace
@@ -42,7 +40,7 @@ void requireNear(const Box& bounds_M, double voxel_m, const std::string& part) {
 }
 
 double directoryBytes(const Vec3& cells) {
-  return cells.prod() * kCellBytes;
+  return cells.prod() * VoxLayout::kCellBytes;
 }
 
 void requireDirectory(const Vec3& cells, const std::string& file, const std::string& part) {

@@ -100,8 +100,6 @@ class Bricks {
       if (slot[i] == 0) return;
       const std::uint32_t brick = first + (slot[i] - 1) * kBrickStride;
       std::copy_n(nodes, kBrickStride, layout_.pool->nodes(brick));
-      layout_.pool->owner(brick) = 0;
-      layout_.pool->mixed(brick) = nullptr;
       layout_.bricks[cells[i]] = brick;
     });
   }

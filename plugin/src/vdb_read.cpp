@@ -108,8 +108,7 @@ class OwnFile {
       const std::uint32_t brick = layout_->bricks[i];
       if (isConstant(brick)) continue;
       for (int n = 0; n < kBrickNodes; ++n) {
-        const Index3 at(n / (kNodes * kNodes), n / kNodes % kNodes, n % kNodes);
-        const int owner = accessor.getValue(toCoord(kBrick * layout_->cellAt(i) + at));
+        const int owner = accessor.getValue(toCoord(kBrick * layout_->cellAt(i) + nodeAt(n)));
         if (owner < 0 || owner >= parts) refuseDamaged(file_);
         nodes[n] = static_cast<std::uint16_t>(owner);
       }
@@ -128,14 +127,14 @@ class OwnFile {
 
 PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::string& name) {
   const LevelSet level_set = levelSetOf(archive, file, name);
-  const double quantum_m = quantumOf(level_set.band_m), band_m = kFullBand * quantum_m;
+  const double quantum_m = quantumOf(level_set.band_m);
   const auto layout = std::make_shared<VoxLayout>();
   layOut(level_set.grid->tree(), quantum_m, file, *layout);
   readNodes(level_set.grid->tree(), quantum_m, file, *layout);
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
   if (bounds.isEmpty()) refuse(file, "has no surface: its values change sign nowhere; export it again");
   markFarCells(*layout);
-  return {VoxMapBuilder::wrap(layout, level_set.voxel_m, band_m, bounds), level_set.X_FM};
+  return {VoxMapBuilder::wrap(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
 }
 
 PlacedVdb read(const std::string& file, const std::string& name) {

@@ -41,6 +41,7 @@ namespace {
 
 constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
+
 /// A feature that reaches a tile.
 struct Reached {
   std::uint32_t tile, feature;
@@ -67,7 +68,7 @@ class Voxeliser {
         box_(box),
         regions_(regions),
         h_(settings.voxel_m),
-        band_m_(bandOf(settings)),
+        band_m_(bandHeld(settings.band_voxels * settings.voxel_m)),
         // What rounds to the full band need not be computed.
         reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_),
         signer_(signer) {}
@@ -75,11 +76,6 @@ class Voxeliser {
   std::shared_ptr<VoxLayout> build(const Progress& progress);
   /// False if pseudonormals turned out to contradict each other.
   [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
-
-  static double bandOf(const VoxMapSettings& settings) {
-    // What a saturated node reads as, so that a saturated distance equals band_m() exactly.
-    return kFullBand * quantumOf(settings.band_voxels * settings.voxel_m);
-  }
 
  private:
   void layOutDirectory();
@@ -447,29 +443,39 @@ VoxMap VoxMapBuilder::buildInRegions(const Mesh& mesh, const VoxMapSettings& set
 VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
                             const Progress& progress, MeshReport* report, const CoarseRest* regions) {
   const Box box = bounds(mesh);
-  VoxMap map;
-  map.layout_ = nullptr;
-  map.voxel_m_ = settings.voxel_m;
-  map.band_m_ = Voxeliser::bandOf(settings);
-  map.quantum_m_ = quantumOf(map.band_m_);
-  map.bounds_ = box;
+  std::shared_ptr<const VoxLayout> layout;
   if (repaired.is_sound) {
     Voxeliser voxeliser(repaired.surface, box, settings, nullptr, regions);
-    map.layout_ = voxeliser.build(progress);
+    layout = voxeliser.build(progress);
     if (!voxeliser.areSignsSound()) {
-      map.layout_ = nullptr;
+      layout = nullptr;
       repaired = repairMesh(welded(mesh), Crossing::Seen);
       repaired.is_sound = false;
     }
   }
-  if (map.layout_ == nullptr) {
+  if (layout == nullptr) {
     WindingSigner signer(repaired.solid);
-    map.layout_ = Voxeliser(repaired.surface, box, settings, &signer, regions).build(progress);
+    layout = Voxeliser(repaired.surface, box, settings, &signer, regions).build(progress);
     repaired.report.signed_by_winding = true;
     repaired.report.sure = signer.sure();
   }
   if (report != nullptr) *report = repaired.report;
+  return wrap(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
+}
+
+VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+                           const Box& bounds) {
+  VoxMap map;
+  map.voxel_m_ = voxel_m;
+  map.band_m_ = bandHeld(band_m);
+  map.quantum_m_ = quantumOf(band_m);
+  map.bounds_ = bounds;
+  map.layout_ = std::move(layout);
   return map;
+}
+
+VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
+  return wrap(VoxMap().layout_, settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
 }
 
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,

@@ -45,6 +45,8 @@ std::uint32_t VoxPool::take(std::size_t count) noexcept {
     if (first + count > capacity_) return 0;
     used_ = first + count;
   }
+  std::fill_n(&owner_[first], count, std::uint16_t{0});
+  std::fill_n(&mixed_[first], count, nullptr);
   return static_cast<std::uint32_t>(first * kBrickStride);
 }
 
@@ -98,7 +100,7 @@ std::size_t VoxMap::brickCount() const noexcept {
 namespace {
 
 std::size_t bytesOf(const VoxLayout& layout) {
-  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * (sizeof(std::uint32_t) + sizeof(float) + 1) +
+  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * VoxLayout::kCellBytes +
                       layout.pool->size() * VoxPool::kBytes;
   for (const auto& owners : layout.owners) bytes += owners->size() * sizeof(NodeOwners);
   return layout.coarse != nullptr ? bytes + bytesOf(*layout.coarse) : bytes;

@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "unfinished_file.h"
-#include "voxmap_layout.h"
+#include "voxelise.h"
 
 namespace vps {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 /// Reads as something else on a machine whose bytes run the other way.
 constexpr std::uint32_t kByteOrder = 0x01020304;
@@ -46,14 +46,14 @@ struct Header {
   std::uint32_t version = kVersion;
   std::uint32_t byte_order = kByteOrder;
   Digest key = {};
-  double voxel_m = 0, band_m = 0, quantum_m = 0;
+  double voxel_m = 0, band_m = 0;
   std::array<double, 6> bounds_m = {};
   std::array<std::int32_t, 3> low = {}, size = {};
   float steepest = 1, node_error = 0;
   std::uint64_t is_metric = 1;
   std::uint64_t bricks = 0;  ///< without the constant ones
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 152);  // no gaps
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 144);  // no gaps
 
 /// All members of a report: a gap between them would put chance bytes into the file.
 template <typename Report>
@@ -186,7 +186,6 @@ class VoxMapCacheFile {
     header.key = key;
     header.voxel_m = map.voxel_m_;
     header.band_m = map.band_m_;
-    header.quantum_m = map.quantum_m_;
     for (int k = 0; k < 3; ++k) {
       header.bounds_m[static_cast<std::size_t>(k)] = map.bounds_.min[k];
       header.bounds_m[static_cast<std::size_t>(k + 3)] = map.bounds_.max[k];
@@ -209,39 +208,30 @@ class VoxMapCacheFile {
 
  private:
   static std::optional<VoxMap> readBody(Reader& reader, const Header& header, MeshReport& report) {
-    VoxMap map;
     auto layout = std::make_shared<VoxLayout>();
-    map.voxel_m_ = header.voxel_m;
-    map.band_m_ = header.band_m;
-    map.quantum_m_ = header.quantum_m;
+    Box bounds;
     for (int k = 0; k < 3; ++k) {
-      map.bounds_.min[k] = header.bounds_m[static_cast<std::size_t>(k)];
-      map.bounds_.max[k] = header.bounds_m[static_cast<std::size_t>(k + 3)];
+      bounds.min[k] = header.bounds_m[static_cast<std::size_t>(k)];
+      bounds.max[k] = header.bounds_m[static_cast<std::size_t>(k + 3)];
       layout->low[k] = header.low[static_cast<std::size_t>(k)];
       layout->size[k] = header.size[static_cast<std::size_t>(k)];
     }
     layout->steepest = header.steepest;
     layout->node_error = header.node_error;
     layout->is_metric = header.is_metric != 0;
-    layout->parts = {{map.bounds_, layout->low, layout->low + layout->size}};
+    layout->parts = {{bounds, layout->low, layout->low + layout->size}};
     layout->resizeCells();
     MeshReport kept;
     std::apply([&](auto&... member) { (reader.read(&member, sizeof member), ...); }, membersOf(kept));
     reader.read(layout->bricks);
     reader.read(layout->centers_m);
     layout->pool = std::make_shared<VoxPool>(header.bricks);
-    const std::uint32_t first = header.bricks == 0 ? 0 : layout->pool->take(header.bricks);
-    for (std::uint64_t i = 0; i < header.bricks; ++i) {
-      const std::uint32_t brick = first + static_cast<std::uint32_t>(i) * kBrickStride;
-      layout->pool->owner(brick) = 0;
-      layout->pool->mixed(brick) = nullptr;
-    }
+    (void)layout->pool->take(header.bricks);  // all of a new pool, so from its first place on
     reader.read(layout->pool->nodes(2 * kBrickStride), header.bricks * kBrickStride * sizeof(NodeValue));
     if (!reader.isGood() || !reader.endsWell() || !areNamesGood(*layout)) return std::nullopt;
     report = kept;
     markFarCells(*layout);
-    map.layout_ = layout;
-    return map;
+    return VoxMapBuilder::wrap(layout, header.voxel_m, header.band_m, bounds);
   }
 };
 

@@ -39,9 +39,12 @@ static_assert(kBrickStride * sizeof(std::int16_t) % 64 == 0);
 using NodeValue = std::int16_t;
 inline constexpr int kFullBand = 32767;
 
-/// Position of a node in a brick's arrays; z runs fastest.
+/// Position of a node in a brick's arrays; z runs fastest. And the other way round.
 constexpr int nodeIndex(int x, int y, int z) {
   return (x * kNodes + y) * kNodes + z;
+}
+inline Index3 nodeAt(int index) {
+  return {index / (kNodes * kNodes), index / kNodes % kNodes, index % kNodes};
 }
 
 /// Where the two constant bricks lie in every pool.
@@ -72,12 +75,12 @@ class VoxPool {
   /// mounted.
   explicit VoxPool(std::size_t capacity);
 
-  /// Takes `count` bricks that lie one after the other: the first's name; 0 if there is no room. Thread-safe.
+  /// Takes `count` bricks that lie one after the other, of owner 0: the first's name; 0 if there is no room.
+  /// Thread-safe.
   [[nodiscard]] std::uint32_t take(std::size_t count) noexcept;
   /// Makes the room of a take() free for another. Thread-safe.
   void giveBack(std::uint32_t first, std::size_t count) noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return used_; }  ///< bricks, constant ones too
-  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
   [[nodiscard]] NodeValue* nodes(std::uint32_t brick) noexcept { return nodes_.get() + brick; }
   [[nodiscard]] const NodeValue* nodes(std::uint32_t brick) const noexcept { return nodes_.get() + brick; }
@@ -137,9 +140,32 @@ struct VoxPartRange {
   Index3 high;  ///< one past the last
 };
 
-struct VoxLayout {
-  Index3 low = Index3::Zero();        ///< the first cell; cell c holds nodes 8c to 8c + 8
-  Index3 size = Index3::Zero();       ///< cells along each axis
+/// A box of cells, z fastest.
+struct CellBox {
+  Index3 low = Index3::Zero();   ///< the first cell; cell c holds nodes 8c to 8c + 8
+  Index3 size = Index3::Zero();  ///< cells along each axis
+
+  [[nodiscard]] std::size_t cellCount() const noexcept {
+    return static_cast<std::size_t>(size.cast<std::int64_t>().prod());
+  }
+  [[nodiscard]] std::size_t cellIndex(const Index3& cell) const noexcept {
+    const Index3 i = cell - low;
+    return (static_cast<std::size_t>(i.x()) * static_cast<std::size_t>(size.y()) +
+            static_cast<std::size_t>(i.y())) *
+               static_cast<std::size_t>(size.z()) +
+           static_cast<std::size_t>(i.z());
+  }
+  [[nodiscard]] Index3 cellAt(std::size_t index) const noexcept {
+    const auto ny = static_cast<std::size_t>(size.y()), nz = static_cast<std::size_t>(size.z());
+    return low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
+                        static_cast<int>(index % nz));
+  }
+  [[nodiscard]] bool holds(const Index3& cell) const noexcept {
+    return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
+  }
+};
+
+struct VoxLayout : CellBox {
   std::vector<std::uint32_t> bricks;  ///< of each cell
   /// Of each cell, at its centre: the sign, and a value [m] that the distance to the surface is not below.
   std::vector<float> centers_m;
@@ -167,24 +193,11 @@ struct VoxLayout {
   std::uint32_t elsewhere = kOutside;
 
   void resizeCells() {
-    bricks.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kOutside);
+    bricks.assign(cellCount(), kOutside);
     centers_m.assign(bricks.size(), 0);
   }
-  [[nodiscard]] std::size_t cellIndex(const Index3& cell) const noexcept {
-    const Index3 i = cell - low;
-    return (static_cast<std::size_t>(i.x()) * static_cast<std::size_t>(size.y()) +
-            static_cast<std::size_t>(i.y())) *
-               static_cast<std::size_t>(size.z()) +
-           static_cast<std::size_t>(i.z());
-  }
-  [[nodiscard]] Index3 cellAt(std::size_t index) const noexcept {
-    const auto ny = static_cast<std::size_t>(size.y()), nz = static_cast<std::size_t>(size.z());
-    return low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
-                        static_cast<int>(index % nz));
-  }
-  [[nodiscard]] bool holds(const Index3& cell) const noexcept {
-    return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
-  }
+  /// Bytes that a cell takes: its brick's name, its centre's distance, whether it is far.
+  static constexpr std::size_t kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
   /// Whether a brick holds its cell's nodes.
   [[nodiscard]] bool hasOwnNodes(std::uint32_t brick) const noexcept {
     return !isConstant(brick) && brick != elsewhere;
@@ -212,6 +225,10 @@ void markFarCells(VoxLayout& layout);
 /// band exactly VoxMap::band_m().
 inline double quantumOf(double band_m) {
   return static_cast<float>(band_m / kFullBand);
+}
+/// A band as nodes can hold it: what a saturated node reads as.
+inline double bandHeld(double band_m) {
+  return kFullBand * quantumOf(band_m);
 }
 /// A distance in quanta, |quanta| <= kFullBand, as a node holds it: the nearest whole number, halves away
 /// from zero. Nodes are rounded here and nowhere else; plain arithmetic, so that loops over it become

@@ -150,7 +150,6 @@ class Merger {
     b_.write(meeting.cell_of_b, nodes);
     if (!is_union_) std::transform(nodes, nodes + kBrickStride, nodes, flipped);
     pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, 0) + owner_offset_);
-    pool.mixed(brick) = nullptr;
     out_->bricks[meeting.cell] = brick;
     if (meeting.mixed == SIZE_MAX) return;
 

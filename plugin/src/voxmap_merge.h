@@ -8,8 +8,8 @@ namespace vps {
 
 enum class Combine { Union, Difference };
 
-/// A field on a map's grid, brick by brick. Reading it is thread-safe.
-class AddedField {
+/// A field on a map's grid, brick by brick, in a box of cells. Reading it is thread-safe.
+class AddedField : public CellBox {
  public:
   virtual ~AddedField() = default;
   /// Writes the nodes of a cell that is not constant, all kBrickStride of them.
@@ -17,18 +17,6 @@ class AddedField {
   [[nodiscard]] virtual std::uint16_t ownerOf(std::size_t cell, int node) const = 0;
   [[nodiscard]] virtual bool hasMixedOwners(std::size_t cell) const = 0;
 
-  [[nodiscard]] bool holds(const Index3& cell) const {
-    return (cell.array() >= low.array()).all() && (cell.array() < (low + size).array()).all();
-  }
-  [[nodiscard]] std::size_t cellIndex(const Index3& cell) const {
-    const Index3 i = cell - low;
-    return (static_cast<std::size_t>(i.x()) * static_cast<std::size_t>(size.y()) +
-            static_cast<std::size_t>(i.y())) *
-               static_cast<std::size_t>(size.z()) +
-           static_cast<std::size_t>(i.z());
-  }
-
-  Index3 low = Index3::Zero(), size = Index3::Zero();  ///< cells, as VoxLayout has them
   std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or anything else for nodes
   std::vector<float> centers_m;      ///< as VoxLayout has them
   std::vector<VoxPartRange> parts;

@@ -26,8 +26,7 @@ std::vector<ShellBlock> nodeBlocks(double voxel_m) {
   for (int i = 0; i < static_cast<int>(kBrickStride); ++i) {
     ShellBlock& block = blocks[static_cast<std::size_t>(i / kLanes)];
     const int node = std::min(i, kBrickNodes - 1);  // the room after the last node repeats it
-    const Vec3 offset =
-        voxel_m * Vec3(node / (kNodes * kNodes) - 4, node / kNodes % kNodes - 4, node % kNodes - 4);
+    const Vec3 offset = voxel_m * (nodeAt(node) - Index3::Constant(kBrick / 2)).cast<double>();
     block.x[i % kLanes] = static_cast<float>(offset.x());
     block.y[i % kLanes] = static_cast<float>(offset.y());
     block.z[i % kLanes] = static_cast<float>(offset.z());
@@ -80,17 +79,11 @@ class ResampledField final : public AddedField {
   }
   [[nodiscard]] std::uint16_t ownerOf(std::size_t cell, int node) const override {
     if (map_.partCount() <= 1) return 0;
-    const Index3 at(node / (kNodes * kNodes), node / kNodes % kNodes, node % kNodes);
-    return map_.owner(X_PM_ * (voxel_m_ * (kBrick * cellAt(cell) + at).cast<double>()));
+    return map_.owner(X_PM_ * (voxel_m_ * (kBrick * cellAt(cell) + nodeAt(node)).cast<double>()));
   }
   [[nodiscard]] bool hasMixedOwners(std::size_t) const override { return map_.partCount() > 1; }
 
  private:
-  [[nodiscard]] Index3 cellAt(std::size_t index) const {
-    const auto ny = static_cast<std::size_t>(size.y()), nz = static_cast<std::size_t>(size.z());
-    return low + Index3(static_cast<int>(index / (ny * nz)), static_cast<int>(index / nz % ny),
-                        static_cast<int>(index % nz));
-  }
   [[nodiscard]] Vec3 centerOf(const Index3& cell) const {
     return voxel_m_ * (kBrick * cell + Index3::Constant(kBrick / 2)).cast<double>();
   }
@@ -118,9 +111,8 @@ class ResampledField final : public AddedField {
     size = (to - from).cast<int>();
     parts = {{bounds_, low, low + size}};
     for (std::size_t i = 1; i < map_.partCount(); ++i) parts.push_back(parts.front());
-    const auto cells = static_cast<std::size_t>(size.cast<std::int64_t>().prod());
-    kinds.assign(cells, kOutside);
-    centers_m.assign(cells, 0);
+    kinds.assign(cellCount(), kOutside);
+    centers_m.assign(cellCount(), 0);
     // A cell's own radius, and where the eight nodes of a reading are all saturated.
     const double reach_m =
         band_m + std::sqrt(3.0) * (4 * voxel_m_ + map_.voxel_m()) + sampler_.nodeError_m() + 1e-6 * band_m;
@@ -175,25 +167,6 @@ void requireBand(const VoxMap& map, double band_m) {
 }
 
 }  // namespace
-
-VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
-                           const Box& bounds) {
-  VoxMap map;
-  map.voxel_m_ = voxel_m;
-  map.band_m_ = band_m;
-  map.quantum_m_ = quantumOf(band_m);
-  map.bounds_ = bounds;
-  map.layout_ = std::move(layout);
-  return map;
-}
-
-VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
-  VoxMap map;
-  map.voxel_m_ = settings.voxel_m;
-  map.quantum_m_ = quantumOf(settings.band_voxels * settings.voxel_m);
-  map.band_m_ = kFullBand * map.quantum_m_;
-  return map;
-}
 
 VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
   requireSettings(settings);

@@ -11,6 +11,7 @@
 
 #include "brick_assembly.h"
 #include "mesh_edges.h"
+#include "node_steps.h"
 
 namespace vps {
 namespace {
@@ -135,7 +136,6 @@ double WindingSlope::bound(const Box& box) const noexcept {
 
 WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& low, double voxel_m,
                                               double quantum_m) const {
-  const auto at = [](int i) { return Index3(i / (kNodes * kNodes), i / kNodes % kNodes, i % kNodes); };
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
@@ -153,7 +153,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   std::array<std::int16_t, kBrickNodes> queue;
   for (int seed = 0; seed < kBrickNodes; ++seed) {
     if (margin[seed] >= 0) continue;
-    const double w = winding_.at(voxel_m * (low + at(seed)).cast<double>()).w;
+    const double w = winding_.at(voxel_m * (low + nodeAt(seed)).cast<double>()).w;
     const int sign = w > 0.5 ? -1 : 1;
     margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMostMargin));
     int end = 0;
@@ -165,7 +165,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
       count.sure += size[i] < kFullBand && (margin[i] > kSure || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
       if (!(left > kSure)) continue;
-      forEachNeighbour(at(i), Index3::Constant(kNodes), [&](const Index3& other) {
+      forEachNeighbour(nodeAt(i), Index3::Constant(kNodes), [&](const Index3& other) {
         const int j = nodeIndex(other.x(), other.y(), other.z());
         if (margin[j] >= 0 || !(size[i] + size[j] > step)) return;
         margin[j] = static_cast<float>(left);
@@ -178,23 +178,11 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
 
 namespace {
 
-/// Calls visit(difference, both in the band) for all neighbours along an axis within a brick, in quanta.
-template <typename Visit>
-void forEachStep(const NodeValue* nodes, Visit visit) {
-  for (const int stride : {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)})
-    for (int i = 0; i < kBrickNodes; ++i) {
-      if (i / stride % kNodes == kNodes - 1) continue;
-      const int a = nodes[i], b = nodes[i + stride];
-      visit(a, b);
-    }
-}
-
 /// Makes those nodes of a brick outside that cannot be inside.
 void clip(NodeValue* nodes, const Index3& cell, const Within& within) {
   if (within.holdsAllOf(cell)) return;
   for (int i = 0; i < kBrickNodes; ++i) {
-    const Index3 at(i / (kNodes * kNodes), i / kNodes % kNodes, i % kNodes);
-    if (!within.holds(kBrick * cell + at)) nodes[i] = static_cast<NodeValue>(std::abs(int{nodes[i]}));
+    if (!within.holds(kBrick * cell + nodeAt(i))) nodes[i] = static_cast<NodeValue>(std::abs(int{nodes[i]}));
   }
 }
 
@@ -222,39 +210,30 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
     clip(of_brick, layout.cellAt(cells[i]), within);
     nodes += count.nodes;
     sure += count.sure;
-    int most = 0;
-    forEachStep(of_brick, [&](int a, int b) { most = std::max(most, std::abs(a - b)); });
+    const int most = mostAlongAxes(of_brick);
     for (int seen = steepest; most > seen && !steepest.compare_exchange_weak(seen, most);) {
     }
   });
   count_.nodes += nodes;
   count_.sure += sure;
-  // Rounding alone makes a quantum of difference.
-  const double steps = (steepest - 1) * quantum_m / voxel_m;
-  layout.steepest = std::max(layout.steepest, static_cast<float>(steps * (1 + 1e-6)));
+  layout.steepest = std::max(layout.steepest, steepnessOf(steepest, voxel_m, quantum_m));
   layout.is_metric = layout.steepest <= 1;
 }
 
 std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
                                                  const std::vector<std::uint8_t>& is_unsure) const {
-  const Index3 corners = layout.size + Index3::Ones();
+  const CellBox corners = {layout.low, layout.size + Index3::Ones()};  // each by the cell above it
   const auto cornerOf = [&](std::size_t cell, int corner) {
-    const Index3 at = layout.cellAt(cell) - layout.low + Index3(corner >> 2, corner >> 1 & 1, corner & 1);
-    return (static_cast<std::size_t>(at.x()) * static_cast<std::size_t>(corners.y()) +
-            static_cast<std::size_t>(at.y())) *
-               static_cast<std::size_t>(corners.z()) +
-           static_cast<std::size_t>(at.z());
+    return corners.cellIndex(layout.cellAt(cell) + Index3(corner >> 2, corner >> 1 & 1, corner & 1));
   };
   enum : std::uint8_t { NotAsked, Asked, Out, In };
-  std::vector<std::uint8_t> side(static_cast<std::size_t>(corners.cast<std::int64_t>().prod()), NotAsked);
+  std::vector<std::uint8_t> side(corners.cellCount(), NotAsked);
   for (std::size_t i = 0; i < is_unsure.size(); ++i)
     for (int k = 0; k < 8 && is_unsure[i] != 0; ++k) side[cornerOf(i, k)] = Asked;
   const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
     if (side[i] != Asked) return;
-    const auto ny = static_cast<std::size_t>(corners.y()), nz = static_cast<std::size_t>(corners.z());
-    const Index3 at(static_cast<int>(i / (ny * nz)), static_cast<int>(i / nz % ny), static_cast<int>(i % nz));
-    const Index3 node = kBrick * (layout.low + at);
+    const Index3 node = kBrick * corners.cellAt(i);
     side[i] = within.holds(node) && winding_.at(voxel_m * node.cast<double>()).w > 0.5 ? In : Out;
   });
   std::vector<std::size_t> cut;
@@ -320,8 +299,6 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
   for (const std::size_t cell : cut) {
     std::fill_n(layout.pool->nodes(brick), kBrickNodes, NodeValue{kFullBand});
     std::fill_n(layout.pool->nodes(brick) + kBrickNodes, kBrickStride - kBrickNodes, NodeValue{0});
-    layout.pool->owner(brick) = 0;
-    layout.pool->mixed(brick) = nullptr;
     layout.bricks[cell] = brick;
     brick += kBrickStride;
   }
