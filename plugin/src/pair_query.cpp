@@ -5,6 +5,10 @@
 
 namespace vps {
 
+Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB) {
+  return F_B_A * 0.5 + rotated(R_AB, -F_A_B) * 0.5;  // B gets the opposite of what A gets
+}
+
 QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,
                            const QueryOptions& options, double k_N_per_m3, const Vec3& p_AO,
                            TouchSummary& out, PairMemory* memory) noexcept {
@@ -20,8 +24,7 @@ QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_A
   out.area_m2 = 0.5 * (b_in_a.area_m2 + a_in_b.area_m2);
   out.volume_m3 = 0.5 * (b_in_a.volume_m3 + a_in_b.volume_m3);
   out.max_depth_m = std::max(b_in_a.max_depth_m, a_in_b.max_depth_m);
-  // The second is on A, in B: B gets the opposite.
-  out.F_O_M = b_in_a.F_O_M * 0.5 + rotated(X_AB.R, -a_in_b.F_O_M) * 0.5;
+  out.F_O_M = bothWays(b_in_a.F_O_M, a_in_b.F_O_M, X_AB.R);
 
   QueryResult result;
   result.status = second.status;

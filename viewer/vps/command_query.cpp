@@ -188,8 +188,7 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   answer.is_saturated = answer.is_saturated || isSaturated(second.distance, a_in_b->map);
   answer.contact_count += second.contact_count;
   answer.points_tested += second.points_tested;
-  const Wrench F_Ao_B = second.F_M;  // on A about B's origin, in B: B gets the opposite
-  answer.F_Bo_A = first.F_M * 0.5 + rotated(X_AB.R, -F_Ao_B) * 0.5;
+  answer.F_Bo_A = bothWays(first.F_M, second.F_M, X_AB.R);
   answer.clusters_left += second.left.clusters_left;
   answer.area_left_m2 += second.left.area_left_m2;
   answer.force_error_N = 0.5 * (first.left.force_error_N + second.left.force_error_N);
