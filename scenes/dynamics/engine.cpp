@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine.h"
+
+#include <map>
+
+namespace vps::dynamics {
+
+namespace {
+
+ShapeHandle buildVpsShape(const PartMesh& part, const Resolution& resolution) {
+  Part built;
+  built.mesh = part.mesh;
+  VoxMapSettings voxels;
+  voxels.voxel_m = resolution.voxel_m;
+  built.map = std::make_shared<const VoxMap>(buildVoxMap(part.mesh, voxels));
+  PointShellSettings points;
+  points.spacing_m = resolution.spacing_m;
+  built.shell = std::make_shared<const PointShell>(buildPointShell(part.mesh, points));
+  return std::make_shared<VpsShape>(makeModels(built), part.frame.X_PB.inverse());
+}
+
+}  // namespace
+
+Engine vpsEngine(const Resolution& resolution, const VpsBulletSettings& settings) {
+  // Parts that are the same surface share their exact distance, so its address tells them apart.
+  using Shapes = std::map<std::shared_ptr<const MeshDistance>, ShapeHandle>;
+  const auto shapes = std::make_shared<Shapes>();
+  Engine engine;
+  engine.name = "VPS";
+  engine.install = [settings](btCollisionDispatcher& dispatcher) { installVps(dispatcher, settings); };
+  engine.uninstall = [](btCollisionDispatcher& dispatcher) { uninstallVps(dispatcher); };
+  engine.makeShape = [shapes, resolution](const PartMesh& part, bool) {
+    ShapeHandle& shape = (*shapes)[part.exact];
+    if (!shape) shape = buildVpsShape(part, resolution);
+    return shape;
+  };
+  return engine;
+}
+
+}  // namespace vps::dynamics

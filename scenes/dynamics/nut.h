@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A nut on an upright threaded rod: gravity turns it down, friction locks it.
+#pragma once
+
+#include "world.h"
+
+namespace vps::dynamics {
+
+struct NutSize {
+  double major_m = 10e-3;   ///< the rod's diameter over its crests
+  double pitch_m = 1.5e-3;
+  double height_m = 8e-3;
+  double corner_m = 18.5e-3 / 2;  ///< from the axis to the hexagon's corners
+};
+inline constexpr NutSize kM10{10e-3, 1.5e-3, 8e-3, 18.5e-3 / 2};
+inline constexpr NutSize kM16{16e-3, 2e-3, 13e-3, 27.7e-3 / 2};
+
+const PartMesh& nutPart(const NutSize& size);
+const PartMesh& rodPart(const NutSize& size);
+
+struct NutRunResult {
+  double acceleration_m_s2 = 0;  ///< measured along the axis, over the first turn
+  double theory_m_s2 = 0;        ///< g / (1 + I / (m r^2)), r = pitch / 2 pi, I of the mesh
+  double advance_m = 0;          ///< for a turn, over that turn
+  double tilt_rad = 0;           ///< greatest angle of the nut's axis to the rod's
+  double turns = 0;              ///< made in the time given
+  double deepest_m = 0;          ///< worst penetration, looked at every 50 ms
+  double step_ms = 0;            ///< mean
+  std::uint64_t hash = 0;        ///< of the whole run
+};
+
+/// Without friction, under gravity, until it has turned once.
+NutRunResult runNut(const SceneSettings& settings, const NutSize& size);
+
+/// tan(lead angle at the pitch diameter) cos(30 degrees).
+double selfLockTheory(const NutSize& size);
+
+/// How far a nut at rest with this friction turns [rad] in duration_s after it was put down, the first 0.2 s
+/// not counted.
+double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu, double duration_s);
+
+/// The friction that just holds the nut, by bisection to `resolution`.
+double selfLockFriction(const SceneSettings& settings, const NutSize& size, double resolution = 1e-3);
+
+}  // namespace vps::dynamics

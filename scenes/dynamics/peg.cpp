@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "peg.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/lathe.h"
+
+namespace vps::dynamics {
+
+namespace {
+
+// Flats are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: peg and bore lose the same.
+constexpr int kSegments = 256;
+
+PartMesh makeBore(double clearance_m) {
+  constexpr double outside_m = 12e-3, floor_m = 5e-3, chamfer_m = 0.5e-3;
+  const double r = kPegRadius_m + clearance_m / 2;
+  return makePart(test::lathe({{0, -kBoreDepth_m - floor_m},
+                               {outside_m, -kBoreDepth_m - floor_m},
+                               {outside_m, 0},
+                               {r + chamfer_m, 0},
+                               {r, -chamfer_m},
+                               {r, -kBoreDepth_m},
+                               {0, -kBoreDepth_m}},
+                              kSegments));
+}
+
+}  // namespace
+
+const PartMesh& pegPart() {
+  static const PartMesh part = [] {
+    constexpr double r = kPegRadius_m, chamfer_m = 1e-3;
+    return makePart(test::lathe(
+        {{0, 0}, {r - chamfer_m, 0}, {r, chamfer_m}, {r, kPegLength_m}, {0, kPegLength_m}}, kSegments));
+  }();
+  return part;
+}
+
+const PartMesh& borePart(double clearance_m) {
+  static std::map<std::vector<double>, PartMesh> parts;
+  return keptPart(parts, {clearance_m}, [&] { return makeBore(clearance_m); });
+}
+
+PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop) {
+  constexpr double kSeated_m = 10e-6;
+  World world(settings);
+  const Placed bore = world.add(borePart(drop.clearance_m), Pose(), true, drop.friction);
+  // Tilted about an axis that is not the one it is shifted along.
+  const Pose start(rotationFromVector(drop.tilt_rad * Vec3(0.8, 0.6, 0)),
+                   Vec3(drop.offset_m * 0.6, drop.offset_m * 0.8, drop.height_m));
+  const Placed peg = world.add(pegPart(), start, false, drop.friction);
+  PegDropResult result;
+  result.seated_s = -1;
+  result.deepest_m = -1e300;
+  const int settle = settings.is_short ? 800 : 2000, watched = settings.is_short ? 400 : 2000;
+  double contact_time_s = 0;
+  int contact_steps = 0;
+  Pose rest;
+  for (int i = 0; i < settle + watched; ++i) {
+    world.step();
+    if (world.contactCount() > 0) contact_time_s += world.times().step_s.back(), ++contact_steps;
+    const Pose X = peg.pose();
+    const double above_m = X.p.z() + kBoreDepth_m;
+    if (result.seated_s < 0 && std::abs(above_m) <= kSeated_m) result.seated_s = i * World::kStep_s;
+    // Each step of the fall would cost more than the fall itself.
+    if (i % (i < settle ? 5 : 50) == 0)
+      result.deepest_m = std::max(result.deepest_m, penetration_m(bore.part, Pose(), peg.part, X));
+    if (i == settle) rest = X;
+    if (i < settle) continue;
+    result.jitter_m_s = std::max(result.jitter_m_s, peg.speed_m_s());
+    result.drift_m = std::max(result.drift_m, (X.p - rest.p).norm());
+  }
+  result.height_error_m = peg.pose().p.z() + kBoreDepth_m;
+  if (std::abs(result.height_error_m) > kSeated_m) result.seated_s = -1;
+  result.step_ms = contact_steps ? 1e3 * contact_time_s / contact_steps : 0;
+  return result;
+}
+
+LongRestResult restPeg(const SceneSettings& settings) {
+  World world(settings);
+  world.add(borePart(50e-6), Pose(), true);
+  const Placed peg = world.add(pegPart(), Pose::translation(Vec3(3e-6, 2e-6, -kBoreDepth_m)));
+  world.step(1000);
+  const Pose rest = peg.pose();
+  LongRestResult result;
+  const int steps = settings.is_short ? 10'000 : 600'000;
+  result.rest_s = steps * World::kStep_s;
+  double time_s = 0;
+  for (int i = 0; i < steps; ++i) {
+    world.step();
+    time_s += world.times().step_s.back();
+    world.forgetTimes();
+    const Pose X = peg.pose();
+    const double turned_m = (X.R - rest.R).norm() * kPegLength_m;
+    result.drift_m = std::max(result.drift_m, (X.p - rest.p).norm() + turned_m);
+  }
+  result.step_ms = 1e3 * time_s / steps;
+  return result;
+}
+
+}  // namespace vps::dynamics

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An ordinary Bullet world for the scenes of this folder, with any engine's contacts and any mode's solver.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine.h"
+#include "part.h"
+#include "step_times.h"
+
+namespace vps::dynamics {
+
+/// How contacts become motion (DESIGN section 8).
+enum class Mode {
+  Constraint,       ///< VpsSolver
+  ConstraintStock,  ///< Bullet's own sequential impulses on the same contacts
+};
+const char* nameOf(Mode mode);
+
+/// What every scene is told.
+struct SceneSettings {
+  Mode mode = Mode::Constraint;
+  bool is_short = false;  ///< a few seconds of work, for tests; else the whole case
+  Engine engine = vpsEngine();
+};
+
+/// A body and the part it is made of.
+struct Placed {
+  btRigidBody* body = nullptr;
+  PartMesh part;
+  [[nodiscard]] Pose pose() const;  ///< of the part's frame, in W
+  /// No point of the part moves faster.
+  [[nodiscard]] double speed_m_s() const;
+};
+
+/// Gravity 9.81 m/s^2 along -z, double or float Bullet, dt = 1 ms. Sleeping is off and Bullet's damping zero
+/// unless a scene changes them.
+class World {
+ public:
+  explicit World(const SceneSettings& settings);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  /// @param friction  of this body against one with the same value (Bullet multiplies the two)
+  Placed add(const PartMesh& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15);
+  btRigidBody* addShape(ShapeHandle shape, const BodyFrame& frame, const Pose& X_WB, double friction = 0.15);
+  void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
+  void removeBody(btRigidBody* body);
+  void setGravity(const Vec3& g_W) { world_->setGravity({btScalar(g_W.x()), btScalar(g_W.y()), btScalar(g_W.z())}); }
+
+  void step(int count = 1);
+  [[nodiscard]] const StepTimes& times() const { return times_; }
+  void forgetTimes() { times_ = {}; }
+  [[nodiscard]] btDiscreteDynamicsWorld& bullet() { return *world_; }
+  [[nodiscard]] int contactCount() const;
+  /// A number that any changed bit of any body's pose or velocity changes, over all steps so far.
+  [[nodiscard]] std::uint64_t hash() const { return hash_; }
+
+  static constexpr double kStep_s = 1e-3;
+  static constexpr double kGravity_m_s2 = 9.81;
+
+ private:
+  void addToHash();
+
+  Engine engine_;
+  btDefaultCollisionConfiguration config_;
+  btCollisionDispatcher dispatcher_{&config_};
+  btDbvtBroadphase broadphase_;
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
+  std::unique_ptr<btDiscreteDynamicsWorld> world_;
+  std::vector<ShapeHandle> shapes_;
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;
+  std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
+  StepTimes times_;
+  std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+/// Kinetic energy [J] and height energy m g z [J] of a body.
+double kineticEnergy_J(const btRigidBody& body);
+double heightEnergy_J(const btRigidBody& body);
+
+}  // namespace vps::dynamics

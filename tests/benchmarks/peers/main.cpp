@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps_bench_peers: fills in the table of what the Bullet bridge must reach, beside its rivals. Exits 1 where a
+// bar is missed, 2 for an option it does not know.
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "rows.h"
+
+int main(int argc, char** argv) {
+  using namespace vps;
+  bench::Options options{{dynamics::Mode::Constraint, dynamics::Mode::ConstraintStock}, false};
+  std::string wanted;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    if (arg == "--short") {
+      options.is_short = true;
+    } else if (arg.rfind("--rows=", 0) == 0) {
+      wanted = "," + arg.substr(7) + ",";
+    } else if (arg == "--mode=constraint") {
+      options.modes = {dynamics::Mode::Constraint};
+    } else if (arg == "--mode=stock") {
+      options.modes = {dynamics::Mode::ConstraintStock};
+    } else {
+      std::printf("usage: vps_bench_peers [--rows=a,b] [--mode=constraint|stock] [--short]\nrows:");
+      for (const bench::Case& c : bench::allCases()) std::printf(" %s", c.key);
+      std::printf("\n");
+      return 2;
+    }
+  }
+  bench::Table table;
+  for (const bench::Case& c : bench::allCases())
+    if (wanted.empty() || wanted.find("," + std::string(c.key) + ",") != std::string::npos) c.run(options, table);
+  return table.print() == 0 ? 0 : 1;
+}

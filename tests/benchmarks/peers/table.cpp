@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <map>
+
+namespace vps::bench {
+
+bool Row::isMet() const {
+  return std::all_of(figures.begin(), figures.end(), [](const Figure& f) { return f.is_met; });
+}
+
+std::string text(const char* format, ...) {
+  char buffer[512];
+  va_list args;
+  va_start(args, format);
+  std::vsnprintf(buffer, sizeof buffer, format, args);
+  va_end(args);
+  return buffer;
+}
+
+Figure atMost(const std::string& what, double value, double bar, double scale, const std::string& unit) {
+  return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()),
+          text("<= %.3g %s", bar * scale, unit.c_str()), value <= bar};
+}
+
+Figure within(const std::string& what, double value, double wanted, double tolerance, double scale,
+              const std::string& unit) {
+  return {text("%s %.5g %s", what.c_str(), value * scale, unit.c_str()),
+          text("%.5g +- %.3g %s", wanted * scale, tolerance * scale, unit.c_str()),
+          std::abs(value - wanted) <= tolerance};
+}
+
+Figure holds(const std::string& claim, bool is_met) {
+  return {is_met ? claim : "not: " + claim, claim, is_met};
+}
+
+Figure reported(const std::string& what, double value, double scale, const std::string& unit) {
+  return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()), "", true};
+}
+
+namespace {
+
+void printRow(const Row& row, const char* verdict) {
+  std::string ours, bar;
+  for (const Figure& f : row.figures) {
+    ours += (ours.empty() ? "" : ", ") + f.text + (f.is_met ? "" : " (!)");
+    if (!f.bar.empty() && f.bar != f.text) bar += (bar.empty() ? "" : ", ") + f.bar;
+  }
+  std::printf("%s | %s | %s | %s | %s\n", row.name.c_str(), row.mode.c_str(), ours.c_str(), bar.c_str(), verdict);
+  if (!row.note.empty()) std::printf("    %s\n", row.note.c_str());
+}
+
+}  // namespace
+
+void Table::add(Row row) {
+  printRow(row, row.isMet() ? "met" : "NOT MET");
+  std::fflush(stdout);
+  rows_.push_back(std::move(row));
+}
+
+int Table::print() const {
+  std::map<std::string, bool> case_met;
+  for (const Row& row : rows_) case_met[row.name] |= row.isMet();
+  std::printf("\ncase | mode | ours | bar | met\n");
+  for (const Row& row : rows_) printRow(row, row.isMet() ? "met" : case_met[row.name] ? "no (other mode)" : "NOT MET");
+  return static_cast<int>(std::count_if(case_met.begin(), case_met.end(), [](const auto& c) { return !c.second; }));
+}
+
+}  // namespace vps::bench
