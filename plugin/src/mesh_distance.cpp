@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "mesh_edges.h"
 #include "triangle_distance.h"
@@ -15,6 +16,11 @@ namespace {
 constexpr std::uint32_t kLeafTriangles = 4;
 /// Twice the area over the longest edge's square, below which corners are collinear but for rounding.
 constexpr double kLeastSlimness = 1e-10;
+/// Faces this far apart are facets of one curved surface: 20 degrees, as PointShellSettings::edge_angle_rad.
+constexpr double kCosSmooth = 0.94;
+/// Corners with more faces than this are the hubs of fans, flat or nearly so; each face against each would
+/// cost its square.
+constexpr std::size_t kMostFaces = 64;
 /// How near is touching, in sizes of the mesh: above the height of what is thin.
 constexpr double kTouch = 1e-9;
 /// Halving by count makes the depth log2(2^32 / kLeafTriangles) at most; one waiting child a level.
@@ -49,6 +55,7 @@ TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, con
 
 MeshDistance::MeshDistance(const Mesh& mesh) : mesh_(mesh) {
   computeNormals();
+  computeSmoothCorners();
   buildTree();
 }
 
@@ -83,6 +90,41 @@ void MeshDistance::computeNormals() {
     }
   });
   for (Vec3& n : vertex_normals_) n = unitOrZero(n);
+}
+
+void MeshDistance::computeSmoothCorners() {
+  struct Corner {
+    std::uint32_t triangle, k;
+    Vec3 weighted;  // the face's normal times its angle here
+  };
+  // Corners by vertex: first[v] to first[v + 1].
+  std::vector<std::size_t> first(mesh_.vertices.size() + 1, 0);
+  for (const auto& t : mesh_.triangles)
+    for (const std::uint32_t v : t) ++first[v + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Corner> corners(3 * mesh_.triangles.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto& t = mesh_.triangles[i];
+      const Vec3& at = mesh_.vertices[t[k]];
+      const double angle_rad =
+          angleBetween(mesh_.vertices[t[(k + 1) % 3]] - at, mesh_.vertices[t[(k + 2) % 3]] - at);
+      corners[next[t[k]]++] = {i, k, angle_rad * face_normals_[i]};
+    }
+  smooth_corners_.resize(mesh_.triangles.size());
+  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+    const std::span around(corners.data() + first[v], first[v + 1] - first[v]);
+    for (const Corner& own : around) {
+      const Vec3& face = face_normals_[own.triangle];
+      Vec3 sum = around.size() > kMostFaces ? face : own.weighted;
+      for (const Corner& other : around)
+        if (around.size() <= kMostFaces && &other != &own &&
+            face.dot(face_normals_[other.triangle]) > kCosSmooth)
+          sum += other.weighted;
+      smooth_corners_[own.triangle][own.k] = unitOrZero(sum).cast<float>();
+    }
+  }
 }
 
 void MeshDistance::buildTree() {
@@ -230,6 +272,19 @@ Vec3 MeshDistance::featureNormal(std::uint32_t triangle, int feature) const noex
   if (feature == 0) return face_normals_[triangle];
   if (feature <= 3) return edge_normals_[triangle][feature - 1];
   return vertex_normals_[mesh_.triangles[triangle][feature - 4]];
+}
+
+Vec3 MeshDistance::smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept {
+  const auto& t = mesh_.triangles[triangle];
+  const Vec3& face = face_normals_[triangle];
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 to_a = mesh_.vertices[t[(k + 1) % 3]] - q, to_b = mesh_.vertices[t[(k + 2) % 3]] - q;
+    // The corner's barycentric coordinate times twice the area; rounding may put q a hair outside.
+    sum += std::max(0.0, face.dot(to_a.cross(to_b))) * smooth_corners_[triangle][k].cast<double>();
+  }
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : face;
 }
 
 }  // namespace vps

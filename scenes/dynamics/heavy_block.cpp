@@ -18,7 +18,8 @@ HeavyBlockResult loadPeg(const SceneSettings& settings, const HeavyBlock& load) 
   const double fall_m = load.speed_m_s > 0 ? 2e-3 : 0;
   const PartMesh cube =
       withMass(makePart(makeBox(Vec3::Constant(kEdge_m))), load.ratio * peg.part.frame.mass_kg);
-  const Placed block = world.add(cube, Pose::translation(Vec3(load.offset_m, 0, top_m + kEdge_m / 2 + fall_m)));
+  const Placed block =
+      world.add(cube, Pose::translation(Vec3(load.offset_m, 0, top_m + kEdge_m / 2 + fall_m)));
   block.body->setLinearVelocity(btVector3(0, 0, btScalar(-load.speed_m_s)));
 
   const auto energy_J = [&] {

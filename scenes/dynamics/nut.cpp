@@ -67,7 +67,8 @@ struct Sample {
 
 double slope(const std::vector<Sample>& samples) {
   double n = 0, st = 0, sv = 0, stt = 0, stv = 0;
-  for (const Sample& s : samples) n += 1, st += s.t_s, sv += s.v_m_s, stt += s.t_s * s.t_s, stv += s.t_s * s.v_m_s;
+  for (const Sample& s : samples)
+    n += 1, st += s.t_s, sv += s.v_m_s, stt += s.t_s * s.t_s, stv += s.t_s * s.v_m_s;
   return (n * stv - st * sv) / (n * stt - st * st);
 }
 
@@ -114,8 +115,8 @@ NutRunResult runNut(const SceneSettings& settings, const NutSize& size) {
                      turn.update()};
     result.tilt_rad = std::max(result.tilt_rad, thread.tilt_rad());
     if (i % 50 == 0 && !settings.is_short)
-      result.deepest_m =
-          std::max(result.deepest_m, penetration_m(thread.rod.part, Pose(), thread.nut.part, thread.nut.pose()));
+      result.deepest_m = std::max(result.deepest_m,
+                                  penetration_m(thread.rod.part, Pose(), thread.nut.part, thread.nut.pose()));
     if (now.t_s < kLanding_s) continue;
     samples.push_back(now);
     if (std::abs(now.turn_rad - samples.front().turn_rad) >= turns * 2 * std::numbers::pi) break;
@@ -134,7 +135,8 @@ double selfLockTheory(const NutSize& size) {
   return size.pitch_m / (std::numbers::pi * pitch_diameter_m) * std::cos(std::numbers::pi / 6);
 }
 
-double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu, double duration_s) {
+double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu,
+                            double duration_s) {
   constexpr int kSettling = 200;
   Thread thread(settings, size, mu);
   thread.world.step(kSettling);

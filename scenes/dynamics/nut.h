@@ -7,7 +7,7 @@
 namespace vps::dynamics {
 
 struct NutSize {
-  double major_m = 10e-3;   ///< the rod's diameter over its crests
+  double major_m = 10e-3;  ///< the rod's diameter over its crests
   double pitch_m = 1.5e-3;
   double height_m = 8e-3;
   double corner_m = 18.5e-3 / 2;  ///< from the axis to the hexagon's corners

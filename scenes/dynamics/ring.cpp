@@ -42,7 +42,8 @@ RingResult dropRing(const SceneSettings& settings) {
   static const PartMesh post_part = makePart(makePegOnPlate()), ring_part = makePart(makeRing());
   World world(settings);
   const Placed post = world.add(post_part, Pose(), true);
-  const Pose start(rotationFromVector(Vec3(0.01, 0.005, 0)), Vec3(0.1e-3, 0.05e-3, 20.5e-3 + kRingHeight_m / 2));
+  const Pose start(rotationFromVector(Vec3(0.01, 0.005, 0)),
+                   Vec3(0.1e-3, 0.05e-3, 20.5e-3 + kRingHeight_m / 2));
   const Placed ring = world.add(ring_part, start);
   RingResult result;
   result.deepest_m = -1e300;

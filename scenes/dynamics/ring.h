@@ -7,11 +7,11 @@
 namespace vps::dynamics {
 
 struct RingResult {
-  double rest_height_m = 0;   ///< of the ring's centre over the plate; half its height is right
+  double rest_height_m = 0;  ///< of the ring's centre over the plate; half its height is right
   double height_error_m = 0;
-  double deepest_m = 0;       ///< worst penetration
-  double jitter_m_s = 0;      ///< greatest speed of any point in the last half second
-  double step_ms = 0;         ///< median over the steps with contact
+  double deepest_m = 0;   ///< worst penetration
+  double jitter_m_s = 0;  ///< greatest speed of any point in the last half second
+  double step_ms = 0;     ///< median over the steps with contact
   int contact_steps = 0;
 };
 

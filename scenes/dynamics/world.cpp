@@ -14,7 +14,8 @@ namespace {
 // Bullet hands its callbacks no context; a step runs on one thread.
 thread_local double t_narrow_s = 0, t_solve_s = 0;
 
-void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                       const btDispatcherInfo& info) {
   const double start_s = threadTime_s();
   btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
   t_narrow_s += threadTime_s() - start_s;
@@ -25,7 +26,8 @@ template <typename Solver>
 struct Timed : Solver {
   btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
-                      const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override {
+                      const btContactSolverInfo& info, btIDebugDraw* draw,
+                      btDispatcher* dispatcher) override {
     const double start_s = threadTime_s();
     const btScalar residual = Solver::solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
                                                  constraint_count, info, draw, dispatcher);
@@ -53,7 +55,8 @@ double Placed::speed_m_s() const {
   btVector3 center;
   btScalar radius_m = 0;
   body->getCollisionShape()->getBoundingSphere(center, radius_m);
-  return body->getLinearVelocity().length() + body->getAngularVelocity().length() * (center.length() + radius_m);
+  return body->getLinearVelocity().length() +
+         body->getAngularVelocity().length() * (center.length() + radius_m);
 }
 
 World::World(const SceneSettings& settings)
@@ -140,10 +143,10 @@ void World::addToHash() {
 
 double kineticEnergy_J(const btRigidBody& body) {
   if (!(body.getInvMass() > 0)) return 0;
-  const Vec3 w_B = fromBt(body.getWorldTransform().getBasis()).transpose() * fromBt(body.getAngularVelocity());
+  const Vec3 w_B =
+      fromBt(body.getWorldTransform().getBasis()).transpose() * fromBt(body.getAngularVelocity());
   const Vec3 I = fromBt(body.getInvInertiaDiagLocal()).cwiseInverse();
-  return 0.5 * (fromBt(body.getLinearVelocity()).squaredNorm() / body.getInvMass() +
-                w_B.cwiseAbs2().dot(I));
+  return 0.5 * (fromBt(body.getLinearVelocity()).squaredNorm() / body.getInvMass() + w_B.cwiseAbs2().dot(I));
 }
 
 double heightEnergy_J(const btRigidBody& body) {

@@ -52,7 +52,9 @@ class World {
   btRigidBody* addShape(ShapeHandle shape, const BodyFrame& frame, const Pose& X_WB, double friction = 0.15);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
   void removeBody(btRigidBody* body);
-  void setGravity(const Vec3& g_W) { world_->setGravity({btScalar(g_W.x()), btScalar(g_W.y()), btScalar(g_W.z())}); }
+  void setGravity(const Vec3& g_W) {
+    world_->setGravity({btScalar(g_W.x()), btScalar(g_W.y()), btScalar(g_W.z())});
+  }
 
   void step(int count = 1);
   [[nodiscard]] const StepTimes& times() const { return times_; }

@@ -144,5 +144,28 @@ TEST(MeshDistance, AnEmptyMeshIsFarFromEverything) {
   EXPECT_FALSE(MeshDistance(Mesh{}).closest(Vec3::Zero()).found);
 }
 
+TEST(MeshDistance, TheSmoothNormalOfATubeIsThatOfTheTrueCylinder) {
+  constexpr int kSegments = 48;
+  const double r_m = 0.01, inner_m = 0.006, half_z_m = 0.01;
+  const MeshDistance distance(makeTube(r_m, inner_m, 2 * half_z_m, kSegments));
+  // Along a chord, q at (r cos h, x r sin h) for x from -1 to 1, corners' normals (cos h, -+ sin h)
+  // interpolate to (cos h, x sin h): parallel to q, so only their rounding to float is left. The facet's own
+  // normal is off by up to pi / 48.
+  const double tol = 2e-7;
+  const auto radial = [](const Vec3& q) { return Vec3(q.x(), q.y(), 0).normalized(); };
+  RandomPoints random(5);
+  for (int n = 0; n < 500; ++n) {
+    const double angle_rad = random.unit() * std::numbers::pi, z_m = random.unit() * half_z_m * 0.999;
+    const Vec3 out(std::cos(angle_rad), std::sin(angle_rad), 0), up(0, 0, 1);
+    const MeshDistance::Closest outer = distance.closest(1.1 * r_m * out + z_m * up);
+    EXPECT_LE((distance.smoothNormal(outer.triangle, outer.q) - radial(outer.q)).norm(), tol);
+    const MeshDistance::Closest inner = distance.closest(0.9 * inner_m * out + z_m * up);
+    EXPECT_LE((distance.smoothNormal(inner.triangle, inner.q) + radial(inner.q)).norm(), tol);
+    // The end face meets the wall at 90 degrees: its normal does not bend towards it.
+    const MeshDistance::Closest end = distance.closest(0.5 * (r_m + inner_m) * out + 1.5 * half_z_m * up);
+    EXPECT_EQ(distance.smoothNormal(end.triangle, end.q), up);
+  }
+}
+
 }  // namespace
 }  // namespace vps::test

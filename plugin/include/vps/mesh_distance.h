@@ -2,6 +2,7 @@
 // Exact distance from a point to a triangle mesh: the ground truth everything else is measured against.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,10 +45,16 @@ class MeshDistance {
   /// Outward pseudonormal of a triangle's feature (numbered as in TrianglePoint), unit.
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;
 
+  /// Outward normal at point q of a triangle, of the curved surface that the facets stand for: interpolated
+  /// between the corners' (Phong 1975), each the mean of the faces around it that are within 20 degrees of
+  /// this one. On a flat face it is the face's own. Unit.
+  [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept;
+
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
 
  private:
   void computeNormals();
+  void computeSmoothCorners();
   void buildTree();
   [[nodiscard]] bool isBesideThin(std::uint32_t triangle, int feature) const noexcept;
   [[nodiscard]] Vec3 normalThrough(const Vec3& q) const noexcept;
@@ -65,10 +72,11 @@ class MeshDistance {
   std::vector<Vec3> face_normals_;
   std::vector<std::array<Vec3, 3>> edge_normals_;
   std::vector<Vec3> vertex_normals_;
-  double touch_m_ = 0;                           // what lies so near to a point touches it
-  std::vector<std::uint8_t> is_thin_;            // by triangle: too thin to have a normal
-  std::vector<std::uint8_t> is_edge_of_thin_;    // by triangle, a bit for each edge
-  std::vector<std::uint8_t> is_corner_of_thin_;  // by vertex
+  std::vector<std::array<Eigen::Vector3f, 3>> smooth_corners_;  // by triangle; floats, for room
+  double touch_m_ = 0;                                          // what lies so near to a point touches it
+  std::vector<std::uint8_t> is_thin_;                           // by triangle: too thin to have a normal
+  std::vector<std::uint8_t> is_edge_of_thin_;                   // by triangle, a bit for each edge
+  std::vector<std::uint8_t> is_corner_of_thin_;                 // by vertex
 };
 
 }  // namespace vps

@@ -52,7 +52,8 @@ void ladderRow(const Options& options, Table& table) {
       }
       row.figures.push_back(holds(text("%.0f um seats", clearance_m * 1e6), seats));
       if (!seats) continue;
-      row.note += text(" %.0f um %.3g mm (%.3g);", clearance_m * 1e6, coarsest_m * 1e3, clearance_m / coarsest_m);
+      row.note +=
+          text(" %.0f um %.3g mm (%.3g);", clearance_m * 1e6, coarsest_m * 1e3, clearance_m / coarsest_m);
       least_ratio = std::min(least_ratio, clearance_m / coarsest_m);
     }
     row.figures.push_back(reported("least clearance/voxel that seats", least_ratio, 1, ""));
@@ -62,7 +63,8 @@ void ladderRow(const Options& options, Table& table) {
 
 void nutRow(const Options& options, Table& table) {
   const dynamics::Engine engine = dynamics::vpsEngine({0.2e-3, 0.3e-3});
-  for (const auto& [name, size] : {std::pair{"nut M10x1.5", dynamics::kM10}, std::pair{"nut M16x2", dynamics::kM16}})
+  for (const auto& [name, size] :
+       {std::pair{"nut M10x1.5", dynamics::kM10}, std::pair{"nut M16x2", dynamics::kM16}})
     for (const Mode mode : options.modes) {
       const SceneSettings settings = settingsFor(options, mode, engine);
       const auto r = dynamics::runNut(settings, size);
@@ -80,7 +82,8 @@ void nutRow(const Options& options, Table& table) {
 
 void nutFrictionRow(const Options& options, Table& table) {
   const dynamics::Engine engine = dynamics::vpsEngine({0.2e-3, 0.3e-3});
-  for (const auto& [name, size] : {std::pair{"nut M10x1.5", dynamics::kM10}, std::pair{"nut M16x2", dynamics::kM16}})
+  for (const auto& [name, size] :
+       {std::pair{"nut M10x1.5", dynamics::kM10}, std::pair{"nut M16x2", dynamics::kM16}})
     for (const Mode mode : options.modes) {
       const SceneSettings settings = settingsFor(options, mode, engine);
       const double theory = dynamics::selfLockTheory(size);
@@ -116,14 +119,15 @@ void massImpactRow(const Options& options, Table& table) {
     dynamics::HeavyBlock load;
     load.speed_m_s = 0.5;
     const auto r = dynamics::loadPeg(settingsFor(options, mode, engine), load);
-    table.add({"1:1000 impact at 0.5 m/s",
-               nameOf(mode),
-               {atMost("penetration", r.deepest_m, 0.5e-3, 1e6, "um"),
-                atMost("comes to rest: speed", r.speed_m_s, 1e-3, 1, "m/s"),
-                within("seated: peg", r.peg_height_m, 0, 10e-6, 1e6, "um"),
-                reported("block", r.block_height_m, 1e6, "um"), reported("final penetration", r.final_m, 1e6, "um"),
-                reported("energy gained", r.energy_gained_J, 1, "J"), reported("step", r.step_ms, 1, "ms")},
-               ""});
+    table.add(
+        {"1:1000 impact at 0.5 m/s",
+         nameOf(mode),
+         {atMost("penetration", r.deepest_m, 0.5e-3, 1e6, "um"),
+          atMost("comes to rest: speed", r.speed_m_s, 1e-3, 1, "m/s"),
+          within("seated: peg", r.peg_height_m, 0, 10e-6, 1e6, "um"),
+          reported("block", r.block_height_m, 1e6, "um"), reported("final penetration", r.final_m, 1e6, "um"),
+          reported("energy gained", r.energy_gained_J, 1, "J"), reported("step", r.step_ms, 1, "ms")},
+         ""});
   }
 }
 

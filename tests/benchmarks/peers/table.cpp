@@ -50,7 +50,8 @@ void printRow(const Row& row, const char* verdict) {
     ours += (ours.empty() ? "" : ", ") + f.text + (f.is_met ? "" : " (!)");
     if (!f.bar.empty() && f.bar != f.text) bar += (bar.empty() ? "" : ", ") + f.bar;
   }
-  std::printf("%s | %s | %s | %s | %s\n", row.name.c_str(), row.mode.c_str(), ours.c_str(), bar.c_str(), verdict);
+  std::printf("%s | %s | %s | %s | %s\n", row.name.c_str(), row.mode.c_str(), ours.c_str(), bar.c_str(),
+              verdict);
   if (!row.note.empty()) std::printf("    %s\n", row.note.c_str());
 }
 
@@ -66,8 +67,10 @@ int Table::print() const {
   std::map<std::string, bool> case_met;
   for (const Row& row : rows_) case_met[row.name] |= row.isMet();
   std::printf("\ncase | mode | ours | bar | met\n");
-  for (const Row& row : rows_) printRow(row, row.isMet() ? "met" : case_met[row.name] ? "no (other mode)" : "NOT MET");
-  return static_cast<int>(std::count_if(case_met.begin(), case_met.end(), [](const auto& c) { return !c.second; }));
+  for (const Row& row : rows_)
+    printRow(row, row.isMet() ? "met" : case_met[row.name] ? "no (other mode)" : "NOT MET");
+  return static_cast<int>(
+      std::count_if(case_met.begin(), case_met.end(), [](const auto& c) { return !c.second; }));
 }
 
 }  // namespace vps::bench
