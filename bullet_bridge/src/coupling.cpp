@@ -45,6 +45,8 @@ VpsCoupling::VpsCoupling(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part
   requireDynamic(part);
   if (!proxy.isStaticOrKinematicObject())
     throw std::invalid_argument("VpsCoupling: the proxy must be kinematic; set CF_KINEMATIC_OBJECT on it");
+  // It stands for the hand, which goes where walls stop the part; only the part collides.
+  proxy.setCollisionFlags(proxy.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
   setGains(gains);
 }
 
