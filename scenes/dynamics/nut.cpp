@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/screw.h"
+#include "turn_counter.h"
 
 namespace vps::dynamics {
 
@@ -39,26 +40,6 @@ struct Thread {
     const Vec3 axis = nut.pose().R.col(2);
     return std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
   }
-};
-
-/// Adds up a body's rotation about z beyond a turn.
-class TurnCounter {
- public:
-  explicit TurnCounter(const Placed& placed) : placed_(placed), last_rad_(now()) {}
-  double update() {
-    const double at_rad = now();
-    sum_rad_ += std::remainder(at_rad - last_rad_, 2 * std::numbers::pi);
-    last_rad_ = at_rad;
-    return sum_rad_;
-  }
-
- private:
-  [[nodiscard]] double now() const {
-    const Mat3 R = placed_.pose().R;
-    return std::atan2(R(1, 0), R(0, 0));
-  }
-  const Placed& placed_;
-  double last_rad_, sum_rad_ = 0;
 };
 
 struct Sample {

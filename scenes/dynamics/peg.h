@@ -16,7 +16,7 @@ const PartMesh& borePart(double clearance_m);
 struct PegDrop {
   double clearance_m = 50e-6;
   double offset_m = 0.2e-3;  ///< of the peg's lower end from the bore's axis
-  double tilt_rad = 0.0175;  ///< 1 degree
+  double tilt_rad = 8.7e-3;  ///< half a degree
   double height_m = 1e-3;    ///< of its lower end over the mouth
   double friction = 0.15;
 };

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The contact scenes in short form: the bars that vps_bench_peers judges, but for time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamics/gears.h"
+#include "dynamics/heap.h"
+#include "dynamics/heavy_block.h"
+#include "dynamics/nut.h"
+#include "dynamics/peg.h"
+#include "dynamics/ring.h"
+#include "dynamics/safety.h"
+
+namespace vps::dynamics {
+namespace {
+
+constexpr bool kIsDouble = sizeof(btScalar) == 8;
+
+SceneSettings shortScene(const Resolution& resolution = {}, Mode mode = Mode::Constraint) {
+  return {mode, true, vpsEngine(resolution)};
+}
+
+TEST(Scenes, APegDroppedAskewSeatsAndComesToRest) {
+  const PegDropResult r = dropPeg(shortScene());
+  EXPECT_TRUE(r.isSeated());
+  EXPECT_LE(r.deepest_m, 10e-6);
+  EXPECT_LE(r.jitter_m_s, kIsDouble ? 1e-6 : 2e-5);  // in floats the rounding of dt g
+}
+
+TEST(Scenes, ASeatedPegStaysWhereItIs) {
+  EXPECT_LE(restPeg(shortScene()).drift_m, 1e-6);
+}
+
+TEST(Scenes, ARingComesToRestAtHalfItsHeight) {
+  const RingResult r = dropRing(shortScene());
+  EXPECT_NEAR(r.height_error_m, 0, 20e-6);
+  EXPECT_LE(r.deepest_m, 10e-6);
+}
+
+TEST(Scenes, AFrictionlessNutFollowsItsThread) {
+  if (!kIsDouble) GTEST_SKIP() << "a frictionless nut gains 12 um/s a step, near the rounding of floats";
+  const SceneSettings settings = shortScene({0.2e-3, 0.3e-3});
+  const NutRunResult r = runNut(settings, kM10);
+  EXPECT_NEAR(r.acceleration_m_s2, r.theory_m_s2, 0.01 * r.theory_m_s2);
+  EXPECT_NEAR(r.advance_m, kM10.pitch_m, 0.01 * kM10.pitch_m);
+  EXPECT_LE(r.tilt_rad, 0.05 * M_PI / 180);
+  EXPECT_EQ(r.hash, runNut(settings, kM10).hash);
+}
+
+TEST(Scenes, ANutHoldsAboveTheSelfLockingFrictionAndTurnsBelow) {
+  const SceneSettings settings = shortScene({0.2e-3, 0.3e-3});
+  const double threshold = selfLockTheory(kM10);
+  EXPECT_LE(turnWithFriction_rad(settings, kM10, threshold + 0.005, 0.5) * kM10.major_m / 2, 1e-6);
+  EXPECT_GE(turnWithFriction_rad(settings, kM10, threshold - 0.005, 0.5) * kM10.major_m / 2, 100e-6);
+}
+
+TEST(Scenes, APartCreatedInsideAnotherSeparatesWithoutGainingEnergy) {
+  for (const Mode mode : {Mode::Constraint, Mode::ConstraintStock}) {
+    const CreatedInsideResult r = createInside(shortScene({0.5e-3, 1e-3}, mode), 4e-3);
+    EXPECT_NEAR(r.overlap_m, 4e-3, 1e-5);
+    EXPECT_LE(r.left_m, 1e-6) << nameOf(mode);
+    EXPECT_LE(r.kinetic_J, 1e-9) << nameOf(mode);
+  }
+}
+
+TEST(Scenes, TheProxyItselfNeverCollides) {
+  const ProxyResult r = leadProxyThrough(shortScene({0.5e-3, 1e-3}));
+  EXPECT_EQ(r.responses, 0);
+  EXPECT_EQ(r.disturbed_m, 0);
+  EXPECT_NEAR(r.held_m, 0, 10e-6);
+}
+
+TEST(Scenes, APartAt50MetresASecondStopsAtTheWall) {
+  const WallResult face_on = shootAtWall(shortScene({0.5e-3, 1e-3}), 50, false);
+  EXPECT_LE(face_on.deepest_m, 10e-6);
+  EXPECT_LE(face_on.speed_m_s, 0.05);
+  EXPECT_LT(shootAtWall(shortScene({0.5e-3, 1e-3}), 50, true).beyond_m, 0);
+}
+
+}  // namespace
+}  // namespace vps::dynamics
