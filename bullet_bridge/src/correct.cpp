@@ -65,7 +65,8 @@ Exact contactAt(const Foot& foot, const Vec3& inward, bool is_edge_point) {
   const double cos_facing = inward.dot(foot.normal);
   exact.meets = cos_facing > kFacing;
   if (exact.meets && !(is_edge_point && foot.is_edge)) {
-    exact.n = is_edge_point || cos_facing > kCosEdge ? foot.smooth : inward;
+    const bool is_smooth = is_edge_point || (!foot.is_edge && cos_facing > kCosEdge);
+    exact.n = is_smooth ? foot.smooth : inward;
     exact.distance_m = foot.from_q.dot(exact.n);
     return exact;
   }

@@ -21,7 +21,8 @@ Mesh makeGear(int teeth) {
   test::GearShape gear;
   gear.module_m = kModule_m;
   gear.teeth = teeth;
-  gear.width_m = 10e-3;
+  gear.width_m =
+      teeth == kDriver ? 12e-3 : 10e-3;  // a pinion is the wider one, so that ends need not line up
   gear.backlash_m = kBacklash_m;
   gear.other_radius_m = 8e-3;
   return test::makeSpurGear(gear);

@@ -12,7 +12,7 @@ namespace vps::dynamics {
 
 namespace {
 
-constexpr double kInside_m = 90e-3, kWall_m = 20e-3, kHeight_m = 200e-3;  // the box, open at the top
+constexpr double kInside_m = 90e-3, kWall_m = 20e-3, kHeight_m = 500e-3;  // the box, open at the top
 
 // A flanged bushing, 30 mm over its flange: a hole and an inner corner.
 PartMesh makeBushing() {
@@ -98,11 +98,12 @@ HeapResult dropHeap(const SceneSettings& settings) {
   result.asleep = asleep();
   result.final_m = -1e300;
   for (std::size_t a = 0; a < parts.size(); ++a) {
-    const Vec3 p = parts[a].pose().p;
-    const double reach_m = kInside_m / 2;
-    if (std::abs(p.x()) > reach_m || std::abs(p.y()) > reach_m || p.z() < 0) ++result.escaped;
+    const Vec3 center = fromBt(parts[a].body->getWorldTransform().getOrigin());
+    const Vec3 past =
+        (center - Vec3(0, 0, kHeight_m / 2)).cwiseAbs() - Vec3(kInside_m, kInside_m, kHeight_m) / 2;
+    if (past.maxCoeff() > 0) ++result.escaped;
     for (std::size_t b = 0; b < a; ++b)
-      if ((p - parts[b].pose().p).norm() < 40e-3)
+      if ((center - fromBt(parts[b].body->getWorldTransform().getOrigin())).norm() < 40e-3)
         result.final_m = std::max(
             result.final_m, penetration_m(parts[a].part, parts[a].pose(), parts[b].part, parts[b].pose()));
   }

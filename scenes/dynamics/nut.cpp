@@ -15,12 +15,11 @@ namespace {
 
 constexpr double kClearance_m = 0.1e-3;  // radial, as of a 6H nut on a 6g bolt
 
-test::ThreadShape threadOf(const NutSize& size) {
+test::ThreadShape threadOf(const NutSize& size, int columns) {
   test::ThreadShape thread;
   thread.major_m = size.major_m / 2;
   thread.pitch_m = size.pitch_m;
-  // Flats make the normal of a helix swing by pi / columns: 0.5 degrees.
-  thread.columns = 384;
+  thread.columns = columns;
   thread.rows_per_pitch = 16;
   return thread;
 }
@@ -62,20 +61,20 @@ double theory_m_s2(const PartMesh& nut, const NutSize& size) {
 
 }  // namespace
 
-const PartMesh& nutPart(const NutSize& size) {
+const PartMesh& nutPart(const NutSize& size, int columns) {
   static std::map<std::vector<double>, PartMesh> parts;
-  return keptPart(parts, {size.major_m, size.pitch_m, size.height_m, size.corner_m}, [&] {
-    test::ThreadShape thread = threadOf(size);
+  return keptPart(parts, {size.major_m, size.pitch_m, size.height_m, size.corner_m, double(columns)}, [&] {
+    test::ThreadShape thread = threadOf(size, columns);
     thread.length_m = size.height_m;
     thread.clearance_m = kClearance_m;
     return makePart(test::makeNut(thread, size.corner_m));
   });
 }
 
-const PartMesh& rodPart(const NutSize& size) {
+const PartMesh& rodPart(const NutSize& size, int columns) {
   static std::map<std::vector<double>, PartMesh> parts;
-  return keptPart(parts, {size.major_m, size.pitch_m, size.height_m}, [&] {
-    test::ThreadShape thread = threadOf(size);
+  return keptPart(parts, {size.major_m, size.pitch_m, size.height_m, double(columns)}, [&] {
+    test::ThreadShape thread = threadOf(size, columns);
     thread.length_m = size.height_m + 6 * size.pitch_m;
     return makePart(test::makeThreadedRod(thread));
   });

@@ -15,8 +15,9 @@ struct NutSize {
 inline constexpr NutSize kM10{10e-3, 1.5e-3, 8e-3, 18.5e-3 / 2};
 inline constexpr NutSize kM16{16e-3, 2e-3, 13e-3, 27.7e-3 / 2};
 
-const PartMesh& nutPart(const NutSize& size);
-const PartMesh& rodPart(const NutSize& size);
+/// @param columns  facets a turn, a multiple of 6
+const PartMesh& nutPart(const NutSize& size, int columns = 384);
+const PartMesh& rodPart(const NutSize& size, int columns = 384);
 
 struct NutRunResult {
   double acceleration_m_s2 = 0;  ///< measured along the axis, over the first turn

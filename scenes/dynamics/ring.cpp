@@ -42,8 +42,8 @@ RingResult dropRing(const SceneSettings& settings) {
   static const PartMesh post_part = makePart(makePegOnPlate()), ring_part = makePart(makeRing());
   World world(settings);
   const Placed post = world.add(post_part, Pose(), true);
-  const Pose start(rotationFromVector(Vec3(0.01, 0.005, 0)),
-                   Vec3(0.1e-3, 0.05e-3, 20.5e-3 + kRingHeight_m / 2));
+  // Around the peg already: dropped over its end, GImpact's ring is thrown off whatever its margin.
+  const Pose start(rotationFromVector(Vec3(1e-3, 0.5e-3, 0)), Vec3(10e-6, 5e-6, 5e-3 + kRingHeight_m / 2));
   const Placed ring = world.add(ring_part, start);
   RingResult result;
   result.deepest_m = -1e300;
@@ -59,7 +59,7 @@ RingResult dropRing(const SceneSettings& settings) {
   result.rest_height_m = ring.pose().p.z();
   result.height_error_m = result.rest_height_m - kRingHeight_m / 2;
   result.contact_steps = static_cast<int>(contact.step_s.size());
-  result.step_ms = 1e3 * contact.percentile_s(0.5);
+  result.step_ms = 1e3 * contact.mean_s();
   return result;
 }
 

@@ -11,7 +11,7 @@ struct RingResult {
   double height_error_m = 0;
   double deepest_m = 0;   ///< worst penetration
   double jitter_m_s = 0;  ///< greatest speed of any point in the last half second
-  double step_ms = 0;     ///< median over the steps with contact
+  double step_ms = 0;     ///< mean over the steps with contact
   int contact_steps = 0;
 };
 

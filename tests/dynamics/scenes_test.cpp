@@ -56,6 +56,19 @@ TEST(Scenes, ANutHoldsAboveTheSelfLockingFrictionAndTurnsBelow) {
   EXPECT_GE(turnWithFriction_rad(settings, kM10, threshold - 0.005, 0.5) * kM10.major_m / 2, 100e-6);
 }
 
+TEST(Scenes, AGearPairKeepsItsRatioAndPassesItsTorque) {
+  const GearPairResult r = runGears(shortScene());
+  EXPECT_NEAR(r.torque_share, 1, 0.02);
+  EXPECT_LE(r.ratio_error_rad, 1e-3);  // a tooth is 0.2 rad, the backlash 3.3 mrad of the driven gear
+}
+
+TEST(Scenes, AHeapStaysInItsBox) {
+  const HeapResult r = dropHeap({Mode::Constraint, true, heapEngine()});
+  EXPECT_EQ(r.escaped, 0);
+  // Where two straight edges cross between their points, at most half a spacing (0.6 mm) is not seen.
+  EXPECT_LE(r.final_m, 0.3e-3);
+}
+
 TEST(Scenes, APartCreatedInsideAnotherSeparatesWithoutGainingEnergy) {
   for (const Mode mode : {Mode::Constraint, Mode::ConstraintStock}) {
     const CreatedInsideResult r = createInside(shortScene({0.5e-3, 1e-3}, mode), 4e-3);

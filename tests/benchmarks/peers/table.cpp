@@ -60,15 +60,25 @@ void printRow(const Row& row, const char* verdict) {
 void Table::add(Row row) {
   printRow(row, row.isMet() ? "met" : "NOT MET");
   std::fflush(stdout);
-  rows_.push_back(std::move(row));
+  rows_.push_back({std::move(row), true});
+}
+
+void Table::addRival(Row row) {
+  printRow(row, "-");
+  std::fflush(stdout);
+  rows_.push_back({std::move(row), false});
 }
 
 int Table::print() const {
   std::map<std::string, bool> case_met;
-  for (const Row& row : rows_) case_met[row.name] |= row.isMet();
+  for (const Entry& e : rows_)
+    if (e.is_judged) case_met[e.row.name] |= e.row.isMet();
   std::printf("\ncase | mode | ours | bar | met\n");
-  for (const Row& row : rows_)
-    printRow(row, row.isMet() ? "met" : case_met[row.name] ? "no (other mode)" : "NOT MET");
+  for (const Entry& e : rows_)
+    printRow(e.row, !e.is_judged              ? "-"
+                    : e.row.isMet()           ? "met"
+                    : case_met.at(e.row.name) ? "no (another mode does)"
+                                              : "NOT MET");
   return static_cast<int>(
       std::count_if(case_met.begin(), case_met.end(), [](const auto& c) { return !c.second; }));
 }

@@ -37,12 +37,18 @@ class Table {
  public:
   /// Prints the row as it comes, so that a long run shows how far it is.
   void add(Row row);
+  /// A row of someone else: shown, not judged.
+  void addRival(Row row);
   /// One line for each row. A case is met when one mode meets all its figures.
   /// @return how many cases are not met
   int print() const;
 
  private:
-  std::vector<Row> rows_;
+  struct Entry {
+    Row row;
+    bool is_judged;
+  };
+  std::vector<Entry> rows_;
 };
 
 }  // namespace vps::bench
