@@ -13,6 +13,7 @@
 #include "context.h"
 #include "manifold_writer.h"
 #include "motion.h"
+#include "penalty_pair.h"
 #include "primitive.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
@@ -38,6 +39,7 @@ struct VpsPairState {
   std::shared_ptr<VpsContext> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
+  PenaltyPair penalty;            ///< in penalty mode
   unsigned revision[2] = {0, 0};  ///< of the shapes that writer's and selection's ids belong to
 };
 
@@ -232,6 +234,7 @@ void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
     state.selection.is_valid = false;
+    state.penalty.points.clear();
     state.writer->forget();
   }
 }
@@ -246,6 +249,37 @@ void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion
       c.distance_m = 0;
 }
 
+// How many sides' points answer for the same surface.
+int sideCount(const PairView& pair, Sides sides) {
+  if (sides == Sides::One || !pair.vps[0] || !pair.vps[1]) return 1;
+  const bool is_both =
+      pair.hasShell(0) && pair.hasShell(1) && pair.vps[0]->models().map && pair.vps[1]->models().map;
+  return is_both ? 2 : 1;
+}
+
+// All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
+// and for solvers that know nothing of springs.
+void processPenalty(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
+                    std::vector<Candidate>& candidates) {
+  VpsContext& context = *state.context;
+  collectForStep(pair, motion, context, candidates);
+  ++context.pair_updates;
+  context.candidates += candidates.size();
+  dropUnreachable(motion, candidates);
+  for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
+  state.penalty.mu =
+      btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);
+  const double stiffness = context.settings.stiffness_N_per_m3 / sideCount(pair, context.settings.sides);
+  renewPoints(state.penalty, candidates, stiffness, motion);
+  VpsBulletSettings seen = context.settings;
+  seen.use_surfaces = false;
+  choose(pair, motion, seen, state.writer.get(), candidates);
+  context.contacts += candidates.size();
+  state.writer->write(candidates, pair.wrapper, motion);
+  for (const btPersistentManifold* manifold : state.writer->manifolds())
+    context.penalty.add(manifold, &state.penalty);
+}
+
 }  // namespace
 
 VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
@@ -257,7 +291,9 @@ VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                                                     body1->getCollisionObject());
 }
 
-VpsAlgorithm::~VpsAlgorithm() = default;
+VpsAlgorithm::~VpsAlgorithm() {
+  state_->context->penalty.remove(&state_->penalty);
+}
 
 void VpsAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   state_->writer->append(manifolds);
@@ -287,6 +323,10 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
 
   forgetReplacedModels(*state_, pair);
   const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, context.settings.slack_m);
+  if (context.settings.mode == ContactMode::Penalty) {
+    processPenalty(pair, motion, *state_, candidates);
+    return;
+  }
   if (!recallSelection(state_->selection, pair, motion, context.settings, candidates)) {
     collectForStep(pair, motion, context, candidates);
     ++context.pair_updates;

@@ -20,6 +20,7 @@ struct Candidate {
   Vec3 n_W = Vec3::Zero();   ///< unit, from body 1 to body 0
   double distance_m = 0;     ///< signed gap now
   double predicted_m = 0;    ///< the gap at the end of the step if nothing held the bodies
+  double area_m2 = 0;        ///< surface the point stands for
   double impulse_Ns = 0;     ///< normal impulse it had last step
   bool was_contact = false;  ///< was given to the solver last step
   std::uint32_t id = 0;      ///< of the point in its shell

@@ -47,6 +47,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
     c.p_W = other.X_WM * contact.p_M;
     c.n_W = sign * (other.X_WM.R * contact.n_M);
     c.distance_m = contact.distance_m;
+    c.area_m2 = contact.area_m2;
     c.id = contact.id;
     c.owner = contact.owner;
     c.side = side.side;
@@ -83,6 +84,7 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
       c.p_W = side.X_WM * shell.points[id];
       c.n_W = sign * (X_WS.R * at.n);
       c.distance_m = at.distance_m;
+      c.area_m2 = shell.area_m2[id];
       c.id = id;
       c.side = side.side;
       out.push_back(c);

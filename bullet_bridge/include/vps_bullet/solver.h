@@ -9,8 +9,8 @@
 namespace vps {
 
 struct VpsSolverSettings {
-  double residual_m_s = 1e-7;  ///< stop when no row's velocity error changes by more
-  int iteration_limit = 400;   ///< sweeps over all contacts, >= 1
+  double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
+  int iteration_limit = 400;   ///< sweeps over rigid contacts, or Newton steps of compliant ones; >= 1
 };
 
 /// Solves islands of rigid bodies, contacts and VpsCouplings with the coupling folded into the body's
@@ -26,16 +26,12 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// Gauss-Seidel sweeps that the last island solved by our method took; iteration_limit means it was cut
+  /// Sweeps or Newton steps that the last island solved by our method took; iteration_limit means it was cut
   /// short.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
 
  private:
   struct Work;
-  /// Copies the island into work_; false if it holds anything our method does not cover.
-  bool gather(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-              int manifold_count, btTypedConstraint** constraints, int constraint_count,
-              const btContactSolverInfo& info);
   VpsSolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
