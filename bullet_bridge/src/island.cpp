@@ -40,7 +40,8 @@ void Island::add(btRigidBody& rigid, double dt_s) {
   b.rigid = &rigid;
   b.mass.topLeftCorner<3, 3>() = fromBt(rigid.getInvInertiaTensorWorld()).inverse();
   b.mass.bottomRightCorner<3, 3>() = Mat3::Identity() / rigid.getInvMass();
-  b.momentum = b.mass * (velocityOf(rigid) + externalVelocity(rigid, dt_s));
+  b.u = velocityOf(rigid);
+  b.momentum = b.mass * (b.u + externalVelocity(rigid, dt_s));
   index_[&rigid] = static_cast<int>(bodies.size());
   bodies.push_back(b);
 }

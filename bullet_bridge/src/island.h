@@ -30,7 +30,7 @@ struct IslandBody {
   Vec6 momentum = Vec6::Zero();  ///< mass times the velocity with external forces
   Mat6 held = Mat6::Zero();      ///< mass, and the implicit part of the couplings that hold it
   Vec6 drive = Vec6::Zero();     ///< the couplings' constant part
-  Vec6 u = Vec6::Zero();
+  Vec6 u = Vec6::Zero();         ///< at first that of the last step
 };
 
 class Island {

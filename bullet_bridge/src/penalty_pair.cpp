@@ -39,6 +39,7 @@ const PenaltyPoint* pointOf(const PenaltyPair& pair, const btManifoldPoint& cont
 void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
                  const RelativeMotion& motion) {
   constexpr double kMostEasing_m_s = 0.05;  // assumed: bodies put into each other separate gently
+  const double easing_m = kMostEasing_m_s * motion.dt_s;
   const Mat3 R_W1 = fromBt(pair.object[1]->getWorldTransform().getBasis());
   const Mat3 turned = R_W1 * pair.R_W1.transpose();
   pair.R_W1 = R_W1;
@@ -52,16 +53,21 @@ void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, doubl
     point.p_W = c.p_W;
     point.n_W = c.n_W;
     point.k_N_per_m = stiffness_N_per_m3 * c.area_m2;
+    double before_m = 0;  // a point that was not there has not been deeper
     while (before != old.end() && before->key < point.key) ++before;
     if (before != old.end() && before->key == point.key) {
       const Vec3 bend_W = turned * before->bend_W;
       point.bend_W = bend_W - point.n_W * point.n_W.dot(bend_W);
       point.f_n_N = before->f_n_N;
-      point.ease_m = before->ease_m - kMostEasing_m_s * motion.dt_s;
-    } else {
-      // It cannot have come deeper than the step's travel: the rest it was put into.
-      point.ease_m = -c.distance_m - motion.slack_m - motion.speed_m_s * motion.dt_s;
+      before_m = std::min(0.0, before->gap_m);
+      // What is given back is pressed out in a step, so no more than that may lie open.
+      if (before->ease_m > 0) point.ease_m = std::max(before->ease_m - easing_m, -c.distance_m - easing_m);
     }
+    // Deeper than the step's approach can bring it: the bodies were put into each other, or another surface
+    // became the nearest.
+    const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +
+                              0.1 * motion.own_speed_m_s * motion.dt_s;
+    point.ease_m = std::max(point.ease_m, before_m - approach_m - motion.slack_m - c.distance_m);
     point.ease_m = std::clamp(point.ease_m, 0.0, std::max(0.0, -c.distance_m));
     point.gap_m = c.distance_m + point.ease_m;
     pair.points.push_back(point);
