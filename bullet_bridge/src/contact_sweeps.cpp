@@ -99,6 +99,17 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
 void ContactSweeps::prepare() {
   inverse_.clear();
   for (const IslandBody& b : island_.bodies) inverse_.push_back(b.held.llt().solve(Mat6::Identity()));
+  drives_.clear();
+  for (JointRow& row : joints_.rows) {
+    Drive drive{&row, {Vec6::Zero(), Vec6::Zero()}, 0};
+    for (int i = 0; i < 2; ++i) {
+      if (row.body[i] < 0) continue;
+      drive.MinvJ[i] = inverse_[static_cast<std::size_t>(row.body[i])] * row.J[i];
+      drive.W += row.J[i].dot(drive.MinvJ[i]);
+    }
+    row.impulse_Ns = 0;
+    if (drive.W > 0) drives_.push_back(drive);
+  }
   for (Contact& c : contacts_) {
     prepareRow(c.normal);
     prepareRow(c.tangent[0]);
@@ -124,9 +135,29 @@ void ContactSweeps::start() {
   }
 }
 
-// One sweep. Returns the greatest change of a contact's velocity.
-double ContactSweeps::sweep() {
+// Joints' rows have units of their own: a turn's change of velocity counts as that of a point 10 mm away.
+// Assumed.
+double ContactSweeps::sweepJoints() {
   double residual_m_s = 0;
+  for (const Drive& drive : drives_) {
+    JointRow& row = *drive.row;
+    const double error = row.target - row.velocity(island_) - row.softness * drive.W * row.impulse_Ns;
+    const double wanted_Ns = row.impulse_Ns + error / (drive.W * (1 + row.softness));
+    const double change_Ns = std::clamp(wanted_Ns, row.lower_Ns, row.upper_Ns) - row.impulse_Ns;
+    if (change_Ns == 0) continue;
+    row.impulse_Ns += change_Ns;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0)
+        island_.bodies[static_cast<std::size_t>(row.body[i])].u += change_Ns * drive.MinvJ[i];
+    const bool is_turn = row.J[0].tail<3>().isZero(0) && row.J[1].tail<3>().isZero(0);
+    residual_m_s = std::max(residual_m_s, std::abs(change_Ns) * drive.W * (is_turn ? 0.01 : 1));
+  }
+  return residual_m_s;
+}
+
+// One sweep. Returns the greatest change of a row's velocity.
+double ContactSweeps::sweep() {
+  double residual_m_s = sweepJoints();
   for (Contact& c : contacts_) {
     const double p_n = std::max(0.0, c.p_n + (c.target_m_s - velocity(c.normal)) / c.normal.W);
     if (p_n != c.p_n) {
@@ -169,6 +200,17 @@ int ContactSweeps::solve(const VpsSolverSettings& settings) {
   return used;
 }
 
+// A joint holds against the push; a motor or limit, whose impulse is bounded, does not mind it.
+void ContactSweeps::pushJoint(const Drive& drive) {
+  const JointRow& row = *drive.row;
+  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
+  if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) return;
+  const double impulse_Ns = (row.fixed_velocity - row.velocity(island_)) / drive.W;
+  for (int i = 0; i < 2; ++i)
+    if (row.body[i] >= 0)
+      island_.bodies[static_cast<std::size_t>(row.body[i])].u += impulse_Ns * drive.MinvJ[i];
+}
+
 void ContactSweeps::solvePush(const btContactSolverInfo& info, const VpsSolverSettings& settings) {
   constexpr double kMostPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
   constexpr double kNothing_m = 1e-9;
@@ -186,6 +228,7 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, const VpsSolverSe
   for (std::size_t i = 0; i < push_.size(); ++i) std::swap(island_.bodies[i].u, push_[i]);
   for (int i = 0; i < settings.iteration_limit; ++i) {
     double residual_m_s = 0;
+    for (const Drive& drive : drives_) pushJoint(drive);
     for (Contact& c : contacts_) {
       double v = 0;  // the partner's own motion is no part of the push
       for (const Side& side : c.normal.side)

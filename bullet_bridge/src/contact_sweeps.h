@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid contact: projected Gauss-Seidel over the few contacts in Bullet's manifolds.
+// Rigid contact: projected Gauss-Seidel over joints and the few contacts in Bullet's manifolds.
 //
 // Signorini in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a pyramid) in the
 // tangent plane. Overlap is pushed out afterwards in a second, frictionless solve whose velocities move the
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "island.h"
+#include "joint_rows.h"
 #include "vps_bullet/solver.h"
 
 class btManifoldPoint;
@@ -20,7 +21,7 @@ namespace vps {
 
 class ContactSweeps {
  public:
-  explicit ContactSweeps(Island& island) : island_(island) {}
+  ContactSweeps(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
   void clear() { contacts_.clear(); }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
@@ -62,10 +63,22 @@ class ContactSweeps {
   void prepare();
   void start();
   double sweep();
+  double sweepJoints();
   [[nodiscard]] double velocity(const Row& row) const;
   void apply(const Row& row, double impulse);
 
+  /// A joint's row, prepared.
+  struct Drive {
+    JointRow* row;
+    Vec6 MinvJ[2];
+    double W;
+  };
+
+  void pushJoint(const Drive& drive);
+
   Island& island_;
+  JointRows& joints_;
+  std::vector<Drive> drives_;
   std::vector<Contact> contacts_;
   std::vector<Mat6> inverse_;  // of each body's held mass
   std::vector<Vec6> push_;     // velocities that only move, for one step

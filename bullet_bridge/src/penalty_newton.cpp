@@ -119,12 +119,40 @@ void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, s
     const IslandBody& b = island_.bodies[i];
     gradient[i] = b.held * u[i] - b.momentum - b.drive;
   }
+  for (std::size_t j = 0; j < joint_kg_.size(); ++j) {
+    const JointRow& row = joints_.rows[j];
+    const double impulse_Ns = jointImpulse(row, joint_kg_[j], u);
+    is_free_[j] = impulse_Ns > row.lower_Ns && impulse_Ns < row.upper_Ns;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0) gradient[static_cast<std::size_t>(row.body[i])] -= impulse_Ns * row.J[i];
+  }
   for (Patch& patch : patches_) {
     evaluate(patch, twistOf(patch, u), with_hessian);
     for (int i = 0; i < 2; ++i)
       if (patch.body[i] >= 0)
         gradient[static_cast<std::size_t>(patch.body[i])] += patch.X[i].transpose() * patch.gradient;
   }
+}
+
+void PenaltyNewton::prepareJoints() {
+  constexpr double kStiffer = 1e6;  // than the bodies are heavy
+  joint_kg_.clear();
+  for (const JointRow& row : joints_.rows) {
+    double W = 0;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0)
+        W += row.J[i].dot(island_.bodies[static_cast<std::size_t>(row.body[i])].held.llt().solve(row.J[i]));
+    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.softness, 1 / kStiffer)) : 0);
+  }
+  is_free_.assign(joints_.rows.size(), 0);
+}
+
+double PenaltyNewton::jointImpulse(const JointRow& row, double stiffness_kg,
+                                   const std::vector<Vec6>& u) const {
+  double velocity = row.fixed_velocity;
+  for (int i = 0; i < 2; ++i)
+    if (row.body[i] >= 0) velocity += row.J[i].dot(u[static_cast<std::size_t>(row.body[i])]);
+  return std::clamp(stiffness_kg * (row.target - velocity), row.lower_Ns, row.upper_Ns);
 }
 
 void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const {
@@ -144,6 +172,12 @@ void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
           if (patch.body[i] >= patch.body[j] && patch.body[j] >= 0)
             add(Eigen::Index{6} * patch.body[i], Eigen::Index{6} * patch.body[j],
                 Mat6(patch.X[i].transpose() * patch.hessian * patch.X[j]));
+    for (std::size_t r = 0; r < joint_kg_.size(); ++r)
+      for (int i = 0; i < 2 && is_free_[r]; ++i)
+        for (int j = 0; j < 2; ++j)
+          if (const JointRow& row = joints_.rows[r]; row.body[i] >= row.body[j] && row.body[j] >= 0)
+            add(Eigen::Index{6} * row.body[i], Eigen::Index{6} * row.body[j],
+                Mat6(joint_kg_[r] * row.J[i] * row.J[j].transpose()));
   };
   constexpr std::size_t kDense = 12;  // assumed: bodies up to which a dense matrix is quicker
   Eigen::VectorXd answer;
@@ -201,6 +235,7 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
 }
 
 int PenaltyNewton::solve(double residual_m_s, int iteration_limit) {
+  prepareJoints();
   std::vector<Vec6> u = velocities(), gradient(u.size()), step(u.size());
   int used = 0;
   while (used++ < iteration_limit) {
@@ -239,6 +274,8 @@ double PenaltyNewton::renewLimits() {
 
 void PenaltyNewton::finish() {
   const std::vector<Vec6> u = velocities();
+  for (std::size_t j = 0; j < joint_kg_.size(); ++j)
+    joints_.rows[j].impulse_Ns = jointImpulse(joints_.rows[j], joint_kg_[j], u);
   for (Patch& patch : patches_) {
     const Vec6 twist = twistOf(patch, u);
     patch.pair->all_N = 0;

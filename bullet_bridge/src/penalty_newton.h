@@ -14,13 +14,14 @@
 #include <vector>
 
 #include "island.h"
+#include "joint_rows.h"
 #include "penalty_pair.h"
 
 namespace vps {
 
 class PenaltyNewton {
  public:
-  explicit PenaltyNewton(Island& island) : island_(island) {}
+  PenaltyNewton(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
   void clear(double dt_s) {
     patches_.clear();
@@ -71,7 +72,16 @@ class PenaltyNewton {
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
   [[nodiscard]] std::vector<Vec6> velocities() const;
 
+  /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
+  /// make the potential's slope constant, as a bristle's does.
+  void prepareJoints();
+  [[nodiscard]] double jointImpulse(const JointRow& row, double stiffness_kg,
+                                    const std::vector<Vec6>& u) const;
+
   Island& island_;
+  JointRows& joints_;
+  std::vector<double> joint_kg_;       // stiffness of each row, against velocity
+  std::vector<std::uint8_t> is_free_;  // rows within their limits at the last evaluation
   double dt_s_ = 0;
   std::vector<Patch> patches_;
 };

@@ -39,8 +39,9 @@ struct VpsSolver::Work {
     VpsCoupling::Law law;
   };
   Island island;
-  ContactSweeps rigid{island};
-  PenaltyNewton soft{island};
+  JointRows joints;
+  ContactSweeps rigid{island, joints};
+  PenaltyNewton soft{island, joints};
   bool is_soft = false;
   std::vector<VpsCoupling*> couplings;
   std::vector<Held> held;
@@ -48,7 +49,7 @@ struct VpsSolver::Work {
   std::deque<PenaltyPair> made;            // of manifolds that are nobody's pair
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
-  bool gatherConstraints(std::span<btTypedConstraint*> constraints);
+  void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
   bool gatherContacts(std::span<btPersistentManifold*> manifolds, const VpsContext* context,
                       const btContactSolverInfo& info);
   void holdCouplings(double dt_s);
@@ -83,15 +84,17 @@ bool VpsSolver::Work::gatherBodies(std::span<btCollisionObject*> objects, double
   return true;
 }
 
-bool VpsSolver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints) {
+void VpsSolver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints,
+                                        const btContactSolverInfo& info) {
   couplings.clear();
+  joints.clear();
   for (btTypedConstraint* constraint : constraints) {
     if (!constraint->isEnabled()) continue;
-    auto* coupling = dynamic_cast<VpsCoupling*>(constraint);
-    if (!coupling) return false;
-    couplings.push_back(coupling);
+    if (auto* coupling = dynamic_cast<VpsCoupling*>(constraint))
+      couplings.push_back(coupling);
+    else
+      joints.add(*constraint, island, info);
   }
-  return true;
 }
 
 bool VpsSolver::Work::gatherContacts(std::span<btPersistentManifold*> from, const VpsContext* context,
@@ -176,12 +179,12 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
   const double dt_s = info.m_timeStep;
   Work& work = *work_;
   const std::shared_ptr<const VpsContext> context = contextOf(dispatcher);
-  if (!work.gatherConstraints(spanOf(constraints, constraint_count)) ||
-      !work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
+  if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
       !work.gatherContacts(spanOf(manifolds, manifold_count), context.get(), info))
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
   if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call for nothing
+  work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.holdCouplings(dt_s);
 
   // A spring at its limit makes its law depend on the answer, and friction's limit is the normal force that
@@ -202,9 +205,11 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
   }
   if (work.is_soft) {
     work.soft.finish();
+    work.joints.finish(dt_s);
     leaveImpulses(work.manifolds, dt_s);
     work.island.writeVelocities();
   } else {
+    work.joints.finish(dt_s);
     work.rigid.solvePush(info, settings_);
     work.island.writeVelocities();
     work.rigid.finish(dt_s);

@@ -17,8 +17,7 @@ namespace vps {
 enum class ContactMode {
   Constraint,  ///< rigid: a few contacts for the solver, friction as a cone
   /// Compliant: every touching point presses with stiffness times area times depth and rubs by a bristle,
-  /// solved implicitly. Needs VpsSolver; other solvers, and islands with joints, get the rigid contacts. No
-  /// restitution.
+  /// solved implicitly. Needs VpsSolver: other solvers get the rigid contacts. No restitution.
   Penalty,
 };
 

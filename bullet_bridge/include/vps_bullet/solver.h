@@ -13,9 +13,9 @@ struct VpsSolverSettings {
   int iteration_limit = 400;   ///< sweeps over rigid contacts, or Newton steps of compliant ones; >= 1
 };
 
-/// Solves islands of rigid bodies, contacts and VpsCouplings with the coupling folded into the body's
-/// effective mass (see solver.cpp); everything else (joints, soft constraints) goes to the stock solver
-/// unchanged.
+/// Solves islands of rigid bodies, contacts (rigid or compliant), joints and VpsCouplings, the couplings
+/// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
+/// spinning friction, or bodies with linear or angular factors go to the stock solver unchanged.
 class VpsSolver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
