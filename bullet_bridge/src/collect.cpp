@@ -27,7 +27,7 @@ bool RelativeMotion::canTouch(Candidate& c) const {
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
                            const VpsBulletSettings& settings, std::vector<Candidate>& out,
-                           std::size_t& points_tested) {
+                           std::size_t& points_tested, QueryMemory* memory) {
   const VpsModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
   // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
@@ -37,7 +37,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
   const Pose X_MP = other.X_WM.inverse() * side.X_WM;
-  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near);
+  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near, memory);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   // The buffer's capacity depends on what other pairs needed; the limit must not.
@@ -47,6 +47,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
     c.p_W = other.X_WM * contact.p_M;
     c.n_W = sign * (other.X_WM.R * contact.n_M);
     c.distance_m = contact.distance_m;
+    c.area_m2 = contact.area_m2;
     c.id = contact.id;
     c.owner = contact.owner;
     c.side = side.side;
@@ -83,6 +84,7 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
       c.p_W = side.X_WM * shell.points[id];
       c.n_W = sign * (X_WS.R * at.n);
       c.distance_m = at.distance_m;
+      c.area_m2 = shell.area_m2[id];
       c.id = id;
       c.side = side.side;
       out.push_back(c);

@@ -4,8 +4,12 @@
 
 #include <atomic>
 #include <cstddef>
+#include <memory>
 
+#include "penalty_pair.h"
 #include "vps_bullet/install.h"
+
+class btDispatcher;
 
 namespace vps {
 
@@ -13,6 +17,10 @@ struct VpsContext {
   VpsBulletSettings settings;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
+  PenaltyRegistry penalty;
 };
+
+/// Of the installation on a dispatcher; null without one.
+std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher);
 
 }  // namespace vps

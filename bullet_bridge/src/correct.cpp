@@ -130,4 +130,18 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
   }
 }
 
+void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
+  const PointShell& shell = *side.shape->models().shell;
+  const double sign = side.side == 0 ? 1 : -1;
+  std::erase_if(candidates, [&](Candidate& c) {
+    if (c.side != side.side || side.shape->isEdgePoint(c.id)) return false;
+    const Vec3 own = sign * (side.X_WM.R * shell.inward[c.id]);
+    const double facing = own.dot(c.n_W);
+    if (facing <= kFacing) return true;
+    c.distance_m *= facing;  // of the nearest point's tangent plane
+    c.n_W = own;
+    return false;
+  });
+}
+
 }  // namespace vps

@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <mutex>
@@ -82,6 +83,8 @@ void requireUsable(const VpsBulletSettings& s) {
   if (s.contact_limit < 4) throw std::invalid_argument("installVps: contact_limit must be at least 4");
   if (s.candidate_limit != 0 && s.candidate_limit < s.contact_limit)
     throw std::invalid_argument("installVps: candidate_limit must be 0 (all) or at least contact_limit");
+  if (!(s.stiffness_N_per_m3 > 0) || !std::isfinite(s.stiffness_N_per_m3))
+    throw std::invalid_argument("installVps: stiffness_N_per_m3 must be positive and finite");
   if (!(s.slack_m > 0) || !(s.slack_m < 1e-2))
     throw std::invalid_argument("installVps: slack_m must be positive and below 10 mm");
 }
@@ -128,6 +131,12 @@ void uninstallVps(btCollisionDispatcher& dispatcher) {
 bool isVpsInstalled(const btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   return installations().count(&dispatcher) > 0;
+}
+
+std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher) {
+  const std::lock_guard lock(g_mutex);
+  const auto it = installations().find(static_cast<const btCollisionDispatcher*>(dispatcher));
+  return it == installations().end() ? nullptr : it->second->context;
 }
 
 VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher) {
