@@ -21,13 +21,28 @@ ShapeHandle buildVpsShape(const PartMesh& part, const Resolution& resolution) {
 
 }  // namespace
 
+const char* nameOf(Mode mode) {
+  switch (mode) {
+    case Mode::Constraint:
+      return "constraint";
+    case Mode::Penalty:
+      return "penalty";
+    default:
+      return "constraint, stock solver";
+  }
+}
+
 Engine vpsEngine(const Resolution& resolution, const VpsBulletSettings& settings) {
   // Parts that are the same surface share their exact distance, so its address tells them apart.
   using Shapes = std::map<std::shared_ptr<const MeshDistance>, ShapeHandle>;
   const auto shapes = std::make_shared<Shapes>();
   Engine engine;
   engine.name = "VPS";
-  engine.install = [settings](btCollisionDispatcher& dispatcher) { installVps(dispatcher, settings); };
+  engine.install = [settings](btCollisionDispatcher& dispatcher, Mode mode) {
+    VpsBulletSettings with_mode = settings;
+    with_mode.mode = mode == Mode::Penalty ? ContactMode::Penalty : ContactMode::Constraint;
+    installVps(dispatcher, with_mode);
+  };
   engine.uninstall = [](btCollisionDispatcher& dispatcher) { uninstallVps(dispatcher); };
   engine.makeShape = [shapes, resolution](const PartMesh& part, bool) {
     ShapeHandle& shape = (*shapes)[part.exact];

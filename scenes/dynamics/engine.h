@@ -13,12 +13,21 @@ class btCollisionDispatcher;
 
 namespace vps::dynamics {
 
+/// How contacts become motion (DESIGN section 8).
+enum class Mode {
+  Constraint,       ///< rigid contacts, VpsSolver
+  Penalty,          ///< springs on every touching point, VpsSolver
+  ConstraintStock,  ///< rigid contacts, Bullet's own sequential impulses
+};
+const char* nameOf(Mode mode);
+
 /// A Bullet shape together with what it refers to.
 using ShapeHandle = std::shared_ptr<btCollisionShape>;
 
 struct Engine {
   std::string name;
-  std::function<void(btCollisionDispatcher&)> install, uninstall;
+  std::function<void(btCollisionDispatcher&, Mode)> install;
+  std::function<void(btCollisionDispatcher&)> uninstall;
   /// @param is_fixed  the body will not move (a rival may have a cheaper shape for that)
   std::function<ShapeHandle(const PartMesh& part, bool is_fixed)> makeShape;
 };
@@ -29,7 +38,8 @@ struct Resolution {
   double spacing_m = 0.5e-3;
 };
 
-/// VPS with these settings. Shapes are built once for each mesh and resolution of this engine, and shared.
+/// VPS with these settings (their mode is the scene's). Shapes are built once for each mesh and resolution of
+/// this engine, and shared.
 Engine vpsEngine(const Resolution& resolution = {}, const VpsBulletSettings& settings = {});
 
 }  // namespace vps::dynamics

@@ -43,10 +43,6 @@ std::unique_ptr<btSequentialImpulseConstraintSolver> makeSolver(Mode mode) {
 
 }  // namespace
 
-const char* nameOf(Mode mode) {
-  return mode == Mode::Constraint ? "constraint" : "constraint, stock solver";
-}
-
 Pose Placed::pose() const {
   return fromBt(body->getWorldTransform()) * part.frame.X_PB.inverse();
 }
@@ -63,7 +59,7 @@ World::World(const SceneSettings& settings)
     : engine_(settings.engine),
       solver_(makeSolver(settings.mode)),
       world_(std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_, solver_.get(), &config_)) {
-  engine_.install(dispatcher_);
+  engine_.install(dispatcher_, settings.mode);
   dispatcher_.setNearCallback(timedNearCallback);
   tuneWorld(*world_);
   setGravity(Vec3(0, 0, -kGravity_m_s2));

@@ -15,13 +15,6 @@
 
 namespace vps::dynamics {
 
-/// How contacts become motion (DESIGN section 8).
-enum class Mode {
-  Constraint,       ///< VpsSolver
-  ConstraintStock,  ///< Bullet's own sequential impulses on the same contacts
-};
-const char* nameOf(Mode mode);
-
 /// What every scene is told.
 struct SceneSettings {
   Mode mode = Mode::Constraint;

@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   using namespace vps;
-  bench::Options options{{dynamics::Mode::Constraint, dynamics::Mode::ConstraintStock}, false};
+  bench::Options options{{dynamics::Mode::Constraint, dynamics::Mode::Penalty}, false};
   std::string wanted;
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];
@@ -19,10 +19,12 @@ int main(int argc, char** argv) {
       wanted = "," + arg.substr(7) + ",";
     } else if (arg == "--mode=constraint") {
       options.modes = {dynamics::Mode::Constraint};
+    } else if (arg == "--mode=penalty") {
+      options.modes = {dynamics::Mode::Penalty};
     } else if (arg == "--mode=stock") {
       options.modes = {dynamics::Mode::ConstraintStock};
     } else {
-      std::printf("usage: vps_bench_peers [--rows=a,b] [--mode=constraint|stock] [--short]\nrows:");
+      std::printf("usage: vps_bench_peers [--rows=a,b] [--mode=constraint|penalty|stock] [--short]\nrows:");
       for (const bench::Case& c : bench::allCases()) std::printf(" %s", c.key);
       std::printf("\n");
       return 2;

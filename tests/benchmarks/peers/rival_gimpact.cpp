@@ -31,7 +31,9 @@ struct GimpactShape {
 dynamics::Engine gimpactEngine(double margin_m) {
   dynamics::Engine engine;
   engine.name = "GImpact";
-  engine.install = [](btCollisionDispatcher& d) { btGImpactCollisionAlgorithm::registerAlgorithm(&d); };
+  engine.install = [](btCollisionDispatcher& d, dynamics::Mode) {
+    btGImpactCollisionAlgorithm::registerAlgorithm(&d);
+  };
   engine.uninstall = [](btCollisionDispatcher&) {};
   engine.makeShape = [margin_m](const dynamics::PartMesh& part, bool) {
     auto shape = std::make_shared<GimpactShape>(bodyMesh(part), margin_m);

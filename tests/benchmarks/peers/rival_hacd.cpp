@@ -66,7 +66,7 @@ std::optional<dynamics::Engine> hacdEngine(double concavity_m) {
   const auto kept = std::make_shared<std::map<std::shared_ptr<const MeshDistance>, std::shared_ptr<Hulls>>>();
   dynamics::Engine engine;
   engine.name = "HACD";
-  engine.install = [](btCollisionDispatcher&) {};
+  engine.install = [](btCollisionDispatcher&, dynamics::Mode) {};
   engine.uninstall = [](btCollisionDispatcher&) {};
   engine.makeShape = [kept, concavity_m](const dynamics::PartMesh& part, bool) {
     auto& hulls = (*kept)[part.exact];

@@ -178,7 +178,7 @@ void gearRow(const Options& options, Table& table) {
           reported("at any moment", r.ratio_error_rad, 1e6, "urad"),
           within("torque", r.torque_share, 1, 0.02, 1, "of the drive's"),
           reported("penetration", r.deepest_m, 1e6, "um"), reported("step", r.step_ms, 1, "ms")},
-         "joints: this island is solved by the stock solver in both"});
+         ""});
   }
 }
 
