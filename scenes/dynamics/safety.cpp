@@ -29,6 +29,24 @@ int responsesOf(World& world, const btRigidBody& body) {
   return count;
 }
 
+// Of the points of `side` in the other part.
+double halfEnergy_J(const Placed& side, const Placed& other) {
+  const auto* shape = dynamic_cast<const VpsShape*>(side.body->getCollisionShape());
+  if (!shape) return 0;
+  const double k_N_per_m3 = VpsBulletSettings().stiffness_N_per_m3;
+  const PointShell& shell = *shape->models().shell;
+  const Pose X_OP = other.pose().inverse() * side.pose();
+  double sum_J = 0;
+  for (std::size_t i = 0; i < shell.size(); ++i) {
+    const double depth_m = -other.part.exact->signedDistance(X_OP * shell.points[i]);
+    if (depth_m > 0) sum_J += 0.5 * k_N_per_m3 * shell.area_m2[i] * depth_m * depth_m;
+  }
+  return 0.5 * sum_J;
+}
+double overlapEnergy_J(const Placed& a, const Placed& b) {
+  return halfEnergy_J(a, b) + halfEnergy_J(b, a);
+}
+
 }  // namespace
 
 CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) {
@@ -44,7 +62,7 @@ CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) 
   const Placed block = world.add(blockPart(), Pose(R, corner - lowest));
   CreatedInsideResult result;
   result.overlap_m = penetration_m(fixed.part, Pose(), block.part, block.pose());
-  result.weight_work_J = World::kGravity_m_s2 * block.part.frame.mass_kg * depth_m;
+  result.overlap_J = overlapEnergy_J(fixed, block);
   for (int i = 0; i < 1000; ++i) {
     const Pose before = block.pose();
     world.step();

@@ -7,11 +7,11 @@
 namespace vps::dynamics {
 
 struct CreatedInsideResult {
-  double overlap_m = 0;      ///< at the start
-  double kinetic_J = 0;      ///< greatest over time
-  double speed_m_s = 0;      ///< greatest of any point, by displacement too
-  double left_m = 0;         ///< overlap at the end
-  double weight_work_J = 0;  ///< m g times the overlap, for scale
+  double overlap_m = 0;  ///< at the start
+  double kinetic_J = 0;  ///< greatest over time
+  double speed_m_s = 0;  ///< greatest of any point, by displacement too
+  double left_m = 0;     ///< overlap at the end
+  double overlap_J = 0;  ///< energy of the overlap as penalty contact sees it: 1/2 k A d^2, half of each side
 };
 /// A 20 x 15 x 10 mm block created `depth_m` deep in a fixed one, without gravity; a second is given.
 CreatedInsideResult createInside(const SceneSettings& settings, double depth_m);
