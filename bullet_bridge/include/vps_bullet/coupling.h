@@ -28,9 +28,9 @@ class VpsCoupling : public btTypedConstraint {
   /// Without setTarget() the coupling is open (no wrench). Throws std::invalid_argument for a body without
   /// mass, or gains that are negative or not finite.
   VpsCoupling(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains);
-  /// Follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. The proxy no longer collides
-  /// (CF_NO_CONTACT_RESPONSE is set on it).
-  /// Throws std::invalid_argument also for a proxy that is not kinematic or static.
+  /// Follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. The proxy no longer
+  /// collides (CF_NO_CONTACT_RESPONSE is set on it). Throws std::invalid_argument also for a proxy that is
+  /// not kinematic or static.
   VpsCoupling(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part, const Pose& X_BG,
               const CouplingGains& gains);
 
