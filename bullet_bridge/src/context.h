@@ -5,12 +5,14 @@
 #include <atomic>
 #include <cstddef>
 
+#include "partner.h"
 #include "vps_bullet/install.h"
 
 namespace vps {
 
 struct VpsContext {
   VpsBulletSettings settings;
+  PartnerCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
 };

@@ -128,34 +128,6 @@ TEST(Install, CompoundsOfVpsShapesCollide) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
 }
 
-TEST(Install, OtherConvexShapesFallBackToTriangles) {
-  World world;
-  btConvexHullShape hull;
-  for (int corner = 0; corner < 8; ++corner)
-    hull.addPoint(btVector3(toBt(corner & 1 ? 0.02 : -0.02), toBt(corner & 2 ? 0.02 : -0.02),
-                            toBt(corner & 4 ? 0 : -0.01)));
-  hull.setMargin(toBt(1e-4));
-  world.addShape(hull, 0, Vec3::Zero(), Pose());
-  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0055)));
-  world.step(500);
-  // Bullet's own accuracy: the hull's margin and GJK's tolerance.
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 0.3e-3);
-}
-
-TEST(Install, BulletsMeshShapesAreRefusedInWords) {
-  World world;
-  btTriangleMesh mesh;
-  mesh.addTriangle(btVector3(-1, -1, 0), btVector3(1, -1, 0), btVector3(0, 1, 0));
-  btBvhTriangleMeshShape ground(&mesh, true);
-  world.addShape(ground, 0, Vec3::Zero(), Pose());
-  world.add(cube(), Pose::translation(Vec3(0, 0, 0.004)));
-  testing::internal::CaptureStderr();
-  world.step(3);
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("do not collide"), std::string::npos);
-  EXPECT_EQ(said.find("do not collide"), said.rfind("do not collide")) << "once is enough";
-}
-
 TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
   // A pool of two: the third algorithm comes from the heap.
   btDefaultCollisionConstructionInfo small;

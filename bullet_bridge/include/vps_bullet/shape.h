@@ -30,10 +30,13 @@ BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3
 struct VpsSurface {
   std::shared_ptr<const MeshDistance> distance;
   Pose X_MP;
+  /// An open surface without an inside, met on the side that a point faces.
+  bool is_sheet = false;
 };
 
-/// What a shape is made of, all in one frame M. Any may be missing: without a map others cannot be tested
-/// against it, without a shell it cannot be tested against others, without triangles rays miss it.
+/// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against
+/// its surfaces (exact, and slower), or, if there are none, cannot be; without a shell it cannot be tested
+/// against others, without triangles rays miss it.
 struct VpsModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
