@@ -4,6 +4,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <cstdio>
 #include <map>
@@ -35,8 +36,19 @@ struct Tables : btCollisionDispatcher {
   }
 };
 
-bool isVps(const btCollisionObjectWrapper& body) {
-  return dynamic_cast<const VpsShape*>(body.getCollisionShape()) != nullptr;
+const VpsShape* vpsOf(const btCollisionObjectWrapper& body) {
+  return dynamic_cast<const VpsShape*>(body.getCollisionShape());
+}
+
+bool hasSurface(const VpsShape& shape) {
+  return shape.models().map || !shape.models().surfaces.empty();
+}
+
+// One side's points, the other's surface. Without either a pair would do nothing in silence.
+void requireContact(bool is_possible) {
+  if (!is_possible)
+    throw std::invalid_argument(
+        "a VpsShape's models cannot touch what it met: one side needs a shell, the other a map or surfaces");
 }
 
 template <typename Algorithm, typename... Arguments>
@@ -58,9 +70,13 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
                                                  const btCollisionObjectWrapper* body0,
                                                  const btCollisionObjectWrapper* body1) override {
     const btCollisionObjectWrapper* const bodies[] = {body0, body1};
+    for (const btCollisionObjectWrapper* body : bodies)
+      if (vpsOf(*body)) hintAtSleep(*body->getCollisionObject());
     try {
       for (const int side : {0, 1})
-        if (!isVps(*bodies[side])) return withPartner(info, bodies, side);
+        if (!vpsOf(*bodies[side])) return withPartner(info, bodies, side);
+      const VpsShape &a = *vpsOf(*body0), &b = *vpsOf(*body1);
+      requireContact((a.models().shell && hasSurface(b)) || (b.models().shell && hasSurface(a)));
       return make<VpsAlgorithm>(info, body0, body1, context);
     } catch (const std::exception& why) {  // Bullet's dispatch is no place to throw through
       say(why.what());
@@ -72,12 +88,25 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
   btCollisionAlgorithm* withPartner(btCollisionAlgorithmConstructionInfo& info,
                                     const btCollisionObjectWrapper* const (&bodies)[2], int side) {
     const btCollisionShape& shape = *bodies[side]->getCollisionShape();
-    if (!isVps(*bodies[1 - side]))
+    const VpsShape* vps = vpsOf(*bodies[1 - side]);
+    if (!vps)
       throw std::invalid_argument(std::string(shape.getName()) +
                                   " has the shape type of VpsShape, which is taken; it does not collide");
-    if (isPrimitive(shape) && !hasCorners(shape))
-      return make<VpsAlgorithm>(info, bodies[0], bodies[1], context);
+    const bool is_smooth = isPrimitive(shape) && !hasCorners(shape);
+    requireContact(vps->models().shell || (!is_smooth && hasSurface(*vps)));
+    if (is_smooth) return make<VpsAlgorithm>(info, bodies[0], bodies[1], context);
     return make<PartnerAlgorithm>(info, bodies[0], bodies[1], context, side);
+  }
+
+  // A sleeping threshold of 0.8 m/s stops what slides; see tuneBody.
+  void hintAtSleep(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    constexpr double kFast_m_s = 0.1;  // a part that is pushed by hand
+    if (!body || body->isStaticOrKinematicObject() || body->getActivationState() == DISABLE_DEACTIVATION ||
+        !(body->getLinearSleepingThreshold() > kFast_m_s))
+      return;
+    say("a body may fall asleep while it slides at " + std::to_string(body->getLinearSleepingThreshold()) +
+        " m/s; call tuneWorld when all bodies are added, or tuneBody");
   }
 
   // Each thing once; pairs come and go.
@@ -163,6 +192,10 @@ void installVps(btCollisionDispatcher& dispatcher, const VpsBulletSettings& sett
 void uninstallVps(btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
+  constexpr long kOurs = 2;  // the installation's and its create function's; all others are pairs'
+  if (installation && installation->context.use_count() > kOurs)
+    std::fprintf(stderr,
+                 "vps: uninstalled while pairs of bodies with VpsShapes exist; they keep VPS contact\n");
   if (installation)
     for (const auto& [types, functions] : installation->before)
       if (Tables::contact(dispatcher)[types.first][types.second] == &installation->create)
