@@ -5,6 +5,7 @@
 #include "candidate.h"
 #include "partner.h"
 #include "primitive.h"
+#include "round_contact.h"
 
 namespace vps {
 
@@ -49,6 +50,41 @@ std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cut
     }
   }
   return left_out;
+}
+
+// Points around the place where a ball touches a face all move there: the nearest of them speaks for it.
+// Those that neither touch nor move go.
+void settleOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
+                   double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
+  struct Moved {
+    std::size_t index;
+    double way_m;
+  };
+  thread_local std::vector<Moved> moved;
+  moved.clear();
+  std::size_t kept = first;
+  for (std::size_t i = first; i < out.size(); ++i) {
+    Candidate c = out[i];
+    const bool is_moved = touchRound(c, side, other, primitive);
+    if (c.distance_m > cutoff_m) continue;
+    if (is_moved) {
+      constexpr double kSame_m = 1e-6;
+      const double way_m = (c.p_W - out[i].p_W).norm();
+      const auto same = std::find_if(moved.begin(), moved.end(), [&](const Moved& m) {
+        return (out[m.index].p_W - c.p_W).squaredNorm() < kSame_m * kSame_m;
+      });
+      if (same != moved.end()) {
+        if (way_m < same->way_m) {
+          out[same->index] = c;
+          same->way_m = way_m;
+        }
+        continue;
+      }
+      moved.push_back({kept, way_m});
+    }
+    out[kept++] = c;
+  }
+  out.resize(kept);
 }
 
 /// Points of `side` (in its models' frame M) seen from the surfaces of `other` (in its N).
@@ -186,13 +222,19 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
                                  double cutoff_m, const VpsBulletSettings& settings,
                                  std::vector<Candidate>& out, std::size_t& points_tested) {
   const btCollisionShape& exact = withoutStandIn(primitive);
+  const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
   const Pose X_SM = X_WS.inverse() * side.X_WM;
   const PointShell& shell = *side.shape->models().shell;
+  const double reach_m = settings.use_surfaces ? roundReach_m(exact, shell.spacing_m) : 0;
   const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
   const auto canBeNear = [&](const ShellNode& node) {
-    return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m;
+    return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;
   };
-  return collectByDistance(side, X_WS, cutoff_m, settings, canBeNear, at, out, points_tested);
+  const std::size_t first = out.size();
+  const std::size_t left_out =
+      collectByDistance(side, X_WS, cutoff_m + reach_m, settings, canBeNear, at, out, points_tested);
+  if (reach_m > 0) settleOnRound(side, other, exact, cutoff_m, out, first);
+  return left_out;
 }
 
 std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
@@ -228,6 +270,7 @@ void lookUp(const SideView& side, const SideView& other, const btCollisionShape&
   // Deeper than the band the field knows no way out; the point's own inward normal is what queryContacts
   // gives.
   if (at.n.isZero(0)) c.n_W = sign * (side.X_WM.R * shell.inward[c.id]);
+  if (settings.use_surfaces && isPrimitive(theirs)) touchRound(c, side, other, withoutStandIn(theirs));
 }
 
 }  // namespace vps

@@ -4,6 +4,7 @@
 #include "candidate.h"
 #include "partner.h"
 #include "primitive.h"
+#include "round_contact.h"
 
 namespace vps {
 
@@ -106,6 +107,7 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kTouching_m;
   for (Candidate& c : candidates) {
     if (c.side != side.side) continue;
+    if (is_primitive && touchRound(c, side, other, corrector.theirs)) continue;
     const Vec3 inward = side.X_WM.R * shell.inward[c.id];
     const bool is_edge_point = side.shape->isEdgePoint(c.id);
     const double max_m = std::abs(c.distance_m) + field_error_m;

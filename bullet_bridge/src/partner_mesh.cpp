@@ -156,12 +156,14 @@ std::vector<Vec3> supportPoints(const btConvexShape& shape) {
   return points;
 }
 
+struct CountTriangles : btTriangleCallback {
+  std::size_t count = 0;
+  void processTriangle(btVector3*, int, int) override { ++count; }
+};
+
 struct CollectTriangles : btTriangleCallback {
   Mesh mesh;
-  bool is_too_many = false;
   void processTriangle(btVector3* corners, int, int) override {
-    is_too_many |= mesh.triangles.size() >= kMostPartnerTriangles;
-    if (is_too_many) return;
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (int k = 0; k < 3; ++k) mesh.vertices.push_back(fromBt(corners[k]));
     mesh.triangles.push_back({first, first + 1, first + 2});
@@ -172,10 +174,12 @@ Mesh allTriangles(const btConcaveShape& shape) {
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);
   const btVector3 beyond = btScalar(0.01) * (high - low) + btVector3(1, 1, 1) * btScalar(1e-3);
+  CountTriangles counted;
+  shape.processAllTriangles(&counted, low - beyond, high + beyond);
+  if (counted.count > kMostPartnerTriangles)
+    refuse(shape, "it has more than " + std::to_string(kMostPartnerTriangles) + " triangles; split it");
   CollectTriangles all;
   shape.processAllTriangles(&all, low - beyond, high + beyond);
-  if (all.is_too_many)
-    refuse(shape, "it has more than " + std::to_string(kMostPartnerTriangles) + " triangles; split it");
   for (const Vec3& p : all.mesh.vertices)
     if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
   Mesh mesh = welded(all.mesh);

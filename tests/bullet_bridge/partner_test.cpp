@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A VpsShape against every shape type of Bullet: the table of bullet_bridge/README.md, row by row.
 #include <BulletCollision/CollisionShapes/btBox2dShape.h>
+#include <BulletCollision/CollisionShapes/btConvex2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btMinkowskiSumShape.h>
@@ -90,13 +91,45 @@ btConvexHullShape& slabHull(Ground& ground, double scale = 1) {
   return hull;
 }
 
-// A ball of radius r touches a face between points that are up to half a spacing times sqrt 2 from its top:
-// those are s^2 / (4 r) higher.
-double ballError_m(double radius_m) {
-  return kSpacing_m * kSpacing_m / (4 * radius_m);
-}
-
 const Pose kUpsideDown(rotationFromVector(Vec3(3.14159265358979323846, 0, 0)), Vec3::Zero());
+
+// Types of a user's own.
+struct OwnConvex : btConvexInternalShape {
+  btVector3 half;
+  explicit OwnConvex(const btVector3& half_m) : half(half_m) {
+    m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
+    setMargin(0);
+  }
+  [[nodiscard]] btVector3 localGetSupportingVertexWithoutMargin(const btVector3& v) const override {
+    return {v.x() < 0 ? -half.x() : half.x(), v.y() < 0 ? -half.y() : half.y(),
+            v.z() < 0 ? -half.z() : half.z()};
+  }
+  void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* v, btVector3* out,
+                                                         int n) const override {
+    for (int i = 0; i < n; ++i) out[i] = localGetSupportingVertexWithoutMargin(v[i]);
+  }
+  void calculateLocalInertia(btScalar, btVector3&) const override {}
+  const char* getName() const override { return "OwnConvex"; }
+};
+struct OwnPolyhedron : btConvexHullShape {
+  OwnPolyhedron() { m_shapeType = CUSTOM_POLYHEDRAL_SHAPE_TYPE; }
+};
+struct OwnConcave : btConcaveShape {
+  const btConcaveShape* other = nullptr;  // whose triangles it has
+  btVector3 one{1, 1, 1};
+  OwnConcave() { m_shapeType = CUSTOM_CONCAVE_SHAPE_TYPE; }
+  void getAabb(const btTransform& X, btVector3& low, btVector3& high) const override {
+    other->getAabb(X, low, high);
+  }
+  void processAllTriangles(btTriangleCallback* visit, const btVector3& low,
+                           const btVector3& high) const override {
+    other->processAllTriangles(visit, low, high);
+  }
+  void setLocalScaling(const btVector3&) override {}
+  const btVector3& getLocalScaling() const override { return one; }
+  void calculateLocalInertia(btScalar, btVector3&) const override {}
+  const char* getName() const override { return "OwnConcave"; }
+};
 
 using Make = std::function<void(Ground&)>;
 struct Row {
@@ -128,7 +161,6 @@ const std::vector<Row>& rows() {
        [](Ground& g) {
          g.shape = &g.keep<btSphereShape>(toBt(0.02));
          g.X_WB.p.z() = -0.02;
-         g.tolerance_m = ballError_m(0.02);
        }},
       {"MultiSphere",
        [](Ground& g) {
@@ -151,11 +183,36 @@ const std::vector<Row>& rows() {
          g.X_WB.p.z() = -0.01;
          g.tolerance_m = 1.03e-3 * 0.01;
        }},
+      {"MultiSphereScaledUnevenly",
+       [](Ground& g) {
+         const btVector3 centers[3] = {at(0.015, 0, 0), at(-0.01, 0.015, 0), at(-0.01, -0.015, 0)};
+         const btScalar radii[3] = {toBt(0.01), toBt(0.01), toBt(0.01)};
+         g.shape = &g.keep<btMultiSphereShape>(centers, radii, 3);
+         g.shape->setLocalScaling(at(2, 2, 1));
+         g.X_WB.p.z() = -0.01;
+         g.tolerance_m = 1.03e-3 * 0.02;
+       }},
+      {"OwnConvex",
+       [](Ground& g) {
+         g.shape = &g.keep<OwnConvex>(at(kWide_m, kWide_m, 0.01));
+         g.X_WB.p.z() = -0.01;
+       }},
+      {"OwnPolyhedron",
+       [](Ground& g) {
+         auto& hull = g.keep<OwnPolyhedron>();
+         for (const btVector3& p : slabCorners(kWide_m, -0.02, 0)) hull.addPoint(p);
+         g.shape = &hull;
+       }},
+      {"OwnConcave",
+       [](Ground& g) {
+         auto& own = g.keep<OwnConcave>();
+         own.other = &g.keep<btBvhTriangleMeshShape>(&slabMesh(g), true);
+         g.shape = &own;
+       }},
       {"Capsule",
        [](Ground& g) {
          g.shape = &g.keep<btCapsuleShapeX>(toBt(0.02), toBt(0.06));
          g.X_WB.p.z() = -0.02;
-         g.tolerance_m = ballError_m(0.02);
        }},
       {"Cylinder",
        [](Ground& g) {
@@ -213,7 +270,6 @@ const std::vector<Row>& rows() {
          auto& ball = g.keep<btSphereShape>(toBt(0.01));
          g.shape = &g.keep<btUniformScalingShape>(&ball, btScalar(2));
          g.X_WB.p.z() = -0.02;
-         g.tolerance_m = ballError_m(0.02);
        }},
       {"UniformScalingOfAHull",
        [](Ground& g) { g.shape = &g.keep<btUniformScalingShape>(&slabHull(g, 0.5), btScalar(2)); }},
@@ -330,7 +386,7 @@ TEST_P(Partner, QueriesGiveItsDepthAndOppositeNormalsInBothOrders) {
   for (const Points* query : {&high_low, &low_high, &all_of_high, &all_of_low}) {
     ASSERT_FALSE(query->points.empty());
     EXPECT_NEAR(query->least_m(), -kDepth_m, kRounding_m + ground_.tolerance_m);
-    // Bullet's normal points from its second body to its first. Its angle on a ball: half a spacing.
+    // Bullet's normal points from its second body to its first.
     const double up = query->first == &high ? 1 : -1;
     for (const btManifoldPoint& p : query->points)
       if (p.getDistance() < query->least_m() + 1e-9) {
@@ -369,8 +425,9 @@ TEST(PartnerMesh, ABoxHasEightCornersAndACylindersRimIsWithinAMicrometre) {
 
 // Every direction of a fine sphere: max over n of n.p - h(n), from below by the sphere's grain.
 double distanceBySupport(const btConvexShape& shape, const Vec3& p) {
+  static const std::vector<Vec3> directions = makeSphere(1, 6).vertices;
   double best = -1e30;
-  for (const Vec3& n : makeSphere(1, 6).vertices)
+  for (const Vec3& n : directions)
     best = std::max(best, n.dot(p - fromBt(shape.localGetSupportingVertex(toBt(n)))));
   return best;
 }
@@ -501,6 +558,69 @@ TEST(OpenMesh, AFastPartDoesNotTunnel) {
   }
 }
 
+// A ball of 3 mm on a part with points a millimetre apart: they are up to 80 um below it between them.
+TEST(RoundPartners, ABallRollsOverAFaceAsIfItHadNoPoints) {
+  btSphereShape ball(toBt(0.003));
+  World world;
+  static const Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.004)), 7850, 0.5e-3, kSpacing_m);
+  world.add(plate, Pose::translation(Vec3(0, 0, -0.002)), true);
+  btVector3 inertia;
+  ball.calculateLocalInertia(toBt(0.001), inertia);
+  btRigidBody& body =
+      world.addShape(ball, 0.001, fromBt(inertia), Pose::translation(Vec3(-0.01, 0.0003, 0.003)));
+  body.setLinearVelocity(at(0.05, 0, 0));
+  body.setAngularVelocity(at(0, 0.05 / 0.003, 0));
+  double lowest = 1, highest = 0;
+  for (int i = 0; i < 400; ++i) {
+    world.step();
+    lowest = std::min<double>(lowest, body.getWorldTransform().getOrigin().z());
+    highest = std::max<double>(highest, body.getWorldTransform().getOrigin().z());
+  }
+  EXPECT_NEAR(lowest, 0.003, 1e-6);
+  EXPECT_NEAR(highest, 0.003, 1e-6);
+  // Rolling without slip loses nothing; Bullet's contact is placed to the nanometre, so neither does it here.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), 0.01, 1e-4);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().y(), 0.0003, 1e-4);
+}
+
+TEST(RoundPartners, LieOnAFaceAlongTheirSide) {
+  btCylinderShapeX cylinder(at(0.006, 0.003, 0.003));
+  btConeShapeX cone(toBt(0.003), toBt(0.012));
+  const double tilt_rad = std::atan(0.25);  // the cone's side is level
+  for (btCollisionShape* shape : std::initializer_list<btCollisionShape*>{&cylinder, &cone}) {
+    World world;
+    static const Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.004)), 7850, 0.5e-3, kSpacing_m);
+    const bool is_cone = shape == &cone;
+    const double height_m = is_cone ? 0.006 * std::sin(tilt_rad) : 0.003;
+    const Mat3 R = rotationFromVector(Vec3(0, is_cone ? tilt_rad : 0, 0));
+    btRigidBody& low = world.add(plate, Pose::translation(Vec3(0.0003, 0.0004, -0.002)), true);
+    constexpr double kDepth_m = 20e-6;
+    btRigidBody& high = world.addShape(*shape, 1, Vec3::Ones(), Pose(R, Vec3(0, 0, height_m - kDepth_m)));
+    Points found;
+    world.world->contactPairTest(&high, &low, found);
+    ASSERT_FALSE(found.points.empty()) << shape->getName();
+    EXPECT_NEAR(found.least_m(), -kDepth_m, 1e-7) << shape->getName();  // kGain_m of round_contact.cpp
+  }
+}
+
+// In a bore of nearly its radius all of its side is in contact, not one line of it.
+TEST(RoundPartners, APinInABoreIsHeldAllAround) {
+  static const Built tube = test::build(makeTube(0.006, 0.00302, 0.01, 256), 7850, 0.25e-3, 0.5e-3);
+  btCylinderShapeZ pin(at(0.003, 0.003, 0.008));
+  World world;
+  btRigidBody& low = world.addShape(pin, 0, Vec3::Zero(), Pose());
+  btRigidBody& high = world.add(tube, Pose());
+  Points found(40e-6);
+  world.world->contactPairTest(&high, &low, found);
+  bool has[4] = {};
+  for (const btManifoldPoint& p : found.points) {
+    EXPECT_NEAR(p.getDistance(), 20e-6, 0.5e-6);  // chords of the tube: 0.00302 (1 - cos(pi / 256)) = 0.23 um
+    const btVector3& n = p.m_normalWorldOnB;
+    has[(n.x() > 0 ? 1 : 0) + (n.y() > 0 ? 2 : 0)] = true;
+  }
+  for (const bool quadrant : has) EXPECT_TRUE(quadrant);
+}
+
 TEST(Heightfield, IsAsHighAsItsSlopeSays) {
   // z = x / 4, exact on its triangles.
   std::vector<float> heights;
@@ -587,19 +707,42 @@ TEST(Partners, ThatCannotCollideAreRefusedInWordsOnce) {
   btBoxShape box(at(0.01, 0.01, 0.01));
   gimpact.addChildShape(btTransform::getIdentity(), &box);
   gimpact.updateBound();
+  btConvex2dShape flat(&box);
   btConvexHullShape line;
   line.addPoint(at(0, 0, 0));
   line.addPoint(at(0.01, 0, 0));
   btConvexHullShape broken;
   for (const btVector3& p : slabCorners(0.01, -0.01, 0.01)) broken.addPoint(p);
   broken.getUnscaledPoints()[3].setX(std::numeric_limits<btScalar>::quiet_NaN());
-  for (const auto& [shape, words] : std::initializer_list<std::pair<btCollisionShape*, const char*>>{
-           {&gimpact, "btCompoundShape"}, {&line, "fewer than three corners"}, {&broken, "not a number"}}) {
+  struct Nothing : OwnConcave {  // as a btSdfCollisionShape, which has no triangles either
+    void processAllTriangles(btTriangleCallback*, const btVector3&, const btVector3&) const override {}
+  } nothing;
+  struct TooMuch : OwnConcave {
+    void processAllTriangles(btTriangleCallback* visit, const btVector3&, const btVector3&) const override {
+      btVector3 corners[3] = {at(0, 0, 0), at(0.01, 0, 0), at(0, 0.01, 0)};
+      for (std::size_t i = 0; i <= kMostPartnerTriangles; ++i) visit->processTriangle(corners, 0, 0);
+    }
+  } too_much;
+  Ground ground;
+  const btConcaveShape* extent = &ground.keep<btBvhTriangleMeshShape>(&slabMesh(ground), true);
+  nothing.other = too_much.other = extent;
+  for (const auto& [shape, words] :
+       std::initializer_list<std::pair<btCollisionShape*, const char*>>{{&gimpact, "btCompoundShape"},
+                                                                        {&flat, "two dimensions"},
+                                                                        {&line, "fewer than three corners"},
+                                                                        {&broken, "not a number"},
+                                                                        {&nothing, "names no triangles"},
+                                                                        {&too_much, "split it"}}) {
     const std::string said = saidOf(*shape);
     EXPECT_NE(said.find("do not collide"), std::string::npos) << shape->getName();
     EXPECT_NE(said.find(words), std::string::npos) << said;
     EXPECT_EQ(said.find("do not collide"), said.rfind("do not collide")) << "once is enough";
   }
+}
+
+TEST(Partners, AnEmptyShapeMeansNothingAndSaysNothing) {
+  btEmptyShape empty;
+  EXPECT_EQ(saidOf(empty), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, Partner, testing::ValuesIn(rows()),
