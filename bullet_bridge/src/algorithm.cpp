@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <typeinfo>
 
 #include "candidate.h"
 #include "context.h"
 #include "manifold_writer.h"
 #include "motion.h"
+#include "penalty_pair.h"
 #include "primitive.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
@@ -38,6 +40,12 @@ struct VpsPairState {
   std::shared_ptr<VpsContext> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
+  PenaltyPair penalty;                   ///< in penalty mode
+  std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
+  QueryMemory& memoryOf(int side, const VoxMap& map, const PointShell& shell) {
+    std::optional<QueryMemory>& own = memory[side];
+    return own ? *own : own.emplace(map, shell);
+  }
   unsigned revision[2] = {0, 0};  ///< of the shapes that writer's and selection's ids belong to
 };
 
@@ -104,8 +112,17 @@ double sight_m(const PairView& pair) {
   return sight_m;
 }
 
-// All points near the other side, both ways if the settings say so.
-void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out) {
+// The next of a row of lengths, each half as long again: a query's memory is for one cutoff.
+double roundedUp(double cutoff_m, double most_m) {
+  constexpr double kStep = 1.5, kUnit_m = 1e-6;
+  const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));
+  return std::min(kUnit_m * std::pow(kStep, steps), most_m);
+}
+
+// All points near the other side, both ways if the settings say so. With a pair's memory at least those: what
+// the last steps' distances exclude is not read.
+void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
+             VpsPairState* state = nullptr) {
   std::size_t tested = 0, left_out = 0;
   // One-sided: the smaller body's points, since a larger one's may be too far apart to catch it.
   int only = -1;
@@ -118,10 +135,14 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
     if (isPrimitive(*pair.wrapper[j]->getCollisionShape()))
       left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
                                        cutoff_m, context.settings, out, tested);
-    else if (pair.hasMap(j))
-      left_out += collectFromMap(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
-    else
+    else if (pair.hasMap(j)) {
+      const VoxMap& map = *pair.vps[j]->models().map;
+      QueryMemory* memory = state ? &state->memoryOf(i, map, *pair.vps[i]->models().shell) : nullptr;
+      const double wide_m = memory ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
+      left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, out, tested, memory);
+    } else {
       left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
+    }
   }
   context.points_tested += tested;
   context.left_out += left_out;
@@ -139,12 +160,13 @@ void advance(PairView& pair, const PairView& start, double dt_s) {
 // Candidates of the step. A body that moves less than the fields can see is looked at once, where it is. A
 // faster one is looked at along its way, so that it cannot pass through; the plane it first meets then holds
 // for the whole step.
-void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsContext& context,
+void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
                     std::vector<Candidate>& out) {
+  VpsContext& context = *state.context;
   const double sight = sight_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   if (motion.slack_m + travel_m <= sight) {
-    collect(pair, motion.slack_m + travel_m, context, out);
+    collect(pair, motion.slack_m + travel_m, context, out, &state);
     return;
   }
   const double stride_m = std::max(0.5 * (sight - motion.slack_m), 0.25 * sight);
@@ -235,6 +257,8 @@ void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
     state.selection.is_valid = false;
+    state.penalty.points.clear();
+    for (auto& memory : state.memory) memory.reset();
     state.writer->forget();
   }
 }
@@ -249,6 +273,39 @@ void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion
       c.distance_m = 0;
 }
 
+// How many sides' points answer for the same surface.
+int sideCount(const PairView& pair, Sides sides) {
+  if (sides == Sides::One || !pair.vps[0] || !pair.vps[1]) return 1;
+  const bool is_both =
+      pair.hasShell(0) && pair.hasShell(1) && pair.vps[0]->models().map && pair.vps[1]->models().map;
+  return is_both ? 2 : 1;
+}
+
+// All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
+// and for solvers that know nothing of springs.
+void processPenalty(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
+                    std::vector<Candidate>& candidates) {
+  VpsContext& context = *state.context;
+  collectForStep(pair, motion, state, candidates);
+  ++context.pair_updates;
+  context.candidates += candidates.size();
+  dropUnreachable(motion, candidates);
+  for (int i = 0; i < 2; ++i)
+    if (pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+  for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
+  state.penalty.mu =
+      btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);
+  const double stiffness = context.settings.stiffness_N_per_m3 / sideCount(pair, context.settings.sides);
+  renewPoints(state.penalty, candidates, stiffness, motion);
+  VpsBulletSettings seen = context.settings;
+  seen.use_surfaces = false;
+  choose(pair, motion, seen, state.writer.get(), candidates);
+  context.contacts += candidates.size();
+  state.writer->write(candidates, pair.wrapper, motion);
+  for (const btPersistentManifold* manifold : state.writer->manifolds())
+    context.penalty.add(manifold, &state.penalty);
+}
+
 }  // namespace
 
 VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
@@ -260,7 +317,9 @@ VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                                                     body1->getCollisionObject());
 }
 
-VpsAlgorithm::~VpsAlgorithm() = default;
+VpsAlgorithm::~VpsAlgorithm() {
+  state_->context->penalty.remove(&state_->penalty);
+}
 
 void VpsAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   state_->writer->append(manifolds);
@@ -289,9 +348,19 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   }
 
   forgetReplacedModels(*state_, pair);
-  const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, context.settings.slack_m);
+  // Springs push from the first touch on, and only then: what is farther than the step's travel need not be
+  // there.
+  constexpr double kPenaltySlack_m = 2e-6;  // assumed: contact turns the motion within the step
+  const bool is_penalty = context.settings.mode == ContactMode::Penalty;
+  const double slack_m =
+      is_penalty ? std::min(kPenaltySlack_m, context.settings.slack_m) : context.settings.slack_m;
+  const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, slack_m);
+  if (is_penalty) {
+    processPenalty(pair, motion, *state_, candidates);
+    return;
+  }
   if (!recallSelection(state_->selection, pair, motion, context.settings, candidates)) {
-    collectForStep(pair, motion, context, candidates);
+    collectForStep(pair, motion, *state_, candidates);
     ++context.pair_updates;
     context.candidates += candidates.size();
     choose(pair, motion, context.settings, state_->writer.get(), candidates);

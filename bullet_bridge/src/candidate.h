@@ -20,6 +20,7 @@ struct Candidate {
   Vec3 n_W = Vec3::Zero();   ///< unit, from body 1 to body 0
   double distance_m = 0;     ///< signed gap now
   double predicted_m = 0;    ///< the gap at the end of the step if nothing held the bodies
+  double area_m2 = 0;        ///< surface the point stands for
   double impulse_Ns = 0;     ///< normal impulse it had last step
   bool was_contact = false;  ///< was given to the solver last step
   std::uint32_t id = 0;      ///< of the point in its shell
@@ -51,10 +52,11 @@ struct SideView {
 
 /// Points of `side` near the other VpsShape's map (of `other`, at its X_WM).
 /// @param cutoff_m   distance to look at, below the map's band
+/// @param memory     of this side's shell and that map, for cutoffs that stay the same
 /// Appends to out. Returns how many did not fit into settings.candidate_limit.
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
                            const VpsBulletSettings& settings, std::vector<Candidate>& out,
-                           std::size_t& points_tested);
+                           std::size_t& points_tested, QueryMemory* memory = nullptr);
 
 /// The same against one of Bullet's primitives at X_WS.
 std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
@@ -81,6 +83,11 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m);
 /// surfaces (if it has any) or of the primitive `theirs`. The field still decides where no surface is near.
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
              const btCollisionShape& theirs, const RelativeMotion& motion);
+
+/// What correct() does without exact surfaces: a point on a face keeps its own tangent plane clear, so near
+/// an edge of the other side, whose field's normals lean there, it does not push sideways. Drops the points
+/// of `side` that the other's surface does not face. Cost: some products for each.
+void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side);
 
 /// Chooses at most `limit`: those that carried load, then the deepest, then the farthest from all chosen so
 /// far, in position (in units of length_m) and direction. Ends in ascending key order, so that equal sets are

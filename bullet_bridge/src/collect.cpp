@@ -15,6 +15,11 @@ std::size_t limitOf(const VpsBulletSettings& settings, const PointShell& shell) 
   return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
 }
 
+// A spring per area must stay where its area is.
+bool movesToRounds(const VpsBulletSettings& settings) {
+  return settings.use_surfaces && settings.mode == ContactMode::Constraint;
+}
+
 // A shell's points against anything that has a distance: walks the shell's spheres.
 template <typename CanBeNear, typename At>
 std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cutoff_m,
@@ -44,6 +49,7 @@ std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cut
       c.p_W = side.X_WM * shell.points[id];
       c.n_W = sign * (X_WS.R * surface.n);
       c.distance_m = surface.distance_m;
+      c.area_m2 = shell.area_m2[id];
       c.id = id;
       c.side = side.side;
       out.push_back(c);
@@ -99,7 +105,7 @@ class SurfaceView {
     for (const VpsSurface& surface : surfaces_) {
       const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
       // Of a solid all depths count: its sign is needed however far it is.
-      const double d = surface.is_sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
+      const double d = surface.sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
       least_m = std::min(least_m, d);
     }
     return least_m;
@@ -110,7 +116,7 @@ class SurfaceView {
     SurfaceDistance nearest{kNever_m, Vec3::Zero()};
     for (const VpsSurface& surface : surfaces_) {
       const SurfaceDistance d =
-          surface.is_sheet ? atSheet(surface, p_M, inward_M, cutoff_m) : atSolid(surface, p_M);
+          surface.sheet ? atSheet(surface, p_M, inward_M, cutoff_m) : atSolid(surface, p_M);
       if (d.distance_m < nearest.distance_m) nearest = d;
     }
     return nearest;
@@ -154,8 +160,8 @@ class SurfaceView {
     const MeshDistance::Closest closest =
         surface.distance->closest(p, std::max(cutoff_m, depthBehindSheets_m()));
     if (!closest.found) return never;
-    bool is_edge = false;
-    const Vec3 normal = sheetNormal(p - closest.q, closest.normal, inward, is_edge);
+    const SheetFoot foot = surface.sheet->seenFrom(p, inward, closest);
+    const Vec3 normal = foot.normal;
     // Nearly edge-on the side is a matter of rounding; such points do not touch.
     constexpr double kEdgeOn = 0.05;
     if (inward.dot(normal) < kEdgeOn) return never;
@@ -190,7 +196,7 @@ bool RelativeMotion::canTouch(Candidate& c) const {
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
                            const VpsBulletSettings& settings, std::vector<Candidate>& out,
-                           std::size_t& points_tested) {
+                           std::size_t& points_tested, QueryMemory* memory) {
   const VpsModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
   // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
@@ -200,7 +206,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
   const Pose X_MP = other.X_WM.inverse() * side.X_WM;
-  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near);
+  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near, memory);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   // The buffer's capacity depends on what other pairs needed; the limit must not.
@@ -210,6 +216,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
     c.p_W = other.X_WM * contact.p_M;
     c.n_W = sign * (other.X_WM.R * contact.n_M);
     c.distance_m = contact.distance_m;
+    c.area_m2 = contact.area_m2;
     c.id = contact.id;
     c.owner = contact.owner;
     c.side = side.side;
@@ -225,7 +232,7 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
   const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
   const Pose X_SM = X_WS.inverse() * side.X_WM;
   const PointShell& shell = *side.shape->models().shell;
-  const double reach_m = settings.use_surfaces ? roundReach_m(exact, shell.spacing_m) : 0;
+  const double reach_m = movesToRounds(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
   const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
   const auto canBeNear = [&](const ShellNode& node) {
     return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;
@@ -270,7 +277,7 @@ void lookUp(const SideView& side, const SideView& other, const btCollisionShape&
   // Deeper than the band the field knows no way out; the point's own inward normal is what queryContacts
   // gives.
   if (at.n.isZero(0)) c.n_W = sign * (side.X_WM.R * shell.inward[c.id]);
-  if (settings.use_surfaces && isPrimitive(theirs)) touchRound(c, side, other, withoutStandIn(theirs));
+  if (movesToRounds(settings) && isPrimitive(theirs)) touchRound(c, side, other, withoutStandIn(theirs));
 }
 
 }  // namespace vps

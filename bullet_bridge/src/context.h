@@ -4,9 +4,13 @@
 
 #include <atomic>
 #include <cstddef>
+#include <memory>
 
 #include "partner.h"
+#include "penalty_pair.h"
 #include "vps_bullet/install.h"
+
+class btDispatcher;
 
 namespace vps {
 
@@ -15,6 +19,10 @@ struct VpsContext {
   PartnerCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
+  PenaltyRegistry penalty;
 };
+
+/// Of the installation on a dispatcher; null without one.
+std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher);
 
 }  // namespace vps

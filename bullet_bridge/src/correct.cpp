@@ -41,7 +41,11 @@ Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, const 
   if (!closest.found) return {};
   const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
   Foot foot{true, X_WP.R * (p - closest.q), X_WP.R * closest.normal, is_edge};
-  if (surface.is_sheet) foot.normal = sheetNormal(foot.from_q, foot.normal, inward, foot.is_edge);
+  if (surface.sheet) {
+    const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * inward, closest);
+    foot.normal = X_WP.R * seen.normal;
+    foot.is_edge |= seen.is_rim;
+  }
   return foot;
 }
 
@@ -126,6 +130,20 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
   }
+}
+
+void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
+  const PointShell& shell = *side.shape->models().shell;
+  const double sign = side.side == 0 ? 1 : -1;
+  std::erase_if(candidates, [&](Candidate& c) {
+    if (c.side != side.side || side.shape->isEdgePoint(c.id)) return false;
+    const Vec3 own = sign * (side.X_WM.R * shell.inward[c.id]);
+    const double facing = own.dot(c.n_W);
+    if (facing <= kFacing) return true;
+    c.distance_m *= facing;  // of the nearest point's tangent plane
+    c.n_W = own;
+    return false;
+  });
 }
 
 }  // namespace vps

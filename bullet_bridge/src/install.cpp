@@ -6,6 +6,7 @@
 #include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <mutex>
@@ -163,6 +164,8 @@ void requireUsable(const VpsBulletSettings& s) {
   if (s.contact_limit < 4) throw std::invalid_argument("installVps: contact_limit must be at least 4");
   if (s.candidate_limit != 0 && s.candidate_limit < s.contact_limit)
     throw std::invalid_argument("installVps: candidate_limit must be 0 (all) or at least contact_limit");
+  if (!(s.stiffness_N_per_m3 > 0) || !std::isfinite(s.stiffness_N_per_m3))
+    throw std::invalid_argument("installVps: stiffness_N_per_m3 must be positive and finite");
   if (!(s.slack_m > 0) || !(s.slack_m < 1e-2))
     throw std::invalid_argument("installVps: slack_m must be positive and below 10 mm");
 }
@@ -206,6 +209,13 @@ void uninstallVps(btCollisionDispatcher& dispatcher) {
 bool isVpsInstalled(const btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   return find(dispatcher) != nullptr;
+}
+
+std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher) {
+  const std::lock_guard lock(g_mutex);
+  if (!dispatcher) return nullptr;
+  const Installation* installation = find(*static_cast<const btCollisionDispatcher*>(dispatcher));
+  return installation ? installation->context : nullptr;
 }
 
 VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher) {

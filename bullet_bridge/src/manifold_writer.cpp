@@ -14,14 +14,6 @@ namespace {
 
 constexpr int kPerManifold = MANIFOLD_CACHE_SIZE;
 
-// The side with the shell has the point's id as its index, the other -1.
-std::uint64_t keyOf(const btManifoldPoint& point) {
-  Candidate c;
-  c.side = point.m_index0 >= 0 ? 0 : 1;
-  c.id = static_cast<std::uint32_t>(c.side == 0 ? point.m_index0 : point.m_index1);
-  return c.key();
-}
-
 // Positions on both bodies: the shell's point on its own side, its foot on the other's surface.
 void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
   on0 = c.side == 0 ? c.p_W : Vec3(c.p_W + c.distance_m * c.n_W);
@@ -94,6 +86,13 @@ void inherit(btManifoldPoint& point, const btManifoldPoint& old) {
 }
 
 }  // namespace
+
+std::uint64_t keyOf(const btManifoldPoint& point) {
+  Candidate c;
+  c.side = point.m_index0 >= 0 ? 0 : 1;
+  c.id = static_cast<std::uint32_t>(c.side == 0 ? point.m_index0 : point.m_index1);
+  return c.key();
+}
 
 ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
                                const btCollisionObject* object1)

@@ -17,6 +17,10 @@ struct btCollisionObjectWrapper;
 
 namespace vps {
 
+/// Candidate::key() of a contact we wrote: the side with the shell has the point's id as its index, the other
+/// -1.
+std::uint64_t keyOf(const btManifoldPoint& point);
+
 class ManifoldWriter {
  public:
   ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
@@ -33,6 +37,7 @@ class ManifoldWriter {
   /// Ids now mean other points: nothing of last step's contacts passes to the next.
   void forget();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;
+  [[nodiscard]] std::span<btPersistentManifold* const> manifolds() const { return manifolds_; }
 
  private:
   struct Old {

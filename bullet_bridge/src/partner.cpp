@@ -4,6 +4,7 @@
 #include <LinearMath/btTransform.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <numeric>
 
@@ -32,6 +33,10 @@ void sortInSpace(std::vector<std::uint32_t>& order, std::size_t begin, std::size
   sortInSpace(order, begin, middle, points);
   sortInSpace(order, middle, end, points);
 }
+
+// Only penalty contact asks for it: a corner has none, and would not press. Half a millimetre's square,
+// assumed: what a shell's point stands for.
+constexpr double kCornerArea_m2 = 0.25e-6;
 
 struct Corners {
   std::vector<Vec3> points, inward;
@@ -63,7 +68,7 @@ PointShell leafOf(const Corners& corners, const std::uint32_t* ids, std::size_t 
   for (std::size_t i = 0; i < count; ++i) {
     leaf.points.push_back(corners.points[ids[i]]);
     leaf.inward.push_back(corners.inward[ids[i]]);
-    leaf.area_m2.push_back(0);  // corners have none
+    leaf.area_m2.push_back(kCornerArea_m2);
     box.add(leaf.points.back());
   }
   ShellNode node;
@@ -93,7 +98,8 @@ VpsModels modelsOf(const PartnerMesh& partner) {
   VpsModels models;
   const auto surface = std::make_shared<const MeshDistance>(partner.mesh);
   models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, partner.is_sheet)));
-  models.surfaces = {{surface, Pose(), partner.is_sheet}};
+  models.surfaces = {
+      {surface, Pose(), partner.is_sheet ? std::make_shared<const SheetBorder>(partner.mesh) : nullptr}};
   return models;
 }
 
@@ -125,15 +131,43 @@ const btCollisionShape& withoutStandIn(const btCollisionShape& shape) {
   return primitive ? *primitive : shape;
 }
 
-Vec3 sheetNormal(const Vec3& from_q, const Vec3& normal, const Vec3& inward, bool& is_edge) {
-  const Vec3 n = inward.dot(normal) < 0 ? Vec3(-normal) : normal;
-  // Off a face's foot the way to the point is the normal, at a fold near it; only beside a border it leans
-  // over. 60 degrees, assumed: the two cannot be told apart without the faces' neighbours.
-  constexpr double kCosBeside = 0.5;
-  const double distance_m = from_q.norm();
-  if (!(distance_m > 1e-9) || std::abs(from_q.dot(n)) > kCosBeside * distance_m) return n;
-  is_edge = true;
-  return (n + from_q / distance_m).normalized();
+SheetBorder::SheetBorder(const Mesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, int> uses;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({t[k], t[(k + 1) % 3]});
+      ++uses[{low, high}];
+    }
+  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> at_vertex;
+  for (const auto& [edge, count] : uses)
+    if (count == 1)
+      for (const std::uint32_t v : edge) at_vertex[v].push_back(edge);
+  for (const auto& t : mesh.triangles) {
+    first_.push_back(static_cast<std::uint32_t>(edges_.size()));
+    for (const std::uint32_t v : t)
+      if (const auto it = at_vertex.find(v); it != at_vertex.end())
+        for (const auto& edge : it->second)
+          edges_.push_back({mesh.vertices[edge[0]], mesh.vertices[edge[1]]});
+  }
+  first_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  touch_m_ = 1e-9 * (1 + bounds(mesh).size().norm());
+}
+
+bool SheetBorder::isOnBorder(std::uint32_t triangle, const Vec3& q) const {
+  for (std::uint32_t i = first_[triangle]; i < first_[triangle + 1]; ++i) {
+    const Vec3 along = edges_[i].b - edges_[i].a;
+    const double share = std::clamp((q - edges_[i].a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if ((edges_[i].a + share * along - q).norm() <= touch_m_) return true;
+  }
+  return false;
+}
+
+SheetFoot SheetBorder::seenFrom(const Vec3& p, const Vec3& inward, const MeshDistance::Closest& foot) const {
+  const Vec3 n = inward.dot(foot.normal) < 0 ? Vec3(-foot.normal) : foot.normal;
+  const Vec3 from_q = p - foot.q;
+  const double beside_m = (from_q - from_q.dot(n) * n).norm();
+  if (!(beside_m > touch_m_) || !isOnBorder(foot.triangle, foot.q)) return {n, false};
+  return {(n + from_q / from_q.norm()).normalized(), true};
 }
 
 ShapeKey keyOf(const btCollisionShape& shape) {

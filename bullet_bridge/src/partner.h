@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "vps_bullet/shape.h"
 
@@ -31,11 +32,32 @@ const btCollisionShape* primitiveBehind(const btCollisionShape& shape);
 /// That primitive, or else `shape` itself.
 const btCollisionShape& withoutStandIn(const btCollisionShape& shape);
 
-/// Outward normal of a sheet's foot as seen by a point at from_q from it that faces along -inward. A sheet
-/// has two sides; the point comes from the one it faces. Beside the border it is a rim, met from without.
-/// @param normal  the pseudonormal at the foot
-/// @param is_edge set if the foot is on the border
-Vec3 sheetNormal(const Vec3& from_q, const Vec3& normal, const Vec3& inward, bool& is_edge);
+/// Outward normal at a point's foot on a sheet, as the point sees it.
+struct SheetFoot {
+  Vec3 normal = Vec3::Zero();
+  bool is_rim = false;  ///< the foot is on the border, and the point beside it
+};
+
+/// Where a sheet ends: the edges that only one of its triangles has.
+class SheetBorder {
+ public:
+  explicit SheetBorder(const Mesh& mesh);
+  /// A sheet has two sides; the point comes from the one it faces, against its `inward` normal. Beside the
+  /// border it has not come through: the sheet is a rim there, met from without. All in the mesh's frame.
+  [[nodiscard]] SheetFoot seenFrom(const Vec3& p, const Vec3& inward,
+                                   const MeshDistance::Closest& foot) const;
+
+ private:
+  struct Edge {
+    Vec3 a, b;
+  };
+  [[nodiscard]] bool isOnBorder(std::uint32_t triangle, const Vec3& q) const;
+  /// By triangle: the first of its entries in edges_, and of the next triangle's. Those are the border's
+  /// edges that share a corner with it.
+  std::vector<std::uint32_t> first_;
+  std::vector<Edge> edges_;
+  double touch_m_ = 0;
+};
 
 /// A few numbers that change when a shape is scaled, resized or refitted.
 struct ShapeKey {

@@ -43,7 +43,7 @@ std::vector<VpsSurface> scaled(const std::vector<VpsSurface>& surfaces, double f
   std::vector<VpsSurface> larger;
   for (const VpsSurface& surface : surfaces)
     larger.push_back({std::make_shared<const MeshDistance>(*scaled(surface.distance->mesh(), factor)),
-                      Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.is_sheet});
+                      Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet});
   return larger;
 }
 

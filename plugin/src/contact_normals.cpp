@@ -30,6 +30,21 @@ void trilinearGradient(const ReadLeaf& leaf, int i, float g[3]) {
 
 }  // namespace
 
+double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept {
+  double value = static_cast<double>(leaf.value(lane));
+  if (!leaf.batch.is_read[leaf.slot]) return value;
+  const int i = kLanes * leaf.slot + lane;
+  float g[3];
+  trilinearGradient(leaf, i, g);
+  const std::int32_t steps[3] = {leaf.batch.x[i], leaf.batch.y[i], leaf.batch.z[i]};
+  for (int k = 0; k < 3; ++k) {
+    const double at = motion.p[k] + motion.R[3 * k] * p_P.x() + motion.R[3 * k + 1] * p_P.y() +
+                      motion.R[3 * k + 2] * p_P.z();
+    value += static_cast<double>(g[k]) * (at - leaf.batch.base[leaf.slot][k] - steps[k] * (1.0 / kSteps));
+  }
+  return value;
+}
+
 void ContactNormals::add(const ReadLeaf& leaf, int lane) noexcept {
   const int i = kLanes * leaf.slot + lane;
   if (gradient_ == Gradient::Trilinear) {

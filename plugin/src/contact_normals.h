@@ -7,6 +7,12 @@
 
 namespace vps {
 
+/// The reading of a lane [quanta], carried from the whole step where its point was placed to where it is,
+/// along the trilinear slope: positions of 1/16384 voxel are steps that a stiff spring feels (15 nm at 0.25
+/// mm).
+/// @param p_P  the lane's point
+double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept;
+
 /// Gathers points of read leaves and gives each its unit outward normal. `Continuous` reads the field a voxel
 /// before and behind along each axis: the difference is that of nodal central differences, interpolated.
 class ContactNormals {

@@ -58,8 +58,10 @@ class ContactCollector {
     const std::uint32_t id = leaf.block.first + static_cast<std::uint32_t>(lane);
     const Vec3 p_M = X_MP_ * reading_.shell.points[id];
     const std::uint16_t owner = has_owners_ ? sampler_.owner(sampler_.place(p_M)) : std::uint16_t{0};
-    out_.contacts.push_back({p_M, Vec3::Zero(), reading_.field.quantum_m * leaf.value(lane),
-                             reading_.shell.area_m2[id], id, owner});
+    out_.contacts.push_back(
+        {p_M, Vec3::Zero(),
+         reading_.field.quantum_m * readingAt(leaf, lane, reading_.motion, reading_.shell.points[id]),
+         reading_.shell.area_m2[id], id, owner});
     normals_.add(leaf, lane);
     if (normals_.isFull()) giveNormals();
   }

@@ -53,15 +53,16 @@ class WrenchCollector {
 
   void take(const ReadLeaf& leaf) noexcept {
     least_ = std::min(least_, leaf.least());
-    if (!(leaf.least() < 0)) return;
+    if (!(leaf.least() <= 0)) return;
     startRow(leaf.index / kLanes);
     if (gradient_ == Gradient::Trilinear) {
-      std::uint32_t lost = reading_.kernels.touch(leaf.batch, leaf.slot, leaf.block, reference_, row_sums_);
+      std::uint32_t lost =
+          reading_.kernels.touch(reading_.motion, leaf.batch, leaf.slot, leaf.block, reference_, row_sums_);
       for (int lane = 0; lost != 0; ++lane, lost >>= 1)
         if (lost & 1) addForce(entryOf(leaf, lane), inwardOf(leaf, lane));
     } else {
       for (int lane = 0; lane < static_cast<int>(leaf.block.count); ++lane)
-        if (leaf.value(lane) < 0) addWaiting(leaf, lane);
+        if (leaf.value(lane) <= 0) addWaiting(leaf, lane);
     }
   }
 
@@ -109,8 +110,9 @@ class WrenchCollector {
     for (int k = 0; k < 3; ++k)
       entry.arm[k] =
           static_cast<double>(leaf.batch.base[leaf.slot][k] - reference_[k]) + at[k] * (1.0 / kSteps);
-    entry.weight = static_cast<double>(leaf.block.weight[lane]) * -static_cast<double>(leaf.value(lane));
     entry.id = leaf.block.first + static_cast<std::uint32_t>(lane);
+    const double reading = readingAt(leaf, lane, reading_.motion, reading_.shell.points[entry.id]);
+    entry.weight = static_cast<double>(leaf.block.weight[lane]) * std::max(0.0, -reading);
     return entry;
   }
   /// Deeper than the band the field knows no way out; the point's own inward normal is the older VPS's
@@ -130,6 +132,7 @@ class WrenchCollector {
 
   void addWaiting(const ReadLeaf& leaf, int lane) noexcept {
     const Entry entry = entryOf(leaf, lane);
+    if (!(entry.weight > 0)) return;
     ++sums_.count[lane];
     sums_.area_m2[lane] += static_cast<double>(leaf.block.weight[lane]);
     sums_.area_depth[lane] += entry.weight;

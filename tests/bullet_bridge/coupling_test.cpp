@@ -224,8 +224,9 @@ TEST_P(CouplingWithSolver, ATargetThatIsNotANumberIsNoTarget) {
   world.world->removeConstraint(&coupling);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, CouplingWithSolver, testing::Values(Solver::Stock, Solver::Vps),
-                         [](const auto& info) { return info.param == Solver::Stock ? "Stock" : "Vps"; });
+INSTANTIATE_TEST_SUITE_P(Each, CouplingWithSolver,
+                         testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
+                         [](const auto& info) { return test::nameOf(info.param); });
 
 TEST(Coupling, RefusesASolverThatNeverCallsIt) {
   btDantzigSolver dantzig;

@@ -23,6 +23,9 @@ constexpr double kRadius_m = 0.005, kDepth_m = 0.015, kLength_m = 0.030;
 // Flats are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: well under a tenth of the clearance.
 constexpr int kSegments = 256;
 constexpr double kDeepest_m = 3e-6;
+// Compliant contact gives way: a tilted peg's rim bears 10 N on 0.9 mm^2 of points, which at 1e12 N/m^3 and
+// half a share a side sinks 11 um, and its seat with it.
+constexpr double kSoft_m = 12e-6;
 
 // 10 x 30 mm with a 1 mm chamfer at the lower end (z = 0).
 Built makePeg() {
@@ -69,8 +72,7 @@ struct Case {
 
 std::string nameOf(const testing::TestParamInfo<Case>& info) {
   const Case& c = info.param;
-  return std::string(c.solver == Solver::Vps ? "Vps" : "Stock") +
-         std::to_string(std::lround(c.clearance_m * 1e6)) + "um" +
+  return test::nameOf(c.solver) + std::to_string(std::lround(c.clearance_m * 1e6)) + "um" +
          std::to_string(std::lround(c.mass_kg * 1e3)) + "g";
 }
 
@@ -155,8 +157,9 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   // and the bottom's centre is up by the rim's radius times the tilt.
   const double tilt_rad = rotationVector(rest.R).norm();
   EXPECT_LE(tilt_rad, 1.2 * GetParam().clearance_m / (kDepth_m - 1.5e-3));
-  EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6);
-  EXPECT_LE(deepest_m, kDeepest_m);
+  const double soft_m = GetParam().solver == Solver::Penalty ? kSoft_m : 0;
+  EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6 + 0.5 * soft_m);
+  EXPECT_LE(deepest_m, kDeepest_m + soft_m);
   EXPECT_LE(speed_m_s, 1e-5);
   EXPECT_NEAR(coupling.wrench().f.z(), -10, 0.1);  // 1 %
   world.world->removeConstraint(&coupling);
@@ -165,7 +168,10 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
 INSTANTIATE_TEST_SUITE_P(Fits, PegInBore,
                          testing::Values(Case{Solver::Vps, 50e-6, 0.0185}, Case{Solver::Vps, 20e-6, 0.0185},
                                          Case{Solver::Vps, 20e-6, 0.001}, Case{Solver::Vps, 20e-6, 0.1},
-                                         Case{Solver::Stock, 50e-6, 0.0185}),
+                                         Case{Solver::Stock, 50e-6, 0.0185},
+                                         Case{Solver::Penalty, 50e-6, 0.0185},
+                                         Case{Solver::Penalty, 20e-6, 0.0185},
+                                         Case{Solver::Penalty, 20e-6, 0.001}),
                          nameOf);
 
 }  // namespace

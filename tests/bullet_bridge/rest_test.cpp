@@ -97,7 +97,9 @@ TEST_P(RestWithSolver, BallsAndCapsulesHoldAPlateAtTheirRadius) {
                  Pose(rotationFromVector(Vec3(0, 0, 1.5707963267948966)), Vec3(-0.02, 0, 0)));
   btRigidBody& body = world.add(part, Pose::translation(Vec3(0, 0, 0.015)));
   world.step(500);
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015, 1e-6);
+  // A round side touches the face between its points, too. Springs stay where the points are, up to half a
+  // spacing (times sqrt 2) from the ball's top: s^2 / (4 r) = 25 um at 1 mm.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015, GetParam() == Solver::Penalty ? 25e-6 : 1e-6);
 }
 
 TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
@@ -141,6 +143,7 @@ TEST_P(RestWithSolver, FallsFreelyUntilItTouches) {
 }
 
 TEST_P(RestWithSolver, BouncesWithTheProductOfTheRestitutions) {
+  if (GetParam() == Solver::Penalty) GTEST_SKIP() << "compliant contact has no restitution";
   World world(GetParam());
   const Built box = steelBox(), ground = plate();
   world.world->setGravity(btVector3(0, 0, 0));
@@ -252,8 +255,8 @@ TEST(VpsSolver, OneSweepLeavesAnErrorThatManyRemove) {
   EXPECT_LE(spinAfterLanding(400), kRest_m_s / 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps),
-                         [](const auto& info) { return info.param == Solver::Stock ? "Stock" : "Vps"; });
+INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
+                         [](const auto& info) { return test::nameOf(info.param); });
 
 }  // namespace
 }  // namespace vps

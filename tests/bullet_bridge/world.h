@@ -17,7 +17,11 @@
 
 namespace vps::test {
 
-enum class Solver { Stock, Vps };
+enum class Solver { Stock, Vps, Penalty };
+
+inline std::string nameOf(Solver solver) {
+  return solver == Solver::Stock ? "Stock" : solver == Solver::Vps ? "Vps" : "Penalty";
+}
 
 struct Built {
   std::shared_ptr<VpsShape> shape;
@@ -51,12 +55,14 @@ class World {
   explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100,
                  const VpsSolverSettings& solver_settings = {})
       : dispatcher(&config) {
-    if (solver == Solver::Vps)
-      solver_ = std::make_unique<VpsSolver>(solver_settings);
-    else
+    if (solver == Solver::Stock)
       solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+    else
+      solver_ = std::make_unique<VpsSolver>(solver_settings);
+    VpsBulletSettings used = settings;
+    if (solver == Solver::Penalty) used.mode = ContactMode::Penalty;
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
-    installVps(dispatcher, settings);
+    installVps(dispatcher, used);
     tuneWorld(*world, iterations);
     world->setGravity(btVector3(0, 0, toBt(-9.81)));
   }

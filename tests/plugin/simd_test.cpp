@@ -274,6 +274,7 @@ TEST(SimdKernels, SumsOfTouchingPointsHaveTheSameBitsOnEveryPath) {
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const Trial trial(seed);
     const auto batch = trial.read(Simd::Scalar);
+    const Motion motion(trial.field.view(), trial.X_MP);
     const std::int32_t reference[3] = {static_cast<std::int32_t>(seed), -1'000'000'000, 17};
     const auto sumsBy = [&](Simd simd, std::uint32_t lost[kBatch]) {
       auto row = std::make_unique<RowSums>();
@@ -281,7 +282,7 @@ TEST(SimdKernels, SumsOfTouchingPointsHaveTheSameBitsOnEveryPath) {
       std::memset(static_cast<void*>(row.get()), 0, sizeof *row);
       for (int i = 0; i < kBatch; ++i)
         lost[i] = batch->least[i] < 0
-                      ? readKernels(simd).touch(*batch, i, trial.blocks[static_cast<std::size_t>(i)],
+                      ? readKernels(simd).touch(motion, *batch, i, trial.blocks[static_cast<std::size_t>(i)],
                                                 reference, *row)
                       : 0;
       readKernels(simd).addRow(*row, *sums);

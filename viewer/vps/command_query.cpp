@@ -18,6 +18,7 @@
 #include "vps/budget_query.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
+#include "vps/pair_query.h"
 #include "vps/query.h"
 #include "vps_scenes/import.h"
 

@@ -10,8 +10,18 @@ class btCollisionDispatcher;
 
 namespace vps {
 
+/// How contact is turned into motion.
+enum class ContactMode {
+  Constraint,  ///< rigid: a few contacts for the solver, friction as a cone
+  /// Compliant: every touching point presses with stiffness times area times depth and rubs by a bristle,
+  /// solved implicitly. Needs VpsSolver: other solvers get the rigid contacts. No restitution.
+  Penalty,
+};
+
 struct VpsBulletSettings {
-  int contact_limit = 64;  ///< contacts given to the solver for each pair, >= 4
+  ContactMode mode = ContactMode::Constraint;
+  double stiffness_N_per_m3 = 1e12;  ///< of penalty contact, per area; assumed: steel, 0.2 m thick
+  int contact_limit = 64;            ///< contacts given to the solver for each pair, >= 4
   /// A point is a contact if it can come within this of touching during the step. 20 um: measured; larger
   /// feeds the solver contacts that do not act, smaller misses what rotation and the solver's residual bring
   /// in.

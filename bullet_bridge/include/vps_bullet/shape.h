@@ -26,12 +26,14 @@ struct BodyFrame {
 /// Throws LoadError for a volume or density that is not positive (an open or inside-out mesh gives such).
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
 
+class SheetBorder;
+
 /// The exact surface of one part in the models' frame M.
 struct VpsSurface {
   std::shared_ptr<const MeshDistance> distance;
   Pose X_MP;
-  /// An open surface without an inside, met on the side that a point faces.
-  bool is_sheet = false;
+  /// Of an open surface without an inside, met on the side that a point faces; null for a solid.
+  std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
 /// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against

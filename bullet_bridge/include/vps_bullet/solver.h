@@ -9,13 +9,13 @@
 namespace vps {
 
 struct VpsSolverSettings {
-  double residual_m_s = 1e-7;  ///< stop when no row's velocity error changes by more
-  int iteration_limit = 400;   ///< sweeps over all contacts, >= 1
+  double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
+  int iteration_limit = 400;   ///< sweeps over rigid contacts, or Newton steps of compliant ones; >= 1
 };
 
-/// Solves islands of rigid bodies, contacts and VpsCouplings with the coupling folded into the body's
-/// effective mass (see solver.cpp); everything else (joints, soft constraints) goes to the stock solver
-/// unchanged.
+/// Solves islands of rigid bodies, contacts (rigid or compliant), joints and VpsCouplings, the couplings
+/// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
+/// spinning friction, or bodies with linear or angular factors go to the stock solver unchanged.
 class VpsSolver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -26,16 +26,12 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// Gauss-Seidel sweeps that the last island solved by our method took; iteration_limit means it was cut
+  /// Sweeps or Newton steps that the last island solved by our method took; iteration_limit means it was cut
   /// short.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
 
  private:
   struct Work;
-  /// Copies the island into work_; false if it holds anything our method does not cover.
-  bool gather(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-              int manifold_count, btTypedConstraint** constraints, int constraint_count,
-              const btContactSolverInfo& info);
   VpsSolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bodies of one of Bullet's simulation islands during a step: mass, drive and velocity.
+#pragma once
+
+#include <Eigen/Dense>
+#include <unordered_map>
+#include <vector>
+
+#include "vps/pose.h"
+
+class btCollisionObject;
+class btRigidBody;
+
+namespace vps {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; in W
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+inline Vec6 stacked(const Vec3& w, const Vec3& v) {
+  Vec6 u;
+  u << w, v;
+  return u;
+}
+
+/// A dynamic body; twists are about its centre. Its velocity solves held u = momentum + drive + the contacts'
+/// impulses.
+struct IslandBody {
+  btRigidBody* rigid = nullptr;
+  Mat6 mass = Mat6::Zero();
+  Vec6 momentum = Vec6::Zero();  ///< mass times the velocity with external forces
+  Mat6 held = Mat6::Zero();      ///< mass, and the implicit part of the couplings that hold it
+  Vec6 drive = Vec6::Zero();     ///< the couplings' constant part
+  Vec6 u = Vec6::Zero();         ///< at first that of the last step
+};
+
+class Island {
+ public:
+  void clear();
+  void add(btRigidBody& rigid, double dt_s);
+  /// -1: not moved by contact.
+  [[nodiscard]] int indexOf(const btCollisionObject* object) const;
+  /// Of a body that is not in the island but moves (kinematic), about its origin.
+  [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
+  void writeVelocities() const;
+
+  std::vector<IslandBody> bodies;
+
+ private:
+  std::unordered_map<const btCollisionObject*, int> index_;
+};
+
+}  // namespace vps

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compliant contact: the end-of-step velocities at which mass, couplings and thousands of springs balance.
+//
+// With all else fixed they minimise a convex function, the incremental potential of an implicit Euler step,
+//
+//     1/2 (u - u0)' M (u - u0) + sum 1/2 k min(gap + dt n.v, 0)^2 + sum H(bend + dt v_t)
+//
+// v a point's relative velocity, H the bristle: 1/2 k |x|^2 while it holds, and of constant slope mu f_n once
+// it slips. Newton's method with an exact line search finds it; f_n in H is that of the round before. The
+// answer's energy is never above that of standing still in the overlap. Sources: DESIGN's section 4.1 force;
+// Kaufman et al. 2008 and Castro et al. 2021 for contact as convex minimisation; Dahl 1968 for the bristle.
+#pragma once
+
+#include <vector>
+
+#include "island.h"
+#include "joint_rows.h"
+#include "penalty_pair.h"
+
+namespace vps {
+
+class PenaltyNewton {
+ public:
+  PenaltyNewton(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
+
+  void clear(double dt_s) {
+    patches_.clear();
+    dt_s_ = dt_s;
+  }
+  /// The pair must outlive finish(). Friction's limits are at first those of the last step's forces.
+  void add(PenaltyPair& pair);
+  /// Velocities for the bodies' masses and the limits as they stand. Returns Newton's iterations.
+  int solve(double residual_m_s, int iteration_limit);
+  /// Limits of friction by the forces just found. Returns the greatest change, relative to the greatest
+  /// limit.
+  double renewLimits();
+  /// Leaves forces and bends in the pairs' points.
+  void finish();
+
+ private:
+  struct Point {
+    double r[3];  // from the patch's centre
+    double n[3];
+    double gap_m, k, limit_N;
+    double bend[3];
+  };
+  struct Patch {
+    PenaltyPair* pair = nullptr;
+    int body[2] = {-1, -1};
+    Mat6 X[2];  // each body's twist -> its part of the relative twist at the patch's centre
+    Vec6 fixed = Vec6::Zero();
+    Vec3 center = Vec3::Zero();
+    double radius_m = 0;
+    std::vector<Point> points;
+    Vec6 gradient;
+    Mat6 hessian;
+  };
+  /// What a point's springs give at a relative twist.
+  struct Push {
+    double f_n_N = 0;
+    Vec3 f_t_N = Vec3::Zero();  // on body 1, along the slip of body 0
+    double slip_m = 0;          // of the bristle's root, had it bent freely; 0: it holds
+    Vec3 along = Vec3::Zero();  // unit, of the slip
+  };
+  [[nodiscard]] Push pushOf(const Point& point, const Vec6& twist) const;
+  [[nodiscard]] Vec6 twistOf(const Patch& patch, const std::vector<Vec6>& u) const;
+  void evaluate(Patch& patch, const Vec6& twist, bool with_hessian) const;
+  /// Gradient of the potential at u; with the Hessians of the patches if asked.
+  void evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient);
+  void newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const;
+  [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
+  [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
+  [[nodiscard]] std::vector<Vec6> velocities() const;
+
+  /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
+  /// make the potential's slope constant, as a bristle's does.
+  void prepareJoints();
+  [[nodiscard]] double jointImpulse(const JointRow& row, double stiffness_kg,
+                                    const std::vector<Vec6>& u) const;
+
+  Island& island_;
+  JointRows& joints_;
+  std::vector<double> joint_kg_;       // stiffness of each row, against velocity
+  std::vector<std::uint8_t> is_free_;  // rows within their limits at the last evaluation
+  double dt_s_ = 0;
+  std::vector<Patch> patches_;
+};
+
+}  // namespace vps
