@@ -40,6 +40,9 @@ struct VpsPairState {
   std::shared_ptr<VpsContext> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
+  std::vector<Candidate> contacts;  ///< of the coming step
+  RelativeMotion motion;
+  bool is_prepared = false;
   PenaltyPair penalty;                   ///< in penalty mode
   std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
   QueryMemory& memoryOf(int side, const VoxMap& map, const PointShell& shell) {
@@ -283,9 +286,10 @@ int sideCount(const PairView& pair, Sides sides) {
 
 // All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
 // and for solvers that know nothing of springs.
-void processPenalty(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
-                    std::vector<Candidate>& candidates) {
+void choosePenalty(const PairView& pair, VpsPairState& state) {
   VpsContext& context = *state.context;
+  const RelativeMotion& motion = state.motion;
+  std::vector<Candidate>& candidates = state.contacts;
   collectForStep(pair, motion, state, candidates);
   ++context.pair_updates;
   context.candidates += candidates.size();
@@ -300,10 +304,30 @@ void processPenalty(const PairView& pair, const RelativeMotion& motion, VpsPairS
   VpsBulletSettings seen = context.settings;
   seen.use_surfaces = false;
   choose(pair, motion, seen, state.writer.get(), candidates);
-  context.contacts += candidates.size();
-  state.writer->write(candidates, pair.wrapper, motion);
-  for (const btPersistentManifold* manifold : state.writer->manifolds())
-    context.penalty.add(manifold, &state.penalty);
+}
+
+void chooseRigid(const PairView& pair, VpsPairState& state) {
+  VpsContext& context = *state.context;
+  if (!recallSelection(state.selection, pair, state.motion, context.settings, state.contacts)) {
+    collectForStep(pair, state.motion, state, state.contacts);
+    ++context.pair_updates;
+    context.candidates += state.contacts.size();
+    choose(pair, state.motion, context.settings, state.writer.get(), state.contacts);
+    keepSelection(state.contacts, pair, state.motion, state.selection);
+  }
+  prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
+                     pair.wrapper[1]->getCollisionObject());
+}
+
+// Points now rather than contacts for a step.
+void answerQuery(const PairView& pair, VpsContext& context, btManifoldResult& result) {
+  RelativeMotion still;
+  still.slack_m =
+      std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), sight_m(pair));
+  std::vector<Candidate> candidates;
+  collect(pair, still.slack_m, context, candidates);
+  choose(pair, still, context.settings, nullptr, candidates);
+  reportToQuery(candidates, pair.wrapper, result);
 }
 
 }  // namespace
@@ -325,50 +349,45 @@ void VpsAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   state_->writer->append(manifolds);
 }
 
+void VpsAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                           const btDispatcherInfo& info) {
+  VpsPairState& state = *state_;
+  const PairView pair(body0, body1);
+  state.contacts.clear();
+  state.motion = {};
+  state.is_prepared = true;
+  forgetReplacedModels(state, pair);
+  const VpsBulletSettings& settings = state.context->settings;
+  const bool is_penalty = settings.mode == ContactMode::Penalty;
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
+  // Springs push from the first touch on, and only then: what is farther than the step's travel need not be
+  // there.
+  constexpr double kPenaltySlack_m = 2e-6;  // assumed: contact turns the motion within the step
+  const double slack_m = is_penalty ? std::min(kPenaltySlack_m, settings.slack_m) : settings.slack_m;
+  state.motion = relativeMotion(pair, info.m_timeStep, slack_m);
+  is_penalty ? choosePenalty(pair, state) : chooseRigid(pair, state);
+}
+
 void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                     const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
                                     btManifoldResult* result) {
   VpsContext& context = *state_->context;
   const PairView pair(body0, body1);
-  thread_local std::vector<Candidate> candidates;
-  candidates.clear();
-  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) {
-    state_->writer->write({}, pair.wrapper, {});
-    return;
-  }
-  // A contactTest hands in a result of its own type, and wants points now rather than manifolds for a step.
+  // A contactTest hands in a result of its own type.
   if (typeid(*result) != typeid(btManifoldResult)) {
-    RelativeMotion still;
-    still.slack_m =
-        std::min<double>(std::max<double>(result->m_closestPointDistanceThreshold, 0), sight_m(pair));
-    collect(pair, still.slack_m, context, candidates);
-    choose(pair, still, context.settings, nullptr, candidates);
-    reportToQuery(candidates, pair.wrapper, *result);
+    if (pair.X_WS[0].isFinite() && pair.X_WS[1].isFinite()) answerQuery(pair, context, *result);
     return;
   }
-
-  forgetReplacedModels(*state_, pair);
-  // Springs push from the first touch on, and only then: what is farther than the step's travel need not be
-  // there.
-  constexpr double kPenaltySlack_m = 2e-6;  // assumed: contact turns the motion within the step
-  const bool is_penalty = context.settings.mode == ContactMode::Penalty;
-  const double slack_m =
-      is_penalty ? std::min(kPenaltySlack_m, context.settings.slack_m) : context.settings.slack_m;
-  const RelativeMotion motion = relativeMotion(pair, info.m_timeStep, slack_m);
-  if (is_penalty) {
-    processPenalty(pair, motion, *state_, candidates);
-    return;
-  }
-  if (!recallSelection(state_->selection, pair, motion, context.settings, candidates)) {
-    collectForStep(pair, motion, *state_, candidates);
-    ++context.pair_updates;
-    context.candidates += candidates.size();
-    choose(pair, motion, context.settings, state_->writer.get(), candidates);
-    keepSelection(candidates, pair, motion, state_->selection);
-  }
-  context.contacts += candidates.size();
-  prepareRestitution(candidates, motion, body0->getCollisionObject(), body1->getCollisionObject());
-  state_->writer->write(candidates, pair.wrapper, motion);
+  if (!state_->is_prepared) prepare(body0, body1, info);
+  state_->is_prepared = false;
+  context.contacts += state_->contacts.size();
+  state_->writer->write(state_->contacts, pair.wrapper, state_->motion);
+  if (state_->penalty.points.empty())
+    context.penalty.remove(&state_->penalty);
+  else
+    for (const btPersistentManifold* manifold : state_->writer->manifolds())
+      context.penalty.add(manifold, &state_->penalty);
 }
 
 }  // namespace vps

@@ -32,6 +32,11 @@ class VpsAlgorithm : public btActivatingCollisionAlgorithm {
                const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context);
   ~VpsAlgorithm() override;
 
+  /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
+  /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
+  /// ready.
+  void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+               const btDispatcherInfo& info);
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
   /// CCD never runs on concave shapes; speculative contacts take its place.
