@@ -14,6 +14,28 @@ namespace vps {
 
 static_assert(sizeof(PartnerAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
+namespace {
+
+/// Both bodies, the partner's shape replaced.
+struct StandIns {
+  btCollisionObjectWrapper replaced;
+  const btCollisionObjectWrapper* wrapper[2];
+  StandIns(const PartnerShape& stand_in, int side, const btCollisionObjectWrapper* body0,
+           const btCollisionObjectWrapper* body1)
+      : StandIns(stand_in, *(side == 0 ? body0 : body1), body0, body1) {
+    wrapper[side] = &replaced;
+  }
+
+ private:
+  StandIns(const PartnerShape& stand_in, const btCollisionObjectWrapper& partner,
+           const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
+      : replaced(partner.m_parent, &stand_in, partner.m_collisionObject, partner.getWorldTransform(),
+                 partner.m_partId, partner.m_index),
+        wrapper{body0, body1} {}
+};
+
+}  // namespace
+
 struct PartnerAlgorithm::State {
   std::shared_ptr<VpsContext> context;
   int partner_side = 0;
@@ -57,17 +79,21 @@ void PartnerAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   if (state_->inner) state_->inner->getAllContactManifolds(manifolds);
 }
 
+void PartnerAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                               const btDispatcherInfo& info) {
+  const btCollisionObjectWrapper* partner = state_->partner_side == 0 ? body0 : body1;
+  if (!state_->stand_in || state_->key != keyOf(*partner->getCollisionShape())) return;
+  const StandIns bodies(*state_->stand_in, state_->partner_side, body0, body1);
+  state_->inner->prepare(bodies.wrapper[0], bodies.wrapper[1], info);
+}
+
 void PartnerAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                         const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
                                         btManifoldResult* result) {
   state_->renewOrSay(*m_dispatcher, {body0, body1});
   if (!state_->stand_in) return;
-  const btCollisionObjectWrapper* partner = state_->partner_side == 0 ? body0 : body1;
-  const btCollisionObjectWrapper stand_in(partner->m_parent, state_->stand_in.get(),
-                                          partner->m_collisionObject, partner->getWorldTransform(),
-                                          partner->m_partId, partner->m_index);
-  state_->inner->processCollision(state_->partner_side == 0 ? &stand_in : body0,
-                                  state_->partner_side == 1 ? &stand_in : body1, info, result);
+  const StandIns bodies(*state_->stand_in, state_->partner_side, body0, body1);
+  state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 
 }  // namespace vps

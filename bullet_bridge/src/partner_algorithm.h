@@ -14,7 +14,7 @@ class PartnerShape;
 
 /// VpsAlgorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
 /// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
-class PartnerAlgorithm : public btActivatingCollisionAlgorithm {
+class PartnerAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
  public:
   /// @param partner_side  0 or 1: whose shape is replaced. Throws as PartnerCache::get().
   PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -22,6 +22,9 @@ class PartnerAlgorithm : public btActivatingCollisionAlgorithm {
                    int partner_side);
   ~PartnerAlgorithm() override;
 
+  /// Does nothing where the stand-in must be renewed: that is left to processCollision(), one pair at a time.
+  void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+               const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
   btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,

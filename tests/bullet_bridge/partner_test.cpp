@@ -19,6 +19,7 @@
 #include "partner.h"
 #include "partner_mesh.h"
 #include "primitive.h"
+#include "vps_bullet/dispatcher.h"
 
 namespace vps {
 namespace {
@@ -681,6 +682,52 @@ TEST(Partners, AShapeThatIsResizedIsMetAsItIsNow) {
   world.world->updateSingleAabb(&low);
   world.step(200);
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.007, 1e-6);
+}
+
+// Seven cubes over four kinds of partner; where they are after a tenth of a second.
+std::vector<btTransform> fallOnPartners(btCollisionDispatcher& dispatcher,
+                                        btDefaultCollisionConfiguration& config) {
+  Ground ground;
+  btBoxShape box(at(0.02, 0.02, 0.01));
+  btSphereShape ball(toBt(0.02));
+  btCollisionShape* shapes[] = {&slabHull(ground, 0.5), &box,
+                                &ground.keep<btBvhTriangleMeshShape>(&floorMesh(ground), true), &ball};
+  btDbvtBroadphase broadphase;
+  VpsSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
+  installVps(dispatcher);
+  world.setGravity(btVector3(0, 0, toBt(-9.81)));
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  const auto add = [&](btCollisionShape& shape, double mass_kg, const Vec3& inertia, const Pose& X_WB) {
+    bodies.push_back(std::make_unique<btRigidBody>(toBt(mass_kg), nullptr, &shape, toBt(inertia)));
+    bodies.back()->setWorldTransform(toBt(X_WB));
+    world.addRigidBody(bodies.back().get());
+  };
+  for (int i = 0; i < 4; ++i)
+    add(*shapes[i], 0, Vec3::Zero(), Pose::translation(Vec3(0.015 * i, 0.01 * (i % 2), -0.012)));
+  for (int i = 0; i < 7; ++i)
+    add(*cube().shape, cube().frame.mass_kg, cube().frame.inertia_kg_m2,
+        Pose(rotationFromVector(Vec3(0.3 * i, 0.2, 0.1 * i)),
+             Vec3(0.012 * (i % 4), 0, 0.01 + 0.012 * (i / 4))));
+  tuneWorld(world);
+  for (int i = 0; i < 100; ++i) world.stepSimulation(toBt(1e-3), 0);
+  std::vector<btTransform> end;
+  for (auto& body : bodies) end.push_back(body->getWorldTransform());
+  for (auto& body : bodies) world.removeRigidBody(body.get());
+  uninstallVps(dispatcher);
+  return end;
+}
+
+TEST(Partners, AreMetBySeveralThreadsWithTheSameBits) {
+  btDefaultCollisionConfiguration config;
+  btCollisionDispatcher stock(&config);
+  const std::vector<btTransform> expected = fallOnPartners(stock, config);
+  for (const int threads : {1, 3}) {
+    VpsDispatcher dispatcher(&config, threads);
+    const std::vector<btTransform> got = fallOnPartners(dispatcher, config);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      ASSERT_TRUE(got[i] == expected[i]) << threads << ", body " << i;
+  }
 }
 
 TEST(PartnerCache, SharesOneStandInAndKnowsAShapeThatHasComeToLieAtTheSamePlace) {
