@@ -13,7 +13,8 @@ std::shared_ptr<const Mesh> scaled(const Mesh& mesh, double factor) {
   return larger;
 }
 
-ShellBlock scaled(ShellBlock block, double factor) {
+ShellBlock scaled(const ShellBlock& from, double factor) {
+  ShellBlock block = from;
   for (double& c : block.center) c *= factor;
   block.radius_m *= factor * (1 + 1e-6);  // the offsets are rounded again
   const auto f = static_cast<float>(factor);
