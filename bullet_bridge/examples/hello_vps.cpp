@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One VPS part in an ordinary Bullet world: a ring drops over a peg. Stock Bullet would close the ring's
-// hole.
+// One VPS part in an ordinary Bullet world: a ring drops over a peg. Stock Bullet would close its hole.
 #include <btBulletDynamicsCommon.h>
+#include <vps_bullet/convert.h>
+#include <vps_bullet/install.h>
+#include <vps_bullet/shape.h>
 
 #include <cstdio>
-
-#include "vps_bullet/convert.h"
-#include "vps_bullet/install.h"
-#include "vps_bullet/shape.h"
 
 int main() {
   btDefaultCollisionConfiguration config;
@@ -15,28 +13,26 @@ int main() {
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
-  vps::installVps(dispatcher);  // from here on, VpsShapes collide
-  vps::tuneWorld(world);        // and parts of millimetres and grams rest still
   world.setGravity(btVector3(0, 0, vps::toBt(-9.81)));
+  vps::installVps(dispatcher);  // from here on, VpsShapes collide: with each other and with Bullet's own
 
-  // The part: a steel ring with a hole of 10.1 mm. A mesh is all it takes.
-  vps::Part ring;
+  vps::Part ring;  // of steel, with a hole of 10.1 mm; any closed mesh will do
   ring.mesh = vps::makeTube(0.010, 0.00505, 0.005, 128);
   ring.map = std::make_shared<const vps::VoxMap>(vps::buildVoxMap(ring.mesh, {}));
   ring.shell = std::make_shared<const vps::PointShell>(vps::buildPointShell(ring.mesh, {}));
-  const vps::BodyFrame frame =
-      vps::makeBodyFrame(vps::massProperties(ring.mesh), ring.material.density_kg_m3);
+
+  // Mass, inertia and centre of mass follow from the mesh; Bullet wants its bodies' origins there.
+  const auto frame = vps::makeBodyFrame(vps::massProperties(ring.mesh), ring.material.density_kg_m3);
   vps::VpsShape ring_shape(vps::makeModels(ring), frame.X_PB.inverse());
   btRigidBody body(vps::toBt(frame.mass_kg), nullptr, &ring_shape, vps::toBt(frame.inertia_kg_m2));
   body.setWorldTransform(vps::toBt(vps::Pose::translation({0, 0, 0.045}) * frame.X_PB));
 
-  // The rest is plain Bullet: a peg of 10 mm that stands on the ground.
   btCylinderShapeZ peg_shape(btVector3(vps::toBt(0.005), vps::toBt(0.005), vps::toBt(0.02)));
-  btStaticPlaneShape ground_shape(btVector3(0, 0, 1), 0);
+  btStaticPlaneShape ground_shape(btVector3(0, 0, 1), 0);  // plain Bullet, as is the peg of 10 mm on it
   btRigidBody peg(0, nullptr, &peg_shape), ground(0, nullptr, &ground_shape);
   peg.setWorldTransform(vps::toBt(vps::Pose::translation({0, 0, 0.02})));
-
   for (btRigidBody* b : {&body, &peg, &ground}) world.addRigidBody(b);
+  vps::tuneWorld(world);  // parts of millimetres and grams rest still; returns what it changed
   for (int i = 0; i < 1000; ++i) world.stepSimulation(vps::toBt(1e-3), 0);
   std::printf("the ring lies at %.4f mm: half its height\n", 1e3 * body.getWorldTransform().getOrigin().z());
   for (btRigidBody* b : {&body, &peg, &ground}) world.removeRigidBody(b);

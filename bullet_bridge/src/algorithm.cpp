@@ -71,6 +71,7 @@ struct PairView {
     return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
   [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
+  [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
     double radius_m = 1e30;
@@ -126,21 +127,24 @@ double roundedUp(double cutoff_m, double most_m) {
 void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
              VpsPairState* state = nullptr) {
   std::size_t tested = 0, left_out = 0;
-  const bool both_vps = pair.vps[0] && pair.vps[1];
   // One-sided: the smaller body's points, since a larger one's may be too far apart to catch it.
   int only = -1;
-  if (both_vps && context.settings.sides == Sides::One && pair.hasShell(0) && pair.hasShell(1))
+  if (pair.hasMap(0) && pair.hasMap(1) && context.settings.sides == Sides::One && pair.hasShell(0) &&
+      pair.hasShell(1))
     only = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm() ? 0 : 1;
   for (int i = 0; i < 2; ++i) {
     if (!pair.hasShell(i) || (only >= 0 && i != only)) continue;
     const int j = 1 - i;
-    if (!both_vps)
+    if (isPrimitive(*pair.wrapper[j]->getCollisionShape()))
       left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
                                        cutoff_m, context.settings, out, tested);
-    else if (const auto& map = pair.vps[j]->models().map; map) {
-      QueryMemory* memory = state ? &state->memoryOf(i, *map, *pair.vps[i]->models().shell) : nullptr;
+    else if (pair.hasMap(j)) {
+      const VoxMap& map = *pair.vps[j]->models().map;
+      QueryMemory* memory = state ? &state->memoryOf(i, map, *pair.vps[i]->models().shell) : nullptr;
       const double wide_m = memory ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
       left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, out, tested, memory);
+    } else {
+      left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }
   }
   context.points_tested += tested;

@@ -63,8 +63,14 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
                                  double cutoff_m, const VpsBulletSettings& settings,
                                  std::vector<Candidate>& out, std::size_t& points_tested);
 
+/// The same against the exact surfaces of a VpsShape without a map. A point that has gone through a sheet
+/// counts if its part's field says that the sheet is nearer to the point's own face than to any other.
+std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
+                                const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                                std::size_t& points_tested);
+
 /// Renews a candidate's position, distance and normal after a move. `theirs` is the other side's shape, a
-/// VpsShape with a map or a primitive.
+/// VpsShape with a map or surfaces or a primitive.
 void lookUp(const SideView& side, const SideView& other, const btCollisionShape& theirs,
             const VpsBulletSettings& settings, Candidate& c);
 

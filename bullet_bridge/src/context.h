@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "partner.h"
 #include "penalty_pair.h"
 #include "vps_bullet/install.h"
 
@@ -15,6 +16,7 @@ namespace vps {
 
 struct VpsContext {
   VpsBulletSettings settings;
+  PartnerCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
   PenaltyRegistry penalty;

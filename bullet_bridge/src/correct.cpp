@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "candidate.h"
+#include "partner.h"
 #include "primitive.h"
+#include "round_contact.h"
 
 namespace vps {
 
@@ -33,14 +35,21 @@ struct Exact {
   bool is_edge_on_edge = false;
 };
 
-Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, double max_m) {
+Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, const Vec3& inward, double max_m) {
   const Pose X_WP = X_WM * surface.X_MP;
   const Vec3 p = X_WP.inverse() * p_W;
   const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
   if (!closest.found) return {};
   const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
-  return {true, X_WP.R * (p - closest.q), X_WP.R * closest.normal,
-          X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q), is_edge};
+  Foot foot{true, X_WP.R * (p - closest.q), X_WP.R * closest.normal,
+            X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q), is_edge};
+  if (surface.sheet) {
+    const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * inward, closest);
+    foot.normal = X_WP.R * seen.normal;
+    if (foot.smooth.dot(foot.normal) < 0) foot.smooth = -foot.smooth;  // from behind
+    foot.is_edge |= seen.is_rim;
+  }
+  return foot;
 }
 
 Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W) {
@@ -83,13 +92,14 @@ struct Corrector {
   const SideView& side;
   const SideView& other;
   const btCollisionShape& theirs;
+  bool is_primitive;
 
   Exact at(const Vec3& p_W, const Vec3& inward, bool is_edge_point, double max_m) const {
-    if (!other.shape) return contactAt(footOn(theirs, other.X_WM, p_W), inward, is_edge_point);
+    if (is_primitive) return contactAt(footOn(theirs, other.X_WM, p_W), inward, is_edge_point);
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
     for (const VpsSurface& surface : other.shape->models().surfaces) {
-      const Exact exact = contactAt(footOn(surface, other.X_WM, p_W, max_m), inward, is_edge_point);
+      const Exact exact = contactAt(footOn(surface, other.X_WM, p_W, inward, max_m), inward, is_edge_point);
       nearest.found |= exact.found;
       if (exact.meets && (!nearest.meets || exact.distance_m < nearest.distance_m)) nearest = exact;
     }
@@ -101,15 +111,17 @@ struct Corrector {
 
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
              const btCollisionShape& theirs, const RelativeMotion& motion) {
-  if (other.shape && other.shape->models().surfaces.empty()) return;
-  const Corrector corrector{side, other, theirs};
+  const bool is_primitive = isPrimitive(theirs);
+  if (!is_primitive && other.shape->models().surfaces.empty()) return;
+  const Corrector corrector{side, other, withoutStandIn(theirs), is_primitive};
   const PointShell& shell = *side.shape->models().shell;
   const double sign = side.side == 0 ? 1 : -1;
   // The field is off by less than a voxel; beyond that it is not the same piece of surface.
   const double field_error_m =
-      other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : 0;
+      other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kTouching_m;
   for (Candidate& c : candidates) {
     if (c.side != side.side) continue;
+    if (is_primitive && touchRound(c, side, other, corrector.theirs)) continue;
     const Vec3 inward = side.X_WM.R * shell.inward[c.id];
     const bool is_edge_point = side.shape->isEdgePoint(c.id);
     const double max_m = std::abs(c.distance_m) + field_error_m;

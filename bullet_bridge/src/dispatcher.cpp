@@ -36,7 +36,7 @@ void VpsDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, con
   arena_->pairs.clear();
   for (int i = 0; i < pairs->getNumOverlappingPairs(); ++i) {
     btBroadphasePair& pair = pairs->getOverlappingPairArrayPtr()[i];
-    if (dynamic_cast<VpsAlgorithm*>(pair.m_algorithm) == nullptr) continue;
+    if (dynamic_cast<VpsPair*>(pair.m_algorithm) == nullptr) continue;
     if (needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) arena_->pairs.push_back(&pair);
   }
   const bool is_step = info.m_dispatchFunc == btDispatcherInfo::DISPATCH_DISCRETE;
@@ -48,7 +48,7 @@ void VpsDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, con
         const btCollisionObjectWrapper body0(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1,
                                              -1),
             body1(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
-        static_cast<VpsAlgorithm*>(pair.m_algorithm)->prepare(&body0, &body1, info);
+        dynamic_cast<VpsPair*>(pair.m_algorithm)->prepare(&body0, &body1, info);
       });
     });
   btCollisionDispatcher::dispatchAllCollisionPairs(pairs, info, dispatcher);

@@ -6,9 +6,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 
+#include "scaled_models.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
@@ -16,7 +21,7 @@ namespace vps {
 
 namespace {
 
-// Bullet's interfaces return void where refusing would be right, so it is said once and not obeyed.
+// What does no harm is said once and not obeyed.
 void sayOnce(std::atomic_flag& said, const char* words) {
   if (!said.test_and_set()) std::fprintf(stderr, "vps: %s\n", words);
 }
@@ -28,6 +33,11 @@ Mat3 inertiaAboutCom(const MassProperties& unit_density, double density) {
 // Parallel axes: inertia about O of a mass whose centre is at p from O.
 Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
   return about_com + mass_kg * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
+}
+
+void requireModels(const VpsModels& models) {
+  if (!models.map && !models.shell && !models.mesh)
+    throw std::invalid_argument("VpsShape: it has no models; give it a map, a shell or a mesh (makeModels)");
 }
 
 Box boxOf(const PointShell& shell) {
@@ -164,16 +174,26 @@ class VpsShape::TriangleTree {
   std::vector<Node> nodes_;
 };
 
-VpsShape::VpsShape(VpsModels models, const Pose& X_SM) : X_SM_(X_SM) {
+VpsShape::VpsShape(VpsModels models, const Pose& X_SM) : X_SM_unscaled_(X_SM), scaling_(1, 1, 1) {
   m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
   m_collisionMargin = 0;
+  if (!X_SM.isFinite()) throw std::invalid_argument("VpsShape: the models' pose X_SM is not finite");
   setModels(std::move(models));
 }
 
 VpsShape::~VpsShape() = default;
 
 void VpsShape::setModels(VpsModels models) {
+  requireModels(models);
+  const double scale = scaling_.x();
+  VpsModels scaled = scale == 1 ? models : scaledModels(models, scale);
+  unscaled_ = std::move(models);
+  use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
+}
+
+void VpsShape::use(VpsModels models, const Pose& X_SM) {
   models_ = std::move(models);
+  X_SM_ = X_SM;
   ++revision_;
   is_edge_point_ = findEdgePoints(models_);
   Box box_M;
@@ -207,6 +227,9 @@ void VpsShape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) 
 }
 
 void VpsShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
+  if (!(mass >= 0) || !std::isfinite(mass))
+    throw std::invalid_argument("VpsShape: a mass of " + std::to_string(mass) +
+                                " kg; give a positive one, or 0 for a fixed body");
   if (models_.mesh) {
     const MassProperties unit = massProperties(*models_.mesh);
     if (unit.volume_m3 > 0) {
@@ -230,21 +253,31 @@ void VpsShape::processAllTriangles(btTriangleCallback* callback, const btVector3
 }
 
 void VpsShape::setLocalScaling(const btVector3& scaling) {
-  static std::atomic_flag said;
-  if (scaling != btVector3(1, 1, 1))
-    sayOnce(said,
-            "VpsShape cannot be scaled: its field is in metres; scale the mesh and build its models again");
-}
-
-const btVector3& VpsShape::getLocalScaling() const {
-  static const btVector3 one(1, 1, 1);
-  return one;
+  const double scale = scaling.x();
+  if (scaling.y() != scaling.x() || scaling.z() != scaling.x() || !(scale > 0) || !std::isfinite(scale)) {
+    std::ostringstream words;
+    words << "VpsShape: cannot be scaled by (" << scaling.x() << ", " << scaling.y() << ", " << scaling.z()
+          << "), only by one positive number on all axes; scale the mesh and build its models again";
+    throw std::invalid_argument(words.str());
+  }
+  if (scaling == scaling_) return;
+  VpsModels scaled = scale == 1 ? unscaled_ : scaledModels(unscaled_, scale);
+  scaling_ = scaling;
+  use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }
 
 void VpsShape::setMargin(btScalar margin) {
+  if (!(margin >= 0)) throw std::invalid_argument("VpsShape: a margin must not be negative; it is always 0");
   static std::atomic_flag said;
   if (margin != 0)
     sayOnce(said, "VpsShape has no margin: its contact distance is that of the part's surface");
+}
+
+int VpsShape::calculateSerializeBufferSize() const {
+  throw std::invalid_argument(
+      "VpsShape cannot be written in Bullet's format, whose importer could not read it; save the part's "
+      "mesh, "
+      "map (saveVdb) and shell (savePly) instead");
 }
 
 }  // namespace vps

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/install.h"
 
+#include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -128,34 +129,6 @@ TEST(Install, CompoundsOfVpsShapesCollide) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
 }
 
-TEST(Install, OtherConvexShapesFallBackToTriangles) {
-  World world;
-  btConvexHullShape hull;
-  for (int corner = 0; corner < 8; ++corner)
-    hull.addPoint(btVector3(toBt(corner & 1 ? 0.02 : -0.02), toBt(corner & 2 ? 0.02 : -0.02),
-                            toBt(corner & 4 ? 0 : -0.01)));
-  hull.setMargin(toBt(1e-4));
-  world.addShape(hull, 0, Vec3::Zero(), Pose());
-  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0055)));
-  world.step(500);
-  // Bullet's own accuracy: the hull's margin and GJK's tolerance.
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 0.3e-3);
-}
-
-TEST(Install, BulletsMeshShapesAreRefusedInWords) {
-  World world;
-  btTriangleMesh mesh;
-  mesh.addTriangle(btVector3(-1, -1, 0), btVector3(1, -1, 0), btVector3(0, 1, 0));
-  btBvhTriangleMeshShape ground(&mesh, true);
-  world.addShape(ground, 0, Vec3::Zero(), Pose());
-  world.add(cube(), Pose::translation(Vec3(0, 0, 0.004)));
-  testing::internal::CaptureStderr();
-  world.step(3);
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("do not collide"), std::string::npos);
-  EXPECT_EQ(said.find("do not collide"), said.rfind("do not collide")) << "once is enough";
-}
-
 TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
   // A pool of two: the third algorithm comes from the heap.
   btDefaultCollisionConstructionInfo small;
@@ -197,13 +170,157 @@ TEST(Install, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(first.getBasis(), second.getBasis());
 }
 
+// A dispatcher's own table, which it shows only to its heirs.
+struct Tables : btCollisionDispatcher {
+  static std::vector<btCollisionAlgorithmCreateFunc*> of(const btCollisionDispatcher& d) {
+    std::vector<btCollisionAlgorithmCreateFunc*> all;
+    for (const auto table : {&Tables::m_doubleDispatchContactPoints, &Tables::m_doubleDispatchClosestPoints})
+      for (const auto& row : d.*table) all.insert(all.end(), std::begin(row), std::end(row));
+    return all;
+  }
+};
+
+TEST(Install, UndoneItLeavesTheDispatcherAsItWas) {
+  btDefaultCollisionConfiguration config;
+  btCollisionDispatcher dispatcher(&config);
+  btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // for GImpact against all types, ours too
+  const auto before = Tables::of(dispatcher);
+  installVps(dispatcher);
+  EXPECT_NE(Tables::of(dispatcher), before);
+  installVps(dispatcher);
+  uninstallVps(dispatcher);
+  EXPECT_EQ(Tables::of(dispatcher), before);
+  uninstallVps(dispatcher);
+  EXPECT_EQ(Tables::of(dispatcher), before);
+}
+
+TEST(Install, GImpactThatRegistersAfterItIsTakenOverByInstallingAgain) {
+  World world;
+  btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
+  installVps(world.dispatcher);
+  btTriangleMesh mesh;
+  for (const auto& t : cube().mesh.triangles)
+    mesh.addTriangle(toBt(cube().mesh.vertices[t[0]]), toBt(cube().mesh.vertices[t[1]]),
+                     toBt(cube().mesh.vertices[t[2]]));
+  btGImpactMeshShape gimpact(&mesh);
+  gimpact.updateBound();
+  world.addShape(gimpact, 0, Vec3::Zero(), Pose());
+  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
+  world.step(200);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);  // GImpact's own is 100 um off
+}
+
+TEST(Install, ADispatcherAtTheAddressOfADeadOneStartsWithoutIt) {
+  btDefaultCollisionConfiguration config;
+  alignas(btCollisionDispatcher) unsigned char room[sizeof(btCollisionDispatcher)];
+  auto* dispatcher = new (room) btCollisionDispatcher(&config);
+  installVps(*dispatcher);
+  EXPECT_TRUE(isVpsInstalled(*dispatcher));
+  dispatcher->~btCollisionDispatcher();  // without uninstallVps
+  dispatcher = new (room) btCollisionDispatcher(&config);
+  EXPECT_FALSE(isVpsInstalled(*dispatcher));
+  installVps(*dispatcher);
+  EXPECT_TRUE(isVpsInstalled(*dispatcher));
+  EXPECT_EQ(vpsStats(*dispatcher).pair_updates, 0u);
+  uninstallVps(*dispatcher);
+  EXPECT_FALSE(isVpsInstalled(*dispatcher));
+  dispatcher->~btCollisionDispatcher();
+}
+
+TEST(Install, UndoneWhilePairsExistTheyKeepTheirContactAndItIsSaid) {
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  World world;
+  world.addShape(plane, 0, Vec3::Zero(), Pose());
+  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.005)));
+  world.step(10);
+  testing::internal::CaptureStderr();
+  uninstallVps(world.dispatcher);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("they keep VPS contact"), std::string::npos);
+  world.step(100);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
+  testing::internal::CaptureStderr();
+  uninstallVps(world.dispatcher);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Install, AForeignShapeOfOurTypeIsRefusedInWords) {
+  struct Foreign : btTriangleMeshShape {
+    explicit Foreign(btStridingMeshInterface* mesh) : btTriangleMeshShape(mesh) {
+      m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+    }
+  };
+  btTriangleMesh mesh;
+  mesh.addTriangle(btVector3(-1, -1, 0), btVector3(1, -1, 0), btVector3(0, 1, 0));
+  Foreign a(&mesh);
+  World world;
+  world.addShape(a, 0, Vec3::Zero(), Pose());
+  btRigidBody& part = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0051)));
+  world.step(100);
+  EXPECT_NEAR(part.getWorldTransform().getOrigin().z(), 0.005, 1e-6) << "met as a mesh";
+  world.addShape(a, 1, Vec3::Ones(), Pose());
+  testing::internal::CaptureStderr();
+  world.step(3);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("is taken"), std::string::npos);
+}
+
 TEST(TuneWorld, SaysWhatItChangedAndNothingTheSecondTime) {
   World world;  // tunes already
   EXPECT_TRUE(tuneWorld(*world.world).empty());
   world.world->getSolverInfo().m_linearSlop = toBt(1e-3);
-  const std::vector<std::string> said = tuneWorld(*world.world);
-  ASSERT_EQ(said.size(), 1u);
-  EXPECT_NE(said[0].find("linear slop"), std::string::npos);
+  const WorldTuning tuning = tuneWorld(*world.world);
+  ASSERT_EQ(tuning.changes.size(), 1u);
+  EXPECT_NE(tuning.changes[0].find("linear slop"), std::string::npos);
+}
+
+TEST(TuneWorld, IsUndoneToTheBitButForWhatTheUserChangedSince) {
+  World world;
+  gDbvtMargin = toBt(0.05);
+  world.world->getSolverInfo() = btContactSolverInfo();
+  btRigidBody& body = world.add(cube(), Pose());
+  btRigidBody& own = world.add(cube(), Pose::translation(Vec3(1, 0, 0)));
+  own.setSleepingThresholds(toBt(0.3), toBt(0.2));
+  const btContactSolverInfo before = world.world->getSolverInfo();
+  const WorldTuning tuning = tuneWorld(*world.world);
+  EXPECT_GE(tuning.changes.size(), 8u);
+  EXPECT_EQ(body.getLinearSleepingThreshold(), toBt(kSleepSpeed_m_s));
+  EXPECT_EQ(own.getLinearSleepingThreshold(), toBt(0.3)) << "the user's";
+  world.world->getSolverInfo().m_numIterations = 33;
+  restoreWorld(*world.world, tuning);
+  const btContactSolverInfo& after = world.world->getSolverInfo();
+  EXPECT_EQ(after.m_numIterations, 33);
+  EXPECT_EQ(after.m_splitImpulsePenetrationThreshold, before.m_splitImpulsePenetrationThreshold);
+  EXPECT_EQ(after.m_splitImpulseTurnErp, before.m_splitImpulseTurnErp);
+  EXPECT_EQ(after.m_warmstartingFactor, before.m_warmstartingFactor);
+  EXPECT_EQ(after.m_minimumSolverBatchSize, before.m_minimumSolverBatchSize);
+  EXPECT_EQ(after.m_solverMode, before.m_solverMode);
+  EXPECT_EQ(gDbvtMargin, toBt(0.05));
+  EXPECT_EQ(body.getLinearSleepingThreshold(), toBt(0.8));
+  EXPECT_EQ(body.getAngularSleepingThreshold(), toBt(1));
+  EXPECT_EQ(own.getLinearSleepingThreshold(), toBt(0.3));
+  tuneWorld(*world.world);
+}
+
+TEST(TuneWorld, RefusesASolverWithoutIterations) {
+  World world;
+  EXPECT_THROW(tuneWorld(*world.world, 0), std::invalid_argument);
+}
+
+TEST(TuneWorld, APartThatSlidesAtATenthOfAMetreASecondStaysAwake) {
+  for (const bool is_tuned : {false, true}) {
+    World world;
+    btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+    world.addShape(plane, 0, Vec3::Zero(), Pose(), 0);
+    btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.005)), false, 0);
+    body.forceActivationState(ACTIVE_TAG);
+    body.setLinearVelocity(btVector3(toBt(0.1), 0, 0));
+    if (is_tuned) tuneWorld(*world.world);
+    testing::internal::CaptureStderr();
+    world.step(3000);
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(said.find("fall asleep") == std::string::npos, is_tuned) << said;
+    // Untuned, Bullet stops it after two seconds.
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), is_tuned ? 0.3 : 0.2, 2e-3);
+  }
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/shape.h"
 
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "bullet_bridge/world.h"
 #include "vps/load_error.h"
+#include "vps/query.h"
 
 namespace vps {
 namespace {
@@ -13,6 +19,12 @@ using test::Built;
 using test::World;
 
 constexpr double kRounding_m = sizeof(btScalar) == 8 ? 1e-12 : 1e-7;
+
+VpsModels boxMesh() {
+  VpsModels models;
+  models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
+  return models;
+}
 
 TEST(BodyFrame, OfAnOffsetBoxHasItsAnalyticInertia) {
   const Vec3 size(0.02, 0.03, 0.04);
@@ -36,7 +48,7 @@ TEST(BodyFrame, RefusesAnInsideOutMesh) {
 }
 
 TEST(VpsShape, IsAConcaveTypeThatNobodyElseClaims) {
-  const VpsShape shape(VpsModels{});
+  const VpsShape shape(boxMesh());
   EXPECT_EQ(shape.getShapeType(), FAST_CONCAVE_MESH_PROXYTYPE);
   EXPECT_TRUE(shape.isConcave());
   EXPECT_EQ(shape.getMargin(), 0);
@@ -64,16 +76,129 @@ TEST(VpsShape, ItsInertiaIsThatOfTheSolid) {
             1e-8);
 }
 
-TEST(VpsShape, RefusesScaleAndMargin) {
-  VpsShape shape(VpsModels{});
+// Words of the std::invalid_argument that `call` throws; empty if it throws none.
+template <typename Call>
+std::string refusalOf(const Call& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& refusal) {
+    return refusal.what();
+  }
+  return "";
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(VpsShape, RefusesAMargin) {
+  VpsShape shape(boxMesh());
   testing::internal::CaptureStderr();
-  shape.setLocalScaling(btVector3(2, 2, 2));
   shape.setMargin(toBt(0.01));
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("cannot be scaled"), std::string::npos);
-  EXPECT_NE(said.find("no margin"), std::string::npos);
-  EXPECT_EQ(shape.getLocalScaling(), btVector3(1, 1, 1));
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no margin"), std::string::npos);
   EXPECT_EQ(shape.getMargin(), 0);
+  for (const double margin : {-1.0, kNan})
+    EXPECT_NE(refusalOf([&] { shape.setMargin(toBt(margin)); }).find("margin"), std::string::npos);
+}
+
+TEST(VpsShape, RefusesModelsThatAreNoneAndPosesThatAreNotFinite) {
+  EXPECT_NE(refusalOf([] { VpsShape shape(VpsModels{}); }).find("no models"), std::string::npos);
+  EXPECT_NE(refusalOf([] { VpsShape shape(boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
+            std::string::npos);
+  VpsShape shape(boxMesh());
+  EXPECT_NE(refusalOf([&] { shape.setModels(VpsModels{}); }).find("no models"), std::string::npos);
+  EXPECT_TRUE(shape.models().mesh) << "it is as it was";
+}
+
+TEST(VpsShape, RefusesAMassThatIsNone) {
+  const VpsShape shape(boxMesh());
+  btVector3 inertia(1, 1, 1);
+  for (const double mass : {-1.0, kNan, std::numeric_limits<double>::infinity()})
+    EXPECT_NE(refusalOf([&] { shape.calculateLocalInertia(toBt(mass), inertia); }).find("mass"),
+              std::string::npos)
+        << mass;
+  shape.calculateLocalInertia(0, inertia);
+  EXPECT_EQ(inertia, btVector3(0, 0, 0)) << "fixed";
+}
+
+TEST(VpsShape, RefusesToBeWrittenInBulletsFormat) {
+  World world;
+  VpsShape shape(boxMesh());
+  world.addShape(shape, 0, Vec3::Zero(), Pose());
+  btDefaultSerializer serializer;
+  EXPECT_NE(refusalOf([&] { world.world->serialize(&serializer); }).find("Bullet's format"),
+            std::string::npos);
+}
+
+TEST(VpsShape, RefusesScalesThatAreNotOnePositiveNumber) {
+  Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
+  const auto is_refused = [&](double x, double y, double z) {
+    return !refusalOf([&] { box.shape->setLocalScaling(btVector3(toBt(x), toBt(y), toBt(z))); }).empty();
+  };
+  EXPECT_TRUE(is_refused(1, 2, 1));
+  EXPECT_TRUE(is_refused(0, 0, 0));
+  EXPECT_TRUE(is_refused(-1, -1, -1));
+  EXPECT_TRUE(is_refused(kNan, kNan, kNan));
+  EXPECT_TRUE(is_refused(HUGE_VAL, HUGE_VAL, HUGE_VAL));
+  EXPECT_EQ(box.shape->getLocalScaling(), btVector3(1, 1, 1)) << "it is as it was";
+  VpsModels only_a_map;
+  only_a_map.map = box.shape->models().map;
+  VpsShape shape(only_a_map);
+  EXPECT_NE(refusalOf([&] { shape.setLocalScaling(btVector3(2, 2, 2)); }).find("mesh"), std::string::npos);
+}
+
+TEST(VpsShape, ScaledItIsThePartOfThatSize) {
+  Built scaled = test::build(makeTube(0.01, 0.005, 0.02, 32), 1000, 0.5e-3, 1e-3);
+  const Built large = test::build(makeTube(0.02, 0.01, 0.04, 32), 1000, 1e-3, 2e-3);
+  scaled.shape->setLocalScaling(btVector3(2, 2, 2));
+  EXPECT_EQ(scaled.shape->getLocalScaling(), btVector3(2, 2, 2));
+  const VpsModels &a = scaled.shape->models(), &b = large.shape->models();
+  EXPECT_LE((scaled.shape->bounds().max - large.shape->bounds().max).norm(), 1e-9);
+  ASSERT_EQ(a.shell->size(), b.shell->size());
+  double area_m2 = 0;
+  for (std::size_t i = 0; i < a.shell->size(); ++i) {
+    // On the surface, and in the larger map where the larger part is; the field's error is the voxel's.
+    EXPECT_LE(std::abs(b.surfaces[0].distance->signedDistance(a.shell->points[i])), 1e-9);
+    area_m2 += a.shell->area_m2[i];
+  }
+  EXPECT_NEAR(area_m2, area(large.mesh), 1e-9);
+  EXPECT_NEAR(a.map->voxel_m(), b.map->voxel_m(), 1e-12);
+  EXPECT_NEAR(a.map->distance(Vec3(0.021, 0, 0)), b.map->distance(Vec3(0.021, 0, 0)), 2 * a.map->quantum_m());
+  // Every point of the scaled shell is found by a query that culls by its blocks.
+  ContactSet near(a.shell->size());
+  QueryOptions options;
+  options.cutoff_m = 1e-3;
+  EXPECT_EQ(queryContacts(*a.map, *a.shell, Pose(), options, near).points_tested, a.shell->size());
+  EXPECT_EQ(near.contacts.size(), a.shell->size());
+  btVector3 inertia, expected;
+  scaled.shape->calculateLocalInertia(1, inertia);
+  large.shape->calculateLocalInertia(1, expected);
+  EXPECT_LE((inertia - expected).length(), 1e-9);
+  scaled.shape->setLocalScaling(btVector3(1, 1, 1));
+  EXPECT_NEAR(scaled.shape->bounds().max.x(), 0.5 * large.shape->bounds().max.x(), 1e-9);
+  EXPECT_EQ(scaled.shape->models().surfaces.size(), 1u);
+}
+
+TEST(VpsShape, ScaledInContactItRestsAtItsNewHeight) {
+  World world;
+  Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  world.addShape(plane, 0, Vec3::Zero(), Pose());
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
+  world.step(50);
+  box.shape->setLocalScaling(btVector3(toBt(0.5), toBt(0.5), toBt(0.5)));
+  world.step(200);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.0025, 1e-6);
+  // A compound scales its children.
+  btCompoundShape compound;
+  compound.addChildShape(btTransform::getIdentity(), box.shape.get());
+  compound.setLocalScaling(btVector3(2, 2, 2));
+  EXPECT_NEAR(box.shape->bounds().max.z(), 0.005, 1e-9);
+}
+
+TEST(VpsShape, ReplacedModelsAreScaledAsTheShapeIs) {
+  VpsShape shape(boxMesh());
+  shape.setLocalScaling(btVector3(3, 3, 3));
+  shape.setModels(boxMesh());
+  EXPECT_LE((shape.bounds().size() - 3 * Vec3(0.02, 0.04, 0.06)).norm(), 1e-12);
 }
 
 TEST(VpsShape, ARayHitsItWhereItIs) {
@@ -89,6 +214,187 @@ TEST(VpsShape, ARayHitsItWhereItIs) {
   };
   EXPECT_LE((cast(Vec3(0.0075, 0, 1), Vec3(0.0075, 0, -1)) - Vec3(0.0075, 0, 0.11)).norm(), 1e-6);
   EXPECT_EQ(cast(Vec3(0, 0, 1), Vec3(0, 0, -1)).x(), 9) << "through the hole";
+}
+
+TEST(VpsShape, AConvexSweepStopsAtIt) {
+  World world;
+  VpsModels models;
+  models.mesh = std::make_shared<const Mesh>(makeTube(0.01, 0.005, 0.02, 64));
+  VpsShape shape(models);
+  world.addShape(shape, 0, Vec3::Zero(), Pose());
+  btSphereShape ball(toBt(0.003));  // in floats Bullet's own cast misses a ball of 1 mm
+  const auto sweep = [&](double x_m) {
+    const btVector3 from(toBt(x_m), 0, toBt(0.113)), to(toBt(x_m), 0, toBt(-0.087));
+    btCollisionWorld::ClosestConvexResultCallback hit(from, to);
+    world.world->convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), from),
+                                 btTransform(btQuaternion::getIdentity(), to), hit);
+    return hit.hasHit() ? static_cast<double>(hit.m_closestHitFraction) : 2.0;
+  };
+  // Centre 3 mm above the top at 10 mm: half of the way of 0.2 m. Bullet's cast stops within 1e-4 of contact.
+  EXPECT_NEAR(sweep(0.0075), 0.5, 2e-3);
+  EXPECT_EQ(sweep(0), 2) << "through the hole";
+}
+
+TEST(VpsShape, IsDrawnByItsTriangles) {
+  struct Lines : btIDebugDraw {
+    int count = 0;
+    btVector3 low{1, 1, 1}, high{-1, -1, -1};
+    void drawLine(const btVector3& a, const btVector3& b, const btVector3&) override {
+      ++count;
+      for (const btVector3& p : {a, b}) low.setMin(p), high.setMax(p);
+    }
+    void drawContactPoint(const btVector3&, const btVector3&, btScalar, int, const btVector3&) override {}
+    void reportErrorWarning(const char*) override {}
+    void draw3dText(const btVector3&, const char*) override {}
+    void setDebugMode(int) override {}
+    int getDebugMode() const override { return DBG_DrawWireframe; }
+  } lines;
+  World world;
+  world.world->setDebugDrawer(&lines);
+  const VpsShape shape(boxMesh());
+  world.world->debugDrawObject(toBt(Pose::translation(Vec3(0.1, 0, 0))), &shape, btVector3(1, 1, 1));
+  EXPECT_GE(lines.count, 12 * 3);
+  // With the axes that Bullet draws at the origin, 0.1 m long.
+  EXPECT_NEAR(lines.low.x(), 0.09, 1e-6);
+  EXPECT_NEAR(lines.low.y(), -0.02, 1e-6);
+  EXPECT_NEAR(lines.low.z(), -0.03, 1e-6);
+}
+
+Built steel() {
+  return test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
+}
+
+TEST(VpsShape, AGhostSeesItWithoutHoldingIt) {
+  const Built box = steel();
+  World world;
+  btGhostPairCallback callback;
+  world.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
+  btPairCachingGhostObject ghost;
+  ghost.setCollisionShape(box.shape.get());
+  ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  world.world->addCollisionObject(&ghost, btBroadphaseProxy::SensorTrigger);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0.004, 0.003, 0.012)));
+  int steps_seen = 0, steps_touched = 0;
+  for (int i = 0; i < 150; ++i) {
+    world.step();
+    if (ghost.getNumOverlappingObjects() == 1 && ghost.getOverlappingObject(0) == &body) ++steps_seen;
+    // What the manual tells users of ghosts to do to see contacts.
+    btManifoldArray manifolds;
+    world.dispatcher.dispatchAllCollisionPairs(ghost.getOverlappingPairCache(),
+                                               world.world->getDispatchInfo(), &world.dispatcher);
+    btBroadphasePairArray& pairs = ghost.getOverlappingPairCache()->getOverlappingPairArray();
+    for (int p = 0; p < pairs.size(); ++p)
+      if (pairs[p].m_algorithm) pairs[p].m_algorithm->getAllContactManifolds(manifolds);
+    for (int m = 0; m < manifolds.size(); ++m)
+      if (manifolds[m]->getNumContacts() > 0) {
+        ++steps_touched;
+        break;
+      }
+  }
+  // It falls freely through 20 mm of overlap, from 2 mm above: from 20 ms to 67 ms.
+  EXPECT_GT(steps_seen, 40);
+  EXPECT_GE(steps_touched, 46);
+  EXPECT_LE(steps_touched, 50);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.012 - 9.81e-6 * 150 * 151 / 2, 1e-6);
+  world.world->removeCollisionObject(&ghost);
+}
+
+TEST(VpsShape, FallsAsleepAtRestAndWakesWhenItIsHit) {
+  const Built box = steel();
+  World world;
+  world.add(box, Pose(), true);
+  btRigidBody& lower = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
+  btRigidBody& upper = world.add(box, Pose::translation(Vec3(0.003, 0, 0.030)));
+  upper.setGravity(btVector3(0, 0, 0));
+  for (btRigidBody* body : {&lower, &upper}) {
+    body->forceActivationState(ACTIVE_TAG);
+    tuneBody(*body);
+  }
+  world.step(2500);  // Bullet waits for two seconds of stillness
+  EXPECT_EQ(lower.getActivationState(), ISLAND_SLEEPING);
+  EXPECT_EQ(upper.getActivationState(), ISLAND_SLEEPING);
+  upper.activate();
+  upper.setLinearVelocity(btVector3(0, 0, toBt(-0.5)));
+  world.step(40);
+  EXPECT_NE(lower.getActivationState(), ISLAND_SLEEPING);
+  EXPECT_GE(upper.getWorldTransform().getOrigin().z(), 0.020 - 5e-6);
+}
+
+TEST(VpsShape, ABodyIsTakenOutWhileOthersLeanOnIt) {
+  const Built box = steel();
+  World world;
+  world.add(box, Pose(), true);
+  btRigidBody& middle = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
+  btRigidBody& top = world.add(box, Pose::translation(Vec3(0, 0, 0.020)));
+  world.step(100);
+  world.world->removeRigidBody(&middle);
+  world.step(100);
+  EXPECT_NEAR(top.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
+  world.world->addRigidBody(&middle);  // into the place that top now has
+  world.step(5);
+  EXPECT_TRUE(fromBt(middle.getWorldTransform()).isFinite());
+}
+
+TEST(VpsShape, OutlivesItsDispatcherAndServesTheNext) {
+  const Built box = steel();
+  for (int life = 0; life < 2; ++life) {
+    World world;
+    world.add(box, Pose(), true);
+    btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));  // one shape, two bodies
+    world.step(50);
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
+  }
+}
+
+TEST(VpsShape, ABodyWhosePoseIsNotFiniteTouchesNothing) {
+  const Built box = steel();
+  World world;
+  btRigidBody& fixed = world.add(box, Pose(), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0099)));
+  world.step();
+  ASSERT_GT(world.dispatcher.getNumManifolds(), 0);
+  btTransform lost = body.getWorldTransform();
+  lost.setOrigin(btVector3(toBt(kNan), 0, 0));
+  body.setWorldTransform(lost);
+  btBroadphasePairArray& pairs = world.broadphase.getOverlappingPairCache()->getOverlappingPairArray();
+  ASSERT_EQ(pairs.size(), 1);
+  world.dispatcher.getNearCallback()(pairs[0], world.dispatcher, world.world->getDispatchInfo());
+  for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
+    EXPECT_EQ(world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts(), 0);
+  struct : btCollisionWorld::ContactResultCallback {
+    int count = 0;
+    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      return toBt(++count);
+    }
+  } found;
+  world.world->contactPairTest(&body, &fixed, found);
+  EXPECT_EQ(found.count, 0);
+}
+
+TEST(VpsShape, WithoutMapOrShellSaysThatItCannotTouch) {
+  World world;
+  VpsShape only_mesh(boxMesh());
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  world.addShape(plane, 0, Vec3::Zero(), Pose());
+  world.addShape(only_mesh, 1, Vec3::Ones(), Pose());
+  testing::internal::CaptureStderr();
+  world.step(3);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("needs a shell"), std::string::npos);
+  EXPECT_EQ(said.find("needs a shell"), said.rfind("needs a shell")) << "once is enough";
+}
+
+TEST(VpsShape, WithoutAMapIsMetByItsExactSurfaces) {
+  const Built box = steel();
+  VpsModels models = box.shape->models();
+  models.map = nullptr;
+  VpsShape bare(models, box.shape->X_SM());
+  World world;
+  world.addShape(bare, 0, Vec3::Zero(), box.frame.X_PB);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0102)));
+  world.step(300);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
 }
 
 TEST(VpsShape, GivesAllTrianglesOfABoxAndNoOthers) {

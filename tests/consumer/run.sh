@@ -12,3 +12,4 @@ flags=""
   -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 "$cmake" --build "$work/app"
 "$work/app/app"
+"$work/app/hello_vps"

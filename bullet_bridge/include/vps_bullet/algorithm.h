@@ -15,6 +15,19 @@ namespace vps {
 struct VpsPairState;
 struct VpsContext;
 
+/// A pair whose contacts can be chosen beside those of others.
+class VpsPair {
+ public:
+  /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
+  /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
+  /// ready.
+  virtual void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                       const btDispatcherInfo& info) = 0;
+
+ protected:
+  ~VpsPair() = default;
+};
+
 /// Contact of two VpsShapes, or of a VpsShape and one of Bullet's plane, box, sphere, capsule and cylinder.
 ///
 ///   1. query: points of each side that can touch the other within the step (speculative contact: distance
@@ -26,17 +39,14 @@ struct VpsContext;
 /// Manifold points are written directly: addContactPoint would merge neighbours nearer than the breaking
 /// threshold. gContactAddedCallback and the contact-stiffness flags are served all the same.
 /// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map).
-class VpsAlgorithm : public btActivatingCollisionAlgorithm {
+class VpsAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
  public:
   VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
                const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context);
   ~VpsAlgorithm() override;
 
-  /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
-  /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
-  /// ready.
   void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
-               const btDispatcherInfo& info);
+               const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
   /// CCD never runs on concave shapes; speculative contacts take its place.

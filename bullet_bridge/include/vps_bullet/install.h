@@ -3,13 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
-
 #include "vps/fidelity.h"
+#include "vps_bullet/tune.h"
 
 class btCollisionDispatcher;
-class btDiscreteDynamicsWorld;
 
 namespace vps {
 
@@ -47,22 +44,18 @@ struct VpsBulletStats {
 };
 
 /// Makes VpsShapes collide in worlds that use this dispatcher: with each other, and with Bullet's own shapes.
-/// Contact and closest-point queries, both orders, every shape type. Installing again replaces the settings.
-/// Call before bodies meet: a pair that exists keeps the algorithm it has.
-/// Throws std::invalid_argument for settings out of range.
+/// Contact and closest-point queries, both orders, every shape type; README.md lists them. Installing again
+/// replaces the settings. Call before bodies meet: a pair that exists keeps the algorithm it has. See
+/// tuneWorld for the world's own parameters. Throws std::invalid_argument for settings out of range.
 void installVps(btCollisionDispatcher& dispatcher, const VpsBulletSettings& settings = {});
 
-/// Puts the dispatcher's stock functions back. First remove the bodies with VpsShapes from the world: their
-/// pairs hold algorithms that belong to the installation. Without an installation: nothing. Must be called
-/// before the dispatcher dies.
+/// Puts back the functions that were registered before, where nobody has registered others since. Pairs that
+/// exist keep VPS contact until their bodies part or are removed; that is said on stderr.
+/// Without an installation: nothing. A dispatcher may also die without it; one that comes to lie at the same
+/// address starts without an installation.
 void uninstallVps(btCollisionDispatcher& dispatcher);
 
 [[nodiscard]] bool isVpsInstalled(const btCollisionDispatcher& dispatcher);
 [[nodiscard]] VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher);
-
-/// Sets a world's parameters to what contact at part scale (millimetres, grams, 1 kHz) needs. Sleeping is
-/// left alone.
-/// @return what it changed, a line for each: "split impulse threshold: -0.04 -> 0 m".
-std::vector<std::string> tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations = 100);
 
 }  // namespace vps

@@ -26,14 +26,19 @@ struct BodyFrame {
 /// Throws LoadError for a volume or density that is not positive (an open or inside-out mesh gives such).
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
 
+class SheetBorder;
+
 /// The exact surface of one part in the models' frame M.
 struct VpsSurface {
   std::shared_ptr<const MeshDistance> distance;
   Pose X_MP;
+  /// Of an open surface without an inside, met on the side that a point faces; null for a solid.
+  std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
-/// What a shape is made of, all in one frame M. Any may be missing: without a map others cannot be tested
-/// against it, without a shell it cannot be tested against others, without triangles rays miss it.
+/// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against
+/// its surfaces (exact, and slower), or, if there are none, cannot be; without a shell it cannot be tested
+/// against others, without triangles rays miss it.
 struct VpsModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
@@ -50,23 +55,25 @@ VpsModels makeModels(const Part& part);
 /// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
 /// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;
 /// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. May be dynamic, unlike Bullet's mesh
-/// shapes. Shared by any number of bodies. Margin is 0 and scale 1; setting others has no effect and says so
-/// once.
+/// shapes. Shared by any number of bodies, and bound to no dispatcher: may outlive them all. Its margin is 0.
 class VpsShape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
   /// @param X_SM  the models' frame in the shape's; for a dynamic body of a part it is
   /// BodyFrame::X_PB.inverse().
+  /// Throws std::invalid_argument for models without map, shell and mesh, and for a pose that is not finite.
   explicit VpsShape(VpsModels models, const Pose& X_SM = {});
   ~VpsShape() override;
 
   /// Replaces the models (a cooked body that got one more part). Only between steps; if the box grew, follow
-  /// it with btCollisionWorld::updateSingleAabb for each static body of this shape.
+  /// it with btCollisionWorld::updateSingleAabb for each static body of this shape. They are scaled as the
+  /// shape is. Throws as the constructor; the shape then is as it was.
   void setModels(VpsModels models);
+  /// The models in use, scaled.
   [[nodiscard]] const VpsModels& models() const { return models_; }
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
-  /// Grows with every setModels, so that nobody keeps an impulse of a point that is gone.
+  /// Grows with every change of the models, so that nobody keeps an impulse of a point that is gone.
   [[nodiscard]] unsigned revision() const { return revision_; }
   /// True for a shell point that stands on a sharp edge or corner of the surfaces, where the part has no one
   /// normal. False for all when there are no surfaces to tell by.
@@ -77,20 +84,34 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
   void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
-  /// Of the solid mesh about the shape's origin, its diagonal (exact when X_SM comes from makeBodyFrame).
+  /// Of the solid mesh about the shape's origin, its diagonal (exact when X_SM comes from makeBodyFrame); of
+  /// the box where there is no closed mesh. Zero for a mass of zero, which is Bullet's way to say fixed.
+  /// Throws std::invalid_argument for a mass that is negative or not finite.
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                            const btVector3& max) const override;
+  /// Makes the part larger or smaller about the shape's origin, for all bodies of this shape, with the price
+  /// of building its models again. Only between steps; follow it with btCollisionWorld::updateSingleAabb, and
+  /// with setMassProps: Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not
+  /// positive, finite and even in x, y and z (a field of distances stays one only so), and for models with a
+  /// map but without surfaces or a mesh; the shape then is as it was.
   void setLocalScaling(const btVector3& scaling) override;
-  const btVector3& getLocalScaling() const override;
+  const btVector3& getLocalScaling() const override { return scaling_; }
+  /// Has no effect, and says so once if it should have one: contact is that of the part's surface.
+  /// Throws std::invalid_argument for a margin that is negative or not a number.
   void setMargin(btScalar margin) override;
   btScalar getMargin() const override { return 0; }
   const char* getName() const override { return "VpsShape"; }
+  /// Throws std::invalid_argument: Bullet's importer has no reader for a voxmap, and would fail later.
+  [[nodiscard]] int calculateSerializeBufferSize() const override;
 
  private:
   class TriangleTree;
-  VpsModels models_;
-  Pose X_SM_;
+  void use(VpsModels models, const Pose& X_SM);
+
+  VpsModels unscaled_, models_;
+  Pose X_SM_unscaled_, X_SM_;
+  btVector3 scaling_;
   Box bounds_S_;
   unsigned revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;

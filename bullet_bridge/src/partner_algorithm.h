@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Narrow phase for pairs of a VpsShape with a shape that a PartnerShape stands in for.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
+
+#include <memory>
+
+#include "vps_bullet/algorithm.h"
+
+namespace vps {
+
+class PartnerShape;
+
+/// VpsAlgorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
+/// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
+class PartnerAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
+ public:
+  /// @param partner_side  0 or 1: whose shape is replaced. Throws as PartnerCache::get().
+  PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+                   const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
+                   int partner_side);
+  ~PartnerAlgorithm() override;
+
+  /// Does nothing where the stand-in must be renewed: that is left to processCollision(), one pair at a time.
+  void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+               const btDispatcherInfo& info) override;
+  void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                        const btDispatcherInfo& info, btManifoldResult* result) override;
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override;
+
+ private:
+  struct State;
+  // Behind a pointer: Bullet's algorithm pool has elements of a fixed size that it does not check in Release.
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vps
