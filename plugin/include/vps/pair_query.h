@@ -30,8 +30,8 @@ QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_A
                            const QueryOptions& options, double k_N_per_m3, const Vec3& p_AO,
                            TouchSummary& out, PairMemory* memory = nullptr) noexcept;
 
-/// The wrench on B, in A, of both ways: half of each. `F_B_A` is on B, in A; `F_A_B` on A, in B, about the same
-/// point.
+/// The wrench on B, in A, of both ways: half of each. `F_B_A` is on B, in A; `F_A_B` on A, in B, about the
+/// same point.
 [[nodiscard]] Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB);
 
 }  // namespace vps
