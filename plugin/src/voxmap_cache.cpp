@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -138,9 +139,12 @@ class Writer {
 /// Bytes of a file with this header, or nothing if its numbers cannot be: checked before memory is taken.
 std::optional<std::uint64_t> bytesOf(const Header& header) {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 40;
+  constexpr std::int64_t kFarthest =
+      std::numeric_limits<std::int32_t>::max() / VoxMap::kBrick;  // in voxels, an int
   std::uint64_t cells = 1;
-  for (const std::int32_t n : header.size) {
-    if (n < 1) return std::nullopt;
+  for (std::size_t k = 0; k < header.size.size(); ++k) {
+    const std::int64_t n = header.size[k], low = header.low[k];
+    if (n < 1 || low < -kFarthest || low + n > kFarthest) return std::nullopt;
     cells *= static_cast<std::uint64_t>(n);
     if (cells > kMost) return std::nullopt;
   }
