@@ -47,6 +47,15 @@ void PenaltyNewton::add(PenaltyPair& pair) {
     if (patch.body[i] < 0) patch.fixed += patch.X[i] * Island::fixedVelocity(pair.object[i]);
   }
   if (patch.body[0] < 0 && patch.body[1] < 0) return;
+  // A turning body's points go along a circle, off the tangent that a twist takes them along. Left out, a nut
+  // ends each step a little off its thread, and the springs that put it back brake it.
+  Vec3 turn[2], center[2];
+  for (int i = 0; i < 2; ++i) {
+    turn[i] = dt_s_ * Island::fixedVelocity(pair.object[i]).head<3>();
+    center[i] = fromBt(pair.object[i]->getWorldTransform().getOrigin());
+  }
+  const Mat3 off_tangent[2] = {rotationFromVector(turn[0]) - Mat3::Identity() - crossMatrix(turn[0]),
+                               rotationFromVector(turn[1]) - Mat3::Identity() - crossMatrix(turn[1])};
   patch.points.reserve(pair.points.size());
   for (const PenaltyPoint& p : pair.points) {
     patch.radius_m = std::max(patch.radius_m, (p.p_W - patch.center).norm());
@@ -54,7 +63,8 @@ void PenaltyNewton::add(PenaltyPair& pair) {
     copy(p.p_W - patch.center, point.r);
     copy(p.n_W, point.n);
     copy(p.bend_W, point.bend);
-    point.gap_m = p.gap_m;
+    point.gap_m =
+        p.gap_m + p.n_W.dot(off_tangent[0] * (p.p_W - center[0]) - off_tangent[1] * (p.p_W - center[1]));
     point.k = p.k_N_per_m;
     point.limit_N = pair.mu * p.f_n_N;
     patch.points.push_back(point);
