@@ -44,6 +44,7 @@ struct VpsPairState {
   RelativeMotion motion;
   bool is_prepared = false;
   PenaltyPair penalty;                   ///< in penalty mode
+  bool is_registered = false;            ///< penalty is known to the solver
   std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
   QueryMemory& memoryOf(int side, const VoxMap& map, const PointShell& shell) {
     std::optional<QueryMemory>& own = memory[side];
@@ -72,6 +73,7 @@ struct PairView {
   }
   [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
   [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
+  [[nodiscard]] bool canLookBothWays() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
     double radius_m = 1e30;
@@ -129,8 +131,7 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
   std::size_t tested = 0, left_out = 0;
   // One-sided: the smaller body's points, since a larger one's may be too far apart to catch it.
   int only = -1;
-  if (pair.hasMap(0) && pair.hasMap(1) && context.settings.sides == Sides::One && pair.hasShell(0) &&
-      pair.hasShell(1))
+  if (context.settings.sides == Sides::One && pair.canLookBothWays())
     only = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm() ? 0 : 1;
   for (int i = 0; i < 2; ++i) {
     if (!pair.hasShell(i) || (only >= 0 && i != only)) continue;
@@ -278,10 +279,7 @@ void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion
 
 // How many sides' points answer for the same surface.
 int sideCount(const PairView& pair, Sides sides) {
-  if (sides == Sides::One || !pair.vps[0] || !pair.vps[1]) return 1;
-  const bool is_both =
-      pair.hasShell(0) && pair.hasShell(1) && pair.vps[0]->models().map && pair.vps[1]->models().map;
-  return is_both ? 2 : 1;
+  return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
 }
 
 // All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
@@ -383,9 +381,11 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   state_->is_prepared = false;
   context.contacts += state_->contacts.size();
   state_->writer->write(state_->contacts, pair.wrapper, state_->motion);
-  if (state_->penalty.points.empty())
-    context.penalty.remove(&state_->penalty);
-  else
+  // Pairs that press on nothing, and all of rigid mode, have nothing to say to the solver.
+  const bool presses = !state_->penalty.points.empty();
+  if (!presses && state_->is_registered) context.penalty.remove(&state_->penalty);
+  state_->is_registered = presses;
+  if (presses)
     for (const btPersistentManifold* manifold : state_->writer->manifolds())
       context.penalty.add(manifold, &state_->penalty);
 }

@@ -15,8 +15,8 @@ using test::Built;
 /// Where seven boxes are that have fallen on one another.
 std::vector<btTransform> heap(btCollisionDispatcher& dispatcher, btDefaultCollisionConfiguration& config,
                               ContactMode mode) {
-  static const Built box = test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
-  static const Built ground = test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
+  static const Built box = test::steelBox();
+  static const Built ground = test::plate();
   btDbvtBroadphase broadphase;
   VpsSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);

@@ -11,18 +11,13 @@ namespace vps {
 namespace {
 
 using test::Built;
+using test::kGravity;
+using test::kIsDouble;
+using test::plate;
 using test::Solver;
+using test::steelBox;
 using test::World;
 
-constexpr double kGravity = 9.81;
-constexpr bool kIsDouble = sizeof(btScalar) == 8;
-
-Built steelBox() {
-  return test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
-}
-Built plate() {
-  return test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
-}
 /// A point of the part's frame in the body's.
 btVector3 inBody(const Built& part, const Vec3& p_P) {
   return toBt(part.frame.X_PB.inverse() * p_P);

@@ -10,17 +10,11 @@ namespace vps {
 namespace {
 
 using test::Built;
+using test::kGravity;
+using test::plate;
 using test::Solver;
+using test::steelBox;
 using test::World;
-
-constexpr double kGravity = 9.81;
-
-Built steelBox() {
-  return test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
-}
-Built plate() {
-  return test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
-}
 
 TEST(Penalty, ABlockSinksByItsWeightOverStiffnessAndArea) {
   VpsBulletSettings settings;

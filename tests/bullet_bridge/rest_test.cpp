@@ -10,21 +10,16 @@ namespace vps {
 namespace {
 
 using test::Built;
+using test::kGravity;
+using test::kIsDouble;
+using test::plate;
 using test::Solver;
+using test::steelBox;
 using test::World;
 
-constexpr double kGravity = 9.81;
-constexpr bool kIsDouble = sizeof(btScalar) == 8;
 // A resting velocity is the solver's residual (1e-7 m/s by VpsSolver's settings; PGS 100 leaves about 1e-6),
 // in float the rounding of dt * g.
 constexpr double kRest_m_s = kIsDouble ? 1e-6 : 2e-5;
-
-Built steelBox() {
-  return test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
-}
-Built plate() {
-  return test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
-}
 
 struct Rest {
   double sink_m = 0, drift_m = 0, speed_m_s = 0, spin_rad_s = 0;

@@ -50,6 +50,16 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
   return built;
 }
 
+constexpr double kGravity = 9.81;
+constexpr bool kIsDouble = sizeof(btScalar) == 8;
+
+inline Built steelBox() {
+  return build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.5e-3, 1e-3);
+}
+inline Built plate() {
+  return build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.5e-3, 1e-3);
+}
+
 class World {
  public:
   explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100,
