@@ -161,6 +161,13 @@ void advance(PairView& pair, const PairView& start, double dt_s) {
   }
 }
 
+// In penalty mode the points of faces press along their own normals.
+void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
+                       std::vector<Candidate>& candidates) {
+  for (int i = 0; i < 2; ++i)
+    if (settings.mode == ContactMode::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+}
+
 // Candidates of the step. A body that moves less than the fields can see is looked at once, where it is. A
 // faster one is looked at along its way, so that it cannot pass through; the plane it first meets then holds
 // for the whole step.
@@ -171,6 +178,7 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairS
   const double travel_m = motion.speed_m_s * motion.dt_s;
   if (motion.slack_m + travel_m <= sight) {
     collect(pair, motion.slack_m + travel_m, context, out, &state);
+    takeSpringNormals(pair, context.settings, out);
     return;
   }
   const double stride_m = std::max(0.5 * (sight - motion.slack_m), 0.25 * sight);
@@ -181,6 +189,7 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairS
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, t_s);
     collect(later, std::min(motion.slack_m + travel_m / strides, sight), context, out);
+    takeSpringNormals(later, context.settings, out);
     // Keep what is met in this stride, as planes seen from where the bodies are now.
     std::erase_if(out, [&](Candidate& c) {
       const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
@@ -191,6 +200,17 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairS
       c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
       return false;
     });
+  }
+}
+
+// Where the bodies go in the step if they keep their velocities.
+void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
+  for (int i = 0; i < 2; ++i) {
+    const btCollisionObject& object = *pair.wrapper[i]->getCollisionObject();
+    const Twist V = predictedVelocity(object, 0, false);
+    const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
+    const Mat3 R = rotationFromVector(V.w * dt_s);
+    way[i] = Pose(R, center + (V.v + V.w.cross(center)) * dt_s - R * center);
   }
 }
 
@@ -282,6 +302,22 @@ int sideCount(const PairView& pair, Sides sides) {
   return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
 }
 
+// A point on an edge has no normal of its own, and the field is worst near the other side's edges: 14 um at
+// the root of an M10 thread with voxels of 0.2 mm, and normals that follow the grid. A nut that stood on such
+// points lost 21 % of its acceleration.
+void correctSprings(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+                    std::vector<Candidate>& candidates) {
+  // Of a body that was looked at along its way, the places are elsewhere.
+  if (!settings.use_surfaces || motion.slack_m + motion.speed_m_s * motion.dt_s > sight_m(pair)) return;
+  Pose way[2];
+  coast(pair, motion.dt_s, way);
+  for (int i = 0; i < 2; ++i)
+    if (pair.hasShell(i))
+      correctEdges(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), way,
+                   motion);
+  dropUnreachable(motion, candidates);
+}
+
 // All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
 // and for solvers that know nothing of springs.
 void choosePenalty(const PairView& pair, VpsPairState& state) {
@@ -292,8 +328,7 @@ void choosePenalty(const PairView& pair, VpsPairState& state) {
   ++context.pair_updates;
   context.candidates += candidates.size();
   dropUnreachable(motion, candidates);
-  for (int i = 0; i < 2; ++i)
-    if (pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+  correctSprings(pair, motion, context.settings, candidates);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
   state.penalty.mu =
       btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);

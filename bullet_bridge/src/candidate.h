@@ -84,6 +84,13 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m);
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
              const btCollisionShape& theirs, const RelativeMotion& motion);
 
+/// Exact distance and normal of the points of `side` that are on edges, where the other side has a map and
+/// surfaces: seen from where both bodies would be at the end of the step if they kept their velocities,
+/// unless that is an overlap that is not there now. `distance_m` is what the plane found there means now.
+/// @param way  of body 0 and body 1 in the step, in W
+void correctEdges(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
+                  const btCollisionShape& theirs, const Pose (&way)[2], const RelativeMotion& motion);
+
 /// What correct() does without exact surfaces: a point on a face keeps its own tangent plane clear, so near
 /// an edge of the other side, whose field's normals lean there, it does not push sideways. Drops the points
 /// of `side` that the other's surface does not face. Cost: some products for each.
