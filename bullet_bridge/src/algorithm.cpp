@@ -32,6 +32,10 @@ struct Selection {
   bool is_valid = false;
   Pose X_01;           ///< body 1 in body 0
   double reach_m = 0;  ///< how far the query looked
+  // In penalty mode:
+  std::vector<Candidate> springs;  ///< all that were
+  Pose X_W0;                       ///< of body 0
+  Twist V;                         ///< RelativeMotion::V
 };
 
 }  // namespace
@@ -251,19 +255,24 @@ void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, c
   selection.reach_m = motion.slack_m + motion.speed_m_s * motion.dt_s;
 }
 
-// A part that has not moved since its points were chosen keeps them: only their distances are looked up anew.
-// At rest that is all the work there is. False: choose anew.
-bool recallSelection(const Selection& selection, const PairView& pair, const RelativeMotion& motion,
-                     const VpsBulletSettings& settings, std::vector<Candidate>& out) {
-  constexpr double kStill_m =
-      1e-6;  // assumed: below it no other point would be worth more than the chosen ones
+constexpr double kStill_m =
+    1e-6;  // assumed: below it no other point would be worth more than the chosen ones
+
+bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
   if (!selection.is_valid) return false;
   if (motion.slack_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
   const double turned_rad = (moved.R - Mat3::Identity()).norm();
-  if ((moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() > kStill_m) return false;
+  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kStill_m;
+}
+
+// A part that has not moved since its points were chosen keeps them: only their distances are looked up anew.
+// At rest that is all the work there is. False: choose anew.
+bool recallSelection(const Selection& selection, const PairView& pair, const RelativeMotion& motion,
+                     const VpsBulletSettings& settings, std::vector<Candidate>& out) {
+  if (!isWhereItWas(selection, pair, motion)) return false;
   for (Candidate c : selection.chosen) {
     lookUp(pair.side(c.side), pair.side(1 - c.side), *pair.wrapper[1 - c.side]->getCollisionShape(), settings,
            c);
@@ -318,25 +327,55 @@ void correctSprings(const PairView& pair, const RelativeMotion& motion, const Vp
   dropUnreachable(motion, candidates);
 }
 
-// All points that can touch become springs for the solver; a few of them stand in the manifolds, to be seen
-// and for solvers that know nothing of springs.
-void choosePenalty(const PairView& pair, VpsPairState& state) {
+// All that can touch, and the few of them that stand in the manifolds, to be seen and for solvers that know
+// nothing of springs.
+void chooseSprings(const PairView& pair, VpsPairState& state) {
   VpsContext& context = *state.context;
   const RelativeMotion& motion = state.motion;
+  Selection& selection = state.selection;
   std::vector<Candidate>& candidates = state.contacts;
   collectForStep(pair, motion, state, candidates);
   ++context.pair_updates;
   context.candidates += candidates.size();
   dropUnreachable(motion, candidates);
   correctSprings(pair, motion, context.settings, candidates);
+  selection.springs = candidates;
+  VpsBulletSettings seen = context.settings;
+  seen.use_surfaces = false;
+  choose(pair, motion, seen, state.writer.get(), candidates);
+  keepSelection(candidates, pair, motion, selection);
+  selection.X_W0 = pair.X_WS[0];
+  selection.V = motion.V;
+}
+
+// What recallSelection() does for thousands of points: within kStill_m their planes are as good as a look.
+// The points that could be left out as the motion was are those that can be left out now.
+bool recallSprings(const PairView& pair, VpsPairState& state, Carry& carry) {
+  const Selection& selection = state.selection;
+  const RelativeMotion& motion = state.motion;
+  RelativeMotion change = motion;
+  change.V = {motion.V.w - selection.V.w, motion.V.v - selection.V.v};
+  const double change_m_s = change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m();
+  if (!(change_m_s * motion.dt_s <= kStill_m) || !isWhereItWas(selection, pair, motion)) return false;
+  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  const Pose carried = pair.X_WS[0] * selection.X_W0.inverse();  // body 0, in W
+  const Pose against =
+      pair.X_WS[0] * X_01 * selection.X_01.inverse() * pair.X_WS[0].inverse();  // body 1, in W
+  carry = {carried, against};
+  state.contacts = selection.chosen;
+  for (Candidate& c : state.contacts) carry(c);
+  return true;
+}
+
+void choosePenalty(const PairView& pair, VpsPairState& state) {
+  const VpsContext& context = *state.context;
+  Carry carry;
+  if (!recallSprings(pair, state, carry)) chooseSprings(pair, state);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
   state.penalty.mu =
       btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);
   const double stiffness = context.settings.stiffness_N_per_m3 / sideCount(pair, context.settings.sides);
-  renewPoints(state.penalty, candidates, stiffness, motion);
-  VpsBulletSettings seen = context.settings;
-  seen.use_surfaces = false;
-  choose(pair, motion, seen, state.writer.get(), candidates);
+  renewPoints(state.penalty, state.selection.springs, stiffness, state.motion, carry);
 }
 
 void chooseRigid(const PairView& pair, VpsPairState& state) {

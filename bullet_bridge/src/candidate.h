@@ -43,6 +43,18 @@ struct RelativeMotion {
   bool canTouch(Candidate& c) const;
 };
 
+/// What small motions since a query make of its candidates: their planes go with body 0.
+struct Carry {
+  Pose body0;    ///< place of body 0 then -> now, in W
+  Pose against;  ///< of body 1 against body 0, as it would move a point of W now
+
+  void operator()(Candidate& c) const {
+    c.p_W = body0 * c.p_W;
+    c.n_W = body0.R * c.n_W;
+    c.distance_m -= c.n_W.dot(against * c.p_W - c.p_W);
+  }
+};
+
 /// One side of a pair: its shell's points against the other's field.
 struct SideView {
   const VpsShape* shape = nullptr;  ///< the side with the shell
