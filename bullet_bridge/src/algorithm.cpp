@@ -14,6 +14,7 @@
 #include "context.h"
 #include "manifold_writer.h"
 #include "motion.h"
+#include "partner.h"
 #include "penalty_pair.h"
 #include "primitive.h"
 #include "vps_bullet/convert.h"
@@ -36,6 +37,7 @@ struct Selection {
   std::vector<Candidate> springs;  ///< all that were
   Pose X_W0;                       ///< of body 0
   Twist V;                         ///< RelativeMotion::V
+  ShapeKey key[2];                 ///< of sides that are no VpsShape
 };
 
 }  // namespace
@@ -74,6 +76,10 @@ struct PairView {
   }
   [[nodiscard]] SideView side(int i) const {
     return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
+  }
+  /// Changes when the size of a side does that is no VpsShape.
+  [[nodiscard]] ShapeKey key(int i) const {
+    return vps[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
   }
   [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
   [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
@@ -346,6 +352,7 @@ void chooseSprings(const PairView& pair, VpsPairState& state) {
   keepSelection(candidates, pair, motion, selection);
   selection.X_W0 = pair.X_WS[0];
   selection.V = motion.V;
+  for (int i = 0; i < 2; ++i) selection.key[i] = pair.key(i);
 }
 
 // What recallSelection() does for thousands of points: within kStill_m their planes are as good as a look.
@@ -353,6 +360,8 @@ void chooseSprings(const PairView& pair, VpsPairState& state) {
 bool recallSprings(const PairView& pair, VpsPairState& state, Carry& carry) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
+  for (int i = 0; i < 2; ++i)
+    if (!(selection.key[i] == pair.key(i))) return false;
   RelativeMotion change = motion;
   change.V = {motion.V.w - selection.V.w, motion.V.v - selection.V.v};
   const double change_m_s = change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m();

@@ -108,6 +108,24 @@ TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
   below.setMotionState(nullptr);
 }
 
+TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
+  constexpr double kRadius_m = 5e-3, kGrown_m = 6e-3;
+  World world(Solver::Penalty);
+  const Built ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btSphereShape ball(toBt(kRadius_m));
+  btRigidBody& body =
+      world.addShape(ball, 4e-3, Vec3::Constant(4e-8), Pose::translation(Vec3(0, 0, kRadius_m)));
+  world.step(2000);
+  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  world.step();
+  ASSERT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  ball.setUnscaledRadius(toBt(kGrown_m));
+  world.step(200);
+  // It is met at the plate's points, 1 mm apart: sinks by up to s^2 / (4 r) between them.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kGrown_m, 1e-6 / (4 * kRadius_m));
+}
+
 TEST(Penalty, PartsThatStartInsideEachOtherSeparateGently) {
   World world(Solver::Penalty);
   world.world->setGravity(btVector3(0, 0, 0));
