@@ -57,6 +57,8 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
   const std::size_t count = from.points.size();
   points_.resize(count);
   for (auto& column : wrench_) column.resize(count);
+  for (Columns* columns : {&r_m_, &bend_m_, &bent_m_})
+    for (auto& column : *columns) column.resize(count);
   gap_m_.resize(count);
   limit_N_.resize(count);
   end_m_.resize(count);
@@ -66,9 +68,13 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
   for (std::size_t i = 0; i < count; ++i) {
     const PenaltyPoint& p = from.points[i];
     const Vec3 r = p.p_W - center;
-    points_[i] = {r, p.n_W, p.bend_W, p.k_N_per_m};
+    points_[i] = {r, p.n_W, p.k_N_per_m};
     const Vec6 wrench = wrenchOf(r, p.n_W);
     for (int c = 0; c < 6; ++c) wrench_[static_cast<std::size_t>(c)][i] = wrench[c];
+    for (int c = 0; c < 3; ++c) {
+      r_m_[static_cast<std::size_t>(c)][i] = r[c];
+      bend_m_[static_cast<std::size_t>(c)][i] = p.bend_W[c];
+    }
     gap_m_[i] =
         p.gap_m + p.n_W.dot(off_tangent[0] * (p.p_W - origin[0]) - off_tangent[1] * (p.p_W - origin[1]));
     limit_N_[i] = from.mu * p.f_n_N;
@@ -88,18 +94,36 @@ void PenaltyPatch::findGaps(const Vec6& twist) const {
                        (e[i] * way[4] + f[i] * way[5]));
 }
 
-inline PenaltyPatch::Push PenaltyPatch::pushOf(std::size_t i, const Vec6& twist) const {
-  const Point& point = points_[i];
-  const double limit_N = limit_N_[i];
+// The tangential part of each point's way, added to its bend. Memory that does not overlap, so that the
+// compiler may take several points at once.
+void PenaltyPatch::findSlips(const Vec6& twist) const {
+  const std::size_t count = points_.size();
+  const Vec6 way = dt_s_ * twist;
+  const double *rx = r_m_[0].data(), *ry = r_m_[1].data(), *rz = r_m_[2].data();
+  const double *nx = wrench_[3].data(), *ny = wrench_[4].data(), *nz = wrench_[5].data();
+  const double *bx = bend_m_[0].data(), *by = bend_m_[1].data(), *bz = bend_m_[2].data();
+  double* __restrict x = bent_m_[0].data(), * __restrict y = bent_m_[1].data(), * __restrict z = bent_m_[2].data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double wx = way[3] + (way[1] * rz[i] - way[2] * ry[i]);
+    const double wy = way[4] + (way[2] * rx[i] - way[0] * rz[i]);
+    const double wz = way[5] + (way[0] * ry[i] - way[1] * rx[i]);
+    const double along = nx[i] * wx + ny[i] * wy + nz[i] * wz;
+    x[i] = bx[i] + (wx - along * nx[i]);
+    y[i] = by[i] + (wy - along * ny[i]);
+    z[i] = bz[i] + (wz - along * nz[i]);
+  }
+}
+
+inline PenaltyPatch::Push PenaltyPatch::pushOf(std::size_t i) const {
+  const double k = points_[i].k, limit_N = limit_N_[i];
   Push push;
-  push.f_n_N = point.k * std::max(0.0, -end_m_[i]);
+  push.f_n_N = k * std::max(0.0, -end_m_[i]);
   if (!(limit_N > 0)) return push;
-  const Vec3 way = dt_s_ * (twist.tail<3>() + twist.head<3>().cross(point.r));
-  const Vec3 x = point.bend + (way - point.n.dot(way) * point.n);
+  const Vec3 x(bent_m_[0][i], bent_m_[1][i], bent_m_[2][i]);
   const double length2 = x.squaredNorm();
   if (!(length2 > 0)) return push;
-  if (point.k * point.k * length2 <= limit_N * limit_N) {
-    push.f_t_N = point.k * x;
+  if (k * k * length2 <= limit_N * limit_N) {
+    push.f_t_N = k * x;
   } else {
     push.slip_m = std::sqrt(length2);
     push.along = x / push.slip_m;
@@ -110,13 +134,14 @@ inline PenaltyPatch::Push PenaltyPatch::pushOf(std::size_t i, const Vec6& twist)
 
 void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
   findGaps(twist);
+  findSlips(twist);
   gradient.setZero();
   SymmetricSum sum;
   const double dt2 = dt_s_ * dt_s_;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!presses(i)) continue;
     const Point& point = points_[i];
-    const Push push = pushOf(i, twist);
+    const Push push = pushOf(i);
     gradient += wrenchOf(point.r, dt_s_ * (push.f_t_N - push.f_n_N * point.n));
     if (!with_hessian) continue;
     // K = k_t I + (k_n - k_t) n n' - k_slip a a'
@@ -143,6 +168,7 @@ void PenaltyPatch::renewLimits(const Vec6& twist, double& change, double& greate
 
 void PenaltyPatch::finish(const Vec6& twist) const {
   findGaps(twist);
+  findSlips(twist);
   pair->all_N = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     PenaltyPoint& out = pair->points[i];
@@ -151,7 +177,7 @@ void PenaltyPatch::finish(const Vec6& twist) const {
       out.bend_W.setZero();
       continue;
     }
-    const Push push = pushOf(i, twist);
+    const Push push = pushOf(i);
     out.f_n_N = push.f_n_N;
     out.bend_W = (1 / points_[i].k) * push.f_t_N;
     pair->all_N += push.f_n_N;

@@ -49,18 +49,23 @@ class PenaltyPatch {
  private:
   struct Point {
     Vec3 r;  // from the centre
-    Vec3 n, bend;
+    Vec3 n;
     double k;
   };
+  using Columns = std::array<std::vector<double>, 3>;
   void findGaps(const Vec6& twist) const;
+  void findSlips(const Vec6& twist) const;
   [[nodiscard]] bool presses(std::size_t i) const { return end_m_[i] < 0 || limit_N_[i] > 0; }
-  [[nodiscard]] Push pushOf(std::size_t i, const Vec6& twist) const;
+  [[nodiscard]] Push pushOf(std::size_t i) const;
 
   double dt_s_ = 0;
   std::vector<Point> points_;
   std::array<std::vector<double>, 6> wrench_;  // of a unit push, by component: r x n, n
   std::vector<double> gap_m_, limit_N_;
-  mutable std::vector<double> end_m_;  // gaps at the end of the step, of the last twist looked at
+  Columns r_m_, bend_m_;
+  // At the end of the step, of the last twist looked at: gaps, and bends if nothing slipped.
+  mutable std::vector<double> end_m_;
+  mutable Columns bent_m_;
 };
 
 }  // namespace vps
