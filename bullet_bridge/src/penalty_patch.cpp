@@ -102,7 +102,9 @@ void PenaltyPatch::findSlips(const Vec6& twist) const {
   const double *rx = r_m_[0].data(), *ry = r_m_[1].data(), *rz = r_m_[2].data();
   const double *nx = wrench_[3].data(), *ny = wrench_[4].data(), *nz = wrench_[5].data();
   const double *bx = bend_m_[0].data(), *by = bend_m_[1].data(), *bz = bend_m_[2].data();
-  double* __restrict x = bent_m_[0].data(), * __restrict y = bent_m_[1].data(), * __restrict z = bent_m_[2].data();
+  double* __restrict x = bent_m_[0].data();
+  double* __restrict y = bent_m_[1].data();
+  double* __restrict z = bent_m_[2].data();
   for (std::size_t i = 0; i < count; ++i) {
     const double wx = way[3] + (way[1] * rz[i] - way[2] * ry[i]);
     const double wy = way[4] + (way[2] * rx[i] - way[0] * rz[i]);
