@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <typeinfo>
+#include <utility>
 
 #include "candidate.h"
 #include "context.h"
@@ -49,6 +51,7 @@ struct VpsPairState {
   std::vector<Candidate> contacts;  ///< of the coming step
   RelativeMotion motion;
   bool is_prepared = false;
+  bool has_met = false;                  ///< contacts were looked for before
   PenaltyPair penalty;                   ///< in penalty mode
   bool is_registered = false;            ///< penalty is known to the solver
   std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
@@ -400,6 +403,25 @@ void chooseRigid(const PairView& pair, VpsPairState& state) {
                      pair.wrapper[1]->getCollisionObject());
 }
 
+// Bodies that meet for the first time where their motion cannot have brought them were put into each other:
+// by mistake, more often than not.
+void noteStart(const PairView& pair, VpsPairState& state) {
+  if (std::exchange(state.has_met, true)) return;
+  double overlap_m = 0;
+  for (const Candidate& c : state.contacts) overlap_m = std::max(overlap_m, -c.distance_m);
+  if (overlap_m <= state.motion.slack_m + state.motion.speed_m_s * state.motion.dt_s) return;
+  VpsContext& context = *state.context;
+  double deepest_m = context.deepest_start_m;
+  while (overlap_m > deepest_m && !context.deepest_start_m.compare_exchange_weak(deepest_m, overlap_m)) {
+  }
+  if (context.overlapping_starts++ > 0) return;
+  const Vec3 at = pair.center_W();
+  std::fprintf(stderr,
+               "vps: two bodies begin %.3g mm inside each other, near (%.4g, %.4g, %.4g) m; they are moved "
+               "apart at 0.05 m/s. Others are counted in vpsStats().\n",
+               1e3 * overlap_m, at.x(), at.y(), at.z());
+}
+
 // Points now rather than contacts for a step.
 void answerQuery(const PairView& pair, VpsContext& context, btManifoldResult& result) {
   RelativeMotion still;
@@ -462,6 +484,7 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   }
   if (!state_->is_prepared) prepare(body0, body1, info);
   state_->is_prepared = false;
+  noteStart(pair, *state_);
   context.contacts += state_->contacts.size();
   state_->writer->write(state_->contacts, pair.wrapper, state_->motion);
   // Pairs that press on nothing, and all of rigid mode, have nothing to say to the solver.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "contact_sweeps.h"
 
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -14,14 +13,6 @@
 namespace vps {
 namespace {
 
-// No point of the body is farther than this from its origin.
-double reach_m(const btRigidBody& b) {
-  btVector3 center;
-  btScalar radius_m = 0;
-  b.getCollisionShape()->getBoundingSphere(center, radius_m);
-  return center.length() + radius_m;
-}
-
 // Impulses are far from the ends of a double's range; std::hypot guards those and took a sixth of a heap's
 // time.
 double lengthOf(double x, double y) {
@@ -30,21 +21,21 @@ double lengthOf(double x, double y) {
 
 }  // namespace
 
-double ContactSweeps::velocity(const Row& row) const {
+double ContactSweeps::velocity(const ContactRow& row) const {
   double v = row.fixed_velocity;
-  for (const Side& side : row.side)
+  for (const ContactRow::Side& side : row.side)
     if (side.body >= 0) v += side.J.dot(body(side).u);
   return v;
 }
 
-void ContactSweeps::apply(const Row& row, double impulse) {
-  for (const Side& side : row.side)
+void ContactSweeps::apply(const ContactRow& row, double impulse) {
+  for (const ContactRow::Side& side : row.side)
     if (side.body >= 0) body(side).u += impulse * side.MinvJ;
 }
 
-ContactSweeps::Row ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2],
-                                          const btManifoldPoint& point, const Vec3& d) const {
-  Row row;
+ContactRow ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
+                                  const Vec3& d) const {
+  ContactRow row;
   // Both at the middle of the gap: two forces in one line keep the angular momentum.
   const btVector3 at = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * btScalar(0.5);
   for (int i = 0; i < 2; ++i) {
@@ -57,9 +48,9 @@ ContactSweeps::Row ContactSweeps::makeRow(const btCollisionObject* const (&objec
   return row;
 }
 
-void ContactSweeps::prepareRow(Row& row) const {
+void ContactSweeps::prepareRow(ContactRow& row) const {
   row.W = 0;
-  for (Side& side : row.side) {
+  for (ContactRow::Side& side : row.side) {
     if (side.body < 0) continue;
     side.MinvJ = inverse_[static_cast<std::size_t>(side.body)] * side.J;
     row.W += side.J.dot(side.MinvJ);
@@ -69,8 +60,9 @@ void ContactSweeps::prepareRow(Row& row) const {
 void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
                         const btContactSolverInfo& info) {
   const btCollisionObject* const objects[2] = {manifold.getBody0(), manifold.getBody1()};
-  Contact c;
+  RigidContact c;
   c.point = &point;
+  for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
   c.gap_m = point.getDistance() + info.m_linearSlop;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
@@ -88,7 +80,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
     c.target_m_s = -c.gap_m / info.m_timeStep;
   } else {
     double approach_m_s = -c.normal.fixed_velocity;
-    for (const Side& side : c.normal.side) {
+    for (const ContactRow::Side& side : c.normal.side) {
       if (side.body >= 0) approach_m_s -= side.J.dot(Island::fixedVelocity(body(side).rigid));
     }
     if (approach_m_s > info.m_restitutionVelocityThreshold)
@@ -116,7 +108,7 @@ void ContactSweeps::prepare() {
     row.impulse_Ns = 0;
     if (drive.W > 0) drives_.push_back(drive);
   }
-  for (Contact& c : contacts_) {
+  for (RigidContact& c : contacts_) {
     prepareRow(c.normal);
     prepareRow(c.tangent[0]);
     prepareRow(c.tangent[1]);
@@ -132,13 +124,23 @@ void ContactSweeps::prepare() {
 }
 
 void ContactSweeps::start() {
+  prepare();
+  applyImpulses();
+}
+
+void ContactSweeps::applyImpulses() {
   for (std::size_t i = 0; i < inverse_.size(); ++i)
     island_.bodies[i].u = inverse_[i] * (island_.bodies[i].momentum + island_.bodies[i].drive);
-  for (const Contact& c : contacts_) {
+  for (const RigidContact& c : contacts_) {
     if (c.p_n != 0) apply(c.normal, c.p_n);
     for (int t = 0; t < 2; ++t)
       if (c.p_t[t] != 0) apply(c.tangent[t], c.p_t[t]);
   }
+  for (const Drive& drive : drives_)
+    for (int i = 0; i < 2; ++i)
+      if (drive.row->body[i] >= 0)
+        island_.bodies[static_cast<std::size_t>(drive.row->body[i])].u +=
+            drive.row->impulse_Ns * drive.MinvJ[i];
 }
 
 // Joints' rows have units of their own: a turn's change of velocity counts as that of a point 10 mm away.
@@ -162,9 +164,9 @@ double ContactSweeps::sweepJoints() {
 }
 
 // One sweep. Returns the greatest change of a row's velocity.
-double ContactSweeps::sweep() {
+double ContactSweeps::sweepOnce() {
   double residual_m_s = sweepJoints();
-  for (Contact& c : contacts_) {
+  for (RigidContact& c : contacts_) {
     const double p_n = std::max(0.0, c.p_n + (c.target_m_s - velocity(c.normal)) / c.normal.W);
     if (p_n != c.p_n) {
       apply(c.normal, p_n - c.p_n);
@@ -198,12 +200,10 @@ double ContactSweeps::sweep() {
   return residual_m_s;
 }
 
-int ContactSweeps::solve(const VpsSolverSettings& settings) {
-  prepare();
-  start();
-  int used = 0;
-  while (used < settings.iteration_limit && sweep() > settings.residual_m_s) ++used;
-  return used;
+bool ContactSweeps::sweep(double residual_m_s, int limit) {
+  for (int used = 0; used < limit; ++used)
+    if (sweepOnce() <= residual_m_s) return true;
+  return false;
 }
 
 // A joint holds against the push; a motor or limit, whose impulse is bounded, does not mind it.
@@ -217,12 +217,12 @@ void ContactSweeps::pushJoint(const Drive& drive) {
       island_.bodies[static_cast<std::size_t>(row.body[i])].u += impulse_Ns * drive.MinvJ[i];
 }
 
-void ContactSweeps::solvePush(const btContactSolverInfo& info, const VpsSolverSettings& settings) {
+void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
   constexpr double kMostPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
   constexpr double kNothing_m = 1e-9;
   const double dt = info.m_timeStep;
   bool is_needed = false;
-  for (Contact& c : contacts_) {
+  for (RigidContact& c : contacts_) {
     const double left_m = c.gap_m + velocity(c.normal) * dt;
     is_needed |= left_m < -kNothing_m;
     c.target_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMostPush_m_s) : -left_m / dt;
@@ -232,12 +232,12 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, const VpsSolverSe
   if (!is_needed) return;
   push_.assign(island_.bodies.size(), Vec6::Zero());
   for (std::size_t i = 0; i < push_.size(); ++i) std::swap(island_.bodies[i].u, push_[i]);
-  for (int i = 0; i < settings.iteration_limit; ++i) {
+  for (int i = 0; i < sweep_limit; ++i) {
     double residual_m_s = 0;
     for (const Drive& drive : drives_) pushJoint(drive);
-    for (Contact& c : contacts_) {
+    for (RigidContact& c : contacts_) {
       double v = 0;  // the partner's own motion is no part of the push
-      for (const Side& side : c.normal.side)
+      for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
       const double p = std::max(0.0, c.p_push + (c.target_m_s - v) / c.normal.W);
       if (p == c.p_push) continue;
@@ -253,13 +253,13 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, const VpsSolverSe
     Vec6& push = push_[i];
     std::swap(b.u, push);
     // Each row's push is limited already, but rows that contradict each other add up.
-    const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * reach_m(*b.rigid);
+    const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
     if (fastest_m_s > kMostPush_m_s) push *= kMostPush_m_s / fastest_m_s;
   }
 }
 
 void ContactSweeps::finish(double dt_s) {
-  for (const Contact& c : contacts_) {
+  for (const RigidContact& c : contacts_) {
     c.point->m_appliedImpulse = toBt(c.p_n);
     c.point->m_appliedImpulseLateral1 = toBt(c.p_t[0]);
     c.point->m_appliedImpulseLateral2 = toBt(c.p_t[1]);

@@ -13,11 +13,37 @@
 #include "joint_rows.h"
 #include "vps_bullet/solver.h"
 
+class btCollisionObject;
 class btManifoldPoint;
 class btPersistentManifold;
 struct btContactSolverInfo;
 
 namespace vps {
+
+/// One direction of a contact: a row of its Jacobian.
+struct ContactRow {
+  struct Side {
+    int body = -1;          ///< -1: not moved by contact
+    Vec6 J = Vec6::Zero();  ///< so that J . u is the velocity along the row's direction
+    Vec6 MinvJ = Vec6::Zero();
+  };
+  Side side[2];
+  double fixed_velocity = 0;  ///< of a kinematic partner, along the direction
+  double W = 0;               ///< J held^-1 J'
+};
+
+/// A contact of a manifold as the solver sees it.
+struct RigidContact {
+  btManifoldPoint* point = nullptr;
+  const btCollisionObject* object[2] = {nullptr, nullptr};
+  ContactRow normal, tangent[2];
+  double target_m_s = 0;  ///< least normal velocity
+  double gap_m = 0;
+  double mu = 0;
+  double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
+  double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
+  double W_t = 0;                               ///< its greatest eigenvalue
+};
 
 class ContactSweeps {
  public:
@@ -25,47 +51,31 @@ class ContactSweeps {
 
   void clear() { contacts_.clear(); }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
-  /// Velocities that satisfy the contacts, each body's mass being `held`. Returns the sweeps it took.
-  int solve(const VpsSolverSettings& settings);
+  /// Starts from last step's impulses, each body's mass being `held`.
+  void start();
+  /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times. True: it came
+  /// to that.
+  bool sweep(double residual_m_s, int limit);
+  /// Velocities of the bodies by the contacts' impulses as they stand.
+  void applyImpulses();
+  [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }
   /// Pushes out, by a share and without leaving velocity behind, the overlap left at the end of the step.
-  void solvePush(const btContactSolverInfo& info, const VpsSolverSettings& settings);
+  void solvePush(const btContactSolverInfo& info, int sweep_limit);
   /// Leaves impulses in the manifolds and moves the bodies by the push.
   void finish(double dt_s);
 
  private:
-  struct Side {
-    int body = -1;          // -1: not moved by contact
-    Vec6 J = Vec6::Zero();  // so that J . u is the velocity along the row's direction
-    Vec6 MinvJ = Vec6::Zero();
-  };
-  struct Row {
-    Side side[2];
-    double fixed_velocity = 0;  // of a kinematic partner, along the direction
-    double W = 0;               // J held^-1 J'
-  };
-  struct Contact {
-    btManifoldPoint* point = nullptr;
-    Row normal, tangent[2];
-    double target_m_s = 0;  // least normal velocity
-    double gap_m = 0;
-    double mu = 0;
-    double p_n = 0, p_t[2] = {0, 0}, p_push = 0;
-    double W_t_inverse[3] = {0, 0, 0};  // of the 2x2 tangent block: 11, 12, 22
-    double W_t = 0;                     // its greatest eigenvalue
-  };
-
-  [[nodiscard]] IslandBody& body(const Side& side) const {
+  [[nodiscard]] IslandBody& body(const ContactRow::Side& side) const {
     return island_.bodies[static_cast<std::size_t>(side.body)];
   }
-  [[nodiscard]] Row makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
-                            const Vec3& d) const;
-  void prepareRow(Row& row) const;
+  [[nodiscard]] ContactRow makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
+                                   const Vec3& d) const;
+  void prepareRow(ContactRow& row) const;
   void prepare();
-  void start();
-  double sweep();
+  double sweepOnce();
   double sweepJoints();
-  [[nodiscard]] double velocity(const Row& row) const;
-  void apply(const Row& row, double impulse);
+  [[nodiscard]] double velocity(const ContactRow& row) const;
+  void apply(const ContactRow& row, double impulse);
 
   /// A joint's row, prepared.
   struct Drive {
@@ -79,7 +89,7 @@ class ContactSweeps {
   Island& island_;
   JointRows& joints_;
   std::vector<Drive> drives_;
-  std::vector<Contact> contacts_;
+  std::vector<RigidContact> contacts_;
   std::vector<Mat6> inverse_;  // of each body's held mass
   std::vector<Vec6> push_;     // velocities that only move, for one step
 };

@@ -18,7 +18,9 @@ struct VpsContext {
   VpsBulletSettings settings;
   PartnerCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
-  std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0};
+  std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0},
+      overlapping_starts{0};
+  std::atomic<double> deepest_start_m{0};
   PenaltyRegistry penalty;
 };
 

@@ -229,6 +229,8 @@ VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher) {
   stats.candidates = c.candidates;
   stats.contacts = c.contacts;
   stats.left_out = c.left_out;
+  stats.overlapping_starts = c.overlapping_starts;
+  stats.deepest_start_m = c.deepest_start_m;
   return stats;
 }
 

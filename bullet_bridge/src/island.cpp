@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "island.h"
 
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
 
 #include "vps_bullet/convert.h"
 
@@ -24,6 +27,14 @@ Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
   return stacked(w, v);
 }
 
+// No point of the body is farther than this from its origin.
+double reach_m(const btRigidBody& b) {
+  btVector3 center;
+  btScalar radius_m = 0;
+  b.getCollisionShape()->getBoundingSphere(center, radius_m);
+  return center.length() + radius_m;
+}
+
 Vec6 velocityOf(const btRigidBody& rigid) {
   return stacked(fromBt(rigid.getAngularVelocity()), fromBt(rigid.getLinearVelocity()));
 }
@@ -40,6 +51,7 @@ void Island::add(btRigidBody& rigid, double dt_s) {
   b.rigid = &rigid;
   b.mass.topLeftCorner<3, 3>() = fromBt(rigid.getInvInertiaTensorWorld()).inverse();
   b.mass.bottomRightCorner<3, 3>() = Mat3::Identity() / rigid.getInvMass();
+  b.reach_m = reach_m(rigid);
   b.u = velocityOf(rigid);
   b.momentum = b.mass * (b.u + externalVelocity(rigid, dt_s));
   index_[&rigid] = static_cast<int>(bodies.size());
@@ -54,6 +66,15 @@ int Island::indexOf(const btCollisionObject* object) const {
 Vec6 Island::fixedVelocity(const btCollisionObject* object) {
   const btRigidBody* rigid = btRigidBody::upcast(object);
   return rigid ? velocityOf(*rigid) : Vec6(Vec6::Zero());
+}
+
+double Island::topSpeed(std::span<const Vec6> before) const {
+  double top_m_s = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Vec6 u = before.empty() ? bodies[i].u : Vec6(bodies[i].u - before[i]);
+    top_m_s = std::max(top_m_s, u.tail<3>().norm() + u.head<3>().norm() * bodies[i].reach_m);
+  }
+  return top_m_s;
 }
 
 void Island::writeVelocities() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -26,6 +27,7 @@ inline Vec6 stacked(const Vec3& w, const Vec3& v) {
 /// impulses.
 struct IslandBody {
   btRigidBody* rigid = nullptr;
+  double reach_m = 0;  ///< no point of it is farther from its centre
   Mat6 mass = Mat6::Zero();
   Vec6 momentum = Vec6::Zero();  ///< mass times the velocity with external forces
   Mat6 held = Mat6::Zero();      ///< mass, and the implicit part of the couplings that hold it
@@ -42,6 +44,9 @@ class Island {
   /// Of a body that is not in the island but moves (kinematic), about its origin.
   [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
   void writeVelocities() const;
+  /// Greatest speed of any body's point, u standing as it does, against velocities `before` (empty: zero)
+  /// [m/s].
+  [[nodiscard]] double topSpeed(std::span<const Vec6> before = {}) const;
 
   std::vector<IslandBody> bodies;
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "penalty_newton.h"
 
-#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -101,59 +100,51 @@ double PenaltyNewton::jointImpulse(const JointRow& row, double stiffness_kg,
   return std::clamp(stiffness_kg * (row.target - velocity), row.lower_Ns, row.upper_Ns);
 }
 
-void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const {
+void PenaltyNewton::startMatrix() {
+  thread_local std::vector<std::pair<int, int>> touching;
+  touching.clear();
+  const auto touch = [](const int(&body)[2]) {
+    if (body[0] >= 0 && body[1] >= 0) touching.emplace_back(body[0], body[1]);
+  };
+  for (const PenaltyPatch& patch : patches()) touch(patch.body);
+  for (const JointRow& row : joints_.rows) touch(row.body);
+  hessian_.start(island_.bodies.size(), touching);
+}
+
+bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) {
   if (gradient.size() == 1 && joint_kg_.empty()) {
     Mat6 H = island_.bodies[0].held;
     for (const PenaltyPatch& patch : patches()) {
       const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
       H += X.transpose() * patch.hessian * X;
     }
-    step[0] = -Eigen::LLT<Mat6>(H).solve(gradient[0]);
-    return;
+    const Eigen::LLT<Mat6> factor(H);
+    step[0] = -factor.solve(gradient[0]);
+    return factor.info() == Eigen::Success;
   }
-  const auto count = static_cast<Eigen::Index>(6 * gradient.size());
-  Eigen::VectorXd rhs(count);
+  startMatrix();
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    hessian_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].held);
+  // Lower blocks only: that is what the factorisation reads.
+  const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (body[i] >= body[j] && body[j] >= 0) hessian_.add(body[i], body[j], blockOf(i, j));
+  };
+  for (const PenaltyPatch& patch : patches())
+    addPair(patch.body,
+            [&](int i, int j) -> Mat6 { return patch.X[i].transpose() * patch.hessian * patch.X[j]; });
+  for (std::size_t r = 0; r < joint_kg_.size(); ++r) {
+    const JointRow& row = joints_.rows[r];
+    if (is_free_[r])
+      addPair(row.body, [&](int i, int j) -> Mat6 { return joint_kg_[r] * row.J[i] * row.J[j].transpose(); });
+  }
+  Eigen::VectorXd rhs(static_cast<Eigen::Index>(6 * gradient.size())), answer;
   for (std::size_t i = 0; i < gradient.size(); ++i)
     rhs.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
-  // Lower blocks only: that is what the factorisations read.
-  const auto forEachBlock = [&](const auto& add) {
-    for (std::size_t i = 0; i < gradient.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(6 * i);
-      add(at, at, island_.bodies[i].held);
-    }
-    for (const PenaltyPatch& patch : patches())
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j)
-          if (patch.body[i] >= patch.body[j] && patch.body[j] >= 0)
-            add(Eigen::Index{6} * patch.body[i], Eigen::Index{6} * patch.body[j],
-                Mat6(patch.X[i].transpose() * patch.hessian * patch.X[j]));
-    for (std::size_t r = 0; r < joint_kg_.size(); ++r)
-      for (int i = 0; i < 2 && is_free_[r]; ++i)
-        for (int j = 0; j < 2; ++j)
-          if (const JointRow& row = joints_.rows[r]; row.body[i] >= row.body[j] && row.body[j] >= 0)
-            add(Eigen::Index{6} * row.body[i], Eigen::Index{6} * row.body[j],
-                Mat6(joint_kg_[r] * row.J[i] * row.J[j].transpose()));
-  };
-  constexpr std::size_t kDense = 12;  // assumed: bodies up to which a dense matrix is quicker
-  Eigen::VectorXd answer;
-  if (gradient.size() <= kDense) {
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(count, count);
-    forEachBlock([&](Eigen::Index row, Eigen::Index column, const Mat6& block) {
-      H.block<6, 6>(row, column) += block;
-    });
-    answer = Eigen::LLT<Eigen::MatrixXd>(H).solve(rhs);
-  } else {
-    std::vector<Eigen::Triplet<double>> entries;
-    forEachBlock([&](Eigen::Index row, Eigen::Index column, const Mat6& block) {
-      for (int i = 0; i < 6; ++i)
-        for (int j = 0; j < 6; ++j)
-          entries.emplace_back(static_cast<int>(row) + i, static_cast<int>(column) + j, block(i, j));
-    });
-    Eigen::SparseMatrix<double> H(count, count);
-    H.setFromTriplets(entries.begin(), entries.end());
-    answer = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>(H).solve(rhs);
-  }
+  if (!hessian_.solve(rhs, answer)) return false;
   for (std::size_t i = 0; i < step.size(); ++i) step[i] = answer.segment<6>(static_cast<Eigen::Index>(6 * i));
+  return true;
 }
 
 // The potential is convex, so its slope along the step grows: the least is where that is zero.
@@ -190,7 +181,19 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
   return speed_m_s;
 }
 
-int PenaltyNewton::solve(double residual_m_s, int iteration_limit) {
+// What bodies that were free would do with the momentum that is missing.
+double PenaltyNewton::imbalance_m_s() const {
+  double speed_m_s = 0;
+  for (std::size_t i = 0; i < gradient_.size(); ++i) {
+    const IslandBody& b = island_.bodies[i];
+    const Vec3 w = fromBt(b.rigid->getInvInertiaTensorWorld()) * gradient_[i].head<3>();
+    const Vec3 v = double(b.rigid->getInvMass()) * gradient_[i].tail<3>();
+    speed_m_s = std::max(speed_m_s, v.norm() + w.norm() * b.reach_m);
+  }
+  return speed_m_s;
+}
+
+int PenaltyNewton::solve(double residual_m_s, int iteration_limit, End end) {
   prepareJoints();
   velocities();
   gradient_.resize(u_.size());
@@ -198,11 +201,12 @@ int PenaltyNewton::solve(double residual_m_s, int iteration_limit) {
   int used = 0;
   while (used++ < iteration_limit) {
     evaluateAll(u_, true, gradient_);
-    newtonStep(gradient_, step_);
+    if (end == End::Balanced && imbalance_m_s() < residual_m_s) break;
+    if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
     if (!(slope < 0)) break;
     // The last step is too short for a better share of it to matter.
-    const bool is_last = greatestSpeed(step_) < residual_m_s;
+    const bool is_last = end == End::Short && greatestSpeed(step_) < residual_m_s;
     const double share = is_last ? 1 : shareOf(u_, step_, slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
     if (is_last) break;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "island.h"
+#include "island_matrix.h"
 #include "joint_rows.h"
 #include "penalty_patch.h"
 
@@ -30,8 +31,12 @@ class PenaltyNewton {
   }
   /// The pair must outlive finish(). Friction's limits are at first those of the last step's forces.
   void add(PenaltyPair& pair);
-  /// Velocities for the bodies' masses and the limits as they stand. Returns Newton's iterations.
-  int solve(double residual_m_s, int iteration_limit);
+  /// When to stop: after a step that changes no point's velocity by more than the residual; or when the
+  /// momentum that is missing would change no point's by more, which asks for more where springs are stiff.
+  enum class End { Short, Balanced };
+  /// Velocities for the bodies' masses and the limits as they stand. Returns Newton's iterations; more than
+  /// the limit: it was not reached.
+  int solve(double residual_m_s, int iteration_limit, End end = End::Short);
   /// Limits of friction by the forces just found. Returns the greatest change, relative to the greatest
   /// limit.
   double renewLimits();
@@ -44,10 +49,13 @@ class PenaltyNewton {
   [[nodiscard]] Vec6 twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& u) const;
   /// Gradient of the potential at u; with the Hessians of the patches if asked.
   void evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient);
-  void newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const;
+  void startMatrix();
+  /// False: the matrix has no factorisation, as where something is not finite.
+  [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
   [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
   const std::vector<Vec6>& velocities();
+  [[nodiscard]] double imbalance_m_s() const;
 
   /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
   /// make the potential's slope constant, as a bristle's does.
@@ -60,6 +68,7 @@ class PenaltyNewton {
   std::vector<double> joint_kg_;       // stiffness of each row, against velocity
   std::vector<std::uint8_t> is_free_;  // rows within their limits at the last evaluation
   double dt_s_ = 0;
+  IslandMatrix hessian_;
   std::vector<PenaltyPatch> patches_;  // kept for their memory
   std::size_t patch_count_ = 0;
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_;

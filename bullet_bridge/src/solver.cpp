@@ -24,6 +24,7 @@
 #include "cross_matrix.h"
 #include "island.h"
 #include "penalty_newton.h"
+#include "rigid_newton.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -41,6 +42,7 @@ struct VpsSolver::Work {
   Island island;
   JointRows joints;
   ContactSweeps rigid{island, joints};
+  RigidNewton rigid_newton{island, joints};
   PenaltyNewton soft{island, joints};
   bool is_soft = false;
   std::vector<VpsCoupling*> couplings;
@@ -55,7 +57,8 @@ struct VpsSolver::Work {
   void holdCouplings(double dt_s);
   void applyLaws();
   bool renewLaws();
-  int solveContacts(const VpsSolverSettings& settings);
+  int solveContacts(const VpsSolverSettings& settings, double dt_s);
+  int solveRigid(const VpsSolverSettings& settings, double dt_s);
 };
 
 namespace {
@@ -161,8 +164,26 @@ bool VpsSolver::Work::renewLaws() {
   return is_settled;
 }
 
-int VpsSolver::Work::solveContacts(const VpsSolverSettings& settings) {
-  return is_soft ? soft.solve(settings.residual_m_s, settings.iteration_limit) : rigid.solve(settings);
+// Sweeps settle what is nearly settled, such as parts at rest, in a few microseconds; Newton's method settles
+// the rest.
+int VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, double dt_s) {
+  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: what each costs
+  constexpr double kShareOfSpeed = 1e-5;                       // assumed: a micron on the way of a decimetre
+  const int sweeps = std::min(kSweepsFirst, settings.iteration_limit);
+  rigid.start();
+  if (rigid.sweep(settings.residual_m_s, sweeps)) return sweeps;
+  const int newton_limit = (settings.iteration_limit - sweeps) / kSweepsPerNewtonStep;
+  if (newton_limit == 0) return sweeps;
+  const RigidNewton::Outcome outcome =
+      rigid_newton.solve(rigid.contacts(), dt_s,
+                         std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed()), newton_limit);
+  rigid.applyImpulses();  // whatever is left open, velocities are those that the impulses give
+  if (!outcome.is_settled) rigid.sweep(settings.residual_m_s, sweeps);
+  return sweeps + kSweepsPerNewtonStep * outcome.steps;
+}
+
+int VpsSolver::Work::solveContacts(const VpsSolverSettings& settings, double dt_s) {
+  return is_soft ? soft.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings, dt_s);
 }
 
 VpsSolver::VpsSolver(const VpsSolverSettings& settings)
@@ -194,7 +215,7 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
   iterations_used_ = 0;
   for (int round = 0; round < rounds; ++round) {
     work.applyLaws();
-    iterations_used_ = std::max(iterations_used_, work.solveContacts(settings_));
+    iterations_used_ = std::max(iterations_used_, work.solveContacts(settings_, dt_s));
     if (round == rounds - 1) break;  // unsettled: laws and limits stay those that u was solved with
     const bool has_settled_friction = !work.is_soft || work.soft.renewLimits() < kSettled;
     if (work.renewLaws() && has_settled_friction) break;
@@ -210,7 +231,7 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
     work.island.writeVelocities();
   } else {
     work.joints.finish(dt_s);
-    work.rigid.solvePush(info, settings_);
+    work.rigid.solvePush(info, settings_.iteration_limit);
     work.island.writeVelocities();
     work.rigid.finish(dt_s);
   }

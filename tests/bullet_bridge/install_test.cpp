@@ -56,6 +56,21 @@ TEST(Install, TwiceIsAsOnceWithTheLaterSettings) {
   EXPECT_EQ(contacts, 8);
 }
 
+TEST(Install, ABodyPutIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
+  constexpr double kOverlap_m = 1e-3;
+  const auto startAt = [](double z_m) {
+    World world;
+    world.add(cube(), Pose(), true);
+    world.add(cube(), Pose::translation(Vec3(0, 0, z_m))).setLinearVelocity(btVector3(0, 0, toBt(-0.5)));
+    world.step(20);
+    return vpsStats(world.dispatcher);
+  };
+  EXPECT_EQ(startAt(0.0105).overlapping_starts, 0u);
+  const VpsBulletStats stats = startAt(0.010 - kOverlap_m);
+  EXPECT_EQ(stats.overlapping_starts, 1u);
+  EXPECT_NEAR(stats.deepest_start_m, kOverlap_m, 1e-7);  // faces' distance is exact, but for floats
+}
+
 TEST(Install, RefusesSettingsThatCannotWork) {
   World world;
   VpsBulletSettings settings;

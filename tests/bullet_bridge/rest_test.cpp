@@ -250,6 +250,40 @@ TEST(VpsSolver, OneSweepLeavesAnErrorThatManyRemove) {
   EXPECT_LE(spinAfterLanding(400), kRest_m_s / 0.01);
 }
 
+// Sweeps pass a load down a stack one body at a time, and each light body bounces the heavy one's answer
+// back.
+TEST(VpsSolver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
+  constexpr int kBoxes = 4;
+  constexpr double kHeight_m = 0.01, kRatio = 1000;
+  const auto worstOfStack = [=](int iteration_limit) {
+    VpsSolverSettings settings;
+    settings.iteration_limit = iteration_limit;
+    World world(Solver::Vps, {}, 100, settings);
+    const Built light = steelBox(), ground = plate();
+    Built heavy = light;
+    heavy.frame.mass_kg *= kRatio;
+    heavy.frame.inertia_kg_m2 *= kRatio;
+    world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+    std::vector<btRigidBody*> stack;
+    for (int i = 0; i < kBoxes; ++i)
+      stack.push_back(&world.add(i + 1 < kBoxes ? light : heavy,
+                                 Pose::translation(Vec3(1e-4 * i, 0, kHeight_m * (i + 0.5)))));
+    world.step(300);
+    Rest worst;
+    for (int i = 0; i < kBoxes; ++i) {
+      const double z_m = stack[static_cast<std::size_t>(i)]->getWorldTransform().getOrigin().z();
+      worst.sink_m = std::max(worst.sink_m, std::abs(z_m - kHeight_m * (i + 0.5)));
+      worst.speed_m_s =
+          std::max<double>(worst.speed_m_s, stack[static_cast<std::size_t>(i)]->getLinearVelocity().length());
+    }
+    return worst;
+  };
+  EXPECT_GT(worstOfStack(30).sink_m, 1e-6);  // sweeps alone
+  const Rest rest = worstOfStack(400);
+  EXPECT_LE(rest.sink_m, 1e-6);
+  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 

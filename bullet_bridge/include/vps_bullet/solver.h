@@ -10,7 +10,9 @@ namespace vps {
 
 struct VpsSolverSettings {
   double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
-  int iteration_limit = 400;   ///< sweeps over rigid contacts, or Newton steps of compliant ones; >= 1
+  /// Sweeps over rigid contacts, one of Newton's steps counting as ten, or Newton's steps of compliant ones;
+  /// >= 1. Up to 30 it is sweeps alone.
+  int iteration_limit = 400;
 };
 
 /// Solves islands of rigid bodies, contacts (rigid or compliant), joints and VpsCouplings, the couplings
@@ -26,8 +28,7 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// Sweeps or Newton steps that the last island solved by our method took; iteration_limit means it was cut
-  /// short.
+  /// What the last island solved by our method took, as iteration_limit counts; that limit: it was cut short.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
 
  private:

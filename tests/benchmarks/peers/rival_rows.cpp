@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "dynamics/nut.h"
+#include "dynamics/peg.h"
 #include "dynamics/ring.h"
 #include "rivals.h"
 
@@ -68,6 +69,29 @@ void ringRow(const Options& options, Table& table) {
       table.addRival(
           {"ring over peg", text("GImpact, margin %.0f um", margin_m * 1e6), ringFigures(gimpact), ""});
   }
+}
+
+// What cutting a bore into convex hulls makes of it.
+void hullRow(const Options& options, Table& table) {
+  constexpr double kConcavity_m = 50e-6;  // the fit's own clearance
+  const std::optional<dynamics::Engine> hulls = hacdEngine(kConcavity_m);
+  Row row{"peg 10x30, 50 um", "HACD, concavity 50 um", {}, ""};
+  if (hulls) {
+    const double start_s = dynamics::threadTime_s();
+    hulls->makeShape(dynamics::borePart(50e-6), true);
+    hulls->makeShape(dynamics::pegPart(), false);
+    const double cut_s = dynamics::threadTime_s() - start_s;
+    const auto r = dynamics::dropPeg({Mode::ConstraintStock, options.is_short, *hulls});
+    row.figures = {{r.isSeated() ? "seats" : "does not seat", "", true},
+                   reported("height error", r.height_error_m, 1e3, "mm"),
+                   reported("penetration", r.deepest_m, 1e6, "um"),
+                   reported("jitter", r.jitter_m_s, 1, "m/s"),
+                   reported("step", r.step_ms, 1, "ms"),
+                   reported("cutting", cut_s, 1, "s")};
+  } else {
+    row.figures.push_back({"not built", "", true});
+  }
+  table.addRival(row);
 }
 
 void queryRow(const Options& options, Table& table) {

@@ -6,8 +6,11 @@
 
 namespace vps::bench {
 
-/// The ring over the peg: ours against GImpact at its best margin, and HACD's hulls.
+/// The ring over the peg: ours against GImpact at its best margin.
 void ringRow(const Options& options, Table& table);
+
+/// The peg and its bore cut into convex hulls by HACD, in the stock solver.
+void hullRow(const Options& options, Table& table);
 
 /// M16 nut on a bolt at poses in contact: milliseconds for a query, ours and others.
 void queryRow(const Options& options, Table& table);
