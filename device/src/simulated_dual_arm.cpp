@@ -21,12 +21,6 @@ constexpr double kTilt_rad = 0.5236;
 // Motors give their peak until the mean square of their effort comes within this of the continuous limit's.
 constexpr double kHeatBlend = 0.1;
 
-JointVector jointVector(double plate, double link, double rotor) {
-  JointVector v;
-  v << plate, plate, link, plate, plate, link, rotor;
-  return v;
-}
-
 Vec6 stacked(const Wrench& F) {
   Vec6 v;
   v << F.tau, F.f;
