@@ -45,7 +45,7 @@ struct DualArmParameters {
   double plate_step_rad = 0, link_step_m = 0, rotor_step_rad = 0;
   double noise_steps = 0;  ///< standard deviation before rounding, in steps
   double resolution_m = 0,
-         resolution_rad = 0;  ///< greatest error of a read; the angle within 45 deg of straight
+         resolution_rad = 0;  ///< error of a read that gains reckon with; at a tilt the angle's may be more
   // Motors, continuous and peak.
   double plate_torque_Nm = 0, plate_peak_Nm = 0;
   double link_force_N = 0, link_peak_N = 0;
