@@ -83,6 +83,29 @@ TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
   EXPECT_LT(stiffest, 18000);
 }
 
+TEST(DualArmStructure, StiffnessIsCapstanLinkAndGimbalInSeriesAndDriftItsEnergysSlope) {
+  const DualArmParameters p;
+  JointVector q;
+  q << 0.2, -0.5, 0.7, -0.1, 0.4, 1.1, 0.3;
+  const JointVector k = structureStiffness(p, q);
+  const double lever_m = 0.7 * std::cos(-0.5);
+  EXPECT_NEAR(1 / k[0], 1 / p.plate_Nm_per_rad + 1 / (p.gimbal_N_per_m * lever_m * lever_m), 1e-15);
+  EXPECT_NEAR(1 / k[4], 1 / p.plate_Nm_per_rad + 1 / (p.gimbal_N_per_m * 1.1 * 1.1), 1e-15);
+  EXPECT_NEAR(1 / k[5], 1 / p.link_N_per_m + 1 / p.gimbal_N_per_m, 1e-15);
+  EXPECT_EQ(k[6], p.rotor_Nm_per_rad);
+  const JointVector stretch = jointVector(1e-3, 2e-3, 0.1);
+  const auto energy_J = [&](const JointVector& at) {
+    return 0.5 * stretch.cwiseAbs2().dot(structureStiffness(p, at));
+  };
+  const JointVector drift = structureDrift(p, q, stretch);
+  const double h = 1e-5;  // central: h^2 times third derivatives of some 1e-2 J, and 1e-16 J / h
+  for (int i = 0; i < 7; ++i) {
+    const JointVector step = h * JointVector::Unit(i);
+    EXPECT_NEAR(drift[i], -(energy_J(q + step) - energy_J(q - step)) / (2 * h), 1e-10) << i;
+  }
+  EXPECT_GT(drift.norm(), 1e-4);
+}
+
 TEST(DualArmPlant, AcceleratesAsItsInertiaSays) {
   DualArmPlantSettings settings = frictionless();
   settings.is_rigid = true;
