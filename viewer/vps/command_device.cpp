@@ -114,24 +114,28 @@ void addCoupling(Table& table, const char* rate, const DeviceLimits& limits, con
 }
 
 constexpr const char* kNotes = R"(
-Continuous -> peak. Every figure is computed from the model; parameters the paper does not give are assumed, and why
-stands beside each in data/dual_arm.toml. Where this device and the paper differ:
-(1) The paper writes rad, of a solid angle. The gimbal leaves 12 sr by the choice of its range. Near end for end the
-    arms would meet, which costs what is missing at the centre; there the distance is negative.
-(2) In its worst direction a force asks most of the motors at once, beside the handle's weight: there the limit on
-    the handle is not quite reached, and the wrench is scaled down whole.
-(3) An arm alone is weakest where it is longest. The paper's 5 N is for one arm in a workspace of its own; at the far
-    side of this one an arm of the same motors gives more. Without a couple the pair gives twice its weaker arm.
-(4) The paper does not say which directions its worst case covers. A tilt that brings the gimbal near its singularity
-    makes the arms take 1 / cos q2 times the torque about the handle; straight, the worst case is the paper's.
-(5) From continuous to peak the paper's other figures grow 2.4 to 2.5 times, as motors do; its typical torque grows 5.6
-    times, which no motor that gives the rest can follow. What is given out is held to the worst-case figures.
-(6) The paper does not say how it was loaded. With the hand holding the handle's direction both arms add; a handle that
-    may turn gives way at its softer end.
-(7) Each encoder half a step off, all in the worst sense; their noise adds a fifth. The encoders are assumed, and finer
-    than the paper's figures ask for.
-(8) A force below dry friction is not felt: that is taken as the force resolution. Friction is assumed; with a fifth
-    less of it the peak would be the paper's two decades.
+Continuous -> peak. Every figure is computed from the model; parameters the paper does not give are
+assumed, and why stands beside each in data/dual_arm.toml. Where this device and the paper differ:
+(1) The paper writes rad, of a solid angle. The gimbal leaves 12 sr by the choice of its range. Near
+    end for end the arms would meet, which costs what is missing at the centre; there the distance
+    is negative.
+(2) In its worst direction a force asks most of the motors at once, beside the handle's weight:
+    there the limit on the handle is not quite reached, and the wrench is scaled down whole.
+(3) An arm alone is weakest where it is longest. The paper's 5 N is for one arm in a workspace of
+    its own; at the far side of this one an arm of the same motors gives more. Without a couple the
+    pair gives twice its weaker arm.
+(4) The paper does not say which directions its worst case covers. A tilt that brings the gimbal
+    near its singularity makes the arms take 1 / cos q2 times the torque about the handle; straight,
+    the worst case is the paper's.
+(5) From continuous to peak the paper's other figures grow 2.4 to 2.5 times, as motors do; its
+    typical torque grows 5.6 times, which no motor that gives the rest can follow. What is given out
+    is held to the worst-case figures.
+(6) The paper does not say how it was loaded. With the hand holding the handle's direction both arms
+    add; a handle that may turn gives way at its softer end.
+(7) Each encoder half a step off, all in the worst sense; their noise adds a fifth. The encoders are
+    assumed, and finer than the paper's figures ask for.
+(8) A force below dry friction is not felt: that is taken as the force resolution. Friction is
+    assumed; with a fifth less of it the peak would be the paper's two decades.
 )";
 
 void print(const DualArmCharacter& c) {

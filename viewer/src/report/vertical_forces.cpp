@@ -61,14 +61,16 @@ set encoding utf8
 left = "#0072B2"; right = "#D55E00"; both = "#E69F00"; ink = "#333333"
 set tics nomirror out scale 0.6 textcolor rgb ink
 set grid lc rgb "#D9D9D9" lw 0.6 lt 1
-set multiplot title "Greatest upward force, motors at their continuous limits, handle straight" textcolor rgb ink
+set multiplot title "Greatest upward force, motors at their continuous limits, handle straight" \
+  textcolor rgb ink
 )";
 
 constexpr const char* kSurfaces = R"(
 set origin 0, 0
 set size 0.54, 0.93
 set border 1+2+4+8+16+32+64+256+512 lc rgb "#AAAAAA" lw 0.6
-set label 1 "over the workspace: at each x and y the least along z" at screen 0.27, 0.90 center textcolor rgb ink
+set label 1 "over the workspace: at each x and y the least along z" at screen 0.27, 0.90 center \
+  textcolor rgb ink
 set xlabel "x [mm]" offset 0.5,-0.8 textcolor rgb ink
 set ylabel "y, left to right [mm]" offset 1.0,-0.8 textcolor rgb ink
 set zlabel "force [N]" rotate parallel offset 1.5,0 textcolor rgb ink
