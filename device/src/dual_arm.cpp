@@ -50,9 +50,9 @@ struct Configuration {
   Mat3 R_DL, R_DR;       // arm bases
   Mat3 J_left, J_right;  // of the arms, each in its base frame
   Mat3 J_left_inverse, J_right_inverse;
-  Mat3 J_barrel;  // angular, left, in its base frame
-  Vec3 p_HL, p_HR, p_EH, Y,
-      n;  // from H to the gimbal centres, from E to H, handle axis, what the gimbal passes
+  Mat3 J_barrel;          // angular, left, in its base frame
+  Vec3 p_HL, p_HR, p_EH;  // from H to the gimbal centres, from E to H
+  Vec3 Y, z3, n;          // handle axis, barrel's axis, and along what the gimbal passes torque
   double q2_rad = 0, cos_q2 = 1;
 };
 
@@ -81,6 +81,7 @@ Status configure(const DualArmParameters& parameters, const Pose& X_DH, Configur
   c.cos_q2 = std::cos(c.q2_rad);
   const Mat3 R_spin = gimbalRotation(q1_rad, c.q2_rad, 0).transpose() * R_D3.transpose() * X_DH.R;
   c.joints.q3_rad = std::atan2(R_spin(0, 2), R_spin(0, 0));
+  c.z3 = R_D3.col(2);
   c.n = R_D3 * Vec3(-std::cos(q1_rad), -std::sin(q1_rad), 0);
   return Status::Ok;
 }
@@ -104,6 +105,23 @@ double segmentDistance(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& 
 }
 
 }  // namespace
+
+JointVector toVector(const DualArmJoints& joints) noexcept {
+  const ArmJoints &l = joints.left, &r = joints.right;
+  JointVector v;
+  v << l.t1_rad, l.t2_rad, l.d3_m, r.t1_rad, r.t2_rad, r.d3_m, joints.q3_rad;
+  return v;
+}
+
+DualArmJoints fromVector(const JointVector& v) noexcept {
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
+}
+
+JointVector jointVector(double plate, double link, double rotor) noexcept {
+  JointVector v;
+  v << plate, plate, link, plate, plate, link, rotor;
+  return v;
+}
 
 Vec3 armPosition(const ArmJoints& joints) noexcept {
   return joints.d3_m * armAxes(joints).e3;
@@ -130,7 +148,9 @@ Mat3 armAngularJacobian(const ArmJoints& joints) noexcept {
 Pose armBase(const DualArmParameters& parameters, Side side) noexcept {
   const double sign = side == Side::Left ? 1 : -1;
   const Mat3 R = columns({0, sign, 0}, {-sign, 0, 0}, {0, 0, 1});
-  return {R, Vec3(0, -sign * parameters.base_m, 0)};
+  const Pose X_DA(R, Vec3(0, -sign * parameters.base_m, 0));
+  if (side == Side::Left) return X_DA;
+  return X_DA * Pose(rotationFromVector(parameters.right_turn_rad), parameters.right_shift_m);
 }
 
 Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) noexcept {
@@ -188,12 +208,14 @@ Status handleJoints(const DualArmParameters& parameters, const Pose& X_DH, DualA
   return status;
 }
 
-Status handleJacobian(const DualArmParameters& parameters, const Pose& X_DH, JointMatrix& J) noexcept {
+Status handleMotion(const DualArmParameters& parameters, const Pose& X_DH, HandleMotion& motion) noexcept {
   Configuration c;
   const Status status = configure(parameters, X_DH, c);
-  J.setZero();
   if (status != Status::Ok) return status;
+  motion.joints = toVector(c.joints);
+  motion.q2_rad = c.q2_rad;
   // A gimbal centre at p from H moves with v + w x p.
+  JointMatrix& J = motion.J;
   const Mat3 left = c.J_left_inverse * c.R_DL.transpose(), right = c.J_right_inverse * c.R_DR.transpose();
   J.block<3, 3>(0, 0) = -left * crossMatrix(c.p_HL);
   J.block<3, 3>(0, 3) = left;
@@ -201,10 +223,22 @@ Status handleJacobian(const DualArmParameters& parameters, const Pose& X_DH, Joi
   J.block<3, 3>(3, 3) = right;
   // w - w_barrel = z3 q1' + m q2' + Y q3', and n is perpendicular to the passive axes z3 and m, with n . Y =
   // cos q2.
-  J.row(6) = -(c.n.transpose() * c.R_DL * c.J_barrel) * J.topRows<3>();
+  const Mat3 barrel = c.R_DL * c.J_barrel;
+  J.row(6) = -(c.n.transpose() * barrel) * J.topRows<3>();
   J.block<1, 3>(6, 0) += c.n.transpose();
   J.row(6) /= c.cos_q2;
+  // sin q2 = Y . z3, and both turn: q2' = (w - w_barrel) . (Y x z3) / cos q2.
+  const Vec3 m = c.Y.cross(c.z3) / c.cos_q2;
+  motion.J_q2 = -(m.transpose() * barrel) * J.topRows<3>();
+  motion.J_q2.head<3>() += m.transpose();
   return Status::Ok;
+}
+
+Status handleJacobian(const DualArmParameters& parameters, const Pose& X_DH, JointMatrix& J) noexcept {
+  HandleMotion motion;
+  const Status status = handleMotion(parameters, X_DH, motion);
+  J = motion.J;
+  return status;
 }
 
 bool isReachable(const DualArmParameters& parameters, const Pose& X_DH) noexcept {
@@ -277,10 +311,7 @@ JointVector motorLimits(const DualArmParameters& parameters, double peak_share) 
   };
   const double plate = blend(parameters.plate_torque_Nm, parameters.plate_peak_Nm);
   const double link = blend(parameters.link_force_N, parameters.link_peak_N);
-  JointVector limit;
-  limit << plate, plate, link, plate, plate, link,
-      blend(parameters.rotor_torque_Nm, parameters.rotor_peak_Nm);
-  return limit;
+  return jointVector(plate, link, blend(parameters.rotor_torque_Nm, parameters.rotor_peak_Nm));
 }
 
 }  // namespace vps

@@ -30,7 +30,7 @@ double couplingDelay_s(const CouplingTiming& timing) noexcept {
 
 CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept {
   const CouplingGains unknown;
-  const double period_s = 1 / timing.haptic_rate_hz, delay_s = couplingDelay_s(timing);
+  const double period_s = 1 / timing.haptic_rate_hz, delay_s = couplingDelay_s(timing) + limits.delay_s;
   const Spring line = stiffest(limits.damping_Ns_per_m, limits.coulomb_N, limits.resolution_m, period_s,
                                delay_s, {unknown.k_N_per_m, unknown.b_Ns_per_m});
   const Spring turn = stiffest(limits.damping_Nms_per_rad, limits.coulomb_Nm, limits.resolution_rad, period_s,
@@ -45,6 +45,15 @@ CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timi
   if (limits.peak_force_N > 0) gains.max_force_N = limits.peak_force_N / timing.force_scale;
   if (limits.peak_torque_Nm > 0) gains.max_torque_Nm = limits.peak_torque_Nm / timing.force_scale;
   return gains;
+}
+
+bool areUsable(const CouplingGains& gains) noexcept {
+  const auto isWithin = [](double value, double most) {
+    return value >= 0 && value <= most;
+  };  // false for NaN
+  return isWithin(gains.k_N_per_m, 1e6) && isWithin(gains.b_Ns_per_m, 1e4) &&
+         isWithin(gains.k_Nm_per_rad, 1e4) && isWithin(gains.b_Nms_per_rad, 1e3) &&
+         isWithin(gains.max_force_N, 1e3) && isWithin(gains.max_torque_Nm, 1e3);
 }
 
 }  // namespace vps

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps_device/gains.h"
+
 namespace vps {
 
 Pose WorkspaceMap::toScene(const Pose& X_DH) const noexcept {
@@ -46,6 +48,7 @@ HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& s
       std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
+  if (!areUsable(gains)) guard_.refuse(SafetyFault::BadGains);
 }
 
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
@@ -61,7 +64,9 @@ void HapticLoop::release() noexcept {
 }
 
 void HapticLoop::rearm() noexcept {
+  device_->rearm();
   guard_.rearm();
+  if (!areUsable(settings_.gains)) guard_.refuse(SafetyFault::BadGains);
   has_before_ = false;
   const CouplingState& part = port_->part.read();
   if (is_holding_ && part.X_W.isFinite()) grasp(part.X_W);

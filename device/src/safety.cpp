@@ -35,6 +35,10 @@ const char* toText(SafetyFault fault) noexcept {
       return "pose jumped";
     case SafetyFault::DeviceLost:
       return "device lost";
+    case SafetyFault::ClockBackwards:
+      return "device's clock went backwards";
+    case SafetyFault::BadGains:
+      return "coupling gains out of range";
   }
   return "unknown";
 }
@@ -50,8 +54,11 @@ void SafetyGuard::trip(SafetyFault fault) noexcept {
 Wrench SafetyGuard::guard(const DeviceSample& sample, const Wrench& wanted, double dt_s) noexcept {
   if (sample.status != Status::Ok) {
     trip(SafetyFault::DeviceLost);
-  } else if (!sample.X_DH.isFinite() || !sample.V_DH.isFinite() || !isRotation(sample.X_DH.R)) {
+  } else if (!sample.X_DH.isFinite() || !sample.V_DH.isFinite() || !isRotation(sample.X_DH.R) ||
+             !std::isfinite(sample.time_s)) {
     trip(SafetyFault::BadPose);
+  } else if (has_pose_ && sample.time_s < time_last_s_) {
+    trip(SafetyFault::ClockBackwards);
   } else if (has_pose_ && ((sample.X_DH.p - X_last_.p).norm() > limits_.jump_m ||
                            rotationVector(sample.X_DH.R * X_last_.R.transpose()).norm() > limits_.jump_rad)) {
     trip(SafetyFault::Jump);
@@ -60,6 +67,7 @@ Wrench SafetyGuard::guard(const DeviceSample& sample, const Wrench& wanted, doub
   }
   if (state_.fault != SafetyFault::None) return {};
   X_last_ = sample.X_DH;
+  time_last_s_ = sample.time_s;
   has_pose_ = true;
 
   const double scale = scaleWithin(wanted, limits_.force_N, limits_.torque_Nm);

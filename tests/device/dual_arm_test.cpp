@@ -123,6 +123,136 @@ TEST(Handle, ForwardUndoesInverseOverTheWorkspace) {
   EXPECT_LE(worst, 1e-12);  // roundings, times 1 / L and 1 / cos q2
 }
 
+// A grid over the whole workspace, its faces and corners too, with every handle direction within the gimbal's
+// range and every turn of the handle about itself within the motor's.
+template <typename Visit>
+int overTheWorkspace(const DualArmParameters& p, const Visit& visit) {
+  int visited = 0;
+  for (int place = 0; place < 5 * 7 * 5; ++place) {
+    const Vec3 at(place % 5 / 4.0 - 0.5, place / 5 % 7 / 6.0 - 0.5, place / 35 / 4.0 - 0.5);
+    const Vec3 p_DH = p.workspace_m.cwiseProduct(at);
+    for (int direction = 0; direction < 26; ++direction) {
+      // Faces, edges and corners of a cube, turned a little so that none lies in a singular plane by chance.
+      const int code = direction < 13 ? direction : direction + 1;
+      const Vec3 Y = Vec3(code % 3 - 1 + 0.01, code / 3 % 3 - 1 + 0.02, code / 9 - 1 - 0.015).normalized();
+      const Mat3 R_straight = Quat::FromTwoVectors(Vec3::UnitY(), Y).normalized().toRotationMatrix();
+      for (const double spin_rad : {-2.4, -1.1, 0.0, 1.3, 2.5}) {
+        const Pose X_DH(Mat3(R_straight * rotationFromVector(Vec3(0, spin_rad, 0))), p_DH);
+        HandleMotion motion;
+        if (handleMotion(p, X_DH, motion) != Status::Ok || std::abs(motion.q2_rad) > p.q2_max_rad) continue;
+        ++visited;
+        visit(X_DH, motion);
+      }
+    }
+  }
+  return visited;
+}
+
+TEST(Handle, ForwardUndoesInverseOverTheWholeWorkspaceAndAllDirections) {
+  for (const bool is_calibrated : {false, true}) {
+    DualArmParameters p;
+    if (is_calibrated) {
+      p.right_shift_m = Vec3(3e-3, -2e-3, 1e-3);
+      p.right_turn_rad = Vec3(0.01, -0.02, 0.015);
+    }
+    double worst_m = 0, worst_rad = 0, worst_joint = 0;
+    const int visited = overTheWorkspace(p, [&](const Pose& X_DH, const HandleMotion& motion) {
+      Pose X_back;
+      DualArmJoints joints;
+      ASSERT_EQ(handlePose(p, fromVector(motion.joints), X_back), Status::Ok);
+      ASSERT_EQ(handleJoints(p, X_back, joints), Status::Ok);
+      worst_m = std::max(worst_m, (X_back.p - X_DH.p).norm());
+      worst_rad = std::max(worst_rad, (X_back.R - X_DH.R).norm());
+      worst_joint = std::max(worst_joint, (toVector(joints) - motion.joints).cwiseAbs().maxCoeff());
+    });
+    EXPECT_GT(visited, 15000);
+    RecordProperty("worst_m", std::to_string(1e15 * worst_m) + "e-15");
+    // Issue's bar: 1e-9 m and 1e-9 rad. Roundings of 1e-16, times 1 / L and 1 / cos q2 (3.4 at its limit):
+    // 1e-13.
+    EXPECT_LE(worst_m, 1e-13);
+    EXPECT_LE(worst_rad, 1e-13);
+    EXPECT_LE(worst_joint, 1e-13);
+  }
+}
+
+TEST(Handle, GimbalsOwnAngleFollowsItsRate) {
+  const DualArmParameters p;
+  Random random(12);
+  const double h = 1e-6;
+  for (int i = 0; i < 200; ++i) {
+    const Pose X_DH = randomPose(random, p, 1.0);
+    const Twist V{random.normal3(), random.normal3()};
+    const auto moved = [&](double t) {
+      return Pose(Mat3(rotationFromVector(t * V.w) * X_DH.R), Vec3(X_DH.p + t * V.v));
+    };
+    HandleMotion motion, a, b;
+    ASSERT_EQ(handleMotion(p, X_DH, motion), Status::Ok);
+    ASSERT_EQ(handleMotion(p, moved(-h), a), Status::Ok);
+    ASSERT_EQ(handleMotion(p, moved(h), b), Status::Ok);
+    Eigen::Matrix<double, 6, 1> twist;
+    twist << V.w, V.v;
+    // h^2 times third derivatives up to 1e3 near the gimbal's limit, plus 1e-16 / h.
+    EXPECT_NEAR(motion.J_q2.dot(twist), (b.q2_rad - a.q2_rad) / (2 * h), 1e-8);
+  }
+}
+
+TEST(Handle, SingularAnglesAndJointLimitsAreDetected) {
+  const DualArmParameters p;
+  // Along the barrel's z3 the gimbal locks: D's x with the left arm straight ahead.
+  HandleMotion motion;
+  const Pose X_DL = armBase(p, Side::Left);
+  const Pose locked(rotationFromVector(Vec3(0, 0, -kPi / 2)), Vec3(0.5 * p.handle_m, 0, 0));
+  const Pose X_locked = locked * Pose::translation(p.p_EH);
+  EXPECT_EQ(handleMotion(p, X_locked, motion), Status::Singular);
+  // Each limit in turn: just within is reachable, just beyond is not.
+  const auto isReached = [&](int joint, double value) {
+    DualArmJoints joints;
+    EXPECT_EQ(handleJoints(p, Pose::translation(p.p_EH), joints), Status::Ok);
+    JointVector values = toVector(joints);
+    values[joint] = value;
+    // Only the left arm is free to choose; the right one follows the handle.
+    const Vec3 p_L = X_DL * armPosition(fromVector(values).left);
+    const Vec3 p_DE = p_L + Vec3(0, 0.5 * p.handle_m, 0);
+    return isReachable(p, Pose::translation(p_DE + p.p_EH));
+  };
+  EXPECT_TRUE(isReached(1, 0.99 * p.plate_max_rad));
+  EXPECT_FALSE(isReached(1, 1.01 * p.plate_max_rad));
+  EXPECT_TRUE(isReached(0, -0.99 * p.plate_max_rad));
+  EXPECT_FALSE(isReached(0, -1.01 * p.plate_max_rad));
+  EXPECT_TRUE(isReached(2, 1.01 * p.reach_min_m));
+  EXPECT_FALSE(isReached(2, 0.99 * p.reach_min_m));
+  const auto spun = [&](double rad) { return Pose(rotationFromVector(Vec3(0, rad, 0)), Vec3::Zero()); };
+  EXPECT_TRUE(isReachable(p, spun(0.99 * p.q3_max_rad)));
+  EXPECT_FALSE(isReachable(p, spun(1.01 * p.q3_max_rad)));
+}
+
+TEST(Statics, PowerAndWrenchHoldToOneBillionthOverTheWholeWorkspace) {
+  const DualArmParameters p;
+  Random random(13);
+  double worst_power = 0, worst_wrench = 0;
+  overTheWorkspace(p, [&](const Pose& X_DH, const HandleMotion& motion) {
+    const Wrench F{random.normal3(), 10 * random.normal3()};
+    Eigen::Matrix<double, 6, 1> twist, wrench;
+    twist << random.normal3(), random.normal3();
+    wrench << F.tau, F.f;
+    JointVector efforts;
+    Wrench back;
+    ASSERT_EQ(motorEfforts(p, X_DH, F, efforts), Status::Ok);
+    ASSERT_EQ(handleWrench(p, X_DH, efforts, back), Status::Ok);
+    // Against the sum of all powers' sizes, since they may cancel.
+    const JointVector powers = efforts.cwiseProduct(motion.J * twist);
+    worst_power = std::max(worst_power, std::abs(powers.sum() - wrench.dot(twist)) / powers.cwiseAbs().sum());
+    worst_wrench =
+        std::max(worst_wrench, (back.f - F.f).norm() / F.f.norm() + (back.tau - F.tau).norm() / F.tau.norm());
+  });
+  RecordProperty("worst_power", std::to_string(1e15 * worst_power) + "e-15");
+  RecordProperty("worst_wrench", std::to_string(1e15 * worst_wrench) + "e-15");
+  // The bar is 1e-9. Roundings of 1e-16, ten of them, times 1 / L and 1 / cos q2: 1e-13.
+  EXPECT_LE(worst_power, 1e-13);
+  EXPECT_LE(worst_wrench, 1e-13);
+  EXPECT_GT(worst_wrench, 0) << "nothing was tried";
+}
+
 TEST(Handle, WholeWorkspaceIsReachableWithTheHandleTurnedBy45Degrees) {
   const DualArmParameters p;
   Random random(4);

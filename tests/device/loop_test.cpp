@@ -189,6 +189,32 @@ TEST(HapticLoop, TickNeverTouchesTheHeap) {
   }
 }
 
+TEST(HapticLoop, GainsOutOfRangeGiveNoForceEvenWhenRearmed) {
+  for (const double bad : {std::nan(""), -1.0, 1e300}) {
+    Puppet device;
+    CouplingPort port;
+    LoopSettings settings = quick();
+    settings.gains.k_N_per_m = bad;
+    HapticLoop loop(device, port, settings);
+    loop.grasp(Pose{});
+    port.part.write(partAt(Pose{}));
+    device.sample.X_DH.p = Vec3(1e-3, 0, 0);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_EQ(loop.tick().status, Status::Fault);
+      EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
+      EXPECT_EQ(loop.safety().fault, SafetyFault::BadGains);
+      loop.rearm();
+    }
+  }
+}
+
+TEST(Gains, AnswerForTheDevicesOwnDelay) {
+  DeviceLimits limits;
+  limits.damping_Ns_per_m = 5;
+  limits.delay_s = 1e-3;
+  EXPECT_NEAR(deriveGains(limits, {1000, 1000, 0, 1, 1}).k_N_per_m, 0.8 * 4 / 2.5e-3, 1e-9);
+}
+
 TEST(Gains, FollowTheFormulasAndTheDevice) {
   DeviceLimits limits;
   limits.damping_Ns_per_m = 5;
@@ -267,23 +293,26 @@ Press pressOnFloor(CouplingGains gains, int haptic_per_physics, double hand_k) {
 TEST(Coupling, DerivedGainsPressSteadilyOnARigidFloor) {
   for (const int haptic_per_physics : {1, 4}) {
     for (const double hand_k : {100.0, 500.0, 2000.0}) {
-      const DeviceLimits limits = SimulatedDualArm().limits();
+      const DeviceLimits limits = dualArmLimits({}, 1000.0 * haptic_per_physics, true);
       const CouplingGains gains = deriveGains(limits, {1000.0 * haptic_per_physics, 1000, 0, 1, 1});
-      EXPECT_GT(gains.k_N_per_m, 1500);
+      EXPECT_GT(gains.k_N_per_m, 1000);
       EXPECT_LT(gains.k_N_per_m, 5000);
       const Press press = pressOnFloor(gains, haptic_per_physics, hand_k);
       const double force_N = 5 * gains.k_N_per_m / (gains.k_N_per_m + hand_k);  // two springs in series
       // Dry friction of up to 0.35 N may hold its share; one encoder error of 0.1 mm moves the reading.
       EXPECT_NEAR(press.force_N, force_N, 0.35 + 1e-4 * gains.k_N_per_m) << hand_k;
-      EXPECT_LT(press.ripple_N, 1e-4 * gains.k_N_per_m) << hand_k;
+      // One encoder error in the spring, and its speed through the filter (20 mm/s, both ways) in the damper.
+      EXPECT_LT(press.ripple_N, 1e-4 * gains.k_N_per_m + 0.04 * gains.b_Ns_per_m) << hand_k;
       EXPECT_LT(press.speed_m_s, 2e-3) << hand_k;
     }
   }
 }
 
-TEST(Coupling, TenTimesTheDerivedStiffnessRings) {
+TEST(Coupling, ThirtyTimesTheDerivedStiffnessRings) {
+  // Well beyond the ringing edge K = (b + B) / (T/2 + t_d), since dry friction alone stills what rings
+  // faintly.
   CouplingGains gains = deriveGains(SimulatedDualArm().limits(), {1000, 1000, 0, 1, 1});
-  gains.k_N_per_m *= 10;
+  gains.k_N_per_m *= 30;
   EXPECT_GT(pressOnFloor(gains, 1, 100).ripple_N, 1);
 }
 

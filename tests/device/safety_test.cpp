@@ -78,6 +78,24 @@ TEST(SafetyGuard, NoticesJumpsLostDevicesAndBadPoses) {
   EXPECT_EQ(guard.state().fault, SafetyFault::BadPose);
 }
 
+TEST(SafetyGuard, NoticesAClockThatGoesBackwards) {
+  SafetyGuard guard;
+  DeviceSample sample;
+  sample.time_s = 1;
+  const Wrench wanted{Vec3::Zero(), Vec3(1, 0, 0)};
+  EXPECT_GT(guard.guard(sample, wanted, kDt_s).f.norm(), 0);
+  EXPECT_GT(guard.guard(sample, wanted, kDt_s).f.norm(), 0) << "the same time is none";
+  sample.time_s = 0.999;
+  EXPECT_EQ(guard.guard(sample, wanted, kDt_s).f, Vec3(Vec3::Zero()));
+  EXPECT_EQ(guard.state().fault, SafetyFault::ClockBackwards);
+  guard.rearm();
+  guard.guard(sample, wanted, kDt_s);
+  EXPECT_EQ(guard.state().fault, SafetyFault::None);
+  sample.time_s = NAN;
+  guard.guard(sample, wanted, kDt_s);
+  EXPECT_EQ(guard.state().fault, SafetyFault::BadPose);
+}
+
 TEST(SafetyGuard, NothingEverExceedsTheLimits) {
   const SafetyLimits limits;
   SafetyGuard guard(limits);

@@ -15,9 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"assemble", "simulate", "query", "import", "snapshot"};
-const std::vector<std::string> kComing = {"check",  "explain", "trade", "view",
-                                          "device", "render",  "watch", "replay"};
+const std::vector<std::string> kReady = {"assemble", "simulate", "query", "import", "snapshot", "device"};
+const std::vector<std::string> kComing = {"check", "explain", "trade", "view", "render", "watch", "replay"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   std::vector<std::string> all = kReady;
@@ -54,6 +53,30 @@ TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("snapshot scene.toml -o a.png --view north", "--view");
   expectRefused("snapshot scene.toml --compare gone.png", "gone.png");
   expectRefused("query plate.stl", "see vps query --help");
+}
+
+TEST_F(Program, DeviceShowsItsOwnTableOneAndRefusesABadFile) {
+  const Ran ran = run("device --characterise --json arm.json --plot fig");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  for (const char* words : {"this device", "the paper", "400 x 600 x 400", "14 - 18", "both, handle carried"})
+    EXPECT_NE(ran.out.find(words), std::string::npos) << words;
+  const json arm = json::parse(slurp(folder_ / "arm.json"));
+  EXPECT_GT(arm["force_N"]["up_both"]["continuous"]["least"], 12);
+  EXPECT_EQ(arm["parameters"]["handle"]["mass_kg"]["value"], 0.2);
+  EXPECT_TRUE(arm["parameters"]["handle"]["mass_kg"].contains("sourced"));
+  EXPECT_GT(arm["coupling"]["at_1kHz"]["k_N_per_m"], 100);
+  // A device of one's own: a handle of half a kilogram leaves 3 N less upward.
+  write("heavy.toml", "[handle]\nmass_kg = 0.5\n");
+  EXPECT_EQ(run("device --characterise --parameters heavy.toml --json heavy.json --plot ''").status, 0);
+  const json heavy = json::parse(slurp(folder_ / "heavy.json"));
+  EXPECT_LT(heavy["force_N"]["up_both"]["continuous"]["least"], 10);
+  EXPECT_TRUE(heavy["parameters"]["handle"]["mass_kg"].contains("given"));
+  write("bad.toml", "[handle]\nmass_kg = -1\n");
+  expectRefused("device --characterise --parameters bad.toml",
+                "bad.toml:2: [handle] mass_kg is -1; expected more than 0 and at most 100");
+  expectRefused("device --characterise --parameters gone.toml", "gone.toml: no such file");
+  expectRefused("device", "device is not ready yet");
+  expectRefused("device --json a.json", "--characterise");
 }
 
 TEST_F(Program, ABadSceneIsNamedByFileLineAndKey) {

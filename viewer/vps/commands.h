@@ -78,6 +78,14 @@ struct SnapshotArguments {
 };
 int runSnapshot(const SnapshotArguments& given);
 
+struct DeviceArguments {
+  bool is_characterise = false;
+  std::string parameters;        ///< a device's .toml over the built-in one; empty: none
+  std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
+  std::string json;
+};
+int runDevice(const DeviceArguments& given);
+
 /// The cache in a folder, telling of its troubles on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "vps_device/dual_arm_character.h"
+
 namespace vps {
 
 namespace {
@@ -167,6 +169,85 @@ std::string toJson(const SnapshotAnswer& answer) {
                         {"share_beyond", answer.share_beyond},
                         {"greatest_difference", answer.greatest_difference},
                         {"mean_difference", answer.mean_difference}};
+  return text(json);
+}
+
+namespace {
+
+Json extent(const Extent& e) {
+  return {{"least", e.least}, {"median", e.median}, {"greatest", e.greatest}};
+}
+
+Json duty(const Duty& d) {
+  return {{"continuous", extent(d.continuous)}, {"peak", extent(d.peak)}};
+}
+
+Json coupling(const DeviceLimits& limits, const CouplingGains& gains) {
+  return {{"k_N_per_m", gains.k_N_per_m},
+          {"b_Ns_per_m", gains.b_Ns_per_m},
+          {"k_Nm_per_rad", gains.k_Nm_per_rad},
+          {"b_Nms_per_rad", gains.b_Nms_per_rad},
+          {"device_damping_Ns_per_m", limits.damping_Ns_per_m},
+          {"device_damping_Nms_per_rad", limits.damping_Nms_per_rad},
+          {"device_coulomb_N", limits.coulomb_N},
+          {"device_coulomb_Nm", limits.coulomb_Nm},
+          {"device_delay_s", limits.delay_s}};
+}
+
+Json parameters(const DualArmFile& file) {
+  Json out = Json::object();
+  for (const ParameterNote& note : file.notes) {
+    const Json value = note.value.size() == 1 ? Json(note.value[0]) : Json(note.value);
+    const char* origin = note.words.empty() ? "given" : note.is_sourced ? "sourced" : "assumed";
+    out[note.section][note.key] = {{"value", value}, {origin, note.words}};
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string toJson(const DualArmCharacter& c, const DualArmFile& file) {
+  Json json;
+  json["device"] = "dual_arm";
+  json["workspace"] = {{"size_m", list(c.workspace_m)},
+                       {"straight_scale", c.straight_scale},
+                       {"tilted_scale", c.tilted_scale},
+                       {"gimbal_sr", c.gimbal_sr},
+                       {"centre_solid_angle_sr", c.centre_solid_angle_sr},
+                       {"solid_angle_sr", extent(c.solid_angle_sr)}};
+  json["limit"] = {{"force_N", {c.limits_1kHz.continuous_force_N, c.limits_1kHz.peak_force_N}},
+                   {"torque_Nm", {c.limits_1kHz.continuous_torque_Nm, c.limits_1kHz.peak_torque_Nm}}};
+  json["force_N"] = {{"worst_direction_straight", duty(c.straight_force_N)},
+                     {"worst_direction", duty(c.force_N)},
+                     {"any_direction", duty(c.any_force_N)},
+                     {"up_left", duty(c.left_up_N)},
+                     {"up_right", duty(c.right_up_N)},
+                     {"up_both", duty(c.up_N)},
+                     {"up_both_with_couple", duty(c.sum_up_N)}};
+  json["torque_Nm"] = {{"worst_direction_straight", duty(c.straight_torque_Nm)},
+                       {"worst_direction", duty(c.torque_Nm)},
+                       {"any_direction", duty(c.any_torque_Nm)}};
+  json["stiffness_N_per_m"] = {{"held", extent(c.held_stiffness_N_per_m)},
+                               {"free", extent(c.free_stiffness_N_per_m)}};
+  json["resolution"] = {{"to_45_deg_m", extent(c.resolution_m)},
+                        {"to_45_deg_rad", extent(c.resolution_rad)},
+                        {"all_directions_m", extent(c.far_resolution_m)},
+                        {"all_directions_rad", extent(c.far_resolution_rad)}};
+  json["friction_N"] = extent(c.friction_N);
+  json["force_over_friction"] = {{"continuous", c.force_ratio}, {"peak", c.peak_force_ratio}};
+  json["isotropy"] = {{"plate_torque_over_places_arm", c.arm_isotropy},
+                      {"plate_torque_over_places_pair", c.pair_isotropy},
+                      {"directions_arm", extent(c.arm_ellipsoid_isotropy)},
+                      {"directions_pair", extent(c.ellipsoid_isotropy)}};
+  json["manipulability_arm_m2"] = extent(c.arm_manipulability_m2);
+  json["mean_force_pair_N"] = extent(c.pair_force_mean_N);
+  json["reflected"] = {{"mass_kg", extent(c.mass_kg)}, {"inertia_kgm2", extent(c.inertia_kgm2)}};
+  json["clearance_m"] = {{"straight", c.straight_clearance_m},
+                         {"to_45_deg", c.tilted_clearance_m},
+                         {"all_directions", c.far_clearance_m}};
+  json["coupling"] = {{"at_1kHz", coupling(c.limits_1kHz, c.gains_1kHz)},
+                      {"at_4kHz", coupling(c.limits_4kHz, c.gains_4kHz)}};
+  json["parameters"] = parameters(file);
   return text(json);
 }
 

@@ -15,6 +15,9 @@
 
 namespace vps {
 
+struct DualArmCharacter;  // vps_device/dual_arm_character.h
+struct DualArmFile;
+
 /// What `vps query` found at one pose.
 struct PoseAnswer {
   Pose X_AB;
@@ -66,5 +69,6 @@ std::string toJson(const std::string& scene, double seconds, const SimulateResul
 std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
+std::string toJson(const DualArmCharacter& character, const DualArmFile& file);
 
 }  // namespace vps

@@ -42,7 +42,7 @@ class CommandLine {
     addComing("explain", "what of a scene will be modelled, why, at what cost", "vps explain scene.toml");
     addComing("trade", "measures speed against accuracy on a scene", "vps trade scene.toml");
     addComing("view", "opens a window on a scene", "vps view scene.toml");
-    addComing("device", "the device's node", "vps device --list");
+    addDevice();
     addComing("render", "the haptic rendering node", "vps render scene.toml");
     addComing("watch", "the viewer's node", "vps watch");
     addComing("replay", "runs a recording again, bit for bit", "vps replay run.mcap");
@@ -198,6 +198,23 @@ class CommandLine {
     addJson(command, snapshot_.json);
   }
 
+  void addDevice() {
+    CLI::App* command = add("device", "the device: its figures beside the paper's (as a node: not ready)",
+                            "vps device --characterise --json dual_arm.json --plot figure5",
+                            [this] { return runDevice(device_); });
+    CLI::Option* characterise = command->add_flag("--characterise", device_.is_characterise,
+                                                  "the dual arm's own Table 1, and figure 5");
+    command->add_option("--parameters", device_.parameters, "a device's file, over the built-in one")
+        ->type_name("FILE.toml")
+        ->needs(characterise);
+    command->add_option("--plot", device_.plot, "figure 5 as .png and .svg; '' for none")
+        ->capture_default_str()
+        ->type_name("NAME")
+        ->needs(characterise);
+    addJson(command, device_.json);
+    command->get_option("--json")->needs(characterise);
+  }
+
   /// A command that is to come: it is there, says so, and is no success.
   void addComing(const std::string& name, const std::string& does, const std::string& example) {
     CLI::App* command = add(name, does + " (not ready)", example, [name, does] {
@@ -213,6 +230,7 @@ class CommandLine {
   QueryArguments query_;
   ImportArguments import_;
   SnapshotArguments snapshot_;
+  DeviceArguments device_;
 };
 
 int run(int argc, char** argv) {

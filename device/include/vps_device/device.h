@@ -27,6 +27,7 @@ struct DeviceLimits {
   Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
   Vec3 workspace_max_D = Vec3::Zero();
   double rate_hz = 1000;        ///< read-write cycles per second
+  double delay_s = 0;           ///< from a reading to the effect of the wrench that answers it
   double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, handle within 30 deg
   double damping_Nms_per_rad = 0;
   double coulomb_N = 0;  ///< least dry friction over the workspace
@@ -46,6 +47,9 @@ class Device {
   /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates it by itself,
   /// keeping its direction; a wrench that is not finite counts as zero.
   virtual void write(const Wrench& F_Ho_D) noexcept = 0;
+
+  /// Clears a fault that the device itself has latched. The next pose may be anywhere.
+  virtual void rearm() noexcept {}
 
   [[nodiscard]] virtual DeviceLimits limits() const noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;

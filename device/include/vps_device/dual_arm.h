@@ -14,59 +14,9 @@
 #include "vps/pose.h"
 #include "vps/status.h"
 #include "vps/wrench.h"
+#include "vps_device/dual_arm_parameters.h"
 
 namespace vps {
-
-/// All numbers of the device. `sourced`: in the paper. `assumed`: not in the paper; the reason stands beside
-/// it.
-struct DualArmParameters {
-  // Workspace of the handle's origin, centred at D's origin.
-  Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);  ///< sourced: Table 1; assumed: the 600 mm lie along the prismatic
-                                           ///< joints, since the frustum's base is square
-  // Geometry.
-  double handle_m = 0.2;  ///< L, between gimbal centres. assumed: one arm's worst 5 N times L is the worst
-                          ///< torque of Table 1, 1 N m
-  double base_m = 0.85;   ///< from D's origin to each base. assumed: nearest gimbal centre stays 0.45 m away
-  double reach_min_m = 0.40;  ///< d3. assumed: workspace and any direction of the handle, with 50 mm to spare
-  double reach_max_m = 1.35;  ///< d3. assumed: as above
-  double plate_max_rad = 0.80;  ///< |t1|, |t2|. assumed: needed for the workspace, with 0.1 rad to spare
-  double q2_max_rad =
-      1.2695;               ///< assumed: leaves 4 pi sin(q2_max) = 12 sr of handle directions, as in Table 1
-  double q3_max_rad = 2.6;  ///< assumed: cable of the handle's motor
-  double link_radius_m = 0.015;   ///< of a prismatic link, for `armClearance_m`. assumed: a tube
-  Vec3 p_EH = Vec3(0, -0.01, 0);  ///< from the midpoint (1) to the centre of mass H, in E. assumed: the motor
-                                  ///< sits at the left end
-  // Mass and friction.
-  double handle_kg = 0.2;  ///< sourced: section 3
-  Vec3 handle_kgm2 =
-      Vec3(8e-4, 4e-5, 8e-4);  ///< about H, along E's axes. assumed: a rod of 0.2 m and 20 mm radius
-  double plate_kgm2 = 0.08;  ///< of plate, link and balance weight, each axis. assumed: 0.15 kg at mid reach
-  double link_kg = 0.25;     ///< prismatic link with its tendon drive. assumed: aluminium tube of 1 m
-  double rotor_kgm2 = 2e-5;  ///< handle motor with its gear. assumed: a 20 mm motor
-  double plate_damping_Nms = 2.0;      ///< per axis, N m s/rad. assumed: motors with shorted-winding damping,
-                                       ///< chosen so that K = 2 kN/m is passive at 1 kHz
-  double link_damping_Ns_per_m = 2.5;  ///< assumed: as above
-  double rotor_damping_Nms = 0.012;    ///< assumed: as above, for 4 N m/rad
-  double plate_coulomb_Nm = 0.10;      ///< assumed: capstans, no gears: about 0.1 N at the handle
-  double link_coulomb_N = 0.10;        ///< assumed: as above
-  double rotor_coulomb_Nm = 0.002;     ///< assumed: a small gear
-  // Encoders: one step.
-  double plate_step_rad =
-      7.85e-5;                 ///< assumed: 80,000 counts a turn behind the capstan; gives Table 1's 100 um
-  double link_step_m = 50e-6;  ///< assumed: finer than what the plates give
-  double rotor_step_rad = 5.1e-4;  ///< assumed: 2048 counts a turn of the motor behind a capstan of 6
-  double resolution_m = 100e-6;    ///< at the handle, worst case. sourced: Table 1
-  double resolution_rad =
-      0.001;  ///< within 45 deg of straight. assumed: Table 1's 0.005 is the worst, at q2_max
-  // Motors: continuous and peak.
-  double plate_torque_Nm = 7.7,
-         plate_peak_Nm = 18.5;  ///< assumed: 14 N upward of the pair anywhere in the workspace,
-                                ///< less the handle's 2 N leaves figure 5's 12 N; 2.4 times peak
-  double link_force_N = 7.0, link_peak_N = 17.0;      ///< assumed: as above
-  double rotor_torque_Nm = 1.0, rotor_peak_Nm = 2.5;  ///< assumed: Table 1's worst torque holds about Y too
-  double force_N = 12.5, force_peak_N = 30.0;         ///< on the handle. sourced: Table 1
-  double torque_Nm = 1.0, torque_peak_Nm = 2.5;       ///< on the handle. sourced: Table 1, worst case
-};
 
 /// Joints of one arm: t1, t2 [rad] of the plate and the prismatic d3 [m].
 struct ArmJoints {
@@ -88,6 +38,12 @@ enum class Side { Left, Right };
 using JointVector = Eigen::Matrix<double, 7, 1>;
 using JointMatrix = Eigen::Matrix<double, 7, 6>;  ///< joint rates from a twist (w, v)
 
+JointVector toVector(const DualArmJoints& joints) noexcept;
+DualArmJoints fromVector(const JointVector& values) noexcept;
+
+/// One value for each plate joint, sliding joint and the handle's motor, in joint order.
+JointVector jointVector(double plate, double link, double rotor) noexcept;
+
 // --- One arm, in its base frame A: x towards the other arm, z up
 // --------------------------------------------------
 
@@ -104,7 +60,7 @@ Mat3 armJacobian(const ArmJoints& joints) noexcept;
 /// Angular velocity of the barrel by (t1, t2, d3) rates.
 Mat3 armAngularJacobian(const ArmJoints& joints) noexcept;
 
-/// Base frame of an arm in D. assumed: the arms face each other along D's y.
+/// Base frame of an arm in D. assumed: the arms face each other along D's y; the right one as calibrated.
 Pose armBase(const DualArmParameters& parameters, Side side) noexcept;
 
 /// R_D3 of the left barrel. assumed: it turns with the plate, and at t1 = t2 = q = 0 the handle's axes are
@@ -134,6 +90,18 @@ Mat3 gimbalRotation(double q1_rad, double q2_rad, double q3_rad) noexcept;
 /// J^T efforts. Singular at |q2| = 90 deg or |t2| = 90 deg.
 [[nodiscard]] Status handleJacobian(const DualArmParameters& parameters, const Pose& X_DH,
                                     JointMatrix& J) noexcept;
+
+/// All that motion and stops need to know of one pose of the handle.
+struct HandleMotion {
+  JointVector joints = JointVector::Zero();  ///< in joint order
+  JointMatrix J = JointMatrix::Zero();       ///< joint rates = J V, as handleJacobian
+  double q2_rad = 0;                         ///< the gimbal's, which no motor moves
+  Eigen::Matrix<double, 1, 6> J_q2 = Eigen::Matrix<double, 1, 6>::Zero();  ///< q2' = J_q2 V
+};
+
+/// Status as handleJacobian; otherwise `motion` stays untouched.
+[[nodiscard]] Status handleMotion(const DualArmParameters& parameters, const Pose& X_DH,
+                                  HandleMotion& motion) noexcept;
 
 /// True if every joint, q2 too, is within its range and the arms keep apart.
 bool isReachable(const DualArmParameters& parameters, const Pose& X_DH) noexcept;

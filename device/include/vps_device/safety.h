@@ -20,7 +20,7 @@ struct SafetyLimits {
   double rearm_s = 0.2;  ///< force returns over this time after re-arming. assumed: slower than a startle
 };
 
-enum class SafetyFault { None, BadWrench, BadPose, Jump, DeviceLost };
+enum class SafetyFault { None, BadWrench, BadPose, Jump, DeviceLost, ClockBackwards, BadGains };
 const char* toText(SafetyFault fault) noexcept;
 
 struct SafetyState {
@@ -41,6 +41,9 @@ class SafetyGuard {
   /// Clears a fault; force returns over rearm_s.
   void rearm() noexcept;
 
+  /// Latches a fault that others have found.
+  void refuse(SafetyFault fault) noexcept { trip(fault); }
+
   [[nodiscard]] const SafetyState& state() const noexcept { return state_; }
 
  private:
@@ -50,6 +53,7 @@ class SafetyGuard {
   SafetyState state_;
   Wrench last_;
   Pose X_last_;
+  double time_last_s_ = 0;
   bool has_pose_ = false;
   double ramp_ = 1;
 };

@@ -1,77 +1,65 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A dual-arm device in simulated time: rigid handle, reflected arms, friction, encoders and motors with
-// limits.
+// The dual arm in simulated time: the controller that hardware would have, driving the plant that stands for
+// it.
 #pragma once
 
-#include "vps_device/device.h"
-#include "vps_device/dual_arm.h"
-#include "vps_device/hand_force.h"
+#include "vps_device/dual_arm_controller.h"
+#include "vps_device/dual_arm_plant.h"
 
 namespace vps {
 
 struct SimulatedDualArmSettings {
   DualArmParameters arms;
-  bool has_quantised_encoders = true;
-  double rate_hz = 1000;  ///< of read-write cycles; the velocity filter follows it
-  double velocity_filter_s =
-      2e-3;               ///< time constant of the velocity estimate. assumed: one encoder step then gives
-                          ///< less than 20 mm/s at 1 kHz, and the lag stays below the coupling's own
-  double thermal_s = 10;  ///< time constant of motor heat, for peak against continuous. assumed
+  bool has_quantised_encoders = true;  ///< false: exact readings, without noise too
+  bool is_rigid = false;               ///< true: nothing bends
+  double rate_hz = 1000;               ///< of read-write cycles
+  std::uint64_t seed = 1;              ///< of the encoders' noise
   Pose X_DH_start;
 };
+
+/// Nothing that the plant itself does not have: exact readings, a rigid structure, no delay. To tell their
+/// share.
+SimulatedDualArmSettings idealDualArm();
 
 /// Deterministic; nothing allocates after construction.
 class SimulatedDualArm final : public Device {
  public:
   explicit SimulatedDualArm(const SimulatedDualArmSettings& settings = {});
+  SimulatedDualArm(const SimulatedDualArm&) = delete;
+  SimulatedDualArm& operator=(const SimulatedDualArm&) = delete;
 
-  /// True pose -> joints -> encoders -> forward kinematics. Velocity: filtered difference of the measured
-  /// poses.
-  DeviceSample read() noexcept override;
-
-  /// Wrench -> motor efforts (with the handle's weight) -> limits -> wrench that step() applies.
+  DeviceSample read() noexcept override { return controller_.read(); }
   void write(const Wrench& F_Ho_D) noexcept override;
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return controller_.limits(); }
+  [[nodiscard]] std::string_view name() const noexcept override { return controller_.name(); }
+  void rearm() noexcept override { controller_.rearm(); }
 
-  [[nodiscard]] DeviceLimits limits() const noexcept override { return limits_; }
-  [[nodiscard]] std::string_view name() const noexcept override { return "dual_arm"; }
-
-  /// Advances the plant by dt_s with the hand `hand` (in D) on the handle. The hand's spring and damper, and
-  /// friction, are solved implicitly: stable at any stiffness. dt_s > 0.
-  void step(double dt_s, const HandForce& hand) noexcept;
+  /// Advances the plant by dt_s with the hand `hand` (in D) on the handle; see DualArmPlant::step().
+  void step(double dt_s, const HandForce& hand) noexcept { plant_.step(dt_s, hand); }
 
   /// Puts the handle elsewhere, at rest; the next read() starts afresh. For calibration and tests.
   void moveTo(const Pose& X_DH) noexcept;
 
   /// The truth, for tests and for the operator's own senses; the loop sees only read().
-  [[nodiscard]] const Pose& truePose() const noexcept { return X_DH_; }
-  [[nodiscard]] const Twist& trueTwist() const noexcept { return V_DH_; }
-  [[nodiscard]] double time_s() const noexcept { return time_s_; }
-  /// What the motors give to the hand after limits, less the handle's weight, in D.
+  [[nodiscard]] const Pose& truePose() const noexcept { return plant_.pose(); }
+  [[nodiscard]] const Twist& trueTwist() const noexcept { return plant_.twist(); }
+  [[nodiscard]] double time_s() const noexcept { return plant_.time_s(); }
+  /// What the motors were last told to give to the hand, after limits, less the handle's weight, in D.
   [[nodiscard]] const Wrench& appliedWrench() const noexcept { return F_applied_; }
-  /// What the hand gave the handle in the last step, in D.
-  [[nodiscard]] const Wrench& lastHandWrench() const noexcept { return F_hand_; }
-  [[nodiscard]] double kinetic_J() const noexcept { return kinetic_J_; }
-  [[nodiscard]] double friction_J() const noexcept { return friction_J_; }  ///< dissipated so far, >= 0
-  [[nodiscard]] unsigned long saturatedWrites() const noexcept { return saturated_; }
+  [[nodiscard]] const Wrench& lastHandWrench() const noexcept { return plant_.lastHandWrench(); }
+  [[nodiscard]] double kinetic_J() const noexcept { return plant_.kinetic_J(); }
+  [[nodiscard]] double structure_J() const noexcept { return plant_.structure_J(); }
+  [[nodiscard]] double friction_J() const noexcept { return plant_.friction_J(); }
+  [[nodiscard]] unsigned long saturatedWrites() const noexcept { return controller_.saturatedWrites(); }
+  [[nodiscard]] const DualArmPlant& plant() const noexcept { return plant_; }
+  [[nodiscard]] DualArmController& controller() noexcept { return controller_; }
+  [[nodiscard]] DeviceEventQueue& events() noexcept { return events_; }
 
  private:
-  using Mat6 = Eigen::Matrix<double, 6, 6>;
-  [[nodiscard]] Mat6 inertia(const JointMatrix& J) const noexcept;
-
-  SimulatedDualArmSettings settings_;
-  DeviceLimits limits_;
-  Pose X_DH_;
-  Twist V_DH_;
-  double time_s_ = 0;
-  Wrench F_applied_, F_hand_;
-  JointMatrix J_ = JointMatrix::Zero();
-  Mat6 M_before_ = Mat6::Zero();
-  JointVector heat_ = JointVector::Zero();  ///< mean square of effort / continuous limit
-  JointVector efforts_ = JointVector::Zero();
-  double kinetic_J_ = 0, friction_J_ = 0;
-  unsigned long saturated_ = 0;
-  bool has_read_ = false, has_stepped_ = false;
-  DeviceSample last_;
+  DeviceEventQueue events_;
+  DualArmPlant plant_;
+  DualArmController controller_;
+  Wrench F_applied_;
 };
 
 }  // namespace vps

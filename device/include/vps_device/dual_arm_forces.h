@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How strong the dual arm is at a place: the least over all directions, and figure 5's vertical force.
+#pragma once
+
+#include "vps_device/dual_arm.h"
+
+namespace vps {
+
+/// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
+struct VerticalForce {
+  double left_N = 0;   ///< of the left arm alone, at its gimbal
+  double right_N = 0;  ///< of the right arm alone
+  double both_N = 0;   ///< of the pair on the handle, without a couple, beside the handle's weight
+  double sum_N = 0;    ///< left_N + right_N less the weight: the hand would have to bear the couple
+};
+/// Zero where the device is singular.
+VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
+                            const JointVector& limits) noexcept;
+
+/// Motor efforts for forces along D's axes, or for torques about them: columns x, y, z.
+struct EffortMap {
+  Eigen::Matrix<double, 7, 3> force = Eigen::Matrix<double, 7, 3>::Zero();   ///< N m or N, per N at H
+  Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< per N m about H
+  JointVector weight = JointVector::Zero();                                  ///< to carry the handle
+};
+[[nodiscard]] Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
+                               EffortMap& map) noexcept;
+
+/// Greatest size that every direction of force (or torque) can have at once beside `weight`, exactly: a motor
+/// whose row is a asks |a| for its own worst direction. `efforts` is either map.
+double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
+                           const JointVector& limits) noexcept;
+
+/// Greatest size along one direction.
+double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
+                      const JointVector& limits, const Vec3& direction) noexcept;
+
+}  // namespace vps

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The text of data/dual_arm.toml, put into the library when it is built.
+#pragma once
+
+namespace vps {
+
+extern const char* const kDualArmToml;
+
+}  // namespace vps

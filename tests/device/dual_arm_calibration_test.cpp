@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/dual_arm_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "support/no_alloc.h"
+#include "vps_device/dual_arm_frames.h"
+#include "vps_device/random.h"
+
+namespace vps {
+namespace {
+
+// A device whose right base stands a few millimetres and a degree off its drawing.
+DualArmParameters displaced() {
+  DualArmParameters p;
+  p.right_shift_m = Vec3(3e-3, -2e-3, 1.5e-3);
+  p.right_turn_rad = Vec3(0.01, -0.015, 0.02);
+  return p;
+}
+
+// What its encoders say with the handle moved about; `noise_steps` in encoder steps, deviation.
+std::vector<DualArmJoints> readingsOf(const DualArmParameters& truth, int count, double tilt_rad,
+                                      double noise_steps, std::uint64_t seed) {
+  Random random(seed);
+  std::vector<DualArmJoints> readings;
+  const JointVector step = jointVector(truth.plate_step_rad, truth.link_step_m, truth.rotor_step_rad);
+  while (static_cast<int>(readings.size()) < count) {
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    const Pose X_DH(rotationFromVector(tilt_rad * random.uniform() * random.normal3().normalized()),
+                    Vec3(truth.workspace_m.cwiseProduct(Vec3(x - 0.5, y - 0.5, z - 0.5))));
+    DualArmJoints joints;
+    if (handleJoints(truth, X_DH, joints) != Status::Ok) continue;
+    JointVector values = toVector(joints);
+    for (int i = 0; i < 7; ++i) values[i] += noise_steps * step[i] * random.normal();
+    readings.push_back(fromVector(values));
+  }
+  return readings;
+}
+
+double errorOf_m(const DualArmParameters& found, const DualArmParameters& truth) {
+  return (armBase(found, Side::Right).p - armBase(truth, Side::Right).p).norm();
+}
+double errorOf_rad(const DualArmParameters& found, const DualArmParameters& truth) {
+  return rotationVector(armBase(found, Side::Right).R * armBase(truth, Side::Right).R.transpose()).norm();
+}
+
+TEST(BaseCalibration, FindsTheBaseFromExactReadingsToRounding) {
+  const DualArmParameters truth = displaced();
+  const BaseCalibration found = calibrateBases(DualArmParameters{}, readingsOf(truth, 60, 1.0, 0, 1));
+  ASSERT_EQ(found.status, Status::Ok);
+  // Roundings of 1e-16 m, times the least squares' condition (below 1e3 for these poses).
+  EXPECT_LT(errorOf_m(found.parameters, truth), 1e-12);
+  EXPECT_LT(errorOf_rad(found.parameters, truth), 1e-12);
+  EXPECT_LT(found.rms_m, 1e-14);
+  EXPECT_LT(found.iterations, 12);
+}
+
+TEST(BaseCalibration, StartsFromADrawingFiveCentimetresAndTenDegreesOff) {
+  DualArmParameters truth;
+  truth.right_shift_m = Vec3(0.03, -0.03, 0.03);
+  truth.right_turn_rad = Vec3(0.1, 0.1, -0.1);
+  const BaseCalibration found = calibrateBases(DualArmParameters{}, readingsOf(truth, 60, 1.0, 0, 2));
+  ASSERT_EQ(found.status, Status::Ok);
+  EXPECT_LT(errorOf_m(found.parameters, truth), 1e-12);
+}
+
+TEST(BaseCalibration, WithNoiseItErrsAsMuchAsItSays) {
+  const DualArmParameters truth = displaced();
+  double mean_square_m = 0, mean_square_rad = 0;
+  constexpr int kRuns = 40;
+  for (int run = 0; run < kRuns; ++run) {
+    // Rounding to a step is noise of 0.29 steps; 0.5 is more than the encoders have.
+    const BaseCalibration found =
+        calibrateBases(DualArmParameters{}, readingsOf(truth, 200, 1.0, 0.5, 10 + run));
+    ASSERT_EQ(found.status, Status::Ok);
+    EXPECT_GT(found.sigma_m, 0);
+    const double share_m = errorOf_m(found.parameters, truth) / found.sigma_m;
+    const double share_rad = errorOf_rad(found.parameters, truth) / found.sigma_rad;
+    // Three directions of at most one deviation each: beyond 5 in one of 1e5 runs (chi square of three).
+    EXPECT_LT(share_m, 5);
+    EXPECT_LT(share_rad, 5);
+    mean_square_m += share_m * share_m / kRuns;
+    mean_square_rad += share_rad * share_rad / kRuns;
+  }
+  // The mean square lies between one direction's and three directions' variance; 40 runs scatter it by a
+  // quarter.
+  EXPECT_GT(mean_square_m, 0.6);
+  EXPECT_LT(mean_square_m, 3.8);
+  EXPECT_GT(mean_square_rad, 0.6);
+  EXPECT_LT(mean_square_rad, 3.8);
+}
+
+TEST(BaseCalibration, MakesTheDeviceReadRightWithTheRealEncoders) {
+  const DualArmParameters truth = displaced();
+  const BaseCalibration found = calibrateBases(DualArmParameters{}, readingsOf(truth, 200, 1.0, 0.3, 7));
+  ASSERT_EQ(found.status, Status::Ok);
+  double before_m = 0, after_m = 0;
+  for (const DualArmJoints& joints : readingsOf(truth, 300, 0.8, 0, 99)) {
+    Pose X_true, X_before, X_after;
+    ASSERT_EQ(handlePose(truth, joints, X_true), Status::Ok);
+    ASSERT_EQ(handlePose(DualArmParameters{}, joints, X_before), Status::Ok);
+    ASSERT_EQ(handlePose(found.parameters, joints, X_after), Status::Ok);
+    before_m = std::max(before_m, (X_before.p - X_true.p).norm());
+    after_m = std::max(after_m, (X_after.p - X_true.p).norm());
+  }
+  RecordProperty("before_um", std::to_string(1e6 * before_m));
+  RecordProperty("after_um", std::to_string(1e6 * after_m));
+  EXPECT_GT(before_m, 5e-3) << "nothing to calibrate";
+  EXPECT_LT(after_m, truth.resolution_m / 2);  // below what the encoders tell anyway
+}
+
+TEST(BaseCalibration, SaysWhenItCannot) {
+  const DualArmParameters p;
+  EXPECT_EQ(calibrateBases(p, readingsOf(p, 11, 1.0, 0, 3)).status, Status::Truncated);
+  // Never turned, the handle pulls in one direction only.
+  EXPECT_EQ(calibrateBases(p, readingsOf(p, 100, 0, 0, 4)).status, Status::Singular);
+  std::vector<DualArmJoints> bad = readingsOf(p, 20, 1.0, 0, 5);
+  bad[7].right.d3_m = NAN;
+  const BaseCalibration found = calibrateBases(p, bad);
+  EXPECT_EQ(found.status, Status::BadPose);
+  EXPECT_EQ(found.parameters.right_shift_m, p.right_shift_m);
+}
+
+TEST(BaseCalibration, NeverTouchesTheHeap) {
+  const DualArmParameters p;
+  const std::vector<DualArmJoints> readings = readingsOf(displaced(), 60, 1.0, 0.3, 6);
+  const vps_test::NoAllocScope guard;
+  EXPECT_EQ(calibrateBases(p, readings).status, Status::Ok);
+}
+
+TEST(DeviceFrames, ThreeFramesAgreeOnPlacesPowersAndTheArmsOwnReadings) {
+  const DualArmParameters p = displaced();
+  const Pose X_DH(rotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0.1, -0.2, 0.05));
+  const Twist V_D{Vec3(1, 2, 3), Vec3(-0.1, 0.2, 0.3)};
+  const Wrench F_D{Vec3(0.1, 0.2, -0.3), Vec3(4, 5, 6)};
+  for (const DeviceFrame frame : {DeviceFrame::Independent, DeviceFrame::Left, DeviceFrame::Right}) {
+    const Pose X = inFrame(p, X_DH, DeviceFrame::Independent, frame);
+    const Pose back = inFrame(p, X, frame, DeviceFrame::Independent);
+    EXPECT_LT((back.p - X_DH.p).norm() + (back.R - X_DH.R).norm(), 1e-14) << toText(frame);
+    EXPECT_NEAR(power(inFrame(p, F_D, DeviceFrame::Independent, frame),
+                      inFrame(p, V_D, DeviceFrame::Independent, frame)),
+                power(F_D, V_D), 1e-13);
+  }
+  // A gimbal centre in an arm's own frame is what that arm alone reads.
+  DualArmJoints joints;
+  ASSERT_EQ(handleJoints(p, X_DH, joints), Status::Ok);
+  const Vec3 p_HE = -p.p_EH, half = Vec3(0, 0.5 * p.handle_m, 0);
+  const Pose X_left = inFrame(p, X_DH, DeviceFrame::Independent, DeviceFrame::Left);
+  const Pose X_right = inFrame(p, X_DH, DeviceFrame::Independent, DeviceFrame::Right);
+  EXPECT_LT((X_left * Vec3(p_HE - half) - armPosition(joints.left)).norm(), 1e-15 * 10);
+  EXPECT_LT((X_right * Vec3(p_HE + half) - armPosition(joints.right)).norm(), 1e-15 * 10);
+}
+
+}  // namespace
+}  // namespace vps

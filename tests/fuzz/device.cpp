@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes as what a dual arm's hardware, physics and people do wrong, tick by tick: the force keeps within its
+// limit, a fault gives none, and re-arming brings it back.
+#include "fuzz.h"
+#include "support/hostile_arm.h"
+#include "vps/load_error.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  // The first byte chooses: a device's file, or a sequence for its controller.
+  if (size > 0 && data[0] == '[') {
+    try {
+      const vps::DualArmFile file =
+          vps::parseDualArm({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+      vps::fuzz::require(
+          vps::isReachable(file.parameters, vps::Pose::translation(0.5 * file.parameters.workspace_m)),
+          "a file that is accepted makes a device that reaches its workspace");
+    } catch (const vps::LoadError&) {
+    }
+    return 0;
+  }
+  vps_test::runHostile(data, std::min<std::size_t>(size, 400), vps::fuzz::require);
+  return 0;
+}
+
+std::vector<std::string> vps::fuzz::seeds() {
+  // All well; each trouble in turn after ten good ticks; gains that are not numbers; a file.
+  std::string calm = {1, char(128)}, all = {2, char(140)}, bad_gains = {0, 100};
+  for (int i = 0; i < 40; ++i) calm.append({31, 0});
+  for (char code = 0; code < 21; ++code) {
+    for (int i = 0; i < 4; ++i) all.append({31, 0});
+    all.append({code, 50, 16, 0});
+  }
+  for (int i = 0; i < 10; ++i) bad_gains.append({31, 0, 16, 0});
+  return {calm, all, bad_gains,
+          "[handle]\nmass_kg = {value = 0.3, assumed = \"why\"}\n[timing]\ndelay_ticks = 2\n"};
+}
