@@ -14,12 +14,13 @@ namespace vps::log {
 template <typename Entry, typename Visit>
 requires std::is_same_v<std::remove_const_t<Entry>, DeviceSample>
 void fields(Entry& e, Visit&& visit) {
-  visit("time_s", e.time_s);
-  visit("p_dh_m", e.X_DH.p);
-  visit("r_dh", e.X_DH.R);
-  visit("v_dh_m_s", e.V_DH.v);
-  visit("w_dh_rad_s", e.V_DH.w);
-  visit("status", e.status);
+  auto& [X_DH, V_DH, time_s, status] = e;  // one that is added and forgotten here does not compile
+  visit("time_s", time_s);
+  visit("p_dh_m", X_DH.p);
+  visit("r_dh", X_DH.R);
+  visit("v_dh_m_s", V_DH.v);
+  visit("w_dh_rad_s", V_DH.w);
+  visit("status", status);
 }
 
 template <typename Entry, typename Visit>

@@ -16,25 +16,28 @@ inline constexpr const char* kDevice = "vps.device";
 inline constexpr const char* kEnd = "vps.end";
 inline constexpr const char* kFormat = "1";  ///< goes up when a reader of before would misread
 
-/// visit(name, number) for each number of the limits.
+/// visit(name, number) for each number of the limits. They are taken apart into as many names as there are
+/// members, so that one that is added and forgotten here does not compile.
 template <typename Limits, typename Visit>
-void eachLimit(Limits& l, Visit&& visit) {
-  visit("continuous_force_N", l.continuous_force_N);
-  visit("peak_force_N", l.peak_force_N);
-  visit("continuous_torque_Nm", l.continuous_torque_Nm);
-  visit("peak_torque_Nm", l.peak_torque_Nm);
+void eachLimit(Limits& limits, Visit&& visit) {
+  auto& [force, peak_force, torque, peak_torque, min_D, max_D, rate, damping, turn_damping, coulomb,
+         turn_coulomb, resolution, turn_resolution] = limits;
+  visit("continuous_force_N", force);
+  visit("peak_force_N", peak_force);
+  visit("continuous_torque_Nm", torque);
+  visit("peak_torque_Nm", peak_torque);
   for (int i = 0; i < 3; ++i) {
     const std::string axis(1, static_cast<char>('x' + i));
-    visit("workspace_min_m." + axis, l.workspace_min_D[i]);
-    visit("workspace_max_m." + axis, l.workspace_max_D[i]);
+    visit("workspace_min_m." + axis, min_D[i]);
+    visit("workspace_max_m." + axis, max_D[i]);
   }
-  visit("rate_hz", l.rate_hz);
-  visit("damping_Ns_per_m", l.damping_Ns_per_m);
-  visit("damping_Nms_per_rad", l.damping_Nms_per_rad);
-  visit("coulomb_N", l.coulomb_N);
-  visit("coulomb_Nm", l.coulomb_Nm);
-  visit("resolution_m", l.resolution_m);
-  visit("resolution_rad", l.resolution_rad);
+  visit("rate_hz", rate);
+  visit("damping_Ns_per_m", damping);
+  visit("damping_Nms_per_rad", turn_damping);
+  visit("coulomb_N", coulomb);
+  visit("coulomb_Nm", turn_coulomb);
+  visit("resolution_m", resolution);
+  visit("resolution_rad", turn_resolution);
 }
 
 }  // namespace vps::recording

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"assemble", "simulate", "query", "import", "snapshot"};
+const std::vector<std::string> kReady = {"assemble", "replay", "simulate", "query", "import", "snapshot"};
 const std::vector<std::string> kComing = {"check", "explain", "trade", "view", "device", "render", "watch"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
