@@ -111,6 +111,7 @@ class Procedure {
   [[nodiscard]] bool advance();
   void record(int phase);
   void tellPhase();
+  void tellFaults();
   void tellEvent(RunEventKind kind, const std::string& words);
   const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
@@ -146,6 +147,7 @@ class Procedure {
   bool is_holding_ = false;
   bool is_over_ = false;  ///< the hand cannot go on
   std::optional<OperatorPhase> told_phase_;
+  std::uint64_t told_faults_ = 0;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
   std::size_t first_row_ = 0;   ///< of the step, in the trace
@@ -240,6 +242,7 @@ bool Procedure::advance() {
     haptic_clock_.start();
     loop_.tick();
     haptic_clock_.stop();
+    tellFaults();
     hand_.step({poses_[held_.part], simulation_.twist(held_.part)}, loop_, tick_s);
   }
   X_WP_before_ = poses_[held_.part];
@@ -271,6 +274,13 @@ void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
   if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(hand_.phase());
   event.say(words);
   log_->add(event);
+}
+
+void Procedure::tellFaults() {
+  const SafetyState& safety = loop_.safety();
+  if (safety.faults == told_faults_) return;
+  told_faults_ = safety.faults;
+  tellEvent(RunEventKind::Note, std::string("safety: ") + toText(safety.fault));
 }
 
 void Procedure::tellPhase() {
