@@ -106,7 +106,7 @@ TEST(Recording, EveryBitComesBack) {
   const std::vector<LogEntry> truth = everyKind();
   const RecordedRun run = recordingFrom(recorded(truth), "run.mcap");
   EXPECT_EQ(run.damage, "");
-  EXPECT_EQ(equalEntries(run, truth), truth.size());
+  ASSERT_EQ(equalEntries(run, truth), truth.size());
   const auto& odd = std::get<DeviceSample>(run.entries[5]);
   EXPECT_TRUE(std::signbit(odd.X_DH.p.x()));
   EXPECT_EQ(std::bit_cast<std::uint64_t>(odd.X_DH.p.y()), 0x7ff8000000000123ull);
