@@ -9,6 +9,8 @@ using namespace mcap;
 
 namespace {
 
+constexpr const char* kContradiction = "holds a record that contradicts its own length";
+
 std::map<std::string, std::string> textMap(std::string_view bytes, bool& is_good) {
   std::map<std::string, std::string> map;
   ByteReader in(bytes);
@@ -73,39 +75,54 @@ class Parser {
   }
 
   void plain(std::size_t at, std::uint8_t opcode, std::string_view body) {
-    bool is_good = true;
     ByteReader in(body);
+    bool is_good = true;
+    if (opcode == kMessage) return message(at, body);
+    if (opcode == kAttachment) return attachment(at, body);
+    if (opcode == 0) return fail(at, "holds zeros where a record should begin");
     if (opcode == kHeader) {
       content_.profile = in.text();
       content_.library = in.text();
     } else if (opcode == kSchema) {
-      McapSchema schema;
-      schema.id = in.get<std::uint16_t>();
-      schema.name = in.text();
-      schema.encoding = in.text();
-      schema.data = in.text();
-      if (in.isGood()) content_.schemas.emplace(schema.id, std::move(schema));
+      schema(in);
     } else if (opcode == kChannel) {
-      McapChannel channel;
-      channel.id = in.get<std::uint16_t>();
-      channel.schema = in.get<std::uint16_t>();
-      channel.topic = in.text();
-      channel.encoding = in.text();
-      channel.metadata = textMap(in.text(), is_good);
-      if (in.isGood()) content_.channels.emplace(channel.id, std::move(channel));
-    } else if (opcode == kMessage) {
-      return message(at, body);
-    } else if (opcode == kAttachment) {
-      return attachment(at, body);
+      is_good = channel(in);
     } else if (opcode == kMetadata) {
-      McapMetadata metadata;
-      metadata.name = in.text();
-      metadata.values = textMap(in.text(), is_good);
-      if (in.isGood()) content_.metadata.push_back(std::move(metadata));
-    } else if (opcode == 0) {
-      return fail(at, "holds zeros where a record should begin");
+      is_good = metadata(in);
     }  // else: an index, which a reader from front to back does not need, or a record of later days
-    if (!in.isGood() || !is_good) fail(at, "holds a record that contradicts its own length");
+    if (!in.isGood() || !is_good) fail(at, kContradiction);
+  }
+
+  void schema(ByteReader& in) {
+    McapSchema schema;
+    schema.id = in.get<std::uint16_t>();
+    schema.name = in.text();
+    schema.encoding = in.text();
+    schema.data = in.text();
+    if (in.isGood()) content_.schemas.emplace(schema.id, std::move(schema));
+  }
+
+  bool channel(ByteReader& in) {
+    McapChannel channel;
+    bool is_good = true;
+    channel.id = in.get<std::uint16_t>();
+    channel.schema = in.get<std::uint16_t>();
+    channel.topic = in.text();
+    channel.encoding = in.text();
+    channel.metadata = textMap(in.text(), is_good);
+    is_good = is_good && in.isGood();
+    if (is_good) content_.channels.emplace(channel.id, std::move(channel));
+    return is_good;
+  }
+
+  bool metadata(ByteReader& in) {
+    McapMetadata metadata;
+    bool is_good = true;
+    metadata.name = in.text();
+    metadata.values = textMap(in.text(), is_good);
+    is_good = is_good && in.isGood();
+    if (is_good) content_.metadata.push_back(std::move(metadata));
+    return is_good;
   }
 
   void message(std::size_t at, std::string_view body) {
@@ -116,7 +133,7 @@ class Parser {
     message.time_ns = in.get<std::uint64_t>();
     in.get<std::uint64_t>();
     message.data = in.take(in.left());
-    if (!in.isGood()) return fail(at, "holds a record that contradicts its own length");
+    if (!in.isGood()) return fail(at, kContradiction);
     if (!content_.channels.contains(message.channel)) return fail(at, "holds a message of no known channel");
     content_.messages.push_back(message);
   }
@@ -128,7 +145,7 @@ class Parser {
     const std::string_view name = in.text(), media_type = in.text(), data = in.text<std::uint64_t>();
     const std::string_view summed = body.substr(0, body.size() - in.left());
     const auto crc = in.get<std::uint32_t>();
-    if (!in.isGood()) return fail(at, "holds a record that contradicts its own length");
+    if (!in.isGood()) return fail(at, kContradiction);
     if (crc != 0 && crc != crc32(summed))
       return fail(at, "has an attachment whose checksum is wrong: '" + std::string(name) + "'");
     content_.attachments.push_back({std::string(name), std::string(media_type), std::string(data)});
@@ -141,7 +158,7 @@ class Parser {
     const auto bytes = in.get<std::uint64_t>();
     const auto crc = in.get<std::uint32_t>();
     const std::string_view compression = in.text(), records = in.text<std::uint64_t>();
-    if (!in.isGood()) return fail(at, "holds a record that contradicts its own length");
+    if (!in.isGood()) return fail(at, kContradiction);
     if (!compression.empty())
       return fail(at, "has a chunk compressed by '" + std::string(compression) + "', which is not read here");
     if (bytes != records.size() || (crc != 0 && crc != crc32(records)))
@@ -168,7 +185,7 @@ class Parser {
       const std::size_t begin = at + (records.size() - in.left());
       const auto opcode = in.get<std::uint8_t>();
       const std::string_view body = in.text<std::uint64_t>();
-      if (!in.isGood()) return fail(begin, "holds a record that contradicts its own length");
+      if (!in.isGood()) return fail(begin, kContradiction);
       if (opcode != kMessage && opcode != kSchema && opcode != kChannel)
         return fail(begin, "has a chunk with a record that does not belong there");
       plain(begin, opcode, body);
@@ -179,7 +196,7 @@ class Parser {
   void dataEnd(std::size_t at, std::string_view body) {
     ByteReader in(body);
     const auto crc = in.get<std::uint32_t>();
-    if (!in.isGood()) return fail(at, "holds a record that contradicts its own length");
+    if (!in.isGood()) return fail(at, kContradiction);
     if (crc != 0 && crc != crc32(bytes_.substr(0, at)))
       fail(at, "has a changed byte outside of its messages: which one, nobody can tell");
   }

@@ -56,6 +56,13 @@ std::string channelBytes(const McapChannel& channel) {
   });
 }
 
+template <typename T, typename Bytes>
+std::vector<std::string> each(const std::vector<T>& list, const Bytes& bytes) {
+  std::vector<std::string> out;
+  for (const T& x : list) out.push_back(bytes(x));
+  return out;
+}
+
 }  // namespace
 
 McapWriter::McapWriter(Sink sink, const std::string& profile, const std::string& library)
@@ -201,55 +208,60 @@ void McapWriter::finish() {
   flush();
   const std::uint32_t data_crc = crc_.value();
   emitRecord(kDataEnd, built([&](ByteWriter& w) { w.put(data_crc); }));
-
   crc_ = {};
   const std::uint64_t summary_at = at_;
-  std::vector<std::string> schemas, channels, chunks, attachments, metadata;
-  for (const McapSchema& schema : schemas_) schemas.push_back(schemaBytes(schema));
-  for (const McapChannel& channel : channels_) channels.push_back(channelBytes(channel));
-  for (const ChunkPlace& chunk : chunks_)
-    chunks.push_back(built([&](ByteWriter& w) {
-      for (const std::uint64_t value : {chunk.first_ns, chunk.last_ns, chunk.at, chunk.length}) w.put(value);
-      w.text(mapBytes(chunk.index_at));
-      w.put(chunk.index_length);
-      w.text("");
-      w.put(chunk.bytes);
-      w.put(chunk.bytes);
-    }));
-  for (const Indexed& file : attachments_)
-    attachments.push_back(built([&](ByteWriter& w) {
-      for (const std::uint64_t value : {file.at, file.length, std::uint64_t{0}, std::uint64_t{0}, file.bytes})
-        w.put(value);
-      w.text(file.name);
-      w.text(file.media_type);
-    }));
-  for (const Indexed& entry : metadata_)
-    metadata.push_back(built([&](ByteWriter& w) {
-      w.put(entry.at);
-      w.put(entry.length);
-      w.text(entry.name);
-    }));
-  std::string offsets;
-  emitGroup(kSchema, schemas, offsets);
-  emitGroup(kChannel, channels, offsets);
-  emitGroup(kChunkIndex, chunks, offsets);
-  emitGroup(kAttachmentIndex, attachments, offsets);
-  emitGroup(kMetadataIndex, metadata, offsets);
-  emitGroup(kStatistics, {statistics()}, offsets);
+  const std::string offsets = emitSummary();
   const std::uint64_t offsets_at = at_;
   emit(offsets);
-
   // The checksum covers the footer up to itself.
-  const std::string footer = built([&](ByteWriter& w) {
+  emit(built([&](ByteWriter& w) {
     w.put(kFooter);
     w.put(std::uint64_t{kFooterBytes});
     w.put(summary_at);
     w.put(offsets_at);
-  });
-  emit(footer);
+  }));
   const std::uint32_t summary_crc = crc_.value();
   emit(built([&](ByteWriter& w) { w.put(summary_crc); }));
   emit(kMagic);
+}
+
+std::string McapWriter::emitSummary() {
+  std::string offsets;
+  emitGroup(kSchema, each(schemas_, schemaBytes), offsets);
+  emitGroup(kChannel, each(channels_, channelBytes), offsets);
+  emitGroup(kChunkIndex, each(chunks_, &McapWriter::chunkBytes), offsets);
+  emitGroup(kAttachmentIndex, each(attachments_, &McapWriter::attachmentBytes), offsets);
+  emitGroup(kMetadataIndex, each(metadata_, &McapWriter::metadataBytes), offsets);
+  emitGroup(kStatistics, {statistics()}, offsets);
+  return offsets;
+}
+
+std::string McapWriter::chunkBytes(const ChunkPlace& chunk) {
+  return built([&](ByteWriter& w) {
+    for (const std::uint64_t value : {chunk.first_ns, chunk.last_ns, chunk.at, chunk.length}) w.put(value);
+    w.text(mapBytes(chunk.index_at));
+    w.put(chunk.index_length);
+    w.text("");  // not compressed: both sizes are one
+    w.put(chunk.bytes);
+    w.put(chunk.bytes);
+  });
+}
+
+std::string McapWriter::attachmentBytes(const Indexed& file) {
+  return built([&](ByteWriter& w) {
+    for (const std::uint64_t value : {file.at, file.length, std::uint64_t{0}, std::uint64_t{0}, file.bytes})
+      w.put(value);
+    w.text(file.name);
+    w.text(file.media_type);
+  });
+}
+
+std::string McapWriter::metadataBytes(const Indexed& entry) {
+  return built([&](ByteWriter& w) {
+    w.put(entry.at);
+    w.put(entry.length);
+    w.text(entry.name);
+  });
 }
 
 }  // namespace vps

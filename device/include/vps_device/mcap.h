@@ -111,7 +111,12 @@ class McapWriter {
   /// Writes a record; returns where it begins.
   std::uint64_t emitRecord(std::uint8_t opcode, const std::string& content);
   void emitGroup(std::uint8_t opcode, const std::vector<std::string>& contents, std::string& offsets);
+  /// Returns the summary offset records.
+  std::string emitSummary();
   [[nodiscard]] std::string statistics() const;
+  static std::string chunkBytes(const ChunkPlace& chunk);
+  static std::string attachmentBytes(const Indexed& file);
+  static std::string metadataBytes(const Indexed& entry);
 
   Sink sink_;
   std::uint64_t at_ = 0;

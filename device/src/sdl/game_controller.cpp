@@ -53,6 +53,7 @@ class GameController final : public HandSource {
   ~GameController() override {
     close();
     if (is_there_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+    SDL_TLSCleanup();  // what SDL keeps for this thread, which is not one of its own
   }
 
   void poll(HandInput& input) override {
