@@ -43,6 +43,18 @@ struct RelativeMotion {
   bool canTouch(Candidate& c) const;
 };
 
+/// What small motions since a query make of its candidates: their planes go with body 0.
+struct Carry {
+  Pose body0;    ///< place of body 0 then -> now, in W
+  Pose against;  ///< of body 1 against body 0, as it would move a point of W now
+
+  void operator()(Candidate& c) const {
+    c.p_W = body0 * c.p_W;
+    c.n_W = body0.R * c.n_W;
+    c.distance_m -= c.n_W.dot(against * c.p_W - c.p_W);
+  }
+};
+
 /// One side of a pair: its shell's points against the other's field.
 struct SideView {
   const VpsShape* shape = nullptr;  ///< the side with the shell
@@ -83,6 +95,13 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m);
 /// surfaces (if it has any) or of the primitive `theirs`. The field still decides where no surface is near.
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
              const btCollisionShape& theirs, const RelativeMotion& motion);
+
+/// Exact distance and normal of the points of `side` that are on edges, where the other side has a map and
+/// surfaces: seen from where both bodies would be at the end of the step if they kept their velocities,
+/// unless that is an overlap that is not there now. `distance_m` is what the plane found there means now.
+/// @param way  of body 0 and body 1 in the step, in W
+void correctEdges(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
+                  const btCollisionShape& theirs, const Pose (&way)[2], const RelativeMotion& motion);
 
 /// What correct() does without exact surfaces: a point on a face keeps its own tangent plane clear, so near
 /// an edge of the other side, whose field's normals lean there, it does not push sideways. Drops the points

@@ -142,12 +142,53 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
   }
 }
 
-void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
+namespace {
+
+// The search for the nearest triangle costs by how far it has to look. Most fields are good to a small part
+// of a voxel, but at sharp edges.
+Exact nearFieldDistance(const Corrector& corrector, const Vec3& p_W, const Vec3& inward, double field_m,
+                        double voxel_m) {
+  constexpr double kMostly = 0.05, kAlways = 1;  // of a voxel
+  Exact exact = corrector.at(p_W, inward, true, std::abs(field_m) + kMostly * voxel_m);
+  if (!exact.found) exact = corrector.at(p_W, inward, true, std::abs(field_m) + kAlways * voxel_m);
+  return exact;
+}
+
+}  // namespace
+
+void correctEdges(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
+                  const btCollisionShape& theirs, const Pose (&way)[2], const RelativeMotion& motion) {
+  if (isPrimitive(theirs) || !other.shape->models().map || other.shape->models().surfaces.empty()) return;
+  const VoxMap& map = *other.shape->models().map;
   const PointShell& shell = *side.shape->models().shell;
+  const double sign = side.side == 0 ? 1 : -1;
+  const int i = side.side, j = 1 - i;
+  const SideView other_then{other.shape, way[j] * other.X_WM, other.side};
+  const Pose X_MW = other_then.X_WM.inverse();
+  constexpr double kFieldError = 0.3;  // of a voxel: beyond it a point does not touch
+  const Corrector now{side, other, theirs, false}, then{side, other_then, theirs, false};
+  for (Candidate& c : candidates) {
+    if (c.side != side.side || !side.shape->isEdgePoint(c.id)) continue;
+    const Vec3 inward = side.X_WM.R * shell.inward[c.id], p_then_W = way[i] * c.p_W;
+    const double field_m = map.distance(X_MW * p_then_W);
+    if (field_m > kFieldError * map.voxel_m()) continue;
+    Exact exact = nearFieldDistance(then, p_then_W, way[i].R * inward, field_m, map.voxel_m());
+    if (exact.found && exact.meets && exact.distance_m >= std::min(0.0, c.distance_m) - motion.slack_m) {
+      exact.distance_m -= exact.n.dot((p_then_W - c.p_W) - (way[j] * c.p_W - c.p_W));
+    } else {
+      exact = nearFieldDistance(now, c.p_W, inward, c.distance_m, map.voxel_m());
+      if (!exact.found) continue;
+    }
+    c.distance_m = exact.meets ? exact.distance_m : kNever_m;
+    c.n_W = sign * exact.n;
+  }
+}
+
+void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
   const double sign = side.side == 0 ? 1 : -1;
   std::erase_if(candidates, [&](Candidate& c) {
     if (c.side != side.side || side.shape->isEdgePoint(c.id)) return false;
-    const Vec3 own = sign * (side.X_WM.R * shell.inward[c.id]);
+    const Vec3 own = sign * (side.X_WM.R * side.shape->smoothInward(c.id));
     const double facing = own.dot(c.n_W);
     if (facing <= kFacing) return true;
     c.distance_m *= facing;  // of the nearest point's tangent plane

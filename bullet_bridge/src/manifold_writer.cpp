@@ -120,7 +120,9 @@ void ManifoldWriter::harvest() {
   for (const btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       old_.push_back({keyOf(manifold->getContactPoint(i)), manifold->getContactPoint(i)});
-  std::sort(old_.begin(), old_.end(), [](const Old& a, const Old& b) { return a.key < b.key; });
+  // They were written in this order, and are heavy to move.
+  const auto isBefore = [](const Old& a, const Old& b) { return a.key < b.key; };
+  if (!std::is_sorted(old_.begin(), old_.end(), isBefore)) std::sort(old_.begin(), old_.end(), isBefore);
 }
 
 void ManifoldWriter::recall(std::vector<Candidate>& candidates) {

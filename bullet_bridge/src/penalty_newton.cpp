@@ -20,13 +20,6 @@ Mat6 twistShift(const Vec3& from, const Vec3& to) {
   return X;
 }
 
-Vec3 toVec(const double (&v)[3]) {
-  return {v[0], v[1], v[2]};
-}
-void copy(const Vec3& v, double (&to)[3]) {
-  for (int k = 0; k < 3; ++k) to[k] = v[k];
-}
-
 double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
@@ -37,87 +30,30 @@ double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
 
 void PenaltyNewton::add(PenaltyPair& pair) {
   if (pair.points.empty()) return;
-  Patch patch;
-  patch.pair = &pair;
-  for (const PenaltyPoint& p : pair.points) patch.center += p.p_W / static_cast<double>(pair.points.size());
-  for (int i = 0; i < 2; ++i) {
-    patch.body[i] = island_.indexOf(pair.object[i]);
-    const double sign = i == 0 ? 1 : -1;
-    patch.X[i] = sign * twistShift(fromBt(pair.object[i]->getWorldTransform().getOrigin()), patch.center);
-    if (patch.body[i] < 0) patch.fixed += patch.X[i] * Island::fixedVelocity(pair.object[i]);
-  }
-  if (patch.body[0] < 0 && patch.body[1] < 0) return;
+  const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
+  if (body[0] < 0 && body[1] < 0) return;
+  if (patch_count_ == patches_.size()) patches_.emplace_back();
+  PenaltyPatch& patch = patches_[patch_count_++];
+  patch.center.setZero();
+  for (const PenaltyPoint& p : pair.points) patch.center += p.p_W;
+  patch.center /= static_cast<double>(pair.points.size());
+  patch.fixed.setZero();
   // A turning body's points go along a circle, off the tangent that a twist takes them along. Left out, a nut
   // ends each step a little off its thread, and the springs that put it back brake it.
-  Vec3 turn[2], center[2];
+  Mat3 off_tangent[2];
   for (int i = 0; i < 2; ++i) {
-    turn[i] = dt_s_ * Island::fixedVelocity(pair.object[i]).head<3>();
-    center[i] = fromBt(pair.object[i]->getWorldTransform().getOrigin());
+    patch.body[i] = body[i];
+    const Vec6 now = Island::fixedVelocity(pair.object[i]);
+    const double sign = i == 0 ? 1 : -1;
+    patch.X[i] = sign * twistShift(fromBt(pair.object[i]->getWorldTransform().getOrigin()), patch.center);
+    if (body[i] < 0) patch.fixed += patch.X[i] * now;
+    const Vec3 turn = dt_s_ * now.head<3>();
+    off_tangent[i] = rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn);
   }
-  const Mat3 off_tangent[2] = {rotationFromVector(turn[0]) - Mat3::Identity() - crossMatrix(turn[0]),
-                               rotationFromVector(turn[1]) - Mat3::Identity() - crossMatrix(turn[1])};
-  patch.points.reserve(pair.points.size());
-  for (const PenaltyPoint& p : pair.points) {
-    patch.radius_m = std::max(patch.radius_m, (p.p_W - patch.center).norm());
-    Point point{};
-    copy(p.p_W - patch.center, point.r);
-    copy(p.n_W, point.n);
-    copy(p.bend_W, point.bend);
-    point.gap_m =
-        p.gap_m + p.n_W.dot(off_tangent[0] * (p.p_W - center[0]) - off_tangent[1] * (p.p_W - center[1]));
-    point.k = p.k_N_per_m;
-    point.limit_N = pair.mu * p.f_n_N;
-    patch.points.push_back(point);
-  }
-  patches_.push_back(std::move(patch));
+  patch.build(pair, off_tangent, dt_s_);
 }
 
-PenaltyNewton::Push PenaltyNewton::pushOf(const Point& point, const Vec6& twist) const {
-  const Vec3 n = toVec(point.n);
-  const Vec3 way = dt_s_ * (twist.tail<3>() + twist.head<3>().cross(toVec(point.r)));
-  Push push;
-  const double along_n = n.dot(way);
-  push.f_n_N = point.k * std::max(0.0, -(point.gap_m + along_n));
-  const Vec3 x = toVec(point.bend) + (way - along_n * n);
-  const double length = x.norm();
-  if (!(length > 0) || !(point.limit_N > 0)) return push;
-  if (point.k * length <= point.limit_N) {
-    push.f_t_N = point.k * x;
-  } else {
-    push.slip_m = length;
-    push.along = x / length;
-    push.f_t_N = point.limit_N * push.along;
-  }
-  return push;
-}
-
-void PenaltyNewton::evaluate(Patch& patch, const Vec6& twist, bool with_hessian) const {
-  patch.gradient.setZero();
-  if (with_hessian) patch.hessian.setZero();
-  const double dt2 = dt_s_ * dt_s_;
-  for (const Point& point : patch.points) {
-    const Push push = pushOf(point, twist);
-    const bool holds = push.slip_m == 0 && point.limit_N > 0;
-    if (push.f_n_N == 0 && !(point.limit_N > 0)) continue;
-    const Vec3 n = toVec(point.n), r = toVec(point.r);
-    const Vec3 a = dt_s_ * (push.f_t_N - push.f_n_N * n);
-    patch.gradient.head<3>() += r.cross(a);
-    patch.gradient.tail<3>() += a;
-    if (!with_hessian) continue;
-    const double k_n = push.f_n_N > 0 ? dt2 * point.k : 0;
-    const double k_t = holds ? dt2 * point.k : push.slip_m > 0 ? dt2 * point.limit_N / push.slip_m : 0;
-    Mat3 K = k_t * Mat3::Identity() + (k_n - k_t) * n * n.transpose();
-    if (push.slip_m > 0) K -= k_t * push.along * push.along.transpose();
-    // v = v_c - [r] w, so K becomes [-[r] K [r], [r] K; -K [r], K], lower halves by symmetry.
-    const Mat3 rx = crossMatrix(r), rxK = rx * K;
-    patch.hessian.topLeftCorner<3, 3>() -= rxK * rx;
-    patch.hessian.topRightCorner<3, 3>() += rxK;
-    patch.hessian.bottomRightCorner<3, 3>() += K;
-  }
-  if (with_hessian) patch.hessian.bottomLeftCorner<3, 3>() = patch.hessian.topRightCorner<3, 3>().transpose();
-}
-
-Vec6 PenaltyNewton::twistOf(const Patch& patch, const std::vector<Vec6>& u) const {
+Vec6 PenaltyNewton::twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& u) const {
   Vec6 twist = patch.fixed;
   for (int i = 0; i < 2; ++i)
     if (patch.body[i] >= 0) twist += patch.X[i] * u[static_cast<std::size_t>(patch.body[i])];
@@ -136,8 +72,8 @@ void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, s
     for (int i = 0; i < 2; ++i)
       if (row.body[i] >= 0) gradient[static_cast<std::size_t>(row.body[i])] -= impulse_Ns * row.J[i];
   }
-  for (Patch& patch : patches_) {
-    evaluate(patch, twistOf(patch, u), with_hessian);
+  for (PenaltyPatch& patch : patches()) {
+    patch.evaluate(twistOf(patch, u), with_hessian);
     for (int i = 0; i < 2; ++i)
       if (patch.body[i] >= 0)
         gradient[static_cast<std::size_t>(patch.body[i])] += patch.X[i].transpose() * patch.gradient;
@@ -166,6 +102,15 @@ double PenaltyNewton::jointImpulse(const JointRow& row, double stiffness_kg,
 }
 
 void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const {
+  if (gradient.size() == 1 && joint_kg_.empty()) {
+    Mat6 H = island_.bodies[0].held;
+    for (const PenaltyPatch& patch : patches()) {
+      const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
+      H += X.transpose() * patch.hessian * X;
+    }
+    step[0] = -Eigen::LLT<Mat6>(H).solve(gradient[0]);
+    return;
+  }
   const auto count = static_cast<Eigen::Index>(6 * gradient.size());
   Eigen::VectorXd rhs(count);
   for (std::size_t i = 0; i < gradient.size(); ++i)
@@ -176,7 +121,7 @@ void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
       const auto at = static_cast<Eigen::Index>(6 * i);
       add(at, at, island_.bodies[i].held);
     }
-    for (const Patch& patch : patches_)
+    for (const PenaltyPatch& patch : patches())
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
           if (patch.body[i] >= patch.body[j] && patch.body[j] >= 0)
@@ -214,11 +159,12 @@ void PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
 // The potential is convex, so its slope along the step grows: the least is where that is zero.
 double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
   constexpr double kFlat = 0.1;  // of the slope at the start: a better share would not save an iteration
-  std::vector<Vec6> trial(u.size()), gradient(u.size());
+  trial_.resize(u.size());
+  trial_gradient_.resize(u.size());
   const auto slopeAt = [&](double share) {
-    for (std::size_t i = 0; i < u.size(); ++i) trial[i] = u[i] + share * step[i];
-    evaluateAll(trial, false, gradient);
-    return sumOfProducts(gradient, step);
+    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * step[i];
+    evaluateAll(trial_, false, trial_gradient_);
+    return sumOfProducts(trial_gradient_, step);
   };
   double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
   if (high_slope <= -kFlat * slope) return 1;
@@ -237,7 +183,7 @@ double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6
 
 double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
   double speed_m_s = 0;
-  for (const Patch& patch : patches_) {
+  for (const PenaltyPatch& patch : patches()) {
     const Vec6 twist = twistOf(patch, step) - patch.fixed;
     speed_m_s = std::max(speed_m_s, twist.tail<3>().norm() + twist.head<3>().norm() * patch.radius_m);
   }
@@ -246,57 +192,43 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
 
 int PenaltyNewton::solve(double residual_m_s, int iteration_limit) {
   prepareJoints();
-  std::vector<Vec6> u = velocities(), gradient(u.size()), step(u.size());
+  velocities();
+  gradient_.resize(u_.size());
+  step_.resize(u_.size());
   int used = 0;
   while (used++ < iteration_limit) {
-    evaluateAll(u, true, gradient);
-    newtonStep(gradient, step);
-    const double slope = sumOfProducts(gradient, step);
+    evaluateAll(u_, true, gradient_);
+    newtonStep(gradient_, step_);
+    const double slope = sumOfProducts(gradient_, step_);
     if (!(slope < 0)) break;
-    const double share = shareOf(u, step, slope);
-    for (std::size_t i = 0; i < u.size(); ++i) u[i] += share * step[i];
-    if (greatestSpeed(step) < residual_m_s) break;
+    // The last step is too short for a better share of it to matter.
+    const bool is_last = greatestSpeed(step_) < residual_m_s;
+    const double share = is_last ? 1 : shareOf(u_, step_, slope);
+    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
+    if (is_last) break;
   }
-  for (std::size_t i = 0; i < u.size(); ++i) island_.bodies[i].u = u[i];
+  for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
   return used;
 }
 
-std::vector<Vec6> PenaltyNewton::velocities() const {
-  std::vector<Vec6> u;
-  for (const IslandBody& b : island_.bodies) u.push_back(b.u);
-  return u;
+const std::vector<Vec6>& PenaltyNewton::velocities() {
+  u_.clear();
+  for (const IslandBody& b : island_.bodies) u_.push_back(b.u);
+  return u_;
 }
 
 double PenaltyNewton::renewLimits() {
-  const std::vector<Vec6> u = velocities();
+  velocities();
   double change = 0, greatest = 0;
-  for (Patch& patch : patches_) {
-    const Vec6 twist = twistOf(patch, u);
-    for (Point& point : patch.points) {
-      const double limit_N = patch.pair->mu * pushOf(point, twist).f_n_N;
-      change = std::max(change, std::abs(limit_N - point.limit_N));
-      greatest = std::max(greatest, limit_N);
-      point.limit_N = limit_N;
-    }
-  }
+  for (PenaltyPatch& patch : patches()) patch.renewLimits(twistOf(patch, u_), change, greatest);
   return greatest > 0 ? change / greatest : change;
 }
 
 void PenaltyNewton::finish() {
-  const std::vector<Vec6> u = velocities();
+  velocities();
   for (std::size_t j = 0; j < joint_kg_.size(); ++j)
-    joints_.rows[j].impulse_Ns = jointImpulse(joints_.rows[j], joint_kg_[j], u);
-  for (Patch& patch : patches_) {
-    const Vec6 twist = twistOf(patch, u);
-    patch.pair->all_N = 0;
-    for (std::size_t i = 0; i < patch.points.size(); ++i) {
-      const Push push = pushOf(patch.points[i], twist);
-      PenaltyPoint& out = patch.pair->points[i];
-      out.f_n_N = push.f_n_N;
-      out.bend_W = push.f_t_N / patch.points[i].k;
-      patch.pair->all_N += push.f_n_N;
-    }
-  }
+    joints_.rows[j].impulse_Ns = jointImpulse(joints_.rows[j], joint_kg_[j], u_);
+  for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));
 }
 
 }  // namespace vps

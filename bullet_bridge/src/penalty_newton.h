@@ -11,11 +11,12 @@
 // Kaufman et al. 2008 and Castro et al. 2021 for contact as convex minimisation; Dahl 1968 for the bristle.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "island.h"
 #include "joint_rows.h"
-#include "penalty_pair.h"
+#include "penalty_patch.h"
 
 namespace vps {
 
@@ -24,7 +25,7 @@ class PenaltyNewton {
   PenaltyNewton(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
   void clear(double dt_s) {
-    patches_.clear();
+    patch_count_ = 0;
     dt_s_ = dt_s;
   }
   /// The pair must outlive finish(). Friction's limits are at first those of the last step's forces.
@@ -38,39 +39,15 @@ class PenaltyNewton {
   void finish();
 
  private:
-  struct Point {
-    double r[3];  // from the patch's centre
-    double n[3];
-    double gap_m, k, limit_N;
-    double bend[3];
-  };
-  struct Patch {
-    PenaltyPair* pair = nullptr;
-    int body[2] = {-1, -1};
-    Mat6 X[2];  // each body's twist -> its part of the relative twist at the patch's centre
-    Vec6 fixed = Vec6::Zero();
-    Vec3 center = Vec3::Zero();
-    double radius_m = 0;
-    std::vector<Point> points;
-    Vec6 gradient;
-    Mat6 hessian;
-  };
-  /// What a point's springs give at a relative twist.
-  struct Push {
-    double f_n_N = 0;
-    Vec3 f_t_N = Vec3::Zero();  // on body 1, along the slip of body 0
-    double slip_m = 0;          // of the bristle's root, had it bent freely; 0: it holds
-    Vec3 along = Vec3::Zero();  // unit, of the slip
-  };
-  [[nodiscard]] Push pushOf(const Point& point, const Vec6& twist) const;
-  [[nodiscard]] Vec6 twistOf(const Patch& patch, const std::vector<Vec6>& u) const;
-  void evaluate(Patch& patch, const Vec6& twist, bool with_hessian) const;
+  [[nodiscard]] std::span<PenaltyPatch> patches() { return {patches_.data(), patch_count_}; }
+  [[nodiscard]] std::span<const PenaltyPatch> patches() const { return {patches_.data(), patch_count_}; }
+  [[nodiscard]] Vec6 twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& u) const;
   /// Gradient of the potential at u; with the Hessians of the patches if asked.
   void evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient);
   void newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) const;
   [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
-  [[nodiscard]] std::vector<Vec6> velocities() const;
+  const std::vector<Vec6>& velocities();
 
   /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
   /// make the potential's slope constant, as a bristle's does.
@@ -83,7 +60,9 @@ class PenaltyNewton {
   std::vector<double> joint_kg_;       // stiffness of each row, against velocity
   std::vector<std::uint8_t> is_free_;  // rows within their limits at the last evaluation
   double dt_s_ = 0;
-  std::vector<Patch> patches_;
+  std::vector<PenaltyPatch> patches_;  // kept for their memory
+  std::size_t patch_count_ = 0;
+  std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_;
 };
 
 }  // namespace vps

@@ -37,7 +37,7 @@ const PenaltyPoint* pointOf(const PenaltyPair& pair, const btManifoldPoint& cont
 }  // namespace
 
 void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
-                 const RelativeMotion& motion) {
+                 const RelativeMotion& motion, const Carry& carry) {
   constexpr double kMostEasing_m_s = 0.05;  // assumed: bodies put into each other separate gently
   const double easing_m = kMostEasing_m_s * motion.dt_s;
   const Mat3 R_W1 = fromBt(pair.object[1]->getWorldTransform().getBasis());
@@ -45,10 +45,12 @@ void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, doubl
   pair.R_W1 = R_W1;
   thread_local std::vector<PenaltyPoint> old;
   old.swap(pair.points);
-  pair.points.clear();
+  pair.points.resize(candidates.size());
+  auto point_at = pair.points.begin();
   auto before = old.begin();
-  for (const Candidate& c : candidates) {
-    PenaltyPoint point;
+  for (Candidate c : candidates) {
+    carry(c);
+    PenaltyPoint& point = *point_at++ = {};
     point.key = c.key();
     point.p_W = c.p_W;
     point.n_W = c.n_W;
@@ -65,12 +67,14 @@ void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, doubl
     }
     // Deeper than the step's approach can bring it: the bodies were put into each other, or another surface
     // became the nearest.
-    const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +
-                              0.1 * motion.own_speed_m_s * motion.dt_s;
-    point.ease_m = std::max(point.ease_m, before_m - approach_m - motion.slack_m - c.distance_m);
+    const double deeper_m = before_m - motion.slack_m - c.distance_m;
+    if (deeper_m > point.ease_m) {
+      const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +
+                                0.1 * motion.own_speed_m_s * motion.dt_s;
+      point.ease_m = std::max(point.ease_m, deeper_m - approach_m);
+    }
     point.ease_m = std::clamp(point.ease_m, 0.0, std::max(0.0, -c.distance_m));
     point.gap_m = c.distance_m + point.ease_m;
-    pair.points.push_back(point);
   }
 }
 

@@ -16,6 +16,7 @@ class btPersistentManifold;
 namespace vps {
 
 struct Candidate;
+struct Carry;
 struct RelativeMotion;
 
 /// A point of one side near the other's surface: a spring along the normal, and a bristle in the tangent
@@ -42,11 +43,11 @@ struct PenaltyPair {
   double told_N = 0;  ///< normal force of the points that are contacts in a manifold
 };
 
-/// Renews a pair's points from this step's candidates (ascending by key); those that stay keep bend, force
-/// and ease.
+/// Renews a pair's points from candidates (ascending by key), carried from where they were found to now;
+/// those that stay keep bend, force and ease.
 /// @param stiffness_N_per_m3  of the candidates' area, the share of a side that counts half included
 void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
-                 const RelativeMotion& motion);
+                 const RelativeMotion& motion, const Carry& carry);
 
 /// A manifold of an island with compliant contacts.
 struct PenaltyManifold {

@@ -46,22 +46,30 @@ Box boxOf(const PointShell& shell) {
   return box;
 }
 
+struct PointNormals {
+  std::vector<std::uint8_t> is_edge;  // by point
+  std::vector<Vec3> smooth_inward;
+};
+
 // A point on a face has that face's normal; one on an edge has the mean of several.
-std::vector<std::uint8_t> findEdgePoints(const VpsModels& models) {
+PointNormals findNormals(const VpsModels& models) {
   constexpr double kOnSurface_m = 1e-6;
   constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
   if (!models.shell || models.surfaces.empty()) return {};
-  std::vector<std::uint8_t> is_edge(models.shell->size(), 1);
-  for (std::size_t i = 0; i < is_edge.size(); ++i)
+  PointNormals normals{std::vector<std::uint8_t>(models.shell->size(), 1), models.shell->inward};
+  for (std::size_t i = 0; i < models.shell->size(); ++i)
     for (const VpsSurface& surface : models.surfaces) {
       const Pose X_PM = surface.X_MP.inverse();
       const MeshDistance::Closest closest =
           surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
       if (!closest.found) continue;
       const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
-      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) > kCosFace) is_edge[i] = 0;
+      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) <= kCosFace) continue;
+      normals.is_edge[i] = 0;
+      normals.smooth_inward[i] =
+          -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
     }
-  return is_edge;
+  return normals;
 }
 
 }  // namespace
@@ -195,7 +203,9 @@ void VpsShape::use(VpsModels models, const Pose& X_SM) {
   models_ = std::move(models);
   X_SM_ = X_SM;
   ++revision_;
-  is_edge_point_ = findEdgePoints(models_);
+  PointNormals normals = findNormals(models_);
+  is_edge_point_ = std::move(normals.is_edge);
+  smooth_inward_ = std::move(normals.smooth_inward);
   Box box_M;
   const auto include = [&box_M](const Box& box) {
     if (box.isEmpty()) return;

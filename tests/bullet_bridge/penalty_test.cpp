@@ -11,6 +11,7 @@ namespace {
 
 using test::Built;
 using test::kGravity;
+using test::kIsDouble;
 using test::plate;
 using test::Solver;
 using test::steelBox;
@@ -62,6 +63,67 @@ TEST(Penalty, ImpulsesInTheManifoldsAddUpToTheWeight) {
   }
   const double weight_Ns = box.frame.mass_kg * kGravity * 1e-3;
   EXPECT_NEAR(sum_Ns, weight_Ns, 1e-6 * weight_Ns);
+}
+
+TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
+  World world(Solver::Penalty);
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
+  world.step(500);
+  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  world.step(100);
+  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  body.setLinearVelocity(btVector3(toBt(0.1), 0, 0));
+  world.step();
+  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates + 1);
+}
+
+TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
+  if (!kIsDouble) GTEST_SKIP() << "the plate's speed is a difference of places, 0.1 mm/s apart in floats";
+  constexpr double kSpeed_m_s = 0.1;
+  World world(Solver::Penalty);
+  const Built box = steelBox(), ground = plate();
+  btRigidBody& below = world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
+  below.setCollisionFlags(below.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+  btDefaultMotionState motion(below.getWorldTransform());
+  below.setMotionState(&motion);
+  body.setLinearVelocity(btVector3(toBt(kSpeed_m_s), 0, 0));
+  const auto ride = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      motion.m_graphicsWorldTrans.getOrigin() += btVector3(toBt(1e-3 * kSpeed_m_s), 0, 0);
+      world.step();
+    }
+    return fromBt(below.getWorldTransform()).inverse() * fromBt(body.getWorldTransform());
+  };
+  const Pose before = ride(500);
+  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  const Pose after = ride(1000);
+  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  // The speed that Bullet gives the plate is a difference of places: rounding, for 1000 steps. Springs left
+  // behind would be 100 mm off, and the block lie on its side.
+  EXPECT_LE((after.p - before.p).norm(), 1e-12);
+  EXPECT_LE((after.R - before.R).norm(), 1e-12);
+  below.setMotionState(nullptr);
+}
+
+TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
+  constexpr double kRadius_m = 5e-3, kGrown_m = 6e-3;
+  World world(Solver::Penalty);
+  const Built ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btSphereShape ball(toBt(kRadius_m));
+  btRigidBody& body =
+      world.addShape(ball, 4e-3, Vec3::Constant(4e-8), Pose::translation(Vec3(0, 0, kRadius_m)));
+  world.step(2000);
+  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  world.step();
+  ASSERT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  ball.setUnscaledRadius(toBt(kGrown_m));
+  world.step(200);
+  // It is met at the plate's points, 1 mm apart: sinks by up to s^2 / (4 r) between them.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kGrown_m, 1e-6 / (4 * kRadius_m));
 }
 
 TEST(Penalty, PartsThatStartInsideEachOtherSeparateGently) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bullet_bridge/world.h"
+#include "support/lathe.h"
 #include "vps/load_error.h"
 #include "vps/query.h"
 
@@ -421,6 +422,25 @@ TEST(VpsShape, TellsEdgePointsFromFacePoints) {
     const int at_limit = static_cast<int>((shell.points[id].cwiseAbs().array() > 0.005 - 1e-9).count());
     EXPECT_EQ(box.shape->isEdgePoint(id), at_limit >= 2) << shell.points[id].transpose();
   }
+}
+
+TEST(VpsShape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
+  constexpr double kRadius_m = 5e-3, kHeight_m = 10e-3;
+  constexpr int kFacets = 64;
+  const Built peg = test::build(
+      test::lathe({{0, 0}, {kRadius_m, 0}, {kRadius_m, kHeight_m}, {0, kHeight_m}}, kFacets), 7850, 0.5e-3);
+  const PointShell& shell = *peg.shape->models().shell;
+  double facets_off_rad = 0;
+  for (std::uint32_t id = 0; id < shell.size(); ++id) {
+    if (peg.shape->isEdgePoint(id)) continue;
+    const bool is_end = shell.points[id].z() < 1e-9 || shell.points[id].z() > kHeight_m - 1e-9;
+    const Vec3 radial(shell.points[id].x(), shell.points[id].y(), 0);
+    const Vec3 inward = is_end ? shell.inward[id] : Vec3(-radial.normalized());
+    // Between two corners' normals, linear along the chord as the point is: exact, but for corners in floats.
+    EXPECT_LE((peg.shape->smoothInward(id) - inward).norm(), 3e-7) << shell.points[id].transpose();
+    facets_off_rad = std::max(facets_off_rad, (shell.inward[id] - inward).norm());
+  }
+  EXPECT_GE(facets_off_rad, 0.9 * M_PI / kFacets);
 }
 
 TEST(VpsShape, ReplacedModelsInheritNoImpulses) {

@@ -80,6 +80,11 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
     return !is_edge_point_.empty() && is_edge_point_[id];
   }
+  /// Inward unit normal of a shell point on a face, of the curved surface that the facets stand for, in the
+  /// models' frame. The shell's own where there are no surfaces to tell by, and on edges.
+  [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
+    return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
+  }
   /// Box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
@@ -115,6 +120,7 @@ class VpsShape : public btConcaveShape {
   Box bounds_S_;
   unsigned revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
+  std::vector<Vec3> smooth_inward_;
   std::unique_ptr<const TriangleTree> triangles_;
 };
 
