@@ -7,10 +7,10 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}
 .ci/install
 if [[ $preset == fuzz ]]; then
-  cmake --preset core -B build/fuzz -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVPS_SANITIZE=address,undefined "-DVPS_COMPONENTS=plugin;device" -DVPS_TESTS=ON >/dev/null
-  cmake --build build/fuzz --target fuzz_ply fuzz_vdb fuzz_mesh fuzz_device
+  cmake --preset core -B build/fuzz -DVPS_COMPONENTS="plugin;device" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVPS_SANITIZE=address,undefined -DVPS_TESTS=ON >/dev/null
+  cmake --build build/fuzz --target fuzz_ply fuzz_vdb fuzz_mesh fuzz_mcap fuzz_recording fuzz_scene fuzz_device
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  for reader in ply vdb mesh device; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
+  for reader in ply vdb mesh mcap recording scene device; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
   exit
 fi
 cmake --preset "$preset" -DVPS_TESTS=ON -DVPS_WERROR=ON >/dev/null

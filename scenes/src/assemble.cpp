@@ -10,14 +10,13 @@
 #include "box_motion.h"
 #include "exact_fit.h"
 #include "fit_record.h"
+#include "procedure.h"
+#include "run_record.h"
 #include "scene_models.h"
 #include "simulation.h"
 #include "tick_times.h"
 #include "vps/load_error.h"
 #include "vps_device/gains.h"
-#include "vps_device/loop.h"
-#include "vps_device/operator.h"
-#include "vps_device/simulated_dual_arm.h"
 #include "vps_scenes/contact_episodes.h"
 
 namespace vps {
@@ -27,71 +26,9 @@ namespace {
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
 constexpr std::size_t kJudgeStride = 20;
-constexpr double kReturn_s = 1.5;  ///< the hand's way back to the next part
 
 double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
-  OperatorHabits habits;
-  habits.seed = hand.seed + step;  // each step aims anew, and does not depend on how long the last one took
-  habits.aim_error_m = hand.aim_error_m;
-  habits.aim_error_rad = hand.aim_error_rad;
-  habits.speed_m_s = hand.speed_m_s;
-  habits.press_N = hand.press_N;
-  habits.force_limit_N = hand.force_limit_N;
-  return habits;
-}
-
-/// Where the handle starts so that a step's path lies around the middle of the workspace. Throws LoadError
-/// for a path that is longer than the workspace.
-Pose handleStart(const Scene& scene, const SceneStep& step) {
-  Box path;
-  path.add(Vec3::Zero());
-  for (const Pose& X_WP : step.way_points) path.add(X_WP.p - step.X_WP_start.p);
-  path.add(step.X_WP_target.p - step.X_WP_start.p);
-  const Vec3 room_m = DualArmParameters{}.workspace_m, needed_m = path.size() / scene.device.scale;
-  if ((needed_m.array() > room_m.array()).any())
-    throw LoadError(
-        scene.file, scene.parts[step.part].part.name,
-        "its path is longer than the device's workspace of 400 x 600 x 400 mm; start nearer, or set [device] "
-        "scale above " +
-            std::to_string(scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff()));
-  return Pose::translation(-path.center() / scene.device.scale);
-}
-
-SimulatedDualArmSettings plantSettings(const Scene& scene) {
-  if (scene.device.kind != "dual_arm")
-    throw LoadError(scene.file, "",
-                    "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
-  SimulatedDualArmSettings settings;
-  settings.X_DH_start = handleStart(scene, scene.steps.front());
-  settings.has_quantised_encoders = scene.device.has_quantised_encoders;
-  settings.rate_hz = scene.fidelity.haptic_rate_hz;
-  return settings;
-}
-
-LoopSettings loopSettings(const Scene& scene, const Device& device) {
-  const DeviceLimits limits = device.limits();
-  LoopSettings settings;
-  CouplingTiming timing;
-  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
-  timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
-  timing.scale = scene.device.scale;
-  settings.gains = deriveGains(limits, timing);
-  const CouplingWishes& wishes = scene.coupling;
-  settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
-  settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);
-  settings.gains.k_Nm_per_rad = wishes.k_Nm_per_rad.value_or(settings.gains.k_Nm_per_rad);
-  settings.gains.b_Nms_per_rad = wishes.b_Nms_per_rad.value_or(settings.gains.b_Nms_per_rad);
-  settings.gains.max_force_N = wishes.max_force_N.value_or(settings.gains.max_force_N);
-  settings.gains.max_torque_Nm = wishes.max_torque_Nm.value_or(settings.gains.max_torque_Nm);
-  settings.map.scale = scene.device.scale;
-  settings.safety.force_N = limits.peak_force_N;
-  settings.safety.torque_Nm = limits.peak_torque_Nm;
-  settings.period_s = 1 / scene.fidelity.haptic_rate_hz;
-  return settings;
 }
 
 int ticksPerStep(const Scene& scene) {
@@ -116,18 +53,35 @@ double springEnergy(const CouplingGains& gains, const CouplingState& proxy, cons
                 gains.max_torque_Nm);
 }
 
+RunTrace logged(const TraceRow& row) {
+  RunTrace trace;
+  trace.time_s = row.time_s;
+  trace.step = row.step;
+  trace.phase = static_cast<std::uint8_t>(row.phase);
+  trace.F_hand_W = row.F_hand_W;
+  trace.X_WP = row.X_WP;
+  trace.X_W_Proxy = row.X_W_Proxy;
+  trace.contacts = row.contacts;
+  trace.depth_m = row.depth_m;
+  return trace;
+}
+
 /// One run of a procedure. Lives as long as the run.
 class Procedure {
  public:
-  Procedure(Scene& scene, const AssembleOptions& options)
+  Procedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
+            const AssembleOptions& options)
       : scene_(scene),
+        hand_(hand),
+        log_(log),
         options_(options),
         simulation_(scene),
-        plant_(plantSettings(scene)),
-        loop_(plant_, port_, loopSettings(scene, plant_)),
+        tapped_(hand.device(), log != nullptr ? *log : deaf_),
+        loop_(log != nullptr ? tapped_ : hand.device(), port_, settings),
         fit_bodies_(scene.parts.size()),
         ticks_per_step_(ticksPerStep(scene)),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
+        trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
         haptic_clock_(1 / scene.fidelity.haptic_rate_hz),
         physics_clock_(dt_s_),
         poses_(scene.parts.size()),
@@ -153,32 +107,47 @@ class Procedure {
   void judgeStep(StepResult& result, const SceneStep& step);
   void mount(std::size_t part);
 
-  /// One physics step with its haptic ticks. `hand` says what the hand does, given the time since the last
-  /// tick.
-  template <typename Hand>
-  void advance(const Hand& hand);
+  /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
+  [[nodiscard]] bool advance();
   void record(int phase);
+  void tellPhase();
+  void tellFaults();
+  void tellEvent(RunEventKind kind, const std::string& words);
   const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
   void tell(std::size_t index, double share) const;
-  [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  [[nodiscard]] bool isStopped() const {
+    return is_over_ || (options_.stop != nullptr && options_.stop->load());
+  }
+
+  /// Where nobody listens.
+  class DeafLog final : public RunLog {
+    void add(const LogEntry&) noexcept override {}
+  };
 
   Scene& scene_;
+  Hand& hand_;
+  RunLog* log_;
   const AssembleOptions& options_;
   Simulation simulation_;
-  SimulatedDualArm plant_;
+  DeafLog deaf_;
+  TappedDevice tapped_;
   CouplingPort port_;
   HapticLoop loop_;
   ExactFit fit_;
   std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
   int ticks_per_step_;
   double dt_s_;
+  long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock haptic_clock_, physics_clock_;
   std::vector<Pose> poses_;
   std::vector<BodyRole> roles_;
   InHand held_;
   bool is_holding_ = false;
+  bool is_over_ = false;  ///< the hand cannot go on
+  std::optional<OperatorPhase> told_phase_;
+  std::uint64_t told_faults_ = 0;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
   std::size_t first_row_ = 0;   ///< of the step, in the trace
@@ -262,14 +231,19 @@ void Procedure::letGo() {
   roles_[held_.part] = BodyRole::Released;
 }
 
-template <typename Hand>
-void Procedure::advance(const Hand& hand) {
+bool Procedure::advance() {
+  if (!hand_.canGoOn(ticks_per_step_)) {
+    is_over_ = true;
+    log_ = nullptr;  // what follows is no part of the run
+    return false;
+  }
   const double tick_s = dt_s_ / ticks_per_step_;
   for (int i = 0; i < ticks_per_step_; ++i) {
     haptic_clock_.start();
     loop_.tick();
     haptic_clock_.stop();
-    plant_.step(tick_s, hand(tick_s));
+    tellFaults();
+    hand_.step({poses_[held_.part], simulation_.twist(held_.part)}, loop_, tick_s);
   }
   X_WP_before_ = poses_[held_.part];
   physics_clock_.start();
@@ -288,6 +262,32 @@ void Procedure::advance(const Hand& hand) {
     loop_.noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
                          springEnergy(loop_.settings().gains, proxy, part),
                      0);
+  return true;
+}
+
+void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
+  if (log_ == nullptr) return;
+  RunEvent event;
+  event.time_s = time_s_;
+  event.step = step_;
+  event.kind = kind;
+  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(hand_.phase());
+  event.say(words);
+  log_->add(event);
+}
+
+void Procedure::tellFaults() {
+  const SafetyState& safety = loop_.safety();
+  if (safety.faults == told_faults_) return;
+  told_faults_ = safety.faults;
+  tellEvent(RunEventKind::Note, std::string("safety: ") + toText(safety.fault));
+}
+
+void Procedure::tellPhase() {
+  const OperatorPhase phase = hand_.phase();
+  if (told_phase_ == phase) return;
+  told_phase_ = phase;
+  tellEvent(RunEventKind::Phase, toText(phase));
 }
 
 void Procedure::record(int phase) {
@@ -302,6 +302,8 @@ void Procedure::record(int phase) {
   row.contacts = touch.contacts;
   row.depth_m = touch.depth_m;
   result_.trace.push_back(row);
+  if (log_ != nullptr && static_cast<long>(result_.trace.size() - 1) % trace_stride_ == 0)
+    log_->add(logged(row));
   // The solver saw the contacts of the pose in which the step began.
   samples_.push_back({time_s_ - dt_s_, X_WP_before_, touch.depth_m});
 
@@ -334,7 +336,6 @@ void Procedure::runStep(std::size_t index) {
   result_.start.push_back(snapshot());
   result_.contact.push_back(snapshot());
 
-  VirtualOperator hand(habitsOf(scene_.hand, index));
   OperatorTask task;
   task.X_WP_start = step.X_WP_start;
   task.way_points = step.way_points;
@@ -344,7 +345,10 @@ void Procedure::runStep(std::size_t index) {
   task.tolerance_rad = step.tolerance_rad;
   task.timeout_s = step.timeout_s;
   task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
-  hand.begin(task, time_s_);
+  tellEvent(RunEventKind::Take, "takes '" + scene_part.part.name + "'");
+  hand_.begin(task, index, time_s_);
+  told_phase_.reset();
+  tellPhase();
 
   // The part is still where it was taken when the first tick looks.
   CouplingState part = simulation_.graspState();
@@ -352,24 +356,12 @@ void Procedure::runStep(std::size_t index) {
   part.time_s = time_s_;
   port_.part.write(part);
 
-  double tick_time_s = time_s_;
-  const auto impedance = [&](double tick_s) {
-    OperatorView view;
-    view.time_s = tick_time_s;
-    view.X_WG_hand = loop_.toGrasp(plant_.truePose());
-    view.V_WG_hand = loop_.settings().map.toScene(plant_.trueTwist());
-    view.X_WP = poses_[step.part];
-    view.V_WP = simulation_.twist(step.part);
-    view.F_hand_W = loop_.last().F_hand_W;
-    tick_time_s += tick_s;
-    return loop_.toDevice(hand.step(view, tick_s));
-  };
   const auto is_busy = [&] {
-    return hand.phase() != OperatorPhase::Done && hand.phase() != OperatorPhase::Failed;
+    return hand_.phase() != OperatorPhase::Done && hand_.phase() != OperatorPhase::Failed;
   };
-  while (is_busy() && !isStopped()) {
-    advance(impedance);
-    const OperatorPhase phase = hand.phase();
+  while (is_busy() && !isStopped() && advance()) {
+    const OperatorPhase phase = hand_.phase();
+    tellPhase();
     record(phase == OperatorPhase::Press || phase == OperatorPhase::Done ? 2
            : phase == OperatorPhase::Insert                              ? 1
                                                                          : 0);
@@ -381,6 +373,7 @@ void Procedure::runStep(std::size_t index) {
   result_.end.push_back(snapshot());
 
   letGo();
+  tellEvent(RunEventKind::LetGo, "lets go of '" + scene_part.part.name + "'");
   rest(result, step);
   tell(index, 0.9);
   judgeStep(result, step);
@@ -390,10 +383,11 @@ void Procedure::runStep(std::size_t index) {
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
   const bool is_on_target =
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
-  result.completed = hand.phase() == OperatorPhase::Done && is_on_target;
+  result.completed = hand_.phase() == OperatorPhase::Done && is_on_target;
   if (!result.completed)
-    result.why_not = isStopped()                           ? "stopped"
-                     : hand.phase() == OperatorPhase::Done ? "moved off its target after it was let go"
+    result.why_not = is_over_                               ? "the recording ends here"
+                     : isStopped()                          ? "stopped"
+                     : hand_.phase() == OperatorPhase::Done ? "moved off its target after it was let go"
                      : time_s_ - result.start_s > step.timeout_s
                          ? "the hand gave up: target not reached in time"
                          : "the hand gave up: target not reached";
@@ -414,31 +408,11 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
   const Pose X_DH_back = next < scene_.steps.size() ? handleStart(scene_, scene_.steps[next]) : Pose{};
-  const Pose X_DH_from = plant_.truePose();
-  const Vec3 turn_rad = rotationVector(X_DH_back.R * X_DH_from.R.transpose());
-  const OperatorHabits habits = habitsOf(scene_.hand, 0);
-  double elapsed_s = 0;
-  const auto going_back = [&](double tick_s) {
-    elapsed_s += tick_s;
-    const double share = minimumJerk(elapsed_s / kReturn_s);
-    HandForce hand;
-    hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad) * X_DH_from.R),
-                     X_DH_from.p + share * (X_DH_back.p - X_DH_from.p));
-    hand.k_N_per_m = habits.k_N_per_m * Mat3::Identity();
-    hand.b_Ns_per_m =
-        2 * habits.damping_ratio * std::sqrt(habits.k_N_per_m * habits.mass_kg) * Mat3::Identity();
-    hand.k_Nm_per_rad = habits.k_Nm_per_rad * Mat3::Identity();
-    hand.b_Nms_per_rad =
-        2 * habits.damping_ratio * std::sqrt(habits.k_Nm_per_rad * habits.inertia_kgm2) * Mat3::Identity();
-    hand.mass_kg = habits.mass_kg;
-    hand.inertia_kgm2 = habits.inertia_kgm2;
-    return hand;
-  };
+  hand_.goBack(X_DH_back);
   // At least until the hand is back.
-  const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kReturn_s) / dt_s_));
+  const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
   result.rest_s = static_cast<double>(steps) * dt_s_;
-  for (long i = 0; i < steps && !isStopped(); ++i) {
-    advance(going_back);
+  for (long i = 0; i < steps && !isStopped() && advance(); ++i) {
     record(3);
     result.rest_drift_m =
         std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
@@ -481,19 +455,52 @@ void Procedure::tell(std::size_t index, double share) const {
 
 }  // namespace
 
-AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
-  if (scene.steps.empty())
-    throw LoadError(scene.file, "",
-                    "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+LoopSettings loopSettings(const Scene& scene, const Device& device) {
+  const DeviceLimits limits = device.limits();
+  LoopSettings settings;
+  CouplingTiming timing;
+  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
+  timing.scale = scene.device.scale;
+  settings.gains = deriveGains(limits, timing);
+  const CouplingWishes& wishes = scene.coupling;
+  settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
+  settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);
+  settings.gains.k_Nm_per_rad = wishes.k_Nm_per_rad.value_or(settings.gains.k_Nm_per_rad);
+  settings.gains.b_Nms_per_rad = wishes.b_Nms_per_rad.value_or(settings.gains.b_Nms_per_rad);
+  settings.gains.max_force_N = wishes.max_force_N.value_or(settings.gains.max_force_N);
+  settings.gains.max_torque_Nm = wishes.max_torque_Nm.value_or(settings.gains.max_torque_Nm);
+  settings.map.scale = scene.device.scale;
+  settings.safety.force_N = limits.peak_force_N;
+  settings.safety.torque_Nm = limits.peak_torque_Nm;
+  settings.period_s = 1 / scene.fidelity.haptic_rate_hz;
+  return settings;
+}
+
+AssembleResult runProcedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
+                            const AssembleOptions& options) {
   const double begun_s = wallSeconds();
   buildModels(scene, options);
-  Procedure procedure(scene, options);
+  Procedure procedure(scene, hand, log, settings, options);
   const double built_s = wallSeconds() - begun_s;
   AssembleResult result = procedure.run();
   result.scene = scene.name;
   result.build_wall_s = built_s;
   result.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
   result.physics_rate_hz = scene.fidelity.physics_rate_hz;
+  return result;
+}
+
+AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
+  if (scene.steps.empty())
+    throw LoadError(scene.file, "",
+                    "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+  const std::unique_ptr<Hand> hand = simulatedHand(scene);
+  const LoopSettings settings = loopSettings(scene, hand->device());
+  if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);
+  RunRecord record(options.record, scene, hand->device(), settings.gains, options);
+  AssembleResult result = runProcedure(scene, *hand, &record, settings, options);
+  if (options.stop == nullptr || !options.stop->load()) record.finish();
   return result;
 }
 

@@ -18,12 +18,13 @@ bullet='#include *[<"](bt[A-Z]|Bullet|LinearMath)'
 gl='#include *[<"](epoxy|EGL|GL)/'
 forbid plugin : "#include *[<\"](vps_bullet|vps_device|vps_scenes|vps_viewer)/" "plugin looks up"
 forbid bullet_bridge : '#include *[<"](vps_device|vps_scenes|vps_viewer)/' "bullet_bridge looks up or sideways"
-forbid device : '#include *[<"](vps_bullet|vps_scenes|vps_viewer)/' "device looks up or sideways"
+forbid device : '#include *[<"](vps_bullet|vps_scenes|vps_viewer)/' "device looks up or sideways" '^device/examples/'
 forbid scenes : '#include *[<"]vps_viewer/' "scenes looks up"
-forbid plugin device viewer : "$bullet" "Bullet outside of bullet_bridge"
+forbid plugin device viewer : "$bullet" "Bullet outside of bullet_bridge" '^device/examples/'
 forbid scenes : "$bullet" "Bullet in scenes outside of the simulation" '^scenes/(src/simulation|dynamics/)'
 forbid plugin bullet_bridge device scenes : "$gl" "OpenGL outside of viewer"
 forbid bullet_bridge device scenes viewer : '#include *[<"](openvdb|nanovdb)/' "OpenVDB outside of plugin"
+forbid bullet_bridge plugin scenes viewer : '#include *[<"](spnav|SDL)' "libspnav or SDL outside of device"
 forbid bullet_bridge device plugin viewer : '#include *[<"](assimp|Inventor|TopoDS|STEPCAF)' "CAD libraries outside of scenes"
 [ "$failures" -eq 0 ] && echo "boundaries hold"
 exit "$failures"

@@ -13,3 +13,4 @@ flags=""
 "$cmake" --build "$work/app"
 "$work/app/app"
 "$work/app/hello_vps"
+[ ! -e "$work/app/haptic_bullet" ] || "$work/app/haptic_bullet"  # not where device is not built

@@ -15,8 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"assemble", "simulate", "query", "import", "snapshot", "device"};
-const std::vector<std::string> kComing = {"check", "explain", "trade", "view", "render", "watch", "replay"};
+const std::vector<std::string> kReady = {"assemble", "replay",   "simulate", "query",
+                                         "import",   "snapshot", "device"};
+const std::vector<std::string> kComing = {"check", "explain", "trade", "view", "render", "watch"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   std::vector<std::string> all = kReady;
@@ -324,6 +325,24 @@ TEST_F(Program, ImportWritesASceneThatLoads) {
   EXPECT_NE(again.out.find("20.00 x 20.00 x 10.00"), std::string::npos) << again.out;
   const Ran simulated = run("simulate imported/scene.toml --seconds 0.002 --voxel 1mm --spacing 2mm");
   EXPECT_EQ(simulated.status, 0) << simulated.err;
+}
+
+TEST_F(Program, NothingIsRecordedOverAFileThatIsNoRecording) {
+  const std::string step = "[[step]]\npart = 'pin'\n";
+  write("steps.toml", kScene + step);
+  write("letter.txt", "dear reader");
+  expectRefused("assemble steps.toml --record letter.txt --out out",
+                "letter.txt: is there and is no recording");
+  expectRefused("assemble steps.toml --record steps.toml --out out", "steps.toml: is read by this command");
+  expectRefused("assemble steps.toml --record no/run.mcap --out out", "no/run.mcap: cannot be written");
+  EXPECT_EQ(slurp(folder_ / "letter.txt"), "dear reader");
+  EXPECT_EQ(slurp(folder_ / "steps.toml"), kScene + step);
+}
+
+TEST_F(Program, ReplayRefusesWhatIsNoRecordingInWords) {
+  expectRefused("replay missing.mcap", "missing.mcap: no such file");
+  expectRefused("replay plate.stl", "plate.stl: is no recording (MCAP)");
+  expectRefused("replay plate.stl --no-run", "--no-run leaves nothing to do without --csv");
 }
 
 TEST_F(Program, SimulateAnswersWithTheAgreedKeys) {

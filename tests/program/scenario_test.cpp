@@ -73,6 +73,26 @@ TEST_F(Scenario, TwoRunsGiveTheSameBitsButForWallClocks) {
   EXPECT_EQ(withoutWall(read("a/assemble.json")).dump(), withoutWall(read("b/assemble.json")).dump());
 }
 
+TEST_F(Scenario, ARecordedRunReplaysToTheSameReport) {
+  ASSERT_EQ(
+      run("assemble " + kScenes + "peg_in_hole/scene.toml --no-pictures --out a --record run.mcap").status,
+      0);
+  const Ran whole = run("replay run.mcap --json b.json --csv tables --out again");
+  EXPECT_EQ(whole.status, 0) << whole.out << whole.err;
+  EXPECT_NE(whole.out.find("the same bits"), std::string::npos) << whole.out;
+  EXPECT_EQ(withoutWall(read("a/assemble.json")).dump(), withoutWall(read("b.json")).dump());
+  EXPECT_EQ(slurp(folder_ / "a/trace.csv"), slurp(folder_ / "again/trace.csv"));
+  for (const char* table : {"device_read", "device_write", "run_event", "run_trace", "about"})
+    EXPECT_GT(fs::file_size(folder_ / "tables" / (std::string(table) + ".csv")), 100u) << table;
+
+  const std::string bytes = slurp(folder_ / "run.mcap");
+  write("cut.mcap", bytes.substr(0, bytes.size() / 2));
+  const Ran cut = run("replay cut.mcap");
+  EXPECT_EQ(cut.status, 1) << cut.out << cut.err;
+  EXPECT_NE(cut.err.find("cut.mcap ends in the middle of a record (byte "), std::string::npos) << cut.err;
+  EXPECT_NE(cut.out.find("the same bits"), std::string::npos) << cut.out;
+}
+
 TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndSaysSo) {
   writePegScene("", "target = {position = [0, 0, -17]}\ntimeout_s = 4\n");
   const Ran ran = run("assemble scene.toml --out out");

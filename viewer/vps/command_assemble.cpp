@@ -6,49 +6,18 @@
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
-#include "table.h"
+#include "run_report.h"
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
-#include "vps_viewer/report.h"
 
 namespace vps {
-
-namespace {
-
-std::string tableOf(const std::vector<StepResult>& steps) {
-  Table table({"<step", "<completed", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
-               "drift [um]"});
-  for (const StepResult& step : steps)
-    table.add({step.part, step.completed ? "yes" : "no", fixed(step.duration_s, 2),
-               fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
-               fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
-               fixed(step.rest_drift_m * 1e6, 2)});
-  return table.text();
-}
-
-std::string csvOf(const std::vector<StepResult>& steps) {
-  std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
-                             "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
-                             "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
-                             "rest_drift_m", "rest_s", "is_placed", "why_not"});
-  for (const StepResult& step : steps)
-    out +=
-        csvLine({step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
-                 csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
-                 csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N),
-                 csvNumber(step.peak_torque_Nm), std::to_string(step.impacts), std::to_string(step.slides),
-                 csvNumber(step.final_error_m), csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m),
-                 csvNumber(step.rest_s), step.is_placed ? "1" : "0", step.why_not});
-  return out;
-}
-
-}  // namespace
 
 int runAssemble(const AssembleArguments& given) {
   OutputFolder out(given.out);
   OutputFile json(given.json, {given.scene});
   ProgressBar bar;
-  Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
+  requireNotRead(given.record, {given.scene});
+  Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.record});
 
   AssembleOptions options;
   options.progress = bar.progress();
@@ -57,38 +26,20 @@ int runAssemble(const AssembleArguments& given) {
   options.warn = warn;
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
+  options.record = given.record;
   const AssembleResult result = assemble(scene, options);
   throwIfStopped();
 
-  ReportOptions report;
-  report.command = "vps assemble " + given.scene + " --out " + given.out;
-  report.has_pictures = given.has_pictures;
   bar.progress()("writing the report", 1);
-  const ReportOutcome outcome = writeReport(scene, result, out.partial(), report);
-  throwIfStopped();
-  const std::string json_text = toJson(result);
-  out.write("steps.csv", csvOf(result.steps));
-  out.write("assemble.json", json_text);
+  const std::vector<std::string> notes = fillFolder(
+      out, scene, result, {"vps assemble " + given.scene + " --out " + given.out, given.has_pictures});
   out.commit();
-  json.write(json_text);
+  json.write(toJson(result));
   bar.clear();
 
-  std::fputs(tableOf(result.steps).c_str(), stdout);
-  bool is_good = result.completed;
-  for (const StepResult& step : result.steps) {
-    const char* name = step.part.c_str();
-    if (!step.completed) std::printf("%s: %s\n", name, step.why_not.c_str());
-    if (step.is_placed) std::printf("%s: put on its target all the same, for the next step\n", name);
-    if (!isWithinLimit(step))
-      std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());
-    if (!isAtRest(step))
-      std::printf("%s: drifted more than %g um after it was let go\n", name, kRestDriftLimit_m * 1e6);
-    is_good = is_good && isGood(step);
-  }
-  if (result.contacts_left_out > 0)
-    warn(std::to_string(result.contacts_left_out) +
-         " near points found no room in a query; take a coarser spacing");
-  for (const std::string& note : outcome.notes) warn(note);
+  const bool is_good = printSteps(result);
+  for (const std::string& note : notes) warn(note);
+  if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
   return is_good ? kGood : kBad;
 }

@@ -33,11 +33,21 @@ struct AssembleArguments {
   std::string cache;  ///< folder for voxmaps; empty: none
   std::string out = "out";
   std::string json;
+  std::string record;  ///< file to record the run in; empty: none
   FidelityArguments fidelity;
   bool has_pictures = true;
   bool stops_at_failure = false;
 };
 int runAssemble(const AssembleArguments& given);
+
+struct ReplayArguments {
+  std::string recording;
+  std::string cache;  ///< as in AssembleArguments
+  std::string out, json;
+  std::string csv;              ///< folder for the recorded channels as tables
+  bool is_tables_only = false;  ///< do not run
+};
+int runReplay(const ReplayArguments& given);
 
 struct SimulateArguments {
   std::string scene;

@@ -33,6 +33,7 @@ class CommandLine {
         "Lengths carry a unit: 0.2mm, 20um, 0.01m. Example:\n  vps assemble scenes/peg_in_hole/scene.toml "
         "--out out");
     addAssemble();
+    addReplay();
     addSimulate();
     addQuery();
     addImport();
@@ -45,7 +46,6 @@ class CommandLine {
     addDevice();
     addComing("render", "the haptic rendering node", "vps render scene.toml");
     addComing("watch", "the viewer's node", "vps watch");
-    addComing("replay", "runs a recording again, bit for bit", "vps replay run.mcap");
   }
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
@@ -107,9 +107,29 @@ class CommandLine {
         ->type_name("DIR");
     command->add_flag("!--no-pictures", assemble_.has_pictures, "tables, plots and data only");
     command->add_flag("--stop-at-failure", assemble_.stops_at_failure, "end at the first step that fails");
+    command
+        ->add_option("--record", assemble_.record,
+                     "record the run there (MCAP), scene and meshes included, for vps replay")
+        ->type_name("FILE");
     addFidelity(command, assemble_.fidelity);
     addCache(command, assemble_.cache);
     addJson(command, assemble_.json);
+  }
+
+  void addReplay() {
+    CLI::App* command =
+        add("replay", "runs a recording again, bit for bit, and says at which tick it departs if it does",
+            "vps replay run.mcap --csv tables", [this] { return runReplay(replay_); });
+    command->add_option("recording", replay_.recording, "what vps assemble --record wrote")
+        ->required()
+        ->type_name("RECORDING");
+    command->add_option("--csv", replay_.csv, "write the recorded channels there as tables")
+        ->type_name("DIR");
+    command->add_flag("--no-run", replay_.is_tables_only, "with --csv: only the tables");
+    command->add_option("--out", replay_.out, "write the report there, as vps assemble does")
+        ->type_name("DIR");
+    addCache(command, replay_.cache);
+    addJson(command, replay_.json);
   }
 
   void addSimulate() {
@@ -223,9 +243,11 @@ class CommandLine {
     command->allow_extras();
   }
 
-  CLI::App app_{"Voxmap-PointShell contact on CAD parts: assemble, simulate, query, import, show.", "vps"};
+  CLI::App app_{"Voxmap-PointShell contact on CAD parts: assemble, replay, simulate, query, import, show.",
+                "vps"};
   Run run_;
   AssembleArguments assemble_;
+  ReplayArguments replay_;
   SimulateArguments simulate_;
   QueryArguments query_;
   ImportArguments import_;

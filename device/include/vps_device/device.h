@@ -37,6 +37,19 @@ struct DeviceLimits {
 };
 
 /// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.
+/// What does (a driver, a socket, a window) has a thread of its own. So a new device is:
+///
+///   class MyDevice final : public Device {
+///     DeviceSample read() noexcept override { return sample_.read(); }
+///     void write(const Wrench& F_Ho_D) noexcept override { wrench_.write(F_Ho_D); }
+///     DeviceLimits limits() const noexcept override { return {.peak_force_N = 3}; }
+///     std::string_view name() const noexcept override { return "my_device"; }
+///     TripleBuffer<DeviceSample> sample_;  // vps/triple_buffer.h: the driver's thread writes this
+///     TripleBuffer<Wrench> wrench_;        // and reads this, neither ever waiting for the other
+///   };
+///
+/// A device that may fall silent stamps its samples, and says Fault once the last is too old.
+/// hand_controllers.h has devices without force, recording.h one that repeats what another did.
 class Device {
  public:
   virtual ~Device() = default;

@@ -13,6 +13,10 @@ namespace vps {
 struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< place a part that failed at its target and go on with the next step
   const std::atomic<bool>* stop = nullptr;  ///< set it to end early; the result then says "stopped"
+  /// Records the run there (vps_device/recorder.h says how), scene and meshes included, so that
+  /// vps_scenes/replay.h runs it again from this file alone; empty: not. A run that is stopped or fails
+  /// leaves what it recorded beside it, and says where by `warn`.
+  std::string record;
 };
 
 /// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's

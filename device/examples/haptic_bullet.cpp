@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Haptics in an ordinary Bullet world: a hand presses a block on the floor and feels it. In simulated time;
+// where there is hardware, loop.tick() runs in a thread of its own, and nothing else changes.
+#include <btBulletDynamicsCommon.h>
+#include <vps_bullet/convert.h>
+#include <vps_bullet/coupling.h>
+#include <vps_device/gains.h>
+#include <vps_device/loop.h>
+#include <vps_device/simulated_dual_arm.h>
+
+#include <cmath>
+#include <cstdio>
+
+int main() {
+  btDefaultCollisionConfiguration config;
+  btCollisionDispatcher dispatcher(&config);
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
+  world.setGravity(btVector3(0, 0, vps::toBt(-9.81)));
+  btStaticPlaneShape floor_shape(btVector3(0, 0, 1), 0);
+  btBoxShape block_shape(btVector3(vps::toBt(0.02), vps::toBt(0.02), vps::toBt(0.02)));
+  btVector3 inertia;
+  block_shape.calculateLocalInertia(vps::toBt(0.1), inertia);
+  btRigidBody floor(0, nullptr, &floor_shape), block(vps::toBt(0.1), nullptr, &block_shape, inertia);
+  block.setWorldTransform(vps::toBt(vps::Pose::translation({0, 0, 0.03})));  // 10 mm above the floor
+  block.setActivationState(DISABLE_DEACTIVATION);
+  world.addRigidBody(&floor);
+  world.addRigidBody(&block);
+
+  vps::SimulatedDualArm device;  // or any other vps::Device
+  vps::LoopSettings settings;    // 1 kHz
+  settings.gains = vps::deriveGains(device.limits(), {});
+  vps::CouplingPort port;  // where the haptic and the physics side meet
+  vps::HapticLoop loop(device, port, settings);
+  vps::VpsCoupling coupling(block, vps::Pose{}, settings.gains);
+  world.addConstraint(&coupling, true);
+  loop.grasp(vps::fromBt(block.getWorldTransform()));  // wherever the handle is: no jump
+
+  vps::HandForce hand;  // a spring of 500 N/m, whose far end goes down 20 mm in a second
+  hand.k_N_per_m = 500 * vps::Mat3::Identity();
+  hand.b_Ns_per_m = 20 * vps::Mat3::Identity();
+  hand.k_Nm_per_rad = 3 * vps::Mat3::Identity();
+  hand.b_Nms_per_rad = 0.1 * vps::Mat3::Identity();
+  for (int i = 0; i < 2000; ++i) {
+    loop.tick();
+    hand.X_eq.p.z() = -0.02 * std::fmin(1, i / 1000.0);
+    device.step(1e-3, hand);
+    coupling.setTarget(port.proxy.read());
+    world.stepSimulation(vps::toBt(1e-3), 0);
+    vps::CouplingState part = coupling.partState();
+    part.is_coupled = true;
+    port.part.write(part);
+  }
+  const double felt_N = loop.last().F_hand_W.f.z(), pressed_N = -device.lastHandWrench().f.z();
+  std::printf("the hand presses with %.2f N and feels %.2f N\n", pressed_N, felt_N);
+  world.removeConstraint(&coupling);
+  for (btRigidBody* b : {&floor, &block}) world.removeRigidBody(b);
+  return std::abs(felt_N - pressed_N) < 0.5 && felt_N > 3 ? 0 : 1;  // friction holds 0.14 N at worst
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fields of each log entry, named once: from here come the messages' schema, their bytes, the columns of
+// a CSV file, and the words of a difference.
+#pragma once
+
+#include <string>
+
+#include "vps_device/run_log.h"
+
+namespace vps::log {
+
+/// visit(name, field) for each field: double, Vec3, Mat3 (row by row), int32, uint8-sized enums and numbers,
+/// and the event's text. Doubles stand first, so that no byte of a message is padding.
+template <typename Entry, typename Visit>
+requires std::is_same_v<std::remove_const_t<Entry>, DeviceSample>
+void fields(Entry& e, Visit&& visit) {
+  auto& [X_DH, V_DH, time_s, status] = e;  // one that is added and forgotten here does not compile
+  visit("time_s", time_s);
+  visit("p_dh_m", X_DH.p);
+  visit("r_dh", X_DH.R);
+  visit("v_dh_m_s", V_DH.v);
+  visit("w_dh_rad_s", V_DH.w);
+  visit("status", status);
+}
+
+template <typename Entry, typename Visit>
+requires std::is_same_v<std::remove_const_t<Entry>, WrittenWrench>
+void fields(Entry& e, Visit&& visit) {
+  visit("time_s", e.time_s);
+  visit("force_n", e.F_Ho_D.f);
+  visit("torque_nm", e.F_Ho_D.tau);
+}
+
+template <typename Entry, typename Visit>
+requires std::is_same_v<std::remove_const_t<Entry>, RunEvent>
+void fields(Entry& e, Visit&& visit) {
+  visit("time_s", e.time_s);
+  visit("step", e.step);
+  visit("kind", e.kind);
+  visit("phase", e.phase);
+  visit("text", e.text);
+}
+
+template <typename Entry, typename Visit>
+requires std::is_same_v<std::remove_const_t<Entry>, RunTrace>
+void fields(Entry& e, Visit&& visit) {
+  visit("time_s", e.time_s);
+  visit("p_wp_m", e.X_WP.p);
+  visit("r_wp", e.X_WP.R);
+  visit("p_w_proxy_m", e.X_W_Proxy.p);
+  visit("r_w_proxy", e.X_W_Proxy.R);
+  visit("force_on_hand_n", e.F_hand_W.f);
+  visit("torque_on_hand_nm", e.F_hand_W.tau);
+  visit("depth_m", e.depth_m);
+  visit("step", e.step);
+  visit("contacts", e.contacts);
+  visit("phase", e.phase);
+}
+
+/// Topics and types by LogEntry::index().
+inline constexpr std::size_t kKinds = std::variant_size_v<LogEntry>;
+inline constexpr const char* kTopics[kKinds] = {"/device/read", "/device/write", "/run/event", "/run/trace"};
+inline constexpr const char* kTypes[kKinds] = {"vps_msgs/msg/DeviceSample", "vps_msgs/msg/HandWrench",
+                                               "vps_msgs/msg/RunEvent", "vps_msgs/msg/RunTrace"};
+inline constexpr const char* kAbout[kKinds] = {
+    "# The handle H in the device's base D; v and w of H's origin. status 0: use it.",
+    "# On the hand about H's origin, in D, as it went to the device.",
+    "# kind: 0 takes a part, 1 another phase, 2 lets go, 3 a note. phase: of the hand.",
+    "# Part P and proxy in the world W. phase: 0 reach, 1 insert, 2 press, 3 rest."};
+
+/// An entry of a kind, with its defaults.
+LogEntry blank(std::size_t kind);
+/// In ROS 2's interface language.
+std::string schema(std::size_t kind);
+/// As CDR, little-endian: ROS 2's wire format.
+std::string encoded(const LogEntry& entry);
+/// False where the bytes are not such a message to the last one; the entry is then not to be used.
+bool decode(std::string_view bytes, LogEntry& entry);
+/// "time_s,p_dh_m.x,..." and a row; numbers in the fewest digits that read back the same.
+std::string csvHeader(std::size_t kind);
+std::string csvRow(const LogEntry& entry);
+/// The name of the first field in which two entries of one kind differ, with both values; empty: equal to the
+/// bit.
+std::string difference(const LogEntry& recorded, const LogEntry& now);
+
+}  // namespace vps::log

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the recorder and the reader of recordings both know of the file.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "vps_device/device.h"
+
+namespace vps::recording {
+
+inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as ours
+inline constexpr const char* kProfile = "ros2";
+inline constexpr const char* kAbout = "vps.run";
+inline constexpr const char* kDevice = "vps.device";
+inline constexpr const char* kEnd = "vps.end";
+inline constexpr const char* kFormat = "1";  ///< goes up when a reader of before would misread
+
+/// visit(name, number) for each number of the limits. They are taken apart into as many names as there are
+/// members, so that one that is added and forgotten here does not compile.
+template <typename Limits, typename Visit>
+void eachLimit(Limits& limits, Visit&& visit) {
+  auto& [force, peak_force, torque, peak_torque, min_D, max_D, rate, delay, damping, turn_damping, coulomb,
+         turn_coulomb, resolution, turn_resolution] = limits;
+  visit("continuous_force_N", force);
+  visit("peak_force_N", peak_force);
+  visit("continuous_torque_Nm", torque);
+  visit("peak_torque_Nm", peak_torque);
+  for (int i = 0; i < 3; ++i) {
+    const std::string axis(1, static_cast<char>('x' + i));
+    visit("workspace_min_m." + axis, min_D[i]);
+    visit("workspace_max_m." + axis, max_D[i]);
+  }
+  visit("rate_hz", rate);
+  visit("delay_s", delay);
+  visit("damping_Ns_per_m", damping);
+  visit("damping_Nms_per_rad", turn_damping);
+  visit("coulomb_N", coulomb);
+  visit("coulomb_Nm", turn_coulomb);
+  visit("resolution_m", resolution);
+  visit("resolution_rad", turn_resolution);
+}
+
+}  // namespace vps::recording

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run of a procedure on its way into a recording.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "vps/coupling_law.h"
+#include "vps_device/recorder.h"
+#include "vps_scenes/assemble.h"
+#include "vps_scenes/scene.h"
+
+namespace vps {
+
+/// The names of a recording's attachments.
+inline constexpr const char* kSceneAttachment = "scene.vps";
+
+/// For lockstep: where the recorder's ring is full, the run waits, since simulated time can.
+class RunRecord final : public RunLog {
+ public:
+  /// The head says which program, scene, seeds, fidelity and choices. The scene in it wishes for the gains
+  /// that were chosen, so that a replay does not choose again. Throws as Recorder.
+  RunRecord(const std::string& file, const Scene& scene, const Device& device, const CouplingGains& gains,
+            const AssembleOptions& options);
+  /// Without finish(): says by options.warn where the unfinished recording is.
+  ~RunRecord() override;
+
+  void add(const LogEntry& entry) noexcept override;
+  void finish();
+
+ private:
+  Recorder recorder_;
+  std::function<void(const std::string&)> warn_;
+  bool has_read_ = false, is_finished_ = false;
+};
+
+/// "0.1.0, GCC 12.2.0, double": what a recording was made with, and what this program is.
+std::string programVersion();
+
+}  // namespace vps

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes as a recording: whatever opens can be driven by, and written as tables.
+#include "vps_device/recording.h"
+
+#include "fuzz.h"
+#include "vps/load_error.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    vps::Recording device(vps::recordingFrom({reinterpret_cast<const char*>(data), size}, "fuzz"));
+    const std::size_t reads = device.run().reads();
+    for (std::size_t i = 0; i < reads; ++i) {
+      device.read();
+      (void)device.phase();
+    }
+    vps::fuzz::require(device.left() == 0, "every sample is read once");
+    vps::fuzz::require(device.read().status == vps::Status::Fault, "then the device is lost");
+    vps::fuzz::require(vps::csvTables(device.run()).size() == 4, "a table for each kind");
+  } catch (const vps::LoadError&) {
+  }
+  return 0;
+}
+
+std::vector<std::string> vps::fuzz::seeds() {
+  const std::string file = fileOf(nullptr, 0);
+  RecordingHead head;
+  head.about = {{"version", "1"}};
+  head.device = "fuzz";
+  head.attachments = {{"scene", "text/plain", "scene"}};
+  {
+    Recorder recorder(file, head);
+    RunEvent event;
+    event.kind = RunEventKind::Phase;
+    event.say("phase");
+    recorder.add(event);
+    for (int i = 0; i < 3; ++i) {
+      DeviceSample sample;
+      sample.time_s = i;
+      recorder.add(sample);
+      recorder.add(WrittenWrench{});
+    }
+    recorder.add(RunTrace{});
+    recorder.finish();
+  }
+  return {bytesOf(file)};
+}

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "scene_archive.h"
+#include "support/temporary_folder.h"
+#include "vps/load_error.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kFixture = VPS_SOURCE_DIR "/tests/scenes/recorded/peg_in_hole.mcap";
+
+/// A pin that is set down 0.2 mm lower on a plate, at a coarse rate: half a second of work.
+Scene pinOnPlate() {
+  Scene scene;
+  scene.file = "some/folder/scene.toml";
+  scene.name = "pin on plate";
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].is_fixed = true;
+  scene.parts[0].file = "/home/somebody/secret/plate.stl";
+  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.steps.resize(1);
+  scene.steps[0].part = 1;
+  scene.steps[0].X_WP_target = Pose::translation({0, 0, 2e-3});
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 2.2e-3});
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.1;
+  scene.hand.aim_error_m = 0.05e-3;
+  scene.coupling.b_Ns_per_m = 1.0 / 3;
+  return scene;
+}
+
+struct Recorded {
+  AssembleResult result;
+  RecordedRun run;
+};
+
+Recorded recordedPin() {
+  const test::TemporaryFolder folder;
+  AssembleOptions options;
+  options.record = folder.path() / "run.mcap";
+  Scene scene = pinOnPlate();
+  Recorded recorded;
+  recorded.result = assemble(scene, options);
+  recorded.run = loadRecording(options.record);
+  return recorded;
+}
+
+void expectSame(const AssembleResult& a, const AssembleResult& b) {
+  EXPECT_EQ(a.completed, b.completed);
+  EXPECT_EQ(a.haptic.count, b.haptic.count);
+  EXPECT_EQ(a.simulated_s, b.simulated_s);
+  EXPECT_EQ(a.energy.to_hand_J, b.energy.to_hand_J);
+  EXPECT_EQ(a.energy.from_hand_J, b.energy.from_hand_J);
+  EXPECT_EQ(a.energy.injected_J, b.energy.injected_J);
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t i = 0; i < a.steps.size(); ++i) {
+    EXPECT_EQ(a.steps[i].why_not, b.steps[i].why_not);
+    EXPECT_EQ(a.steps[i].max_penetration_m, b.steps[i].max_penetration_m);
+    EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
+    EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);
+    EXPECT_EQ(a.steps[i].rest_drift_m, b.steps[i].rest_drift_m);
+  }
+  ASSERT_EQ(a.trace.size(), b.trace.size());
+  for (std::size_t i = 0; i < a.trace.size(); ++i) {
+    ASSERT_EQ(a.trace[i].X_WP.p, b.trace[i].X_WP.p) << i;
+    ASSERT_EQ(a.trace[i].X_WP.R, b.trace[i].X_WP.R) << i;
+    ASSERT_EQ(a.trace[i].F_hand_W.f, b.trace[i].F_hand_W.f) << i;
+    ASSERT_EQ(a.trace[i].phase, b.trace[i].phase) << i;
+  }
+}
+
+// A run of this repository, as somebody would send it. Where a change to the engine is meant to change what
+// it computes, record it anew, in tests/scenes/recorded:
+//   vps assemble scene.toml --no-pictures --out out --record peg_in_hole.mcap
+TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
+#ifndef VPS_BULLET_DOUBLE
+  GTEST_SKIP() << "recorded with double-precision Bullet";
+#endif
+  const RecordedRun run = loadRecording(kFixture);
+  EXPECT_EQ(run.damage, "");
+  const ReplayResult replayed = replay(run);
+  EXPECT_EQ(replayed.departure, "") << replayed.other_version;
+  EXPECT_EQ(replayed.equal, run.entries.size());
+  EXPECT_GT(run.reads(), 500u);
+  ASSERT_EQ(replayed.result.steps.size(), 1u);
+  EXPECT_TRUE(replayed.result.steps[0].completed);
+  EXPECT_GT(replayed.result.steps[0].peak_force_N, 4);  // it was pressed home
+}
+
+TEST(Replay, WhatWasRecordedGivesTheSameReport) {
+  const Recorded recorded = recordedPin();
+  EXPECT_EQ(recorded.run.damage, "");
+  EXPECT_TRUE(recorded.result.steps.at(0).completed) << recorded.result.steps.at(0).why_not;
+  const ReplayResult replayed = replay(recorded.run);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.other_version, "");
+  EXPECT_EQ(replayed.equal, recorded.run.entries.size());
+  expectSame(recorded.result, replayed.result);
+}
+
+TEST(Replay, RecordingChangesNoBitOfTheRun) {
+  Scene scene = pinOnPlate();
+  expectSame(recordedPin().result, assemble(scene));
+}
+
+TEST(Replay, AnotherWorldDepartsAndSaysAtWhichTick) {
+  RecordedRun run = recordedPin().run;
+  Scene heavier = recordedScene(run);
+  heavier.parts[1].part.material.density_kg_m3 *= 1.01;
+  run.head.attachments[0].data = sceneToBytes(heavier);
+  run.head.about["version"] = "0.0.1";
+  const ReplayResult replayed = replay(run);
+  // The first row of the trace follows the first physics step, in which the pin falls.
+  EXPECT_EQ(replayed.departure.find("tick 1 (0.004 s): /run/trace: p_wp_m.z was "), 0u) << replayed.departure;
+  EXPECT_NE(replayed.other_version.find("was recorded by vps 0.0.1"), std::string::npos);
+  EXPECT_EQ(replayed.result.haptic.count, recordedPin().result.haptic.count);  // to its end all the same
+}
+
+TEST(Replay, ACutRecordingRunsUpToTheCut) {
+  Recorded recorded = recordedPin();
+  RecordedRun cut = recorded.run;
+  cut.entries.resize(cut.entries.size() / 3);
+  cut.damage = "ends in the middle of a record";
+  const ReplayResult replayed = replay(cut);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.result.haptic.count + 1, cut.reads());  // one read was the grasp's
+  EXPECT_EQ(replayed.result.steps.at(0).why_not, "the recording ends here");
+  for (std::size_t i = 0; i < replayed.result.trace.size(); ++i)
+    ASSERT_EQ(replayed.result.trace[i].X_WP.p, recorded.result.trace[i].X_WP.p);
+}
+
+TEST(Replay, ARunThatFailsBeforeItBeginsLeavesNothing) {
+  const test::TemporaryFolder folder;
+  AssembleOptions options;
+  options.record = folder.path() / "run.mcap";
+  Scene scene = pinOnPlate();
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 1e-3});  // 1 mm deep
+  EXPECT_THROW(assemble(scene, options), LoadError);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Replay, ARecordingWithoutASceneIsRefusedInWords) {
+  RecordedRun run = loadRecording(kFixture);
+  run.head.attachments.clear();
+  try {
+    replay(run);
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("holds no scene"), std::string::npos) << error.what();
+  }
+}
+
+TEST(SceneArchive, EveryBitComesBackAndNoFolderGoesAlong) {
+  const Scene scene = pinOnPlate();
+  const std::string bytes = sceneToBytes(scene);
+  const Scene back = sceneFromBytes(bytes, "x");
+  EXPECT_EQ(sceneToBytes(back), bytes);
+  EXPECT_EQ(back.coupling.b_Ns_per_m, 1.0 / 3);
+  EXPECT_FALSE(back.coupling.k_N_per_m);
+  EXPECT_EQ(back.parts[1].part.mesh.triangles, scene.parts[1].part.mesh.triangles);
+  EXPECT_EQ(back.steps[0].X_WP_start.p, scene.steps[0].X_WP_start.p);
+  EXPECT_EQ(back.fidelity.haptic_rate_hz, 250);
+  EXPECT_EQ(back.parts[0].file, "plate.stl");
+  EXPECT_EQ(bytes.find("somebody"), std::string::npos);
+}
+
+TEST(SceneArchive, CutAtAnyByteItIsRefused) {
+  const std::string bytes = sceneToBytes(pinOnPlate());
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    EXPECT_THROW(sceneFromBytes(std::string_view(bytes).substr(0, length), "x"), LoadError) << length;
+}
+
+TEST(SceneArchive, AChangedByteIsRefusedOrAScene) {
+  const std::string whole = sceneToBytes(pinOnPlate());
+  for (std::size_t at = 0; at < whole.size(); ++at)
+    for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
+      std::string bytes = whole;
+      bytes[at] = static_cast<char>(static_cast<unsigned char>(bytes[at]) ^ flip);
+      try {
+        const Scene scene = sceneFromBytes(bytes, "x");
+        for (const ScenePart& part : scene.parts)
+          for (const auto& triangle : part.part.mesh.triangles)
+            for (const std::uint32_t corner : triangle) ASSERT_LT(corner, part.part.mesh.vertices.size());
+        for (const SceneStep& step : scene.steps) ASSERT_LT(step.part, scene.parts.size());
+      } catch (const LoadError&) {
+      }
+    }
+}
+
+}  // namespace
+}  // namespace vps

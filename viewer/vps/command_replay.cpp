@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps replay: runs a recording again, bit for bit.
+#include <cstdio>
+#include <optional>
+
+#include "commands.h"
+#include "json_out.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "run_report.h"
+#include "table.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+#include "vps_scenes/replay.h"
+
+namespace vps {
+
+namespace {
+
+void writeTables(const RecordedRun& run, const OutputFolder& out) {
+  for (const auto& [name, text] : csvTables(run)) out.write(name + ".csv", text);
+  std::string about = "key,value\n";
+  for (const auto& [key, value] : run.head.about) about += csvLine({key, value});
+  out.write("about.csv", about);
+}
+
+/// Says what the replay found; returns the exit status.
+int verdict(const RecordedRun& run, const ReplayResult& replayed) {
+  const double end_s = replayed.result.simulated_s;
+  if (!replayed.departure.empty()) {
+    if (!replayed.other_version.empty()) warn(run.file + " " + replayed.other_version);
+    std::printf("departs from the recording at %s\n", replayed.departure.c_str());
+    return kBad;
+  }
+  std::printf("the same bits, %zu entries up to %.3f s\n", replayed.equal, end_s);
+  if (run.damage.empty()) return kGood;
+  warn(run.file + " " + run.damage);
+  return kBad;
+}
+
+}  // namespace
+
+int runReplay(const ReplayArguments& given) {
+  if (given.is_tables_only && given.csv.empty())
+    throw LoadError("", "", "--no-run leaves nothing to do without --csv DIR");
+  std::optional<OutputFolder> out, csv;
+  if (!given.out.empty()) out.emplace(given.out);
+  if (!given.csv.empty()) csv.emplace(given.csv);
+  OutputFile json(given.json, {given.recording});
+  const RecordedRun run = loadRecording(given.recording);
+  if (csv) {
+    writeTables(run, *csv);
+    csv->commit();
+  }
+  if (given.is_tables_only) {
+    if (!run.damage.empty()) warn(run.file + " " + run.damage);
+    return run.damage.empty() ? kGood : kBad;
+  }
+
+  ProgressBar bar;
+  ReplayOptions options;
+  options.progress = bar.progress();
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  options.cache = cache ? &*cache : nullptr;
+  options.stop = &stopRequested();
+  const ReplayResult replayed = replay(run, options);
+  throwIfStopped();
+
+  std::vector<std::string> notes;
+  if (out) {
+    bar.progress()("writing the report", 1);
+    notes = fillFolder(*out, replayed.scene, replayed.result, {"vps replay " + given.recording, true});
+    out->commit();
+  }
+  json.write(toJson(replayed.result));
+  bar.clear();
+  printSteps(replayed.result);
+  for (const std::string& note : notes) warn(note);
+  return verdict(run, replayed);
+}
+
+}  // namespace vps
