@@ -17,6 +17,7 @@ struct Options {
 struct Case {
   const char* key;  ///< for --rows
   void (*run)(const Options&, Table&);
+  bool is_asked_for = false;  ///< runs only where --rows names it
 };
 
 const std::vector<Case>& allCases();
