@@ -200,10 +200,13 @@ double ContactSweeps::sweepOnce() {
   return residual_m_s;
 }
 
-bool ContactSweeps::sweep(double residual_m_s, int limit) {
-  for (int used = 0; used < limit; ++used)
-    if (sweepOnce() <= residual_m_s) return true;
-  return false;
+SolveOutcome ContactSweeps::sweep(double residual_m_s, int limit) {
+  SolveOutcome outcome;
+  while (outcome.steps < limit && !outcome.is_settled) {
+    outcome.is_settled = sweepOnce() <= residual_m_s;
+    ++outcome.steps;
+  }
+  return outcome;
 }
 
 // A joint holds against the push; a motor or limit, whose impulse is bounded, does not mind it.

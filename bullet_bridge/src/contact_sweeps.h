@@ -53,9 +53,8 @@ class ContactSweeps {
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
   /// Starts from last step's impulses, each body's mass being `held`.
   void start();
-  /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times. True: it came
-  /// to that.
-  bool sweep(double residual_m_s, int limit);
+  /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times.
+  SolveOutcome sweep(double residual_m_s, int limit);
   /// Velocities of the bodies by the contacts' impulses as they stand.
   void applyImpulses();
   [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }

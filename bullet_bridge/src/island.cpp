@@ -5,6 +5,8 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "vps_bullet/convert.h"
 
@@ -68,13 +70,20 @@ Vec6 Island::fixedVelocity(const btCollisionObject* object) {
   return rigid ? velocityOf(*rigid) : Vec6(Vec6::Zero());
 }
 
-double Island::topSpeed(std::span<const Vec6> before) const {
+double Island::topSpeed(std::span<const Vec6> twists) const {
   double top_m_s = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Vec6 u = before.empty() ? bodies[i].u : Vec6(bodies[i].u - before[i]);
-    top_m_s = std::max(top_m_s, u.tail<3>().norm() + u.head<3>().norm() * bodies[i].reach_m);
+    const double here_m_s = twists[i].tail<3>().norm() + twists[i].head<3>().norm() * bodies[i].reach_m;
+    if (!std::isfinite(here_m_s)) return std::numeric_limits<double>::infinity();
+    top_m_s = std::max(top_m_s, here_m_s);
   }
   return top_m_s;
+}
+
+std::vector<Vec6> Island::velocities() const {
+  std::vector<Vec6> u;
+  for (const IslandBody& b : bodies) u.push_back(b.u);
+  return u;
 }
 
 void Island::writeVelocities() const {

@@ -35,6 +35,12 @@ struct IslandBody {
   Vec6 u = Vec6::Zero();         ///< at first that of the last step
 };
 
+/// How a solver of the island ended.
+struct SolveOutcome {
+  int steps = 0;
+  bool is_settled = false;
+};
+
 class Island {
  public:
   void clear();
@@ -44,9 +50,9 @@ class Island {
   /// Of a body that is not in the island but moves (kinematic), about its origin.
   [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
   void writeVelocities() const;
-  /// Greatest speed of any body's point, u standing as it does, against velocities `before` (empty: zero)
-  /// [m/s].
-  [[nodiscard]] double topSpeed(std::span<const Vec6> before = {}) const;
+  [[nodiscard]] std::vector<Vec6> velocities() const;
+  /// Greatest speed of any body's point at these twists, one a body [m/s]; infinite where one is no number.
+  [[nodiscard]] double topSpeed(std::span<const Vec6> twists) const;
 
   std::vector<IslandBody> bodies;
 

@@ -59,6 +59,7 @@ void IslandMatrix::makePattern() {
 }
 
 void IslandMatrix::add(int row_body, int column_body, const Mat6& block) {
+  if (row_body < column_body) return;
   if (isDense()) {
     dense_.block<6, 6>(6 * row_body, 6 * column_body) += block;
     return;

@@ -27,7 +27,7 @@ double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
 
 }  // namespace
 
-void PenaltyNewton::add(PenaltyPair& pair) {
+void PenaltyNewton::add(PenaltyPair& pair, bool foresees_turning) {
   if (pair.points.empty()) return;
   const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
   if (body[0] < 0 && body[1] < 0) return;
@@ -47,7 +47,8 @@ void PenaltyNewton::add(PenaltyPair& pair) {
     patch.X[i] = sign * twistShift(fromBt(pair.object[i]->getWorldTransform().getOrigin()), patch.center);
     if (body[i] < 0) patch.fixed += patch.X[i] * now;
     const Vec3 turn = dt_s_ * now.head<3>();
-    off_tangent[i] = rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn);
+    off_tangent[i] = foresees_turning ? Mat3(rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn))
+                                      : Mat3(Mat3::Zero());
   }
   patch.build(pair, off_tangent, dt_s_);
 }
@@ -173,6 +174,7 @@ double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6
 }
 
 double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
+  if (!joint_kg_.empty()) return island_.topSpeed(step);  // joints may move bodies that nothing touches
   double speed_m_s = 0;
   for (const PenaltyPatch& patch : patches()) {
     const Vec6 twist = twistOf(patch, step) - patch.fixed;
@@ -181,38 +183,41 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
   return speed_m_s;
 }
 
-// What bodies that were free would do with the momentum that is missing.
-double PenaltyNewton::imbalance_m_s() const {
-  double speed_m_s = 0;
-  for (std::size_t i = 0; i < gradient_.size(); ++i) {
-    const IslandBody& b = island_.bodies[i];
-    const Vec3 w = fromBt(b.rigid->getInvInertiaTensorWorld()) * gradient_[i].head<3>();
-    const Vec3 v = double(b.rigid->getInvMass()) * gradient_[i].tail<3>();
-    speed_m_s = std::max(speed_m_s, v.norm() + w.norm() * b.reach_m);
-  }
-  return speed_m_s;
+// What the momentum that is missing would do to the bodies.
+double PenaltyNewton::imbalance_m_s() {
+  trial_.resize(gradient_.size());
+  for (std::size_t i = 0; i < gradient_.size(); ++i)
+    trial_[i] = island_.bodies[i].held.llt().solve(gradient_[i]);
+  return island_.topSpeed(trial_);
 }
 
-int PenaltyNewton::solve(double residual_m_s, int iteration_limit, End end) {
+SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End end) {
   prepareJoints();
   velocities();
   gradient_.resize(u_.size());
   step_.resize(u_.size());
-  int used = 0;
-  while (used++ < iteration_limit) {
+  SolveOutcome outcome;
+  while (outcome.steps < iteration_limit && !outcome.is_settled) {
+    ++outcome.steps;
     evaluateAll(u_, true, gradient_);
-    if (end == End::Balanced && imbalance_m_s() < residual_m_s) break;
+    if (end == End::Balanced && imbalance_m_s() < residual_m_s) {
+      outcome.is_settled = true;
+      break;
+    }
     if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
-    if (!(slope < 0)) break;
+    if (!(slope < 0)) {  // as well balanced as rounding allows, or no number
+      constexpr double kGoodEnough = 10;
+      outcome.is_settled = slope >= 0 && (end == End::Short || imbalance_m_s() < kGoodEnough * residual_m_s);
+      break;
+    }
     // The last step is too short for a better share of it to matter.
-    const bool is_last = end == End::Short && greatestSpeed(step_) < residual_m_s;
-    const double share = is_last ? 1 : shareOf(u_, step_, slope);
+    outcome.is_settled = end == End::Short && greatestSpeed(step_) < residual_m_s;
+    const double share = outcome.is_settled ? 1 : shareOf(u_, step_, slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
-    if (is_last) break;
   }
   for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
-  return used;
+  return outcome;
 }
 
 const std::vector<Vec6>& PenaltyNewton::velocities() {

@@ -30,13 +30,14 @@ class PenaltyNewton {
     dt_s_ = dt_s;
   }
   /// The pair must outlive finish(). Friction's limits are at first those of the last step's forces.
-  void add(PenaltyPair& pair);
+  /// @param foresees_turning  of a turning body's points, that they go along circles
+  void add(PenaltyPair& pair, bool foresees_turning = true);
   /// When to stop: after a step that changes no point's velocity by more than the residual; or when the
   /// momentum that is missing would change no point's by more, which asks for more where springs are stiff.
   enum class End { Short, Balanced };
-  /// Velocities for the bodies' masses and the limits as they stand. Returns Newton's iterations; more than
-  /// the limit: it was not reached.
-  int solve(double residual_m_s, int iteration_limit, End end = End::Short);
+  /// Velocities for the bodies' masses and the limits as they stand. Not settled: the limit came first, or
+  /// something is no number.
+  SolveOutcome solve(double residual_m_s, int iteration_limit, End end = End::Short);
   /// Limits of friction by the forces just found. Returns the greatest change, relative to the greatest
   /// limit.
   double renewLimits();
@@ -50,12 +51,12 @@ class PenaltyNewton {
   /// Gradient of the potential at u; with the Hessians of the patches if asked.
   void evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient);
   void startMatrix();
-  /// False: the matrix has no factorisation, as where something is not finite.
+  /// False: the matrix is not positive definite.
   [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
   [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
   const std::vector<Vec6>& velocities();
-  [[nodiscard]] double imbalance_m_s() const;
+  [[nodiscard]] double imbalance_m_s();
 
   /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
   /// make the potential's slope constant, as a bristle's does.

@@ -181,7 +181,7 @@ void PenaltyPatch::finish(const Vec6& twist) const {
     }
     const Push push = pushOf(i);
     out.f_n_N = push.f_n_N;
-    out.bend_W = (1 / points_[i].k) * push.f_t_N;
+    out.bend_W = points_[i].k > 0 ? Vec3(push.f_t_N / points_[i].k) : Vec3(Vec3::Zero());
     pair->all_N += push.f_n_N;
   }
 }

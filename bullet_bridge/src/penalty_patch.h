@@ -23,9 +23,9 @@ class PenaltyPatch {
     Vec3 along = Vec3::Zero();  // unit, of the slip
   };
 
-  /// @param off_tangent  of body 0 and 1: what the place of a point against its body's origin changes by in
-  /// the
-  ///                     step beyond what its velocity now says
+  /// @param off_tangent  of body 0 and 1: what a point's place against its body's origin changes by in the
+  /// step,
+  ///                     beyond what the body's velocity now says
   void build(PenaltyPair& pair, const Mat3 (&off_tangent)[2], double dt_s);
 
   /// Sets gradient, and hessian if asked, of the potential at a twist. O(points), little for those that do

@@ -16,7 +16,7 @@ namespace {
 // little error in a round but takes Newton's method many steps from afar, a soft one the reverse. So a round
 // that has not brought what is missed down to kGood of the round before is followed by stiffer ones
 // [Bertsekas 1982, ch. 2].
-constexpr double kSoftest = 1e-2, kStiffest = 1e-6, kStiffer = 0.1, kGood = 0.25;
+constexpr double kSoftest = 1e-2, kStiffest = 1e-5, kStiffer = 0.1, kGood = 0.25;
 // A round's answer is only as good as its limits of friction: it need not be nearer than this share of what
 // the round before has missed.
 constexpr double kShareOfMissed = 0.1, kFirstMissed_m_s = 1e-2;
@@ -50,14 +50,13 @@ void RigidNewton::setAbout(std::span<const RigidContact> contacts, double dt_s) 
   for (const RigidContact& c : contacts) {
     if (pairs_.empty() || !isOfPair(c, pairs_.back())) {
       PenaltyPair& pair = pairs_.emplace_back();
-      pair.is_of_manifold = true;
       for (int i = 0; i < 2; ++i) pair.object[i] = c.object[i];
       pair.mu = c.mu;
     }
     pairs_.back().points.push_back(springOf(c, dt_s, softness_));
   }
   springs_.clear(dt_s);
-  for (PenaltyPair& pair : pairs_) springs_.add(pair);
+  for (PenaltyPair& pair : pairs_) springs_.add(pair, false);  // nor do sweeps foresee it
 }
 
 // Returns the greatest give of a spring, which is the velocity by which its row misses its law.
@@ -85,9 +84,15 @@ void RigidNewton::keepVelocities() {
   for (const IslandBody& b : island_.bodies) before_.push_back(b.u);
 }
 
-RigidNewton::Outcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, double residual_m_s,
-                                        int step_limit) {
-  Outcome outcome;
+double RigidNewton::changeSinceKept_m_s() {
+  change_.clear();
+  for (std::size_t i = 0; i < before_.size(); ++i) change_.push_back(island_.bodies[i].u - before_[i]);
+  return island_.topSpeed(change_);
+}
+
+SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, double residual_m_s,
+                                int step_limit) {
+  SolveOutcome outcome;
   softness_ = kSoftest;
   double missed_m_s = std::numeric_limits<double>::infinity();
   keepVelocities();
@@ -95,13 +100,13 @@ RigidNewton::Outcome RigidNewton::solve(std::span<RigidContact> contacts, double
     setAbout(contacts, dt_s);
     const double near_m_s = kShareOfMissed * std::clamp(missed_m_s, residual_m_s, kFirstMissed_m_s);
     const int limit = std::min(kStepsPerRound, step_limit - outcome.steps);
-    const int steps = springs_.solve(near_m_s, limit, PenaltyNewton::End::Balanced);
-    outcome.steps += std::min(steps, limit);
+    const SolveOutcome round = springs_.solve(near_m_s, limit, PenaltyNewton::End::Balanced);
+    outcome.steps += round.steps;
     // Cut short, springs have pushed by more than they should: that would be energy from nowhere.
-    if (steps > limit) break;
+    if (!round.is_settled) break;
     springs_.finish();
     // What new limits of friction do to the velocities counts as much as what springs give.
-    const double now_m_s = std::max(takeImpulses(contacts, dt_s), island_.topSpeed(before_));
+    const double now_m_s = std::max(takeImpulses(contacts, dt_s), changeSinceKept_m_s());
     if (now_m_s > kGood * missed_m_s) softness_ = std::max(kStiffest, kStiffer * softness_);
     missed_m_s = now_m_s;
     keepVelocities();

@@ -57,8 +57,8 @@ struct VpsSolver::Work {
   void holdCouplings(double dt_s);
   void applyLaws();
   bool renewLaws();
-  int solveContacts(const VpsSolverSettings& settings, double dt_s);
-  int solveRigid(const VpsSolverSettings& settings, double dt_s);
+  SolveOutcome solveContacts(const VpsSolverSettings& settings, double dt_s);
+  SolveOutcome solveRigid(const VpsSolverSettings& settings, double dt_s);
 };
 
 namespace {
@@ -66,6 +66,12 @@ namespace {
 bool hasUnitFactors(const btRigidBody& b) {
   const btVector3 one(1, 1, 1);
   return b.getLinearFactor() == one && b.getAngularFactor() == one;
+}
+
+// Bullet's idiom for a body that does not turn is an inertia of zero; our mass matrices have no such thing.
+bool canTurn(const btRigidBody& b) {
+  const btVector3& inverse = b.getInvInertiaDiagLocal();
+  return !(b.getInvMass() > 0) || (inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0);
 }
 
 bool isPlain(const btManifoldPoint& point) {
@@ -81,7 +87,7 @@ bool VpsSolver::Work::gatherBodies(std::span<btCollisionObject*> objects, double
   island.clear();
   for (btCollisionObject* object : objects) {
     btRigidBody* rigid = btRigidBody::upcast(object);
-    if (!rigid || !hasUnitFactors(*rigid)) return false;
+    if (!rigid || !hasUnitFactors(*rigid) || !canTurn(*rigid)) return false;
     if (rigid->getInvMass() > 0 && !rigid->isKinematicObject()) island.add(*rigid, dt_s);
   }
   return true;
@@ -166,23 +172,27 @@ bool VpsSolver::Work::renewLaws() {
 
 // Sweeps settle what is nearly settled, such as parts at rest, in a few microseconds; Newton's method settles
 // the rest.
-int VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, double dt_s) {
+SolveOutcome VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, double dt_s) {
   constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: what each costs
   constexpr double kShareOfSpeed = 1e-5;                       // assumed: a micron on the way of a decimetre
-  const int sweeps = std::min(kSweepsFirst, settings.iteration_limit);
+  const int newton_limit = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
   rigid.start();
-  if (rigid.sweep(settings.residual_m_s, sweeps)) return sweeps;
-  const int newton_limit = (settings.iteration_limit - sweeps) / kSweepsPerNewtonStep;
-  if (newton_limit == 0) return sweeps;
-  const RigidNewton::Outcome outcome =
-      rigid_newton.solve(rigid.contacts(), dt_s,
-                         std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed()), newton_limit);
+  SolveOutcome outcome =
+      rigid.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
+  if (outcome.is_settled || newton_limit == 0) return outcome;
+  const double near_m_s =
+      std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(island.velocities()));
+  const SolveOutcome newton = rigid_newton.solve(rigid.contacts(), dt_s, near_m_s, newton_limit);
+  outcome.steps += kSweepsPerNewtonStep * newton.steps;
+  outcome.is_settled = newton.is_settled;
   rigid.applyImpulses();  // whatever is left open, velocities are those that the impulses give
-  if (!outcome.is_settled) rigid.sweep(settings.residual_m_s, sweeps);
-  return sweeps + kSweepsPerNewtonStep * outcome.steps;
+  if (newton.is_settled) return outcome;
+  const SolveOutcome end =
+      rigid.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
+  return {outcome.steps + end.steps, end.is_settled};
 }
 
-int VpsSolver::Work::solveContacts(const VpsSolverSettings& settings, double dt_s) {
+SolveOutcome VpsSolver::Work::solveContacts(const VpsSolverSettings& settings, double dt_s) {
   return is_soft ? soft.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings, dt_s);
 }
 
@@ -215,7 +225,9 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
   iterations_used_ = 0;
   for (int round = 0; round < rounds; ++round) {
     work.applyLaws();
-    iterations_used_ = std::max(iterations_used_, work.solveContacts(settings_, dt_s));
+    const SolveOutcome outcome = work.solveContacts(settings_, dt_s);
+    iterations_used_ = std::max(iterations_used_, outcome.steps);
+    is_settled_ = outcome.is_settled;
     if (round == rounds - 1) break;  // unsettled: laws and limits stay those that u was solved with
     const bool has_settled_friction = !work.is_soft || work.soft.renewLimits() < kSettled;
     if (work.renewLaws() && has_settled_friction) break;

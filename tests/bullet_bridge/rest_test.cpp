@@ -284,6 +284,19 @@ TEST(VpsSolver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   EXPECT_LE(rest.speed_m_s, kRest_m_s);
 }
 
+TEST(VpsSolver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
+  World world;
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& low = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
+  btRigidBody& high = world.add(box, Pose::translation(Vec3(1e-4, 0, 0.015)));
+  world.step(50);
+  high.applyCentralForce(btVector3(0, 0, toBt(std::nan(""))));
+  world.step();
+  EXPECT_LE(low.getLinearVelocity().length(), 0.01);  // what gravity adds in a step at most
+  EXPECT_NEAR(low.getWorldTransform().getOrigin().z(), 0.005, 1e-5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 

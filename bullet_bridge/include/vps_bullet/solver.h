@@ -10,14 +10,15 @@ namespace vps {
 
 struct VpsSolverSettings {
   double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
-  /// Sweeps over rigid contacts, one of Newton's steps counting as ten, or Newton's steps of compliant ones;
-  /// >= 1. Up to 30 it is sweeps alone.
+  /// Sweeps over rigid contacts, a step of Newton's method counting as ten; below 40 it is sweeps alone. Of
+  /// compliant contacts: Newton's steps. >= 1
   int iteration_limit = 400;
 };
 
 /// Solves islands of rigid bodies, contacts (rigid or compliant), joints and VpsCouplings, the couplings
 /// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
-/// spinning friction, or bodies with linear or angular factors go to the stock solver unchanged.
+/// spinning friction, or bodies with linear or angular factors or no inertia go to the stock solver
+/// unchanged.
 class VpsSolver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -28,14 +29,18 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// What the last island solved by our method took, as iteration_limit counts; that limit: it was cut short.
+  /// What the last island solved by our method took, counted as iteration_limit is; what is left open in the
+  /// end is swept 30 times more.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
+  /// Whether that came down to the residual, or for parts in motion to 1e-5 of their speed.
+  [[nodiscard]] bool hasSettled() const { return is_settled_; }
 
  private:
   struct Work;
   VpsSolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
+  bool is_settled_ = true;
 };
 
 }  // namespace vps
