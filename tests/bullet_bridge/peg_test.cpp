@@ -117,9 +117,10 @@ TEST_P(PegInBore, DroppedItSeats) {
   std::printf("[ measured ] seat error %.2f um, drift %.3f um, jitter %.1e m/s\n",
               (later.p.z() + kDepth_m) * 1e6, (later.p - rest.p).norm() * 1e6, speed_m_s);
   EXPECT_NEAR(later.p.z(), -kDepth_m, 3e-6);
-  // The stock solver starts friction anew each step: in floats the part creeps by rounding of dt g, 2e-5 m/s
-  // at most, for two seconds.
-  const bool creeps = GetParam().solver == Solver::Stock && sizeof(btScalar) == 4;
+  // In floats the stock solver, which starts friction anew each step, lets the part creep by rounding of dt
+  // g, 2e-5 m/s at most, for two seconds; so do springs (4.7e-6 m/s seen), whose bends do not know of a
+  // pose's rounding.
+  const bool creeps = GetParam().solver != Solver::Vps && sizeof(btScalar) == 4;
   EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6);
   EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6);
   EXPECT_LE(deepest_m, kDeepest_m);
