@@ -41,14 +41,23 @@ struct Grasp {
   [[nodiscard]] Pose toHandle(const Pose& X_WG) const noexcept;
 };
 
-/// Energy at the hand [J]. The device's work on the hand is held force times handle displacement.
+/// Energy at the hand [J]. The device's work on the hand is the force that acts, so late as the device's
+/// limits say and held for a period, times handle displacement.
+///
+/// The balance is net work - dissipation - fall in stored energy - actuator work. Where device, coupling and
+/// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
+/// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
+/// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
 struct HandLedger {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
   double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
-  double injected_J =
-      0;  ///< greatest over time of: net work - dissipation - fall in stored energy - actuator work
-  double balance_J = 0;  ///< the same, now
+  double balance_J = 0;     ///< when stored energy was last noted, in scene joules; 0 the first time
+  double least_J = 0;       ///< the least balance so far
+  double injected_J = 0;    ///< greatest rise of the balance above its least value before
+
+  /// What it has risen by now.
+  [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
 };
 
 struct LoopSettings {
@@ -60,7 +69,7 @@ struct LoopSettings {
       false;  ///< advance the part by its velocity since its time stamp, up to hold_limit_s
   double hold_limit_s = 2e-3;
   double injected_bound_J =
-      1e-3;  ///< above this the passivity controller adds damping. assumed: 5 N over 0.2 mm
+      1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
   bool has_passivity_controller = true;  ///< works once noteStored() is called
 };
 
@@ -92,8 +101,8 @@ class HapticLoop {
   const TickReport& tick() noexcept;
 
   /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
-  /// put in by others than the hand so far. Call once per physics step; from the loop's thread. scale-free:
-  /// in scene joules.
+  /// put in by others than the hand so far, both in scene joules. Call once a physics step, from the loop's
+  /// thread, with the handle where the last tick read it: there the balance is drawn.
   void noteStored(double stored_J, double actuator_J) noexcept;
 
   [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
@@ -114,8 +123,10 @@ class HapticLoop {
   [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   void account(const DeviceSample& sample) noexcept;
+  [[nodiscard]] Wrench actingWrench() const noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
+  static constexpr std::size_t kMostDelay = 14;  ///< ticks of the device's own that the ledger can follow
 
   Device* device_;
   CouplingPort* port_;
@@ -129,9 +140,9 @@ class HapticLoop {
   HandLedger ledger_;
   Pose X_DH_before_;
   bool has_before_ = false;
-  Wrench F_held_D_;
-  double net_scene_J_ = 0, net_start_J_ = 0, dissipated_start_J_ = 0;  // scene joules
-  double stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0, actuator_start_J_ = 0;
+  std::array<Wrench, kMostDelay + 2> F_written_D_{};  ///< newest first
+  double delay_ticks_ = 0;                            ///< the device's own
+  double net_scene_J_ = 0, balance_start_J_ = 0;      // scene joules
   bool has_stored_ = false;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};
