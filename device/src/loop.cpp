@@ -58,6 +58,13 @@ void HapticLoop::grasp(const Pose& X_WG) noexcept {
   grasp_ = Grasp::between(settings_.map.toScene(sample.X_DH), X_WG);
   report_.X_WG = X_WG;
   is_holding_ = true;
+  clutch_.shut();
+}
+
+void HapticLoop::handOver(const Pose& X_WG) noexcept {
+  grasp(X_WG);
+  clutch_.drop();
+  clutch_.close();
 }
 
 void HapticLoop::release() noexcept {
@@ -79,10 +86,14 @@ const TickReport& HapticLoop::tick() noexcept {
   CouplingState proxy{report_.X_WG, Twist{}, sample.time_s, is_holding_};
   Wrench wanted_D;
   if (is_good) {
+    const Twist step_D = stepSince(sample);
+    account(sample, step_D);
+    moveProxy(step_D, sample.X_DH);
+    const double share = clutch_.ratio();
     proxy.X_W = toGrasp(sample.X_DH);
-    proxy.V_W = settings_.map.toScene(sample.V_DH);
-    wanted_D = settings_.map.toDevice(-coupling(proxy)) + passivityDamping(sample.V_DH);
-    account(sample);
+    const Twist V_W = settings_.map.toScene(sample.V_DH);
+    proxy.V_W = {share * V_W.w, share * V_W.v};
+    wanted_D = settings_.map.toDevice(-coupling(proxy)) * share + passivityDamping(sample.V_DH);
   }
   report_.F_hand_D = guard_.guard(sample, wanted_D, settings_.period_s);
   device_->write(report_.F_hand_D);
@@ -133,13 +144,25 @@ Wrench HapticLoop::actingWrench() const noexcept {
   return F_written_D_[whole] * (1 - late) + F_written_D_[whole + 1] * late;
 }
 
-void HapticLoop::account(const DeviceSample& sample) noexcept {
-  const Pose X_before = X_DH_before_;
+Twist HapticLoop::stepSince(const DeviceSample& sample) const noexcept {
+  if (!has_before_) return {};
+  return {rotationVector(sample.X_DH.R * X_DH_before_.R.transpose()), Vec3(sample.X_DH.p - X_DH_before_.p)};
+}
+
+// The step was made under the force of the last tick, so it goes through the lever as it was then.
+void HapticLoop::moveProxy(const Twist& step_D, const Pose& X_DH) noexcept {
+  if (is_holding_ && !clutch_.isClosed()) {
+    const Pose X_WG = clutch_.follow(report_.X_WG, settings_.map.toScene(step_D));
+    grasp_ = Grasp::between(settings_.map.toScene(X_DH), X_WG);
+  }
+  clutch_.advance(settings_.period_s, settings_.clutch_s);
+}
+
+void HapticLoop::account(const DeviceSample& sample, const Twist& step) noexcept {
   const bool had_before = has_before_;
   X_DH_before_ = sample.X_DH;
   has_before_ = true;
   if (!had_before) return;
-  const Twist step{rotationVector(sample.X_DH.R * X_before.R.transpose()), Vec3(sample.X_DH.p - X_before.p)};
   const Wrench F_acting_D = actingWrench();
   const double work_J = power(F_acting_D, step);
   (work_J > 0 ? ledger_.to_hand_J : ledger_.from_hand_J) += std::abs(work_J);

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "vps/coupling_law.h"
+#include "vps_device/clutch.h"
 #include "vps_device/device.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/safety.h"
@@ -71,6 +72,7 @@ struct LoopSettings {
   double injected_bound_J =
       1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
   bool has_passivity_controller = true;  ///< works once noteStored() is called
+  double clutch_s = 0.1;                 ///< hold and let go take so long. assumed: a startle takes longer
 };
 
 /// What one tick did.
@@ -94,6 +96,18 @@ class HapticLoop {
   void grasp(const Pose& X_WG) noexcept;
   /// Lets go: the proxy stays published, uncoupled.
   void release() noexcept;
+
+  /// Opens the clutch over clutch_s: the hand comes free while the proxy stands and holds the part. What a
+  /// device smaller than the scene needs to reach farther (a ratchet), and what comes before release() where
+  /// force would jump.
+  void disengage() noexcept { clutch_.open(); }
+  /// Closes it over clutch_s: the hand has what it held again, from wherever it now is.
+  void engage() noexcept { clutch_.close(); }
+  [[nodiscard]] const Clutch& clutch() const noexcept { return clutch_; }
+  /// From one part to another: takes hold of one whose grasp frame is at X_WG, as grasp(), with the clutch
+  /// open, and closes it. Nothing jumps if the clutch was open before and nobody else holds that part; the
+  /// springs to the part before give their energy to nobody.
+  void handOver(const Pose& X_WG) noexcept;
   /// Clears a safety fault and, if a part is held, re-grasps it where the physics side last saw it.
   void rearm() noexcept;
 
@@ -122,7 +136,9 @@ class HapticLoop {
  private:
   [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
-  void account(const DeviceSample& sample) noexcept;
+  [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
+  void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
+  void account(const DeviceSample& sample, const Twist& step_D) noexcept;
   [[nodiscard]] Wrench actingWrench() const noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
@@ -135,6 +151,7 @@ class HapticLoop {
   SafetyGuard guard_;
   double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;  // b - K T/2 - B, at the device
   Grasp grasp_;
+  Clutch clutch_;
   bool is_holding_ = false;
   TickReport report_;
   HandLedger ledger_;
