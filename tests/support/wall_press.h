@@ -65,8 +65,8 @@ inline Unrest pressOnWall(const SimulatedDualArmSettings& device, const Coupling
 
 /// The stiffest coupling [N/m] below the first with a limit cycle, to 2%. A cycle is motion of more than half
 /// the encoders' greatest error, about one step of theirs in the middle of the workspace; less is what their
-/// jitter moves. Upwards from `from_N_per_m` in steps of 10%, then by bisection: whether it cycles is not
-/// monotonous.
+/// jitter moves. `from_N_per_m` must not cycle. Upwards from `from_N_per_m` in steps of 10%, then by
+/// bisection: whether it cycles is not monotonous.
 inline double stiffestWall(const SimulatedDualArmSettings& device, CouplingGains gains, double from_N_per_m,
                            const WallPress& press = {}) {
   const double still_m = device.arms.resolution_m / 2;

@@ -74,8 +74,6 @@ void stiffestWallRow(const HapticOptions& options, Table& table) {
       }
       return least;
     };
-    SimulatedDualArmSettings slippery = device;
-    slippery.arms.plate_coulomb_Nm = slippery.arms.link_coulomb_N = slippery.arms.rotor_coulomb_Nm = 0;
     const double theory =
         std::min(2 * limits.damping_Ns_per_m * rate_hz, 2 * limits.coulomb_N / limits.resolution_m);
     table.add(
@@ -84,7 +82,6 @@ void stiffestWallRow(const HapticOptions& options, Table& table) {
          {reported("ours", stiffest(device), 1e-3, "kN/m"),
           reported("min(2b/T, 2 f_c/D)", theory, 1e-3, "kN/m"),
           reported("2b/T", 2 * limits.damping_Ns_per_m * rate_hz, 1e-3, "kN/m"),
-          reported("without dry friction", stiffest(slippery), 1e-3, "kN/m"),
           reported("derived gains", gains.k_N_per_m, 1e-3, "kN/m")},
          "a cycle: the handle moves by more than half an encoder error. The plant's dry friction fades below "
          "2 mm/s, which damps small cycles"});
