@@ -48,6 +48,7 @@ HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& s
       std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
+  delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMostDelay));
   if (!areUsable(gains)) guard_.refuse(SafetyFault::BadGains);
 }
 
@@ -57,6 +58,13 @@ void HapticLoop::grasp(const Pose& X_WG) noexcept {
   grasp_ = Grasp::between(settings_.map.toScene(sample.X_DH), X_WG);
   report_.X_WG = X_WG;
   is_holding_ = true;
+  clutch_.shut();
+}
+
+void HapticLoop::handOver(const Pose& X_WG) noexcept {
+  grasp(X_WG);
+  clutch_.drop();
+  clutch_.close();
 }
 
 void HapticLoop::release() noexcept {
@@ -78,14 +86,19 @@ const TickReport& HapticLoop::tick() noexcept {
   CouplingState proxy{report_.X_WG, Twist{}, sample.time_s, is_holding_};
   Wrench wanted_D;
   if (is_good) {
+    const Twist step_D = stepSince(sample);
+    account(sample, step_D);
+    moveProxy(step_D, sample.X_DH);
+    const double share = clutch_.ratio();
     proxy.X_W = toGrasp(sample.X_DH);
-    proxy.V_W = settings_.map.toScene(sample.V_DH);
-    wanted_D = settings_.map.toDevice(-coupling(proxy)) + passivityDamping(sample.V_DH);
-    account(sample);
+    const Twist V_W = settings_.map.toScene(sample.V_DH);
+    proxy.V_W = {share * V_W.w, share * V_W.v};
+    wanted_D = settings_.map.toDevice(-coupling(proxy)) * share + passivityDamping(sample.V_DH);
   }
   report_.F_hand_D = guard_.guard(sample, wanted_D, settings_.period_s);
   device_->write(report_.F_hand_D);
-  F_held_D_ = report_.F_hand_D;
+  std::rotate(F_written_D_.begin(), F_written_D_.end() - 1, F_written_D_.end());
+  F_written_D_[0] = report_.F_hand_D;
 
   // While safety holds the force at zero the proxy stands still: the part rests where it was, and does not
   // follow a pose that cannot be trusted.
@@ -119,18 +132,39 @@ Wrench HapticLoop::coupling(const CouplingState& proxy) noexcept {
 
 Wrench HapticLoop::passivityDamping(const Twist& V_DH) const noexcept {
   const bool is_active = settings_.has_passivity_controller && has_stored_;
-  if (!is_active || ledger_.balance_J <= settings_.injected_bound_J) return {};
+  if (!is_active || ledger_.rise_J() <= settings_.injected_bound_J) return {};
   return {-spare_Nms_per_rad_ * V_DH.w, -spare_Ns_per_m_ * V_DH.v};
 }
 
-void HapticLoop::account(const DeviceSample& sample) noexcept {
-  const Pose X_before = X_DH_before_;
+// The mean over the period that ends now. A force that comes a part of a period late shares it with the one
+// before.
+Wrench HapticLoop::actingWrench() const noexcept {
+  const auto whole = static_cast<std::size_t>(delay_ticks_);
+  const double late = delay_ticks_ - static_cast<double>(whole);
+  return F_written_D_[whole] * (1 - late) + F_written_D_[whole + 1] * late;
+}
+
+Twist HapticLoop::stepSince(const DeviceSample& sample) const noexcept {
+  if (!has_before_) return {};
+  return {rotationVector(sample.X_DH.R * X_DH_before_.R.transpose()), Vec3(sample.X_DH.p - X_DH_before_.p)};
+}
+
+// The step was made under the force of the last tick, so it goes through the lever as it was then.
+void HapticLoop::moveProxy(const Twist& step_D, const Pose& X_DH) noexcept {
+  if (is_holding_ && !clutch_.isClosed()) {
+    const Pose X_WG = clutch_.follow(report_.X_WG, settings_.map.toScene(step_D));
+    grasp_ = Grasp::between(settings_.map.toScene(X_DH), X_WG);
+  }
+  clutch_.advance(settings_.period_s, settings_.clutch_s);
+}
+
+void HapticLoop::account(const DeviceSample& sample, const Twist& step) noexcept {
   const bool had_before = has_before_;
   X_DH_before_ = sample.X_DH;
   has_before_ = true;
   if (!had_before) return;
-  const Twist step{rotationVector(sample.X_DH.R * X_before.R.transpose()), Vec3(sample.X_DH.p - X_before.p)};
-  const double work_J = power(F_held_D_, step);
+  const Wrench F_acting_D = actingWrench();
+  const double work_J = power(F_acting_D, step);
   (work_J > 0 ? ledger_.to_hand_J : ledger_.from_hand_J) += std::abs(work_J);
 
   // One encoder step per tick is no real speed: the lower of the raw and the filtered estimate counts.
@@ -139,26 +173,19 @@ void HapticLoop::account(const DeviceSample& sample) noexcept {
   const double w = std::min(step.w.norm() / dt_s, sample.V_DH.w.norm());
   ledger_.dissipated_J += dt_s * (limits_.damping_Ns_per_m * v * v + limits_.damping_Nms_per_rad * w * w);
 
-  // Scene joules: scene wrench times scene displacement. Device dissipation stands for as much there as the
-  // translation it brakes.
-  const WorkspaceMap& map = settings_.map;
-  net_scene_J_ += power(map.toScene(F_held_D_), map.toScene(step));
-  const double dissipated_J = ledger_.dissipated_J * map.scale / map.force_scale;
-  if (!has_stored_) return;
-  ledger_.balance_J = (net_scene_J_ - net_start_J_) - (dissipated_J - dissipated_start_J_) -
-                      (stored_start_J_ - stored_J_) - (actuator_J_ - actuator_start_J_);
-  ledger_.injected_J = std::max(ledger_.injected_J, ledger_.balance_J);
+  // Scene joules: scene wrench times scene displacement.
+  net_scene_J_ += power(settings_.map.toScene(F_acting_D), settings_.map.toScene(step));
 }
 
 void HapticLoop::noteStored(double stored_J, double actuator_J) noexcept {
-  stored_J_ = stored_J;
-  actuator_J_ = actuator_J;
-  if (has_stored_) return;
+  // Device dissipation stands for as much in the scene as the translation it brakes.
+  const double dissipated_J = ledger_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
+  const double balance_J = net_scene_J_ - dissipated_J + stored_J - actuator_J;
+  if (!has_stored_) balance_start_J_ = balance_J;
   has_stored_ = true;
-  stored_start_J_ = stored_J;
-  actuator_start_J_ = actuator_J;
-  net_start_J_ = net_scene_J_;
-  dissipated_start_J_ = ledger_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
+  ledger_.balance_J = balance_J - balance_start_J_;
+  ledger_.least_J = std::min(ledger_.least_J, ledger_.balance_J);
+  ledger_.injected_J = std::max(ledger_.injected_J, ledger_.rise_J());
 }
 
 std::uint64_t HapticLoop::count(Status status) const noexcept {

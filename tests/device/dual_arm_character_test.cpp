@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "vps_device/dual_arm_controller.h"
 #include "vps_device/dual_arm_plant.h"
+#include "vps_device/gains.h"
 #include "vps_device/random.h"
 
 namespace vps {
@@ -95,6 +98,24 @@ TEST(Characterise, TableOneIsMetWhereTheDeviceClaimsIt) {
   EXPECT_NEAR(c.tilted_clearance_m, p.handle_m - 2 * p.link_radius_m, 1e-12);
   EXPECT_LT(c.far_clearance_m, 0);
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, characterise(p).gains_1kHz.k_N_per_m);
+}
+
+// That these are passive and have no limit cycle is measured in coupling_stability_test.cpp.
+TEST(Characterise, GainsShownAreThoseDerivedFromTheArmsOwnNumbers) {
+  const DualArmParameters p;
+  const DualArmCharacter c = characterise(p);
+  const DeviceLimits limits = dualArmLimits(p, 1000, true);
+  EXPECT_EQ(c.gains_1kHz.k_N_per_m, deriveGains(limits, {1000, 1000, 0, 1, 1}).k_N_per_m);
+  EXPECT_EQ(c.gains_4kHz.k_N_per_m,
+            deriveGains(dualArmLimits(p, 4000, true), {4000, 1000, 0, 1, 1}).k_N_per_m);
+  // By hand: b from the arm, B = b / 5, T/2 + the arm's tick + a physics step = 2.5 ms, and 0.8 of what is
+  // left.
+  const double b = limits.damping_Ns_per_m;
+  EXPECT_NEAR(c.gains_1kHz.k_N_per_m, 0.8 * 0.8 * b / 2.5e-3, 1e-9);
+  EXPECT_NEAR(c.gains_1kHz.b_Ns_per_m, 0.2 * b, 1e-12);
+  // At 4 kHz friction and encoders bound it.
+  EXPECT_NEAR(c.gains_4kHz.k_N_per_m,
+              std::min(0.8 * 0.8 * b / 1.375e-3, 0.8 * 2 * limits.coulomb_N / limits.resolution_m), 1e-9);
 }
 
 TEST(Characterise, ArmsOwnFiguresFollowFromItsReach) {

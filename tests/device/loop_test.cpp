@@ -157,14 +157,13 @@ TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
   const double k = loop.settings().gains.k_N_per_m;
   loop.grasp(Pose{});
   port.part.write(partAt(Pose{}));
-  loop.noteStored(0, 0);
   const double travel_m = 5e-3;
   const int n = 500;
   for (int i = 0; i <= 2 * n; ++i) {  // out and back
     const double x = travel_m * (i <= n ? i : 2 * n - i) / n;
     device.sample.X_DH.p.x() = x;
-    loop.noteStored(0.5 * k * x * x, 0);
     loop.tick();
+    loop.noteStored(0.5 * k * x * x, 0);
   }
   // Held force: each of n steps of h errs by k h^2 / 2, against the hand on the way out and to it on the way
   // back.
@@ -172,6 +171,54 @@ TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
   EXPECT_NEAR(loop.ledger().from_hand_J, stored_J - hold_J, 1e-9);
   EXPECT_NEAR(loop.ledger().to_hand_J, stored_J + hold_J, 1e-9);
   EXPECT_NEAR(loop.ledger().injected_J, 2 * hold_J, 1e-9);
+}
+
+// Leads the handle to x_m in one tick, with so much stored in the scene.
+void lead(HapticLoop& loop, Puppet& device, double x_m, double stored_J) {
+  device.sample.X_DH.p.x() = x_m;
+  loop.tick();
+  loop.noteStored(stored_J, 0);
+}
+
+TEST(HapticLoop, WhatWasDissipatedEarlyDoesNotPayForWhatIsMadeLater) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, quick());
+  const double k = loop.settings().gains.k_N_per_m, x_m = 1e-3;
+  loop.grasp(Pose{});
+  lead(loop, device, 0, 0);
+  port.part.write(partAt(Pose::translation(Vec3(x_m, 0, 0))));  // pulls by k x
+  lead(loop, device, 0, 0);
+  // The hand is led against the pull and nothing is stored: k x times 1 mm is gone for good.
+  lead(loop, device, -x_m, 0);
+  EXPECT_NEAR(loop.ledger().balance_J, -k * x_m * x_m, 1e-12);
+  EXPECT_EQ(loop.ledger().injected_J, 0);
+  // Now half as much comes from nowhere. The greatest balance over time is still the zero of the beginning.
+  lead(loop, device, -x_m, 0.5 * k * x_m * x_m);
+  EXPECT_LT(loop.ledger().balance_J, 0);
+  EXPECT_NEAR(loop.ledger().injected_J, 0.5 * k * x_m * x_m, 1e-12);
+}
+
+TEST(HapticLoop, LedgerTakesTheForceThatActsAtTheDeviceNotTheOneJustWritten) {
+  for (const double ticks : {0.0, 1.0, 2.25}) {
+    Puppet device;
+    device.known.delay_s = ticks * 1e-3;
+    CouplingPort port;
+    HapticLoop loop(device, port, quick());
+    const double k = loop.settings().gains.k_N_per_m, v_m = 1e-4;
+    loop.grasp(Pose{});
+    port.part.write(partAt(Pose{}));
+    const int n = 50;
+    for (int i = 0; i <= n; ++i) lead(loop, device, i * v_m, 0);
+    // Step i ends at i v and feels k v (i - 1 - ticks), but none from before the start: a part of a tick
+    // there.
+    double work_J = 0;
+    for (int i = 1; i <= n; ++i) {
+      const double late = ticks - std::floor(ticks), newer = i - 1 - std::floor(ticks);
+      work_J += k * v_m * v_m * ((1 - late) * std::max(0.0, newer) + late * std::max(0.0, newer - 1));
+    }
+    EXPECT_NEAR(loop.ledger().from_hand_J, work_J, 1e-12) << ticks;
+  }
 }
 
 TEST(HapticLoop, TickNeverTouchesTheHeap) {

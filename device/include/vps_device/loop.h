@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "vps/coupling_law.h"
+#include "vps_device/clutch.h"
 #include "vps_device/device.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/safety.h"
@@ -41,14 +42,23 @@ struct Grasp {
   [[nodiscard]] Pose toHandle(const Pose& X_WG) const noexcept;
 };
 
-/// Energy at the hand [J]. The device's work on the hand is held force times handle displacement.
+/// Energy at the hand [J]. The device's work on the hand is the force that acts, so late as the device's
+/// limits say and held for a period, times handle displacement.
+///
+/// The balance is net work - dissipation - fall in stored energy - actuator work. Where device, coupling and
+/// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
+/// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
+/// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
 struct HandLedger {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
   double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
-  double injected_J =
-      0;  ///< greatest over time of: net work - dissipation - fall in stored energy - actuator work
-  double balance_J = 0;  ///< the same, now
+  double balance_J = 0;     ///< when stored energy was last noted, in scene joules; 0 the first time
+  double least_J = 0;       ///< the least balance so far
+  double injected_J = 0;    ///< greatest rise of the balance above its least value before
+
+  /// What it has risen by now.
+  [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
 };
 
 struct LoopSettings {
@@ -60,8 +70,9 @@ struct LoopSettings {
       false;  ///< advance the part by its velocity since its time stamp, up to hold_limit_s
   double hold_limit_s = 2e-3;
   double injected_bound_J =
-      1e-3;  ///< above this the passivity controller adds damping. assumed: 5 N over 0.2 mm
+      1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
   bool has_passivity_controller = true;  ///< works once noteStored() is called
+  double clutch_s = 0.1;                 ///< hold and let go take so long. assumed: a startle takes longer
 };
 
 /// What one tick did.
@@ -85,6 +96,18 @@ class HapticLoop {
   void grasp(const Pose& X_WG) noexcept;
   /// Lets go: the proxy stays published, uncoupled.
   void release() noexcept;
+
+  /// Opens the clutch over clutch_s: the hand comes free while the proxy stands and holds the part. What a
+  /// device smaller than the scene needs to reach farther (a ratchet), and what comes before release() where
+  /// force would jump.
+  void disengage() noexcept { clutch_.open(); }
+  /// Closes it over clutch_s: the hand has what it held again, from wherever it now is.
+  void engage() noexcept { clutch_.close(); }
+  [[nodiscard]] const Clutch& clutch() const noexcept { return clutch_; }
+  /// From one part to another: takes hold of one whose grasp frame is at X_WG, as grasp(), with the clutch
+  /// open, and closes it. Nothing jumps if the clutch was open before and nobody else holds that part; the
+  /// springs to the part before give their energy to nobody.
+  void handOver(const Pose& X_WG) noexcept;
   /// Clears a safety fault and, if a part is held, re-grasps it where the physics side last saw it.
   void rearm() noexcept;
 
@@ -92,8 +115,8 @@ class HapticLoop {
   const TickReport& tick() noexcept;
 
   /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
-  /// put in by others than the hand so far. Call once per physics step; from the loop's thread. scale-free:
-  /// in scene joules.
+  /// put in by others than the hand so far, both in scene joules. Call once a physics step, from the loop's
+  /// thread, with the handle where the last tick read it: there the balance is drawn.
   void noteStored(double stored_J, double actuator_J) noexcept;
 
   [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
@@ -113,9 +136,13 @@ class HapticLoop {
  private:
   [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
-  void account(const DeviceSample& sample) noexcept;
+  [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
+  void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
+  void account(const DeviceSample& sample, const Twist& step_D) noexcept;
+  [[nodiscard]] Wrench actingWrench() const noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
+  static constexpr std::size_t kMostDelay = 14;  ///< ticks of the device's own that the ledger can follow
 
   Device* device_;
   CouplingPort* port_;
@@ -124,14 +151,15 @@ class HapticLoop {
   SafetyGuard guard_;
   double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;  // b - K T/2 - B, at the device
   Grasp grasp_;
+  Clutch clutch_;
   bool is_holding_ = false;
   TickReport report_;
   HandLedger ledger_;
   Pose X_DH_before_;
   bool has_before_ = false;
-  Wrench F_held_D_;
-  double net_scene_J_ = 0, net_start_J_ = 0, dissipated_start_J_ = 0;  // scene joules
-  double stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0, actuator_start_J_ = 0;
+  std::array<Wrench, kMostDelay + 2> F_written_D_{};  ///< newest first
+  double delay_ticks_ = 0;                            ///< the device's own
+  double net_scene_J_ = 0, balance_start_J_ = 0;      // scene joules
   bool has_stored_ = false;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulated arm, our loop and a Bullet world with VPS contact, in lockstep: a hand leads a part.
+#pragma once
+
+#include "dynamics/world.h"
+#include "vps_bullet/coupling.h"
+#include "vps_device/gains.h"
+#include "vps_device/loop.h"
+#include "vps_device/simulated_dual_arm.h"
+
+namespace vps::bench {
+
+struct RigSettings {
+  dynamics::SceneSettings scene;
+  SimulatedDualArmSettings device = idealDualArm();
+  bool has_gravity = false;
+};
+
+/// The real arm: encoders, structure, delay.
+inline SimulatedDualArmSettings realDualArm() {
+  return {};
+}
+
+/// Haptics and physics at 1 kHz, gains as derived for the device. The hand leads the part's centre of mass.
+class HapticRig {
+ public:
+  explicit HapticRig(const RigSettings& settings);
+
+  dynamics::World& world() { return world_; }
+  /// Takes a part, where it is and at rest.
+  void take(const dynamics::Placed& held);
+  /// One millisecond: the hand draws the grasp frame, with the stiffness of a firm grip, to a place and to so
+  /// much of a turn from where it was taken.
+  void lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG);
+
+  [[nodiscard]] const SimulatedDualArm& arm() const { return arm_; }
+  [[nodiscard]] const HapticLoop& loop() const { return loop_; }
+  [[nodiscard]] const CouplingGains& gains() const { return loop_.settings().gains; }
+  /// Where the hand truly holds the grasp frame, and the part's.
+  [[nodiscard]] Pose trueGrasp() const { return loop_.toGrasp(arm_.truePose()); }
+  [[nodiscard]] const CouplingState& part() const { return part_; }
+  /// On the hand, by the motors, less the handle's weight: in W, which is D here.
+  [[nodiscard]] const Wrench& felt() const { return arm_.appliedWrench(); }
+
+  static constexpr double kStep_s = dynamics::World::kStep_s;
+
+ private:
+  dynamics::World world_;
+  SimulatedDualArm arm_;
+  CouplingPort port_;
+  HapticLoop loop_;
+  VpsCoupling* coupling_ = nullptr;  // the world's
+  CouplingState part_;
+  Mat3 R_WG_taken_ = Mat3::Identity();
+};
+
+}  // namespace vps::bench

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lossy_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gravity.h"
+#include "vps_device/dual_arm.h"
+#include "vps_device/dual_arm_structure.h"
+
+namespace vps::bench {
+
+DeviceSample LossyDevice::read() noexcept {
+  const DeviceSample sample = inner_->read();
+  if (!has_sample_ || random_.uniform() >= line_.lost || sample.status != Status::Ok) arrived_ = sample;
+  has_sample_ = true;
+  return arrived_;
+}
+
+void LossyDevice::write(const Wrench& F) noexcept {
+  std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
+  sent_[0] = F;
+  if (random_.uniform() >= line_.lost) held_ = sent_[static_cast<std::size_t>(line_.delay_ticks)];
+  inner_->write(held_);
+}
+
+DeviceLimits LossyDevice::limits() const noexcept {
+  DeviceLimits limits = inner_->limits();
+  limits.delay_s += line_.delay_ticks / limits.rate_hz;
+  return limits;
+}
+
+void TrueLedger::draw(double now_J) {
+  balance_J = now_J;
+  least_J = std::min(least_J, balance_J);
+  injected_J = std::max(injected_J, balance_J - least_J);
+}
+
+LossyHand::LossyHand(const Scene& scene, const Line& line)
+    : scene_(scene),
+      hand_(simulatedHand(scene)),
+      arm_(dynamic_cast<SimulatedDualArm&>(hand_->device())),
+      device_(arm_, line),
+      limits_(arm_.limits()),
+      ticks_per_step_(std::lround(scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz)) {}
+
+void LossyHand::begin(const OperatorTask& task, std::size_t step, double now_s) {
+  hand_->begin(task, step, now_s);
+  const Part& part = scene_.parts[scene_.steps[step].part].part;
+  body_ = makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3);
+  X_PG_ = task.X_PG;
+  tick_ = 0;
+  is_holding_ = is_new_ = true;
+}
+
+void LossyHand::goBack(const Pose& X_DH) {
+  hand_->goBack(X_DH);
+  is_holding_ = false;  // what the springs hold then goes to nobody
+}
+
+double LossyHand::stored_J(const HeldPart& part, const HapticLoop& loop) const {
+  const Pose X_WB = part.X_WP * body_.X_PB;
+  const Vec3 v = part.V_WP.v + part.V_WP.w.cross(X_WB.p - part.X_WP.p),
+             w_B = X_WB.R.transpose() * part.V_WP.w;
+  const Pose X_WG = part.X_WP * X_PG_, X_hand = loop.toGrasp(atTheMotors());
+  const CouplingGains& gains = loop.settings().gains;
+  // Beyond its limit a spring's force is constant.
+  const auto spring = [](double k, double stretch, double most) {
+    const double elastic = std::min(stretch, most / k);
+    return 0.5 * k * elastic * elastic + most * (stretch - elastic);
+  };
+  return 0.5 * body_.mass_kg * v.squaredNorm() + 0.5 * w_B.cwiseAbs2().dot(body_.inertia_kg_m2) -
+         body_.mass_kg * scene_.gravity_W.dot(X_WB.p) + arm_.structure_J() +
+         spring(gains.k_N_per_m, (X_hand.p - X_WG.p).norm(), gains.max_force_N) +
+         spring(gains.k_Nm_per_rad, rotationVector(X_hand.R * X_WG.R.transpose()).norm(),
+                gains.max_torque_Nm);
+}
+
+// Where the encoders see the handle: the arms bend between them by what the motors give beyond the handle's
+// weight.
+Pose LossyHand::atTheMotors() const {
+  const DualArmParameters& p = arm_.plant().settings().arms;
+  const Pose& X_DH = arm_.truePose();
+  DualArmJoints joints;
+  JointVector carry;
+  Pose X_seen;
+  if (handleJoints(p, X_DH, joints) != Status::Ok ||
+      motorEfforts(p, X_DH, -handleWeight(p), carry) != Status::Ok)
+    return X_DH;
+  const JointVector bend =
+      (arm_.plant().efforts() - carry).cwiseQuotient(structureStiffness(p, toVector(joints)));
+  return handlePose(p, fromVector(toVector(joints) + bend), X_seen) == Status::Ok ? X_seen : X_DH;
+}
+
+// Of the motors on the hand now, less the handle's weight, in D.
+Wrench LossyHand::acting() const {
+  const DualArmParameters& p = arm_.plant().settings().arms;
+  Wrench F;
+  if (handleWrench(p, arm_.truePose(), arm_.plant().efforts(), F) != Status::Ok) return {};
+  F += handleWeight(p);
+  return F;
+}
+
+void LossyHand::step(const HeldPart& part, const HapticLoop& loop, double dt_s) {
+  const WorkspaceMap& map = loop.settings().map;
+  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part is of this instant
+    const double now_J = work_J_ - dissipated_J_ * map.scale / map.force_scale + stored_J(part, loop);
+    if (is_new_) start_J_ = now_J - ledger_.balance_J;
+    is_new_ = false;
+    ledger_.draw(now_J - start_J_);
+  }
+  constexpr int kSubSteps = 4;
+  for (int i = 0; i < kSubSteps; ++i) {
+    const Pose before = arm_.truePose();
+    hand_->step(part, loop, dt_s / kSubSteps);
+    const Twist way{rotationVector(arm_.truePose().R * before.R.transpose()),
+                    Vec3(arm_.truePose().p - before.p)};
+    work_J_ += power(map.toScene(acting()), map.toScene(way));
+    dissipated_J_ +=
+        (limits_.damping_Ns_per_m * way.v.squaredNorm() + limits_.damping_Nms_per_rad * way.w.squaredNorm()) /
+        (dt_s / kSubSteps);
+  }
+}
+
+}  // namespace vps::bench

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps_bench_haptics: fills in the table of what device and coupling must reach. Exits 1 where a bar is
+// missed, 2 for an option or a row it does not know.
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "rows.h"
+
+namespace {
+
+using vps::bench::allHapticCases;
+using vps::bench::HapticCase;
+
+int usage() {
+  std::printf("usage: vps_bench_haptics [--rows=a,b] [--short]\nrows:");
+  for (const HapticCase& c : allHapticCases()) std::printf(" %s", c.key);
+  std::printf("\n");
+  return 2;
+}
+
+bool isKnown(const std::string& key) {
+  return std::any_of(allHapticCases().begin(), allHapticCases().end(),
+                     [&](const HapticCase& c) { return key == c.key; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  vps::bench::HapticOptions options;
+  std::vector<std::string> wanted;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    if (arg == "--short") {
+      options.is_short = true;
+    } else if (arg.rfind("--rows=", 0) == 0) {
+      std::istringstream keys(arg.substr(7));
+      for (std::string key; std::getline(keys, key, ',');) wanted.push_back(key);
+    } else {
+      return usage();
+    }
+  }
+  if (!std::all_of(wanted.begin(), wanted.end(), isKnown)) return usage();
+  vps::bench::Table table;
+  for (const HapticCase& c : allHapticCases())
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), c.key) != wanted.end())
+      c.run(options, table);
+  return table.print() == 0 ? 0 : 1;
+}

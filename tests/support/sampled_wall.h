@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A sampled wall of one direction: what energy it can make, by formula and as our own loop renders it, and
+// the device of one mass on which it begins to ring.
+//
+//   wall:   F = -K x - B (x - x_before) / T, computed once a period T, acts t_d later, held for a period
+//   device: mass m, damping b, pushed by a constant force
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "vps_device/loop.h"
+
+namespace vps::test {
+
+struct SampledWall {
+  double K_N_per_m = 1000, B_Ns_per_m = 0, period_s = 1e-3, delay_s = 0;
+};
+
+/// K (T/2 + t_d) + |B| [N s/m]: the damping below which DESIGN section 7 calls the wall active.
+inline double passiveDampingFormula(const SampledWall& w) {
+  return w.K_N_per_m * (w.period_s / 2 + w.delay_s) + std::abs(w.B_Ns_per_m);
+}
+
+/// K = (b + B) / (T/2 + t_d): the stiffness that rings on a device of damping b.
+inline double ringingFormula(const SampledWall& w, double damping_Ns_per_m) {
+  return (damping_Ns_per_m + w.B_Ns_per_m) / (w.period_s / 2 + w.delay_s);
+}
+
+/// The least device damping [N s/m] that takes up all energy the wall can make of a motion whose samples are
+/// a sine of `angle_rad` = w T a period, 0 < angle_rad <= pi. Exact.
+///   whole ticks of delay d:  b = T/2 G,  G = Re{(1 - e^-jwT) H e^-jwTd} / (1 - cos wT),
+///   H = K + B (1 - e^-jwT) / T                                             [Colgate and Schenkel 1997]
+/// since with one force held from sample to sample the straight path between them dissipates least. Where the
+/// force changes a share phi into the period, a hand that is quicker under the lesser force wins
+/// phi (1 - phi) T |H|^2 / (4 b) more for each unit step, which makes b the root of a quadratic.
+inline double passiveDampingAt(const SampledWall& w, double angle_rad) {
+  using Complex = std::complex<double>;
+  const double ticks = w.delay_s / w.period_s, whole = std::floor(ticks + 1e-9);
+  const double phi = std::max(0.0, ticks - whole);
+  const Complex lag = std::polar(1.0, -angle_rad);
+  const Complex H = w.K_N_per_m + w.B_Ns_per_m / w.period_s * (1.0 - lag);
+  const Complex held = std::polar(1.0, -angle_rad * whole) * (1 - phi + phi * lag);
+  const double G = ((1.0 - lag) * H * held).real() / (1 - std::cos(angle_rad));
+  if (phi < 1e-9) return w.period_s / 2 * G;
+  return w.period_s / 2 * (G / 2 + std::sqrt(G * G / 4 + phi * (1 - phi) * std::norm(H)));
+}
+
+/// A frequency [rad a sample] of kSineSamples, whole periods of which fit: index 1 to kSineSamples / 2.
+inline constexpr int kSineSamples = 400;
+inline double sineAngle_rad(int index) {
+  return 2 * std::numbers::pi * index / kSineSamples;
+}
+
+/// The same over all frequencies. In steps of pi/200: the greatest of sines of up to six times the angle is
+/// missed by (6 pi/400)^2 / 2 = 0.1%.
+inline double passiveDamping(const SampledWall& w) {
+  double most = 0;
+  for (int i = 1; i <= kSineSamples / 2; ++i) most = std::max(most, passiveDampingAt(w, sineAngle_rad(i)));
+  return most;
+}
+
+/// A part that stands still at the scene's origin, on a port.
+inline CouplingState stillPart() {
+  return {Pose{}, Twist{}, 0, true};
+}
+
+/// The loop with this wall's gains and without limits: what is tested is the law as sampled.
+inline LoopSettings wallLoop(const SampledWall& w) {
+  LoopSettings settings;
+  settings.period_s = w.period_s;
+  settings.gains.k_N_per_m = w.K_N_per_m;
+  settings.gains.b_Ns_per_m = w.B_Ns_per_m;
+  settings.gains.max_force_N = 1e3;
+  settings.safety.force_N = settings.safety.jump_m = 1e9;
+  settings.safety.slew_N_per_s = settings.safety.slew_Nm_per_s = 1e12;
+  settings.has_passivity_controller = false;
+  return settings;
+}
+
+/// A handle on a rail along x: says where it is led or where mass, damping and force bring it, and keeps the
+/// wrenches that were written.
+class RailDevice final : public Device {
+ public:
+  explicit RailDevice(double period_s) : period_s_(period_s) {}
+
+  DeviceSample read() noexcept override {
+    DeviceSample sample;
+    sample.X_DH.p.x() = x_m;
+    sample.V_DH.v.x() = (x_m - x_read_m_) / period_s_;
+    sample.time_s = time_s_;
+    x_read_m_ = x_m;
+    time_s_ += period_s_;
+    return sample;
+  }
+  void write(const Wrench& F) noexcept override {
+    std::rotate(written_N_.begin(), written_N_.end() - 1, written_N_.end());
+    written_N_[0] = F.f.x();
+  }
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return {}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "rail"; }
+
+  /// Force of the wall `ticks` (whole, below 16) before the last one.
+  [[nodiscard]] double force_N(int ticks) const { return written_N_[static_cast<std::size_t>(ticks)]; }
+
+  /// One period of m x'' = push - b x' + F, F held: exact.
+  void move(double mass_kg, double damping_Ns_per_m, double force_N) {
+    const double decay = std::exp(-damping_Ns_per_m * period_s_ / mass_kg);
+    const double v_end_m_s = force_N / damping_Ns_per_m;
+    x_m += v_end_m_s * period_s_ + (v_m_s - v_end_m_s) * mass_kg / damping_Ns_per_m * (1 - decay);
+    v_m_s = v_end_m_s + (v_m_s - v_end_m_s) * decay;
+  }
+
+  double x_m = 0, v_m_s = 0;
+
+ private:
+  double period_s_, x_read_m_ = 0, time_s_ = 0;
+  std::array<double, 16> written_N_{};
+};
+
+/// The same as passiveDampingAt(), for whole ticks of delay, measured: a hand leads the handle along a sine
+/// while our loop renders the wall; the wall's work on it over what a damper of 1 N s/m would take.
+inline double measuredPassiveDamping(const SampledWall& w, int index) {
+  RailDevice device(w.period_s);
+  CouplingPort port;
+  port.part.write(stillPart());
+  HapticLoop loop(device, port, wallLoop(w));
+  loop.grasp(Pose{});  // at x = 0, where the part is
+  const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
+  const double reach_m = 1e-3;
+  const auto led_m = [&](int k) { return reach_m * std::sin(sineAngle_rad(index) * k + 0.3); };
+  double work_J = 0, damper_J = 0;
+  for (int k = -20; k < kSineSamples; ++k) {
+    device.x_m = led_m(k);
+    loop.tick();
+    if (k < 0) continue;
+    const double step_m = led_m(k + 1) - led_m(k);
+    work_J += device.force_N(delay) * step_m;
+    damper_J += step_m * step_m / w.period_s;
+  }
+  return work_J / damper_J;
+}
+
+/// Does a handle, pushed on the wall by a steady force and moved off its rest a little, swing more and more?
+/// Our loop renders the wall; whole ticks of delay.
+inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m) {
+  RailDevice device(w.period_s);
+  CouplingPort port;
+  port.part.write(stillPart());
+  HapticLoop loop(device, port, wallLoop(w));
+  loop.grasp(Pose{});
+  const double push_N = 5, rest_m = push_N / w.K_N_per_m;
+  device.x_m = 0.9 * rest_m;
+  // Near the edge the swing grows or fades by 2 pi (share off the edge) zeta a turn: twice thirty turns tell.
+  const double turn_s = 2 * std::numbers::pi * std::sqrt(mass_kg / w.K_N_per_m);
+  const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
+  const int ticks = static_cast<int>(30 * turn_s / w.period_s);
+  double swing_m[3] = {};
+  for (int part = 0; part < 3; ++part)
+    for (int k = 0; k < ticks; ++k) {
+      loop.tick();
+      device.move(mass_kg, damping_Ns_per_m, push_N + device.force_N(delay));
+      swing_m[part] = std::max(swing_m[part], std::abs(device.x_m - rest_m));
+      if (swing_m[part] > 10 * rest_m) return true;
+    }
+  return swing_m[2] > swing_m[1];
+}
+
+/// The stiffness [N/m] at which it begins, by bisection to 0.2%, between a quarter and four times the
+/// formula.
+inline double measuredRinging(SampledWall w, double mass_kg, double damping_Ns_per_m) {
+  double low = ringingFormula(w, damping_Ns_per_m) / 4, high = 16 * low;
+  while (high / low > 1.002) {
+    w.K_N_per_m = std::sqrt(low * high);
+    (rings(w, mass_kg, damping_Ns_per_m) ? high : low) = w.K_N_per_m;
+  }
+  return std::sqrt(low * high);
+}
+
+}  // namespace vps::test
