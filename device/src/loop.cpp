@@ -48,7 +48,7 @@ HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& s
       std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
-  if (!areUsable(gains)) guard_.refuse(SafetyFault::BadGains);
+  if (!areUsable(gains)) refuse(SafetyFault::BadGains);
 }
 
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
@@ -64,15 +64,45 @@ void HapticLoop::release() noexcept {
 }
 
 void HapticLoop::rearm() noexcept {
+  const bool was_faulted = guard_.state().fault != SafetyFault::None;
   device_->rearm();
   guard_.rearm();
-  if (!areUsable(settings_.gains)) guard_.refuse(SafetyFault::BadGains);
+  if (was_faulted && settings_.events != nullptr)
+    settings_.events->push({report_.time_s, DeviceEventKind::Rearmed, 0});
+  if (!areUsable(settings_.gains)) refuse(SafetyFault::BadGains);
   has_before_ = false;
   const CouplingState& part = port_->part.read();
   if (is_holding_ && part.X_W.isFinite()) grasp(part.X_W);
 }
 
-const TickReport& HapticLoop::tick() noexcept {
+void HapticLoop::refuse(SafetyFault fault) noexcept {
+  guard_.refuse(fault);
+  tellFault();
+}
+
+void HapticLoop::tellFault() noexcept {
+  const SafetyState& state = guard_.state();
+  if (state.faults == told_faults_) return;
+  told_faults_ = state.faults;
+  if (settings_.events != nullptr)
+    settings_.events->push({report_.time_s, eventOf(state.fault), snapshot_age_s_});
+}
+
+// By ticks, since physics and the device need not share a clock. A time that is not a number is nothing new.
+void HapticLoop::watchPhysics(double dt_s) noexcept {
+  const CouplingState& part = port_->part.read();
+  const bool is_new = part.time_s < snapshot_time_s_ || part.time_s > snapshot_time_s_;
+  if (is_new) snapshot_time_s_ = part.time_s;
+  snapshot_age_s_ = is_new ? 0 : snapshot_age_s_ + dt_s;
+  if (settings_.physics_limit_s > 0 && is_holding_ && part.is_coupled &&
+      snapshot_age_s_ > settings_.physics_limit_s)
+    refuse(SafetyFault::PhysicsStalled);
+}
+
+const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
+  const double period_s = settings_.period_s;
+  const double dt_s = wished_dt_s > period_s ? std::min(wished_dt_s, 4 * period_s) : period_s;
+  watchPhysics(dt_s);
   const DeviceSample sample = device_->read();
   const bool is_good = sample.status == Status::Ok && sample.X_DH.isFinite() && sample.V_DH.isFinite();
   CouplingState proxy{report_.X_WG, Twist{}, sample.time_s, is_holding_};
@@ -83,7 +113,7 @@ const TickReport& HapticLoop::tick() noexcept {
     wanted_D = settings_.map.toDevice(-coupling(proxy)) + passivityDamping(sample.V_DH);
     account(sample);
   }
-  report_.F_hand_D = guard_.guard(sample, wanted_D, settings_.period_s);
+  report_.F_hand_D = guard_.guard(sample, wanted_D, dt_s);
   device_->write(report_.F_hand_D);
   F_held_D_ = report_.F_hand_D;
 
@@ -96,6 +126,7 @@ const TickReport& HapticLoop::tick() noexcept {
   }
   port_->proxy.write(proxy);
   report_.time_s = sample.time_s;
+  tellFault();
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
   report_.V_WG = proxy.V_W;

@@ -8,6 +8,7 @@
 
 #include "vps/coupling_law.h"
 #include "vps_device/device.h"
+#include "vps_device/device_events.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/safety.h"
 
@@ -62,6 +63,10 @@ struct LoopSettings {
   double injected_bound_J =
       1e-3;  ///< above this the passivity controller adds damping. assumed: 5 N over 0.2 mm
   bool has_passivity_controller = true;  ///< works once noteStored() is called
+  /// A part in hand whose snapshot (by its time stamp) stays the same for longer is a fault. 0: never, as in
+  /// lockstep, where physics cannot fall behind. Real time has 0.1 s: see real_time_loop.h.
+  double physics_limit_s = 0;
+  DeviceEventQueue* events = nullptr;  ///< told of safety's faults, by the loop's thread; may be null
 };
 
 /// What one tick did.
@@ -89,7 +94,13 @@ class HapticLoop {
   void rearm() noexcept;
 
   /// One tick. Status of the device, or Fault while safety holds the force at zero.
-  const TickReport& tick() noexcept;
+  const TickReport& tick() noexcept { return tick(settings_.period_s); }
+  /// The same, dt_s after the last: a driver that missed periods says so. Counts as one to four periods, so
+  /// that no pause ever lets the force leap.
+  const TickReport& tick(double dt_s) noexcept;
+
+  /// Latches a fault that a driver has found; recovery is rearm().
+  void refuse(SafetyFault fault) noexcept;
 
   /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
   /// put in by others than the hand so far. Call once per physics step; from the loop's thread. scale-free:
@@ -104,6 +115,8 @@ class HapticLoop {
   /// Ticks that ended with each Status, indexed by its value.
   [[nodiscard]] std::uint64_t count(Status status) const noexcept;
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
+  /// How long the part's snapshot has been the same, by ticks.
+  [[nodiscard]] double snapshotAge_s() const noexcept { return snapshot_age_s_; }
 
   /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D: what
   /// joins a VirtualOperator to a SimulatedDualArm.
@@ -114,6 +127,8 @@ class HapticLoop {
   [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   void account(const DeviceSample& sample) noexcept;
+  void watchPhysics(double dt_s) noexcept;
+  void tellFault() noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
 
@@ -133,6 +148,8 @@ class HapticLoop {
   double net_scene_J_ = 0, net_start_J_ = 0, dissipated_start_J_ = 0;  // scene joules
   double stored_J_ = 0, stored_start_J_ = 0, actuator_J_ = 0, actuator_start_J_ = 0;
   bool has_stored_ = false;
+  double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
+  std::uint64_t told_faults_ = 0;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};
 };
