@@ -51,6 +51,11 @@ RealTimeClock& monotonicClock() noexcept {
   return clock;
 }
 
+void leaveRealTime() noexcept {
+  const sched_param none{};
+  pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+}
+
 RealTimeReport askForRealTime(int priority, bool locks_memory) {
   RealTimeReport report;
   if (priority > 0) {

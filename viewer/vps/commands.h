@@ -37,6 +37,7 @@ struct AssembleArguments {
   FidelityArguments fidelity;
   bool has_pictures = true;
   bool stops_at_failure = false;
+  bool is_real_time = false;
 };
 int runAssemble(const AssembleArguments& given);
 

@@ -57,5 +57,7 @@ class PeriodicThread {
 /// Asks the system for the calling thread's priority and the program's memory; words for what it refuses.
 /// Never throws but for want of memory.
 RealTimeReport askForRealTime(int priority, bool locks_memory);
+/// The calling thread goes on as any other.
+void leaveRealTime() noexcept;
 
 }  // namespace vps
