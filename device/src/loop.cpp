@@ -110,7 +110,7 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   if (is_good) {
     proxy.X_W = toGrasp(sample.X_DH);
     proxy.V_W = settings_.map.toScene(sample.V_DH);
-    wanted_D = settings_.map.toDevice(-coupling(proxy)) + passivityDamping(sample.V_DH);
+    wanted_D = settings_.map.toDevice(-coupling(proxy, dt_s)) + passivityDamping(sample.V_DH);
     account(sample);
   }
   report_.F_hand_D = guard_.guard(sample, wanted_D, dt_s);
@@ -136,10 +136,13 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   return report_;
 }
 
-Wrench HapticLoop::coupling(const CouplingState& proxy) noexcept {
+Wrench HapticLoop::coupling(const CouplingState& proxy, double dt_s) noexcept {
   // Read also when not holding, so that the port never hands out a part of long ago.
   const CouplingState& part = port_->part.read();
   if (!is_holding_ || !part.is_coupled) return {};
+  if (settings_.local != nullptr)
+    return couplingWrench(settings_.gains, proxy,
+                          settings_.local->follow(settings_.gains, proxy, part, dt_s));
   if (!settings_.extrapolates_part) return couplingWrench(settings_.gains, proxy, part);
   const double age_s = std::clamp(proxy.time_s - part.time_s, 0.0, settings_.hold_limit_s);
   CouplingState ahead = part;

@@ -10,6 +10,7 @@
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/hand_force.h"
+#include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
 
 namespace vps {
@@ -66,6 +67,7 @@ struct LoopSettings {
   /// A part in hand whose snapshot (by its time stamp) stays the same for longer is a fault. 0: never, as in
   /// lockstep, where physics cannot fall behind. Real time has 0.1 s: see real_time_loop.h.
   double physics_limit_s = 0;
+  LocalContact* local = nullptr;       ///< tells where the part is between snapshots; null: where they say
   DeviceEventQueue* events = nullptr;  ///< told of safety's faults, by the loop's thread; may be null
 };
 
@@ -124,7 +126,7 @@ class HapticLoop {
   [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
 
  private:
-  [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
+  [[nodiscard]] Wrench coupling(const CouplingState& proxy, double dt_s) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   void account(const DeviceSample& sample) noexcept;
   void watchPhysics(double dt_s) noexcept;
