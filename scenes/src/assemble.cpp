@@ -86,9 +86,12 @@ class Procedure {
         roles_(scene.parts.size(), BodyRole::Waiting) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i) poses_[i] = scene.parts[i].X_WP;
     const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
-    side_ = options.is_real_time ? realTimeSide(hand, port_, settings, dt_s_, tell)
-                                 : lockstepSide(hand, log != nullptr ? tapped_ : hand.device(), port_,
-                                                settings, ticksPerStep(scene), tell);
+    LoopSettings loop_settings = settings;
+    if (options.has_local_contact) loop_settings.local = &local_;
+    Device& device = log != nullptr ? tapped_ : hand.device();
+    side_ = options.is_real_time
+                ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
+                : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
   }
 
   AssembleResult run();
@@ -104,6 +107,7 @@ class Procedure {
   void mountFixed();
   void runStep(std::size_t index);
   void take(const SceneStep& step);
+  void takeLocally(const ScenePart& scene_part);
   void letGo();
   void rest(StepResult& result, const SceneStep& step);
   void judgeStep(StepResult& result, const SceneStep& step);
@@ -133,6 +137,7 @@ class Procedure {
   DeafLog deaf_;
   TappedDevice tapped_;
   CouplingPort port_;
+  LocalContact local_;
   std::unique_ptr<HapticSide> side_;
   ExactFit fit_;
   std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
@@ -183,6 +188,8 @@ AssembleResult Procedure::run() {
     ++result_.modelled.voxmaps;
     ++result_.modelled.pointshells;
   }
+  const LocalContact::Report& local = local_.report();
+  result_.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
   result_.simulated_s = time_s_;
   result_.run_wall_s = wallSeconds() - begun_s;
   return std::move(result_);
@@ -221,6 +228,22 @@ void Procedure::take(const SceneStep& step) {
   simulation_.grasp(step.part, held_.X_PG, side_->loop().settings().gains);
   side_->loop().grasp(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
+  if (options_.has_local_contact) takeLocally(scene_part);
+}
+
+void Procedure::takeLocally(const ScenePart& scene_part) {
+  local_.letGo();
+  if (!simulation_.hasFixed()) return;
+  LocalPart part;
+  part.map = simulation_.fixedMap();
+  part.shell = scene_part.part.shell.get();
+  part.X_PG = held_.X_PG;
+  part.mass_kg = simulation_.mass(held_.part);
+  part.inertia_G = simulation_.inertia(held_.part);
+  part.gravity_W = scene_.gravity_W;
+  part.friction = simulation_.friction(held_.part);
+  part.k_N_per_m3 = scene_part.part.material.stiffness_N_per_m3;
+  local_.take(part);
 }
 
 void Procedure::letGo() {
@@ -228,6 +251,7 @@ void Procedure::letGo() {
   stored_before_J_ += simulation_.mechanicalEnergy() - held_.held_energy_J;
   simulation_.release();
   side_->loop().release();
+  local_.letGo();
   is_holding_ = false;
   roles_[held_.part] = BodyRole::Released;
 }
@@ -486,9 +510,11 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   if (scene.steps.empty())
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
-  if (options.is_real_time && !options.record.empty())
-    throw LoadError(options.record, "",
-                    "a run in real time cannot be replayed bit for bit; record it without --real-time");
+  if ((options.is_real_time || options.has_local_contact) && !options.record.empty())
+    throw LoadError(
+        options.record, "",
+        "a run in real time or with local contact cannot be replayed bit for bit; record it without "
+        "--real-time and --local-contact");
   const std::unique_ptr<Hand> hand = simulatedHand(scene);
   const LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);

@@ -114,6 +114,10 @@ std::string toJson(const AssembleResult& result) {
                 {{"to_hand_J", result.energy.to_hand_J},
                  {"from_hand_J", result.energy.from_hand_J},
                  {"injected_J", result.energy.injected_J}}},
+               {"local_contact",
+                {{"held_ticks", result.local_contact.held},
+                 {"jump_J", result.local_contact.jump_J},
+                 {"greatest_jump_m", result.local_contact.greatest_jump_m}}},
                {"modelled", modelled(result.modelled)}});
 }
 

@@ -14,9 +14,9 @@ struct LocalContactSettings {
   double hold_limit_s = 0.05;  ///< without a new snapshot for longer, the part stands still. assumed: five
                                ///< steps of 100 Hz physics
   std::size_t contact_limit = 4096;  ///< near points; with more the snapshot is held
-  std::size_t solve_limit = 256;  ///< of these enter the step; of more every second, third, ... for as many
-  double margin_m = 50e-6;        ///< points so near may touch within the tick, besides what the speed tells.
-                                  ///< assumed: 50 mm/s at 1 kHz
+  std::size_t solve_limit = 64;  ///< of these enter the step; of more every second, third, ... for as many
+  double margin_m = 50e-6;       ///< points so near may touch within the tick, besides what the speed tells.
+                                 ///< assumed: 50 mm/s at 1 kHz
 };
 
 /// What is in hand and what it may touch. Map and shell outlive their use.

@@ -21,6 +21,9 @@ struct AssembleOptions : ModelOptions {
   /// mounting and judging a step stand in between, when nothing is held. Not repeatable, so not with
   /// `record`.
   bool is_real_time = false;
+  /// Between physics steps the haptic loop works out the part's motion by itself
+  /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`.
+  bool has_local_contact = false;
 };
 
 /// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's

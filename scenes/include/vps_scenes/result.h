@@ -101,6 +101,10 @@ struct AssembleResult {
   double haptic_rate_hz = 0, physics_rate_hz = 0;
   TickTimes haptic, physics;
   std::optional<RealTimeResult> real_time;  ///< of a run in real time
+  struct {
+    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was held instead
+    double jump_J = 0, greatest_jump_m = 0;  ///< by new snapshots
+  } local_contact;
   EnergyLedger energy;
   ModelledCost modelled;
   std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set
