@@ -9,7 +9,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "cross_matrix.h"
 #include "vps_bullet/convert.h"
 
 namespace vps {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cross_matrix.h"
 #include "vps_bullet/convert.h"
 
 namespace vps {

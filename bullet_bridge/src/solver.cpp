@@ -21,7 +21,6 @@
 
 #include "contact_sweeps.h"
 #include "context.h"
-#include "cross_matrix.h"
 #include "island.h"
 #include "penalty_newton.h"
 #include "rigid_newton.h"

@@ -16,12 +16,6 @@ Mat3 columns(const Vec3& x, const Vec3& y, const Vec3& z) {
   return m;
 }
 
-Mat3 crossMatrix(const Vec3& a) {
-  Mat3 m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
-
 // Orthogonal directions in which t1, t2 and d3 move the arm's end.
 struct ArmAxes {
   Vec3 e1, e2, e3;
@@ -239,6 +233,16 @@ Status handleJacobian(const DualArmParameters& parameters, const Pose& X_DH, Joi
   const Status status = handleMotion(parameters, X_DH, motion);
   J = motion.J;
   return status;
+}
+
+AxisRange axisRange(const DualArmParameters& p, int axis) noexcept {
+  if (axis == 2 || axis == 5) return {p.reach_min_m, p.reach_max_m, true};
+  const double most_rad = axis == 6 ? p.q3_max_rad : axis == 7 ? p.q2_max_rad : p.plate_max_rad;
+  return {-most_rad, most_rad, false};
+}
+
+double axisValue(const JointVector& joints, double q2_rad, int axis) noexcept {
+  return axis < 7 ? joints[axis] : q2_rad;
 }
 
 bool isReachable(const DualArmParameters& parameters, const Pose& X_DH) noexcept {

@@ -117,14 +117,10 @@ void DualArmController::watchJoints(const JointVector& joints) noexcept {
   HandleMotion motion;
   if (handleMotion(p, last_.X_DH, motion) != Status::Ok) return;
   int nearest = -1;
-  for (int i = 0; i < 8; ++i) {
-    const bool is_slide = i == 2 || i == 5;
-    const double value = i < 7 ? joints[i] : motion.q2_rad;
-    const double most = is_slide ? p.reach_max_m
-                        : i == 6 ? p.q3_max_rad
-                        : i == 7 ? p.q2_max_rad
-                                 : p.plate_max_rad;
-    const double least = is_slide ? p.reach_min_m : -most, near = is_slide ? kNearStop_m : kNearStop_rad;
+  for (int i = 0; i < kStoppedAxes; ++i) {
+    const auto [least, most, is_slide] = axisRange(p, i);
+    const double value = axisValue(joints, motion.q2_rad, i);
+    const double near = is_slide ? kNearStop_m : kNearStop_rad;
     if (value > most - near || value < least + near) nearest = i;
   }
   warn(Kind::NearStop, nearest >= 0, nearest);

@@ -138,14 +138,10 @@ DualArmPlant::Motors DualArmPlant::motorsOf(double dt_s) const noexcept {
 double DualArmPlant::addStops(double dt_s, const Vec6& V_next, Mat6& A, Vec6& b) const noexcept {
   const DualArmParameters& p = settings_.arms;
   double stored_J = 0;
-  for (int i = 0; i < 8; ++i) {
-    const bool is_slide = i == 2 || i == 5, is_gimbal = i >= 6;
-    const double value = i < 7 ? motion_.joints[i] : motion_.q2_rad;
-    const double most = is_slide ? p.reach_max_m
-                        : i == 6 ? p.q3_max_rad
-                        : i == 7 ? p.q2_max_rad
-                                 : p.plate_max_rad;
-    const double least = is_slide ? p.reach_min_m : -most;
+  for (int i = 0; i < kStoppedAxes; ++i) {
+    const auto [least, most, is_slide] = axisRange(p, i);
+    const bool is_gimbal = i >= 6;
+    const double value = axisValue(motion_.joints, motion_.q2_rad, i);
     const double beyond = value > most ? value - most : value < least ? value - least : 0;
     if (beyond == 0) continue;
     const double k = is_slide    ? p.link_stop_N_per_m

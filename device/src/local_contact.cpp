@@ -14,12 +14,6 @@ constexpr double kCreep_m_s = 1e-3;  // friction is full from this speed on. ass
 using Vec6 = Eigen::Matrix<double, 6, 1>;  // angular, then linear
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-Mat3 cross(const Vec3& v) {
-  Mat3 m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 /// A V = b for the velocity after the step.
 struct StepSystem {
   Mat6 A = Mat6::Zero();
@@ -62,7 +56,7 @@ std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size
     system.b -= (dt_s * k_N_per_m * contact.distance_m) * J;
     if (part.friction <= 0) continue;
     Eigen::Matrix<double, 3, 6> slide;
-    slide << -cross(r_W), Mat3::Identity();
+    slide << -crossMatrix(r_W), Mat3::Identity();
     slide -= n_W * (n_W.transpose() * slide);
     const double speed_m_s = std::max((slide * V).norm(), kCreep_m_s);
     system.A.noalias() += (dt_s * part.friction * k_N_per_m * -gap_m / speed_m_s) * slide.transpose() * slide;

@@ -335,19 +335,30 @@ void VirtualOperator::follow(const Pose& X_wanted, double dt_s) noexcept {
   X_eq_ = Pose(Quat(rotationFromVector(dt_s * V_eq_.w) * X_eq_.R), Vec3(X_eq_.p + dt_s * V_eq_.v));
 }
 
-HandForce VirtualOperator::impedance() const noexcept {
+double handDamping(const OperatorHabits& habits, double k, double m) noexcept {
+  return 2 * habits.damping_ratio * std::sqrt(k * m);
+}
+
+HandForce evenHand(const OperatorHabits& habits) noexcept {
   HandForce hand;
+  hand.k_N_per_m = habits.k_N_per_m * Mat3::Identity();
+  hand.b_Ns_per_m = handDamping(habits, habits.k_N_per_m, habits.mass_kg) * Mat3::Identity();
+  hand.k_Nm_per_rad = habits.k_Nm_per_rad * Mat3::Identity();
+  hand.b_Nms_per_rad = handDamping(habits, habits.k_Nm_per_rad, habits.inertia_kgm2) * Mat3::Identity();
+  hand.mass_kg = habits.mass_kg;
+  hand.inertia_kgm2 = habits.inertia_kgm2;
+  return hand;
+}
+
+HandForce VirtualOperator::impedance() const noexcept {
+  HandForce hand = evenHand(habits_);
   hand.X_eq = X_eq_;
   hand.V_eq = V_eq_;
-  const auto damping = [this](double k, double m) { return 2 * habits_.damping_ratio * std::sqrt(k * m); };
+  const auto damping = [this](double k) { return handDamping(habits_, k, habits_.mass_kg); };
   const double k = habits_.k_N_per_m, k_across = isInserting() ? habits_.k_lateral_share * k : k;
   const Mat3 along = axis_W_ * axis_W_.transpose(), across = Mat3::Identity() - along;
   hand.k_N_per_m = k * along + k_across * across;
-  hand.b_Ns_per_m = damping(k, habits_.mass_kg) * along + damping(k_across, habits_.mass_kg) * across;
-  hand.k_Nm_per_rad = habits_.k_Nm_per_rad * Mat3::Identity();
-  hand.b_Nms_per_rad = damping(habits_.k_Nm_per_rad, habits_.inertia_kgm2) * Mat3::Identity();
-  hand.mass_kg = habits_.mass_kg;
-  hand.inertia_kgm2 = habits_.inertia_kgm2;
+  hand.b_Ns_per_m = damping(k) * along + damping(k_across) * across;
   const bool carries = phase_ != OperatorPhase::Idle && phase_ != OperatorPhase::Done;
   if (carries) hand.F.f = -task_.weight_W;
   return hand;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "hand.h"
 
-#include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "vps/load_error.h"
@@ -36,11 +36,6 @@ SimulatedDualArmSettings plantSettings(const Scene& scene) {
   settings.has_quantised_encoders = scene.device.has_quantised_encoders;
   settings.rate_hz = scene.fidelity.haptic_rate_hz;
   return settings;
-}
-
-std::string inMillimetres(const Vec3& size_m) {
-  const auto mm = [](double m) { return std::to_string(std::lround(1e3 * m)); };
-  return mm(size_m.x()) + " x " + mm(size_m.y()) + " x " + mm(size_m.z()) + " mm";
 }
 
 class SimulatedHand final : public Hand {
@@ -91,18 +86,9 @@ class SimulatedHand final : public Hand {
   HandForce returning(double dt_s) {
     time_s_ += dt_s;
     const double share = minimumJerk(time_s_ / kHandReturn_s);
-    const OperatorHabits habits = habitsOf(scene_.hand, 0);
-    HandForce hand;
+    HandForce hand = evenHand(habitsOf(scene_.hand, 0));
     hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad_) * X_DH_from_.R),
                      X_DH_from_.p + share * (X_DH_back_.p - X_DH_from_.p));
-    hand.k_N_per_m = habits.k_N_per_m * Mat3::Identity();
-    hand.b_Ns_per_m =
-        2 * habits.damping_ratio * std::sqrt(habits.k_N_per_m * habits.mass_kg) * Mat3::Identity();
-    hand.k_Nm_per_rad = habits.k_Nm_per_rad * Mat3::Identity();
-    hand.b_Nms_per_rad =
-        2 * habits.damping_ratio * std::sqrt(habits.k_Nm_per_rad * habits.inertia_kgm2) * Mat3::Identity();
-    hand.mass_kg = habits.mass_kg;
-    hand.inertia_kgm2 = habits.inertia_kgm2;
     return hand;
   }
 
@@ -143,11 +129,16 @@ Pose handleStart(const Scene& scene, const SceneStep& step, const Vec3& room_m) 
   for (const Pose& X_WP : step.way_points) path.add(X_WP.p - step.X_WP_start.p);
   path.add(step.X_WP_target.p - step.X_WP_start.p);
   const Vec3 needed_m = path.size() / scene.device.scale;
-  if ((needed_m.array() > room_m.array()).any())
-    throw LoadError(scene.file, scene.parts[step.part].part.name,
-                    "its path is longer than the device's workspace of " + inMillimetres(room_m) +
-                        "; start nearer, or set [device] scale above " +
-                        std::to_string(scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff()));
+  if ((needed_m.array() > room_m.array()).any()) {
+    char words[160];
+    std::snprintf(
+        words, sizeof words,
+        "its path is longer than the device's workspace of %.0f x %.0f x %.0f mm; start nearer, or set "
+        "[device] scale above %f",
+        1e3 * room_m.x(), 1e3 * room_m.y(), 1e3 * room_m.z(),
+        scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff());
+    throw LoadError(scene.file, scene.parts[step.part].part.name, words);
+  }
   return Pose::translation(-path.center() / scene.device.scale);
 }
 

@@ -18,14 +18,7 @@ namespace {
 constexpr double kDt_s = 1e-3;
 
 HandForce stillHand() {
-  HandForce hand;
-  hand.k_N_per_m = 500 * Mat3::Identity();
-  hand.b_Ns_per_m = 30 * Mat3::Identity();
-  hand.k_Nm_per_rad = 5 * Mat3::Identity();
-  hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
-  hand.mass_kg = 1;
-  hand.inertia_kgm2 = 3e-3;
-  return hand;
+  return vps_test::firmHand(500, 30);
 }
 
 void expect(bool claim, const char* promise) {

@@ -8,11 +8,15 @@
 #include <thread>
 
 #include "support/no_alloc.h"
+#include "support/poll_device.h"
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
 namespace vps {
 namespace {
+
+using test::isThere;
+using test::within10s;
 
 /// A controller that is plugged in as long as it lives.
 class VirtualController {
@@ -39,20 +43,6 @@ class VirtualController {
   int index_;
   SDL_Joystick* joystick_;
 };
-
-template <typename Claim>
-bool within10s(Device& device, const Claim& claim) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (std::chrono::steady_clock::now() < end) {
-    if (claim(device.read())) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
-
-bool isThere(const DeviceSample& sample) {
-  return sample.status == Status::Ok;
-}
 
 class GameController : public testing::Test {
  protected:

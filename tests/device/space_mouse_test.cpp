@@ -13,12 +13,16 @@
 #include <thread>
 
 #include "support/no_alloc.h"
+#include "support/poll_device.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
 namespace vps {
 namespace {
+
+using test::isThere;
+using test::within10s;
 
 using Packet = std::array<std::int32_t, 8>;
 constexpr std::int32_t kMotion = 0, kPress = 1, kRelease = 2, kDevice = 3;
@@ -61,21 +65,6 @@ class FakeDaemon {
   std::string file_;
   int listener_ = -1, client_ = -1;
 };
-
-/// Reads until the claim holds; false after 10 s.
-template <typename Claim>
-bool within10s(Device& device, const Claim& claim) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (std::chrono::steady_clock::now() < end) {
-    if (claim(device.read())) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return false;
-}
-
-bool isThere(const DeviceSample& sample) {
-  return sample.status == Status::Ok;
-}
 
 class SpaceMouse : public testing::Test {
  protected:

@@ -316,7 +316,8 @@ TEST_F(SceneFile, CutAtEveryByteItLoadsOrIsRefused) {
 
 TEST_F(SceneFile, TheDualArmMayBeTheUsersOwn) {
   const std::string scene = "unit = 'mm'\n[[part]]\nfile = 'pin.stl'\n[device]\nparameters = 'arms.toml'\n";
-  EXPECT_NE(complaint(scene).find("scene.toml:5: key 'parameters' cannot be used: arms.toml"), std::string::npos)
+  EXPECT_NE(complaint(scene).find("scene.toml:5: key 'parameters' cannot be used: arms.toml"),
+            std::string::npos)
       << complaint(scene);
   write("arms.toml", "[handle]\nmass_kg = 'heavy'\n");
   EXPECT_NE(complaint(scene).find("key 'parameters' cannot be used: arms.toml"), std::string::npos);

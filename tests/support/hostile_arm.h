@@ -18,6 +18,18 @@ namespace vps_test {
 
 using Require = void (*)(bool claim, const char* promise);
 
+/// About the identity. @param k, b  of translation [N/m, N s/m]
+inline vps::HandForce firmHand(double k, double b) {
+  vps::HandForce hand;
+  hand.k_N_per_m = k * vps::Mat3::Identity();
+  hand.b_Ns_per_m = b * vps::Mat3::Identity();
+  hand.k_Nm_per_rad = 5 * vps::Mat3::Identity();
+  hand.b_Nms_per_rad = 0.2 * vps::Mat3::Identity();
+  hand.mass_kg = 1;
+  hand.inertia_kgm2 = 3e-3;
+  return hand;
+}
+
 /// The plant, with a trouble between it and the controller.
 class HostileArm final : public vps::DualArmHardware {
  public:
@@ -116,13 +128,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   CouplingState part{Pose{}, Twist{}, 0, true};
   port.part.write(part);
 
-  HandForce hand;
-  hand.k_N_per_m = 300 * Mat3::Identity();
-  hand.b_Ns_per_m = 20 * Mat3::Identity();
-  hand.k_Nm_per_rad = 5 * Mat3::Identity();
-  hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
-  hand.mass_kg = 1;
-  hand.inertia_kgm2 = 0.003;
+  HandForce hand = firmHand(300, 20);
   hand.F.f = 0.1 * (data[1] - 128.0) * Vec3::Unit(data[1] % 3);
 
   std::uint64_t faults_told = 0;

@@ -103,6 +103,16 @@ struct HandleMotion {
 [[nodiscard]] Status handleMotion(const DualArmParameters& parameters, const Pose& X_DH,
                                   HandleMotion& motion) noexcept;
 
+/// Axes that have stops: the joints in joint order, then q2.
+inline constexpr int kStoppedAxes = 8;
+struct AxisRange {
+  double least = 0, most = 0;  ///< [m] of a slide, else [rad]
+  bool is_slide = false;
+};
+AxisRange axisRange(const DualArmParameters& parameters, int axis) noexcept;
+/// @param joints  in joint order
+double axisValue(const JointVector& joints, double q2_rad, int axis) noexcept;
+
 /// True if every joint, q2 too, is within its range and the arms keep apart.
 bool isReachable(const DualArmParameters& parameters, const Pose& X_DH) noexcept;
 

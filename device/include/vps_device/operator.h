@@ -49,6 +49,12 @@ struct OperatorHabits {
   double still_rad_s = 5e-3;
 };
 
+/// The hand's damping of a spring k against an inertia m: N s/m of N/m and kg, N m s/rad of N m/rad and kg
+/// m^2.
+double handDamping(const OperatorHabits& habits, double k, double m) noexcept;
+/// Such a hand, as stiff in every direction, about the identity.
+HandForce evenHand(const OperatorHabits& habits) noexcept;
+
 /// One step of a procedure, for the hand. The hand holds the part at the grasp frame G, fixed in the part P;
 /// best at the part's centre of mass, whose weight it then carries without torque.
 struct OperatorTask {

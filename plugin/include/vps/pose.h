@@ -36,6 +36,13 @@ struct Pose {
   }
 };
 
+/// The matrix [r] for which [r] x is the cross product of r and x.
+inline Mat3 crossMatrix(const Vec3& r) {
+  Mat3 m;
+  m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+  return m;
+}
+
 /// The rotation vector (axis times angle, |.| <= pi) of R. O(1).
 inline Vec3 rotationVector(const Mat3& R) {
   const Eigen::AngleAxisd a(R);
