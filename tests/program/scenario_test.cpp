@@ -86,7 +86,8 @@ TEST_F(Scenario, SlowPhysicsWithLocalContactMountsThePegToo) {
   writePegScene("pose = {position = [0, 0, -15]}\n",
                 "clearance = 0.05\n[fidelity]\nphysics_rate_hz = 100\nhaptic_rate_hz = 1000\n");
   const Ran ran = run("assemble scene.toml --out out --no-pictures --local-contact");
-  // Mounted; whether it rests to 5 um once let go is the affair of physics at 100 Hz, not of the loop.
+  // Mounted. Status 1: once let go it drifts by 7.7 um (1.0 without local contact), beyond 5; why is not
+  // known.
   ASSERT_LE(ran.status, 1) << ran.out << ran.err;
   const json data = read("out/assemble.json");
   EXPECT_TRUE(data["completed"].get<bool>()) << ran.out;
