@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All rows, in the order of the table; each function is a file of its own.
+#pragma once
+
+#include <vector>
+
+#include "row.h"
+
+namespace vps::stability {
+
+std::vector<Row> scaleRows();   ///< sizes, distances, steps
+std::vector<Row> loadRows();    ///< masses, stiffness, friction, many contacts
+std::vector<Row> impactRows();  ///< impacts, thin walls, spin
+
+/// All of them.
+std::vector<Row> allRows();
+
+}  // namespace vps::stability
