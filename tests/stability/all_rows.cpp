@@ -5,7 +5,7 @@ namespace vps::stability {
 
 std::vector<Row> allRows() {
   std::vector<Row> all;
-  for (const auto& rows : {scaleRows(), loadRows(), impactRows()}) all.insert(all.end(), rows.begin(), rows.end());
+  for (const auto& rows : {scaleRows(), loadRows(), impactRows(), shapeRows()}) all.insert(all.end(), rows.begin(), rows.end());
   return all;
 }
 

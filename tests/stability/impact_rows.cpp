@@ -127,9 +127,9 @@ std::vector<Row> impactRows() {
       {"thin_wall_corner", "thickness of a wall [voxels], a corner first at 5 m/s", "stays before it", walls, 4,
        shootThinWallByCorner},
       {"spin", "spin of a shaft in a bore [rpm], steps of 1 ms", "angle, spin",
-       {100, 1e3, 5e3, 7e3, 1e4}, 5, spinAt1kHz},
+       {100, 1e3, 5e3, 7e3, 1e4}, 5, spinAt1kHz, {4, 2}},
       {"spin_substeps", "spin of a shaft in a bore [rpm], steps of 0.25 ms", "angle, spin",
-       {100, 1e3, 1e4, 2e4, 5e4, 1e5}, 3, spinAt4kHz},
+       {100, 1e3, 1e4, 2e4, 5e4, 1e5}, 3, spinAt4kHz, {3, 2}},
   };
 }
 

@@ -11,6 +11,7 @@ namespace vps::stability {
 std::vector<Row> scaleRows();   ///< sizes, distances, steps
 std::vector<Row> loadRows();    ///< masses, stiffness, friction, many contacts
 std::vector<Row> impactRows();  ///< impacts, thin walls, spin
+std::vector<Row> shapeRows();   ///< edges, tips, overlaps at the start, fits
 
 /// All of them.
 std::vector<Row> allRows();
