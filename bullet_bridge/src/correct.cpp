@@ -15,6 +15,8 @@ namespace {
 // meets each face.
 constexpr double kFacing = 0.2;
 constexpr double kCosEdge = 0.94;     // 20 degrees, as in PointShellSettings::edge_angle_rad
+constexpr double kAlong = 0.087;      // 5 degrees, as findCrossings()
+constexpr double kInto = 0.17;        // 10 degrees. assumed: beyond the facets of what are flush round faces
 constexpr double kNever_m = 1;        // far beyond any step
 constexpr double kTouching_m = 1e-6;  // below this, p - q is too short to be trusted as a direction
 
@@ -25,6 +27,7 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
   Vec3 smooth = Vec3::Zero();  ///< the normal of the curved surface that the mesh stands for
   bool is_edge = false;
+  bool is_rim = false;  ///< of a sheet, which is no edge between two faces
 };
 
 struct Exact {
@@ -33,6 +36,7 @@ struct Exact {
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
   bool is_edge_on_edge = false;
+  bool is_on_rim = false;  ///< of a sheet
 };
 
 Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, const Vec3& inward, double max_m) {
@@ -47,6 +51,7 @@ Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, const 
     const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * inward, closest);
     foot.normal = X_WP.R * seen.normal;
     if (foot.smooth.dot(foot.normal) < 0) foot.smooth = -foot.smooth;  // from behind
+    foot.is_rim = seen.is_rim;
     foot.is_edge |= seen.is_rim;
   }
   return foot;
@@ -84,6 +89,7 @@ Exact contactAt(const Foot& foot, const Vec3& inward, bool is_edge_point) {
   exact.distance_m = sign * distance_m;
   exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
   exact.is_edge_on_edge = is_edge_point && foot.is_edge;
+  exact.is_on_rim = foot.is_rim;
   return exact;
 }
 
@@ -107,6 +113,36 @@ struct Corrector {
   }
 };
 
+// An edge that runs towards the other is nearer to it elsewhere: where they cross, which is a candidate of
+// its own.
+bool runsTowards(const Vec3& n, const EdgeSegment& own) {
+  return std::abs(n.dot((own.to - own.from).normalized())) > kAlong;
+}
+
+// A face that one of the edge's own faces runs into is met by that face's points, and deeper.
+bool isBuried(const Vec3& n, const EdgeSegment& own) {
+  return std::min(n.dot(own.into[0]), n.dot(own.into[1])) < -kInto;
+}
+
+// The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
+// clear. What the point meets at the end of its way counts, as long as that is not an overlap.
+Exact whereItGoes(const Exact& now, const Corrector& corrector, const Vec3& p_W, const Vec3& way_W,
+                  const Vec3& inward, double max_m) {
+  Exact end = corrector.at(p_W + way_W, inward, true, max_m + way_W.norm());
+  if (end.found && !(end.meets && end.distance_m >= 0)) return now;
+  end.distance_m -= end.n.dot(way_W);
+  return end;
+}
+
+// For a point on an edge of its own part, whether it is what touches.
+bool isMet(const Exact& exact, std::uint32_t edge, const SideView& side, bool is_primitive) {
+  if (edge == EdgeSet::kNone) return true;
+  const EdgeSegment& own = side.shape->edges().segments()[edge];
+  const Vec3 n_M = side.X_WM.R.transpose() * exact.n;
+  if (exact.is_edge_on_edge) return is_primitive || exact.is_on_rim || !runsTowards(n_M, own);
+  return !isBuried(n_M, own);
+}
+
 }  // namespace
 
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
@@ -120,23 +156,17 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
   const double field_error_m =
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kTouching_m;
   for (Candidate& c : candidates) {
-    if (c.side != side.side) continue;
+    if (c.side != side.side || c.isCrossing()) continue;
     if (is_primitive && touchRound(c, side, other, corrector.theirs)) continue;
     const Vec3 inward = side.X_WM.R * shell.inward[c.id];
     const bool is_edge_point = side.shape->isEdgePoint(c.id);
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = corrector.at(c.p_W, inward, is_edge_point, max_m);
     if (!exact.found) continue;  // the field is all there is
-    if (exact.meets && exact.is_edge_on_edge) {
-      // The line between two edges turns fast as they pass each other, and would stop a point that is about
-      // to pass clear. What the point meets at the end of its way counts, as long as that is not an overlap.
-      const Vec3 way = sign * motion.dt_s * motion.velocityAt(c.p_W);
-      Exact end = corrector.at(c.p_W + way, inward, is_edge_point, max_m + way.norm());
-      if (!end.found || (end.meets && end.distance_m >= 0)) {
-        end.distance_m -= end.n.dot(way);
-        exact = end;
-      }
-    }
+    if (exact.meets && !isMet(exact, side.shape->edgeOf(c.id), side, is_primitive)) exact.meets = false;
+    if (exact.meets && exact.is_edge_on_edge)
+      exact =
+          whereItGoes(exact, corrector, c.p_W, sign * motion.dt_s * motion.velocityAt(c.p_W), inward, max_m);
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
   }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "vps/edge_crossing.h"
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 #include "vps/part.h"
@@ -85,6 +86,13 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
+  /// Sharp edges of the surfaces, in the models' frame.
+  [[nodiscard]] const EdgeSet& edges() const { return edges_; }
+  /// The sharp edge that a shell point stands on, as an index of edges().segments(); EdgeSet::kNone on faces
+  /// and corners.
+  [[nodiscard]] std::uint32_t edgeOf(std::uint32_t id) const {
+    return edge_of_.empty() ? EdgeSet::kNone : edge_of_[id];
+  }
   /// Box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
@@ -121,6 +129,8 @@ class VpsShape : public btConcaveShape {
   unsigned revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
+  EdgeSet edges_;
+  std::vector<std::uint32_t> edge_of_;
   std::unique_ptr<const TriangleTree> triangles_;
 };
 
