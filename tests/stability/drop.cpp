@@ -48,8 +48,8 @@ Dropped drop(Mode mode, const Drop& what) {
   const Vec3 down_W = what.X_WS.R * Vec3(0, 0, -1);
   world.setGravity(dynamics::World::kGravity_m_s2 * down_W);
   const auto toScene = [&](const Pose& X_SP) { return what.is_mirrored ? mirroredPose(X_SP) : X_SP; };
-  const Placed plate = world.add(plate_part, what.X_WS * Pose::translation(Vec3(0, 0, -plate_m / 2)), true,
-                                 what.friction);
+  const Placed plate =
+      world.add(plate_part, what.X_WS * Pose::translation(Vec3(0, 0, -plate_m / 2)), true, what.friction);
   const Placed block =
       world.add(block_part, what.X_WS * toScene(startPose(what, block_mesh)), false, what.friction);
   block.body->setLinearVelocity(toBt(Vec3(what.speed_m_s * down_W)));
@@ -77,8 +77,8 @@ double allowedDepth_m(Mode mode, const Drop& what, const Dropped& dropped) {
   const double step_m = dropped.watched.fastest_m_s * what.dt_s;
   const double turned_m = std::min(half_m, step_m * step_m / (2 * half_m)) + 1e-6;
   if (mode != Mode::Penalty) return turned_m;
-  const double fallen_J = dropped.weight_N * (dropped.start_m - half_m) +
-                          dropped.mass_kg * what.speed_m_s * what.speed_m_s / 2;
+  const double fallen_J =
+      dropped.weight_N * (dropped.start_m - half_m) + dropped.mass_kg * what.speed_m_s * what.speed_m_s / 2;
   const double spacing_m = what.size * what.spacing_m;
   const double k_N_per_m = what.settings.stiffness_N_per_m3 * spacing_m * spacing_m / 4;
   return turned_m + std::sqrt(2 * fallen_J / k_N_per_m);
@@ -89,10 +89,14 @@ Judgement judgeDrop(Mode mode, const Drop& what) {
   Judgement judgement;
   judgeRun(judgement, dropped.watched, dropped.weight_N, allowedDepth_m(mode, what, dropped), what.dt_s);
   judgeRest(judgement, dropped.watched, what.dt_s);
-  // It lies on the plate, on a face: half a side high. A hundredth of the least tells that from all else.
+  // It lies on the plate, on a face: half a side high. A hundredth of the least tells that from all else; the
+  // bridge leaves alone what moves by less than a micrometre, so of less than a tenth of that nobody can
+  // tell.
   double off_m = 1e300;
-  for (const double side_m : kBlock_m) off_m = std::min(off_m, std::abs(dropped.end_m - what.size * side_m / 2));
-  judgement.atMost("height over the plate off by", off_m, 1e-2 * what.size * kBlock_m.minCoeff() / 2, "m");
+  for (const double side_m : kBlock_m)
+    off_m = std::min(off_m, std::abs(dropped.end_m - what.size * side_m / 2));
+  judgement.atMost("height over the plate off by", off_m,
+                   std::max(0.1e-6, 1e-2 * what.size * kBlock_m.minCoeff() / 2), "m");
   return judgement;
 }
 

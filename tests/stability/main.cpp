@@ -12,7 +12,8 @@ namespace {
 
 int usage() {
   std::printf(
-      "usage: vps_stability [--short] [--thorough] [--rows=a,b] [--mode=constraint|penalty|stock] [--values=x,y]\n"
+      "usage: vps_stability [--short] [--thorough] [--rows=a,b] [--mode=constraint|penalty|stock] "
+      "[--values=x,y]\n"
       "  --short     what must hold, without the search for edges\n"
       "  --thorough  hours at rest instead of seconds\n"
       "  --values    these instead of the rows' own\n"

@@ -28,7 +28,8 @@ struct Row {
   std::vector<double> ladder;
   std::size_t asked = 0;
   std::function<Judgement(const Run&)> run;
-  /// How many of those asked hold by constraint and by penalty; fewer are a known edge, and the page says why.
+  /// How many of those asked hold by constraint and by penalty; fewer are a known edge, and the page says
+  /// why.
   std::size_t holds[2] = {99, 99};
   /// Values are cases: what a value stands for. Else they are numbers, and the edge is narrowed between them.
   std::function<std::string(double)> label = nullptr;

@@ -12,6 +12,9 @@ std::vector<Row> scaleRows();   ///< sizes, distances, steps
 std::vector<Row> loadRows();    ///< masses, stiffness, friction, many contacts
 std::vector<Row> impactRows();  ///< impacts, thin walls, spin
 std::vector<Row> shapeRows();   ///< edges, tips, overlaps at the start, fits
+std::vector<Row> restRows();    ///< long rest, copies of a scene
+std::vector<Row> inputRows();   ///< what is no number
+std::vector<Row> deviceRows();  ///< a hand that jerks; where vps::device is built
 
 /// All of them.
 std::vector<Row> allRows();

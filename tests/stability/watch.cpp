@@ -24,8 +24,8 @@ double overlap_m(const std::vector<Placed>& parts) {
   for (std::size_t i = 0; i < parts.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (moves(parts[i]) || moves(parts[j]))
-        worst_m = std::max(worst_m, dynamics::penetration_m(parts[i].part, parts[i].pose(), parts[j].part,
-                                                            parts[j].pose()));
+        worst_m = std::max(
+            worst_m, dynamics::penetration_m(parts[i].part, parts[i].pose(), parts[j].part, parts[j].pose()));
   return worst_m;
 }
 

@@ -41,9 +41,9 @@ double energy_J(dynamics::World& world, const std::vector<Placed>& parts);
 Vec3 momentum_Ns(const std::vector<Placed>& parts);
 Vec3 angularMomentum_Nms(const std::vector<Placed>& parts);
 
-/// Numbers, energy and overlap. The overlap allowed, `deep_m`, may be pushed out again, which lifts all weight
-/// by as much; and Bullet's steps lift what rises at v by v dt / 2 too much (semi-implicit Euler). That, and
-/// rounding of the energy itself, is all that may be gained.
+/// Numbers, energy and overlap. The overlap allowed, `deep_m`, may be pushed out again, which lifts all
+/// weight by as much; and Bullet's steps lift what rises at v by v dt / 2 too much (semi-implicit Euler).
+/// That, and rounding of the energy itself, is all that may be gained.
 void judgeRun(Judgement& judgement, const Watched& watched, double weight_N, double deep_m, double dt_s);
 /// It lies still: slower than a thousandth of what gravity adds in a step, so that contact holds it, not
 /// chance.
