@@ -86,9 +86,10 @@ std::size_t collectFromSurfaces(const SideView& side, const SideView& other, dou
                                 const VpsBulletSettings& settings, std::vector<Candidate>& out,
                                 std::size_t& points_tested);
 
-/// Where edges of two VpsShapes cross, nearer than the cutoff; their distance and normal are exact. Appends to
-/// out. Returns how many did not fit into settings.candidate_limit, after all that are there.
-std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m,
+/// Where edges of two VpsShapes cross, nearer than the cutoff or overlapping by no more than the depth; their
+/// distance and normal are exact. Appends to out. Returns how many did not fit into settings.candidate_limit,
+/// after all that are there.
+std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
                              const VpsBulletSettings& settings, std::vector<Candidate>& out);
 
 /// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction

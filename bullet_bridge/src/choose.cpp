@@ -17,6 +17,10 @@ double roundedUp(double cutoff_m, double most_m) {
   return std::min(kUnit_m * std::pow(kStep, steps), most_m);
 }
 
+// How deep edges may overlap and still push each other out, as a share of what the fields see. assumed:
+// deeper, points lie inside and do it.
+constexpr double kDeepShare = 0.25;
+
 // In penalty mode the points of faces press along their own normals.
 void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
                        std::vector<Candidate>& candidates) {
@@ -51,7 +55,8 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
   // Springs stand for areas, and a crossing has none.
   if (context.settings.mode == ContactMode::Constraint && context.settings.use_surfaces && pair.vps[0] &&
       pair.vps[1])
-    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m, context.settings, out);
+    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m,
+                                 std::max(cutoff_m, kDeepShare * sight_m(pair)), context.settings, out);
   context.points_tested += tested;
   context.left_out += left_out;
 }

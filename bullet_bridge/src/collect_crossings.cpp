@@ -7,12 +7,12 @@
 
 namespace vps {
 
-std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m,
+std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
                              const VpsBulletSettings& settings, std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();
-  findCrossings(edges0, edges1, body0.X_WM.inverse() * body1.X_WM, cutoff_m, crossings);
+  findCrossings(edges0, edges1, body0.X_WM.inverse() * body1.X_WM, cutoff_m, depth_m, crossings);
   std::size_t room = crossings.size();
   if (const auto limit = static_cast<std::size_t>(settings.candidate_limit); limit > 0)
     room = std::min(room, limit - std::min(limit, out.size()));

@@ -215,9 +215,14 @@ void VpsShape::use(VpsModels models, const Pose& X_SM) {
   is_edge_point_ = std::move(normals.is_edge);
   smooth_inward_ = std::move(normals.smooth_inward);
   edges_ = edgesOf(models_.surfaces);
-  edge_of_.assign(is_edge_point_.size(), EdgeSet::kNone);
-  for (std::size_t i = 0; i < is_edge_point_.size(); ++i)
-    if (is_edge_point_[i] != 0) edge_of_[i] = edges_.segmentAt(models_.shell->points[i], kOnSurface_m);
+  edges_at_.clear();
+  first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
+  for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
+    if (is_edge_point_[i] != 0)
+      edges_.forEachNear(models_.shell->points[i], kOnSurface_m,
+                         [this](std::uint32_t segment) { edges_at_.push_back(segment); });
+    first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
+  }
   Box box_M;
   const auto include = [&box_M](const Box& box) {
     if (box.isEmpty()) return;

@@ -107,35 +107,19 @@ void EdgeSet::build() {
   }
 }
 
-std::uint32_t EdgeSet::segmentAt(const Vec3& p, double radius_m) const {
-  std::uint32_t first = kNone;
-  bool is_corner = false;
-  const auto visit = [&](const auto& self, std::uint32_t at) -> void {
-    const Node& node = nodes_[at];
-    if ((p - node.center).norm() > node.radius_m + radius_m) return;
-    if (node.is_leaf == 0) {
-      self(self, node.first);
-      self(self, node.first + 1);
-      return;
-    }
-    const EdgeSegment& s = segments_[node.first];
-    const Vec3 way = s.to - s.from;
-    const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
-    if ((p - s.from - share * way).norm() > radius_m) return;
-    if (first == kNone) first = node.first;
-    const Vec3 other = segments_[first].to - segments_[first].from;
-    is_corner |= std::abs(way.dot(other)) < kCosSharp * way.norm() * other.norm();
-  };
-  if (!nodes_.empty()) visit(visit, 0);
-  return is_corner ? kNone : first;
+bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept {
+  const EdgeSegment& s = segments_[segment];
+  const Vec3 way = s.to - s.from;
+  const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (p - s.from - share * way).norm() <= radius_m;
 }
 
 /// Goes down both hierarchies at once.
 class CrossingSearch {
  public:
   CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                 std::vector<EdgeCrossing>& out)
-      : edges0_(edges0), edges1_(edges1), X_01_(X_01), cutoff_m_(cutoff_m), out_(out) {}
+                 double depth_m, std::vector<EdgeCrossing>& out)
+      : edges0_(edges0), edges1_(edges1), X_01_(X_01), cutoff_m_(cutoff_m), depth_m_(depth_m), out_(out) {}
 
   void run() {
     if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty()) visit(edges0_.nodes_[0], edges1_.nodes_[0]);
@@ -146,7 +130,7 @@ class CrossingSearch {
 
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   void visit(const Node& a, const Node& b) {
-    const double reach_m = a.radius_m + b.radius_m + cutoff_m_;
+    const double reach_m = a.radius_m + b.radius_m + std::max(cutoff_m_, depth_m_);
     if ((a.center - X_01_ * b.center).squaredNorm() > reach_m * reach_m) return;
     if (a.is_leaf != 0 && b.is_leaf != 0) {
       cross(a.first, b.first);
@@ -170,7 +154,7 @@ class CrossingSearch {
     c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
     const Vec3 r = s0.from - from1;
     c.gap_m = c.n.dot(r);
-    if (!(std::abs(c.gap_m) <= cutoff_m_)) return;
+    if (!(c.gap_m <= cutoff_m_ && c.gap_m >= -depth_m_)) return;
     // The nearest points of two lines [Ericson 2005, section 5.1.8].
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
@@ -188,14 +172,14 @@ class CrossingSearch {
 
   const EdgeSet &edges0_, &edges1_;
   const Pose& X_01_;
-  double cutoff_m_;
+  double cutoff_m_, depth_m_;
   std::vector<EdgeCrossing>& out_;
 };
 
 void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                   std::vector<EdgeCrossing>& out) {
+                   double depth_m, std::vector<EdgeCrossing>& out) {
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  CrossingSearch(edges0, edges1, X_01, cutoff_m, out).run();
+  CrossingSearch(edges0, edges1, X_01, cutoff_m, depth_m, out).run();
   std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
     return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];
   });

@@ -25,7 +25,7 @@ EdgeSet edgesOf(const Mesh& mesh) {
 
 std::vector<EdgeCrossing> crossings(const EdgeSet& a, const EdgeSet& b, const Pose& X_ab, double cutoff) {
   std::vector<EdgeCrossing> out;
-  findCrossings(a, b, X_ab, cutoff, out);
+  findCrossings(a, b, X_ab, cutoff, cutoff, out);
   return out;
 }
 
@@ -53,14 +53,16 @@ TEST(EdgeSet, GroovesAndTheFacetsOfRoundFacesAreNone) {
   EXPECT_EQ(edges.segments().size(), 5U * 24U);
 }
 
-TEST(EdgeSet, FindsTheSegmentOfAPointButAtCorners) {
+TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
-  const std::uint32_t found = edges.segmentAt({0.5, 0.3, 1.5}, 1e-9);
-  ASSERT_NE(found, EdgeSet::kNone);
-  const EdgeSegment& s = edges.segments()[found];
-  EXPECT_LT((0.5 * (s.from + s.to) - Vec3(0.5, 0, 1.5)).norm(), kRounding);
-  EXPECT_EQ(edges.segmentAt({0.5, 1, 1.5}, 1e-9), EdgeSet::kNone) << "three edges meet";
-  EXPECT_EQ(edges.segmentAt({0.5, 0, 0}, 1e-9), EdgeSet::kNone) << "the middle of a face";
+  const auto countAt = [&](const Vec3& p) {
+    int count = 0;
+    edges.forEachNear(p, 1e-9, [&](std::uint32_t) { ++count; });
+    return count;
+  };
+  EXPECT_EQ(countAt({0.5, 0.3, 1.5}), 1);
+  EXPECT_EQ(countAt({0.5, 1, 1.5}), 3) << "a corner";
+  EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
 }
 
 // Two bars on edge, one across the other.
@@ -78,6 +80,18 @@ TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
     EXPECT_LT((X_W0 * found[0].p[0] - Vec3(0, 0.2, gap)).norm(), kRounding);
     EXPECT_LT((X_W0 * found[0].p[1] - Vec3(0, 0.2, 0)).norm(), kRounding);
   }
+}
+
+TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
+  const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
+  const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, 2 * std::sqrt(0.5) - 0.1)),
+      X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3::Zero());
+  std::vector<EdgeCrossing> out;
+  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.09, out);
+  EXPECT_TRUE(out.empty());
+  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.11, out);
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_NEAR(out[0].gap_m, -0.1, kRounding);
 }
 
 TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {

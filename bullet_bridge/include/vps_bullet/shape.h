@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "vps/edge_crossing.h"
@@ -88,10 +89,11 @@ class VpsShape : public btConcaveShape {
   }
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
-  /// The sharp edge that a shell point stands on, as an index of edges().segments(); EdgeSet::kNone on faces
-  /// and corners.
-  [[nodiscard]] std::uint32_t edgeOf(std::uint32_t id) const {
-    return edge_of_.empty() ? EdgeSet::kNone : edge_of_[id];
+  /// The sharp edges that a shell point stands on, as indices of edges().segments(): one, more at corners and
+  /// joints, none on faces.
+  [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t id) const {
+    if (first_edge_.empty()) return {};
+    return std::span(edges_at_).subspan(first_edge_[id], first_edge_[id + 1] - first_edge_[id]);
   }
   /// Box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
@@ -130,7 +132,7 @@ class VpsShape : public btConcaveShape {
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
   EdgeSet edges_;
-  std::vector<std::uint32_t> edge_of_;
+  std::vector<std::uint32_t> edges_at_, first_edge_;  // edges_at_[first_edge_[id]] ... are those of a point
   std::unique_ptr<const TriangleTree> triangles_;
 };
 

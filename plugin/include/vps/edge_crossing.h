@@ -32,10 +32,11 @@ class EdgeSet {
   /// O(n log n).
   explicit EdgeSet(std::vector<EdgeSegment> segments);
   [[nodiscard]] const std::vector<EdgeSegment>& segments() const noexcept { return segments_; }
-  /// The segment within radius_m of a point. kNone where there is none, and at corners, where edges meet that
-  /// differ by more than 20 degrees.
-  [[nodiscard]] std::uint32_t segmentAt(const Vec3& p, double radius_m) const;
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  /// Calls visit(index) for each segment within radius_m of a point, in an order of its own.
+  template <typename Visit>
+  void forEachNear(const Vec3& p, double radius_m, Visit&& visit) const {
+    if (!nodes_.empty()) visitNear(0, p, radius_m, visit);
+  }
 
  private:
   friend class CrossingSearch;
@@ -46,6 +47,18 @@ class EdgeSet {
     std::uint32_t is_leaf = 0;  ///< 1 or 0
   };
   void build();
+  [[nodiscard]] bool isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept;
+  template <typename Visit>
+  void visitNear(std::uint32_t at, const Vec3& p, double radius_m, Visit& visit) const {
+    const Node& node = nodes_[at];
+    if ((p - node.center).norm() > node.radius_m + radius_m) return;
+    if (node.is_leaf != 0) {
+      if (isNear(node.first, p, radius_m)) visit(node.first);
+      return;
+    }
+    visitNear(node.first, p, radius_m, visit);
+    visitNear(node.first + 1, p, radius_m, visit);
+  }
 
   std::vector<EdgeSegment> segments_;
   std::vector<Node> nodes_;
@@ -60,12 +73,12 @@ struct EdgeCrossing {
   double gap_m = 0;                          ///< n (p[0] - p[1]); negative where they overlap
 };
 
-/// Appends the crossings with |gap| <= cutoff_m, by edges of set 0, then of set 1. Edges within 5 degrees of
-/// parallel have no one crossing and are left to points.
+/// Appends the crossings with -depth_m <= gap <= cutoff_m, by edges of set 0, then of set 1. Edges within 5
+/// degrees of parallel have no one crossing and are left to points.
 /// @param X_01  frame of set 1 in that of set 0
 /// Cost: the pairs of spheres that are near, and 30 ns a pair of segments. Allocates in `out` alone.
 /// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
 void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                   std::vector<EdgeCrossing>& out);
+                   double depth_m, std::vector<EdgeCrossing>& out);
 
 }  // namespace vps
