@@ -5,19 +5,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <optional>
 
 #include "box_motion.h"
-#include "exact_fit.h"
 #include "fit_record.h"
 #include "haptic_side.h"
+#include "placed_parts.h"
 #include "procedure.h"
 #include "run_record.h"
 #include "scene_models.h"
 #include "simulation.h"
 #include "tick_times.h"
-#include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps_device/gains.h"
 #include "vps_device/periodic_thread.h"
@@ -57,6 +57,11 @@ double springEnergy(const CouplingGains& gains, const CouplingState& proxy, cons
                 gains.max_torque_Nm);
 }
 
+template <typename T>
+bool isReady(const std::future<T>& future) {
+  return !future.valid() || future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 RunTrace logged(const TraceRow& row) {
   RunTrace trace;
   trace.time_s = row.time_s;
@@ -81,10 +86,9 @@ class Procedure {
         options_(options),
         simulation_(scene, plan_),
         tapped_(hand.device(), log != nullptr ? *log : deaf_),
-        fit_bodies_(scene.parts.size()),
+        placed_(scene, plan_, simulation_, options),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
         gains_(settings.gains),
-        sight_m_(voxMapSettings(scene.fidelity).band_voxels * scene.fidelity.voxel_m),
         trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
         physics_clock_(dt_s_),
         poses_(scene.parts.size()),
@@ -120,23 +124,25 @@ class Procedure {
   void letGo();
   void rest(StepResult& result, const SceneStep& step);
   void findWhetherCompleted(StepResult& result, const SceneStep& step) const;
-  void settle(StepResult& result, std::size_t index);
-  void tellVerdict(StepResult& result, const FitVerdict& verdict) const;
-  void placeInFit(std::size_t part);
 
-  /// What to cook for a step's region; nothing if the field in place will do.
-  std::optional<FieldOrder> orderFor(std::size_t index);
-  void setField(CookedField field);
+  /// Judges the part that was let go and cooks the field of the next step, on other threads. In lockstep time
+  /// stands meanwhile, so that the swap comes at a step's number; by the clock, loop and physics go on until
+  /// it is ready.
+  void settle(StepResult& result, std::size_t index);
+  std::future<FitVerdict> judgeBeside();
+  std::future<CookedField> cookBeside(std::size_t step);  ///< without a state if none is needed
+  void goOnUntil(const std::function<bool()>& is_done);
+  void swapIn(CookedField field, StepResult& result);
+  void tellVerdict(StepResult& result, const FitVerdict& verdict) const;
+  void mount(std::size_t part);
   /// Models the rest of what is fixed, if the part in hand comes near the border of its region.
   void keepCovered();
-  void widen();
 
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
   void record(int phase);
   void tellPhase();
   void tellEvent(RunEventKind kind, const std::string& words);
-  const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
   void tell(std::size_t index, double share) const;
   [[nodiscard]] bool isStopped() const {
@@ -158,9 +164,7 @@ class Procedure {
   CouplingPort port_;
   LocalContact local_;
   std::unique_ptr<HapticSide> side_;
-  std::vector<FixedPart> placed_;  ///< fixed and mounted, in the order they came in
-  ExactFit fit_;
-  std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
+  PlacedParts placed_;
   double dt_s_;
   CouplingGains gains_;
   double sight_m_;     ///< within which a part reads the field
@@ -204,6 +208,8 @@ AssembleResult Procedure::run() {
   const HandLedger ledger = side_->ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
+  result_.modelled = placed_.modelled();
+  result_.widened = placed_.widened();
   const LocalContact::Report& local = local_.report();
   result_.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
   result_.simulated_s = time_s_;
@@ -214,82 +220,41 @@ AssembleResult Procedure::run() {
 void Procedure::mountFixed() {
   for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
     if (!scene_.parts[i].is_fixed) continue;
-    placed_.push_back({i, poses_[i]});
-    placeInFit(i);
+    placed_.add(i, poses_[i]);
+    mount(i);
   }
-  if (const auto order = orderFor(0)) setField(cookField(*order));
+  if (const auto order = placed_.orderFor(0)) placed_.setField(cookField(*order));
 }
 
-void Procedure::placeInFit(std::size_t part) {
+void Procedure::mount(std::size_t part) {
+  placed_.addToFit(part);
   roles_[part] = BodyRole::Mounted;
-  if (scene_.parts[part].part.shell) fit_.mount(fitBody(part), poses_[part]);
-}
-
-std::optional<FieldOrder> Procedure::orderFor(std::size_t index) {
-  const bool is_last = index >= plan_.steps.size();
-  if (is_last && !plan_.models_everything) return {};
-  const PlannedStep& step = plan_.steps[std::min(index, plan_.steps.size() - 1)];
-  std::vector<FixedPart> parts = simulation_.field().parts;
-  for (const FixedPart& placed : placed_) {
-    const auto is_it = [&](const FixedPart& other) { return other.part == placed.part; };
-    if (std::any_of(parts.begin(), parts.end(), is_it)) continue;
-    const Box box_W = moved(bounds(scene_.parts[placed.part].part.mesh), placed.X_WP);
-    if (!step.region_W || overlap(box_W, *step.region_W)) parts.push_back(placed);
-  }
-  if (!simulation_.needsField(parts, step)) return {};
-  return simulation_.orderField(parts, step);
-}
-
-void Procedure::setField(CookedField field) {
-  simulation_.setField(std::move(field), placed_.front().part);
-  ModelledCost cost = modelledCost(scene_);
-  simulation_.addField(cost);
-  if (cost.bytes > result_.modelled.bytes) result_.modelled = cost;
 }
 
 void Procedure::keepCovered() {
-  const std::optional<Box>& region_W = plan_.steps[static_cast<std::size_t>(step_)].region_W;
-  if (!region_W || placed_.empty()) return;
-  const Twist V = simulation_.twist(held_.part);
-  const double farthest_m = held_.box_P.size().norm() + held_.box_P.center().norm();
-  const double speed_m_s = V.v.norm() + V.w.norm() * farthest_m;
-  const double reach_m = sight_m_ + 2 * speed_m_s * dt_s_;  // twice: it may gather speed within the step
-  if (!isWithin(grown(moved(held_.box_P, poses_[held_.part]), reach_m), *region_W)) widen();
-}
-
-void Procedure::widen() {
-  ++result_.widened;
+  const auto step = static_cast<std::size_t>(step_);
+  const std::size_t part = held_.part;
+  if (placed_.isCovered(step, held_.box_P, poses_[part], simulation_.twist(part), dt_s_)) return;
   if (options_.warn)
     options_.warn(
-        "'" + scene_.parts[held_.part].part.name +
+        "'" + scene_.parts[part].part.name +
         "' came to the border of where it was expected; all that is fixed is modelled from there on");
-  buildWhole(scene_, plan_, {{}, false, options_.cache, {}});
-  fit_ = ExactFit();
-  for (const FixedPart& placed : placed_) {
-    if (scene_.parts[placed.part].is_fixed) fit_bodies_[placed.part].reset();
-    placeInFit(placed.part);
-  }
   if (options_.has_local_contact) side_->pause();
-  setField(cookField(simulation_.orderField(placed_, plan_.steps[static_cast<std::size_t>(step_)], true)));
+  placed_.widen(step);
   if (!options_.has_local_contact) return;
-  if (is_holding_) takeLocally(scene_.parts[held_.part]);
+  if (is_holding_) takeLocally(scene_.parts[part]);
   side_->resume();
-}
-
-const FitBody& Procedure::fitBody(std::size_t part) {
-  std::optional<FitBody>& body = fit_bodies_[part];
-  if (!body) body = makeFitBody(scene_.parts[part].part, simulation_.surface(part));
-  return *body;
 }
 
 void Procedure::take(const SceneStep& step) {
   const ScenePart& scene_part = scene_.parts[step.part];
   if (!scene_part.allow_overlap) {
-    const Penetration overlap = fit_.deepest(fitBody(step.part), step.X_WP_start);
+    const Penetration overlap = placed_.fit().deepest(placed_.fitBody(step.part), step.X_WP_start);
     if (overlap.depth_m > kStartOverlap_m)
       throw LoadError(scene_.file, scene_part.part.name,
                       "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
-                          fit_.name(overlap.against) + "'; move its start, or say allow_overlap = true");
+                          placed_.fit().name(overlap.against) +
+                          "'; move its start, or say allow_overlap = true");
   }
   simulation_.addBody(step.part, step.X_WP_start);
   roles_[step.part] = BodyRole::InHand;
@@ -488,44 +453,52 @@ void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) 
                          : "the hand gave up: target not reached";
 }
 
-/// Judges the part and cooks the field of the next step on other threads. In lockstep time stands still
-/// meanwhile, so that the swap comes at a step's number; by the clock, loop and physics go on until it is
-/// ready.
-void Procedure::settle(StepResult& result, std::size_t index) {
-  const std::size_t part = held_.part;
-  samples_.push_back({time_s_, poses_[part], 0});
-  const FitBody& body = fitBody(part);
-  auto verdict = std::async(std::launch::async, [this, &body] {
+std::future<FitVerdict> Procedure::judgeBeside() {
+  samples_.push_back({time_s_, poses_[held_.part], 0});
+  const FitBody& body = placed_.fitBody(held_.part);
+  return std::async(std::launch::async, [this, &body] {
     leaveRealTime();  // threads are born with their maker's priority
-    return judge(fit_, body, samples_, kJudgeStride);
+    return judge(placed_.fit(), body, samples_, kJudgeStride);
   });
-  // So that the next step has what it is mounted on.
-  const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
-  placed_.push_back({part, X_WP});
-  std::future<CookedField> field;
-  if (auto order = orderFor(index + 1))
-    field = std::async(std::launch::async, [order = std::move(*order)] {
-      leaveRealTime();
-      return cookField(order);
-    });
-  const auto is_ready = [](const auto& future) {
-    return !future.valid() || future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  };
-  const std::uint64_t missed_before = side_->missed();
+}
+
+std::future<CookedField> Procedure::cookBeside(std::size_t step) {
+  auto order = placed_.orderFor(step);
+  if (!order) return {};
+  return std::async(std::launch::async, [order = std::move(*order)] {
+    leaveRealTime();
+    return cookField(order);
+  });
+}
+
+void Procedure::goOnUntil(const std::function<bool()>& is_done) {
   is_settling_ = true;
-  while (side_->isByClock() && !(is_ready(verdict) && is_ready(field)) && advance()) {
+  while (!is_done() && advance()) {
   }
   is_settling_ = false;
+}
+
+void Procedure::settle(StepResult& result, std::size_t index) {
+  const std::size_t part = held_.part;
+  std::future<FitVerdict> verdict = judgeBeside();
+  // So that the next step has what it is mounted on.
+  const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
+  placed_.add(part, X_WP);
+  std::future<CookedField> field = cookBeside(index + 1);
+  const std::uint64_t missed_before = side_->missed();
+  if (side_->isByClock()) goOnUntil([&] { return isReady(verdict) && isReady(field); });
   result.missed_while_cooking = side_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
   poses_[part] = X_WP;
-  placeInFit(part);
-  if (!field.valid()) return;
-  CookedField cooked = field.get();
-  result.cook_wall_s = cooked.wall_s;
+  mount(part);
+  if (field.valid()) swapIn(field.get(), result);
+}
+
+void Procedure::swapIn(CookedField field, StepResult& result) {
+  result.cook_wall_s = field.wall_s;
   const double begun_s = wallSeconds();
-  setField(std::move(cooked));
+  placed_.setField(std::move(field));
   result.swap_wall_s = wallSeconds() - begun_s;
 }
 
@@ -533,7 +506,7 @@ void Procedure::tellVerdict(StepResult& result, const FitVerdict& verdict) const
   result.max_penetration_m = verdict.worst.depth_m;
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;
-  if (verdict.worst.depth_m > 0) result.deepest_against = fit_.name(verdict.worst.against);
+  if (verdict.worst.depth_m > 0) result.deepest_against = placed_.fit().name(verdict.worst.against);
 }
 
 void Procedure::rest(StepResult& result, const SceneStep& step) {
