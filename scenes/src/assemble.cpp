@@ -25,7 +25,6 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
-constexpr std::size_t kJudgeStride = 20;
 
 double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -421,7 +420,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
 
 void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
   samples_.push_back({time_s_, poses_[step.part], 0});
-  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, kJudgeStride);
+  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, options_.judge_stride);
   result.max_penetration_m = verdict.worst.depth_m;
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;

@@ -29,6 +29,7 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"fidelity.spacing_m", exact(f.spacing_m)},
       {"fidelity.sides", f.sides == Sides::One ? "one" : "both"},
       {"fidelity.gradient", f.gradient == Gradient::Continuous ? "continuous" : "trilinear"},
+      {"fidelity.contact", scene.contact == ContactKind::Rigid ? "rigid" : "compliant"},
       {"fidelity.contact_limit", std::to_string(f.contact_limit)},
       {"fidelity.haptic_rate_hz", exact(f.haptic_rate_hz)},
       {"fidelity.physics_rate_hz", exact(f.physics_rate_hz)},

@@ -354,7 +354,7 @@ class SceneReader {
       return;
     }
     const SceneKeys keys(*top_.table("fidelity"), context_, "[fidelity]",
-                         {"preset", "voxel", "spacing", "sides", "gradient", "contact_limit",
+                         {"preset", "voxel", "spacing", "sides", "gradient", "contact", "contact_limit",
                           "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     Fidelity& fidelity = scene_.fidelity;
@@ -363,6 +363,8 @@ class SceneReader {
     if (keys.word("sides", {"one", "both"}, index)) fidelity.sides = index == 0 ? Sides::One : Sides::Both;
     if (keys.word("gradient", {"continuous", "trilinear"}, index))
       fidelity.gradient = index == 0 ? Gradient::Continuous : Gradient::Trilinear;
+    if (keys.word("contact", {"rigid", "compliant"}, index))
+      scene_.contact = index == 0 ? ContactKind::Rigid : ContactKind::Compliant;
     constexpr Range kCount{.min = 1, .max = 1e6};
     std::int64_t count = 0;
     if (keys.integer("contact_limit", count, kCount)) fidelity.contact_limit = static_cast<int>(count);

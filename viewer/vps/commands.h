@@ -71,6 +71,14 @@ struct QueryArguments {
 };
 int runQuery(const QueryArguments& given);
 
+struct TradeArguments {
+  std::string scene;
+  FidelityArguments fidelity;
+  bool is_thorough = false;
+  std::string out, csv, json;  ///< empty: none
+};
+int runTrade(const TradeArguments& given);
+
 struct ImportArguments {
   std::string cad, out;
   std::string units, deflection, json;

@@ -55,6 +55,12 @@ struct CouplingWishes {
   std::optional<double> k_N_per_m, b_Ns_per_m, k_Nm_per_rad, b_Nms_per_rad, max_force_N, max_torque_Nm;
 };
 
+/// How contact is turned into motion: DESIGN.md section 8.
+enum class ContactKind {
+  Rigid,      ///< a few contacts for the solver
+  Compliant,  ///< every touching point presses with the softest part's stiffness times area times depth
+};
+
 struct RecordSettings {
   double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };
@@ -67,6 +73,7 @@ struct Scene {
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
+  ContactKind contact = ContactKind::Rigid;
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;
