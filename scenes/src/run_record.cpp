@@ -41,6 +41,7 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"chosen.max_force_N", exact(gains.max_force_N)},
       {"chosen.max_torque_Nm", exact(gains.max_torque_Nm)},
   };
+  if (!scene.fidelity_choice.empty()) about["chosen.fidelity"] = scene.fidelity_choice;
   for (const ScenePart& part : scene.parts)
     about["mesh_hash." + part.part.name] = contentHash(part.part.mesh);
   return about;

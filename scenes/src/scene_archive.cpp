@@ -179,8 +179,8 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<Scene> T>
 void fields(Archive& archive, T& x) {
-  auto& [file, name, warnings, parts, steps, gravity, fidelity, contact, coupling, device, hand, record,
-         release_s] = x;
+  auto& [file, name, warnings, parts, steps, gravity, fidelity, contact, choice, coupling, device, hand,
+         record, release_s] = x;
   archive(file, name, parts, steps, gravity, fidelity, coupling, device, hand, record, release_s);
 }
 

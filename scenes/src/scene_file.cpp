@@ -10,6 +10,7 @@
 
 #include "scene_file_keys.h"
 #include "vps/load_error.h"
+#include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
@@ -112,6 +113,9 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
 bool isMissingReader(const LoadError& error) {
   return std::string_view(error.what()).find("Open CASCADE") != std::string_view::npos;
 }
+
+/// What `fidelity = "auto"` asks for by itself: the designers' usual bound of 10 um.
+const FidelityWish kAutoWish{.budget_hz = std::nullopt, .tolerance_m = 10e-6, .memory_bytes = std::nullopt};
 
 class SceneReader {
  public:
@@ -345,17 +349,22 @@ class SceneReader {
   /// A preset's name, or a table of single knobs over a preset.
   void readFidelity() {
     scene_.fidelity = fidelityPreset("normal");
+    FidelityWish wish;
+    bool is_auto = false;
     if (!top_.has("fidelity")) return;
     const std::vector<std::string> presets = {"fast", "normal", "fine"};
     std::size_t index = 1;
     if (top_.isText("fidelity")) {
+      std::string word;
+      if (top_.text("fidelity", word) && word == "auto") return choose(kAutoWish);
       top_.word("fidelity", presets, index);
       scene_.fidelity = fidelityPreset(presets[index]);
       return;
     }
-    const SceneKeys keys(*top_.table("fidelity"), context_, "[fidelity]",
-                         {"preset", "voxel", "spacing", "sides", "gradient", "contact", "contact_limit",
-                          "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
+    const SceneKeys keys(
+        *top_.table("fidelity"), context_, "[fidelity]",
+        {"preset", "auto", "budget_hz", "tolerance", "memory_MB", "voxel", "spacing", "sides", "gradient",
+         "contact", "contact_limit", "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     Fidelity& fidelity = scene_.fidelity;
     keys.length("voxel", fidelity.voxel_m, kPositive);
@@ -373,6 +382,32 @@ class SceneReader {
     constexpr Range kRate{.min = 1, .max = 1e6};
     keys.number("haptic_rate_hz", fidelity.haptic_rate_hz, kRate);
     keys.number("physics_rate_hz", fidelity.physics_rate_hz, kRate);
+    keys.flag("auto", is_auto);
+    const auto wished = [&](const char* key, std::optional<double>& out) {
+      if (!keys.has(key)) return false;
+      if (!is_auto) keys.fail(key, "stands without 'auto = true', which would heed it");
+      out = 0;
+      return true;
+    };
+    if (wished("budget_hz", wish.budget_hz)) keys.number("budget_hz", *wish.budget_hz, kRate);
+    if (wished("tolerance", wish.tolerance_m)) keys.length("tolerance", *wish.tolerance_m, kPositive);
+    if (wished("memory_MB", wish.memory_bytes)) {
+      keys.number("memory_MB", *wish.memory_bytes, kPositive);
+      *wish.memory_bytes *= 1e6;
+    }
+    if (!is_auto) return;
+    for (const char* key : {"voxel", "spacing"})
+      if (keys.has(key)) keys.fail(key, "stands beside 'auto = true', which chooses it");
+    const bool has_wish = wish.budget_hz || wish.tolerance_m || wish.memory_bytes;
+    choose(has_wish ? wish : kAutoWish);
+  }
+
+  /// Chooses by counts, so that the same file gives the same scene everywhere.
+  void choose(const FidelityWish& wish) {
+    const FidelityChoice choice = chooseFidelity(scene_, wish);
+    if (!choice.is_met) top_.fail("fidelity", "is auto and cannot be met: " + choice.why_not);
+    scene_.fidelity = choice.fidelity;
+    scene_.fidelity_choice = describe(choice);
   }
 
   void readRecord() {

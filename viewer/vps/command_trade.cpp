@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps trade: speed against accuracy on a scene.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "commands.h"
 #include "json_out.h"
@@ -9,6 +11,9 @@
 #include "progress_bar.h"
 #include "terminal.h"
 #include "trade_report.h"
+#include "vps/load_error.h"
+#include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/import.h"
 #include "vps_scenes/trade.h"
 
 namespace vps {
@@ -29,16 +34,59 @@ void print(const TradeResult& result) {
   for (const std::string& words : result.left_out) std::printf("left out: %s\n", words.c_str());
 }
 
+/// "64MB", "1.5GB".
+double bytesFromText(const std::string& text) {
+  std::size_t used = 0;
+  double number = 0;
+  try {
+    number = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  const std::string unit = text.substr(used);
+  const double scale = unit == "kB" ? 1e3 : unit == "MB" ? 1e6 : unit == "GB" ? 1e9 : 0;
+  if (used == 0 || scale == 0 || !(number > 0) || !std::isfinite(number))
+    throw LoadError("", "", "--memory is '" + text + "'; expected more than 0 with kB, MB or GB, as 64MB");
+  return scale * number;
+}
+
+std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
+  FidelityWish wish;
+  if (given.budget_hz > 0) wish.budget_hz = given.budget_hz;
+  if (!given.tolerance.empty()) {
+    wish.tolerance_m = lengthFromText(given.tolerance, "--tolerance");
+    if (!(*wish.tolerance_m > 0))
+      throw LoadError("", "", "--tolerance is " + given.tolerance + "; expected more than 0");
+  }
+  if (!given.memory.empty()) wish.memory_bytes = bytesFromText(given.memory);
+  if (!wish.budget_hz && !wish.tolerance_m && !wish.memory_bytes) return std::nullopt;
+  return wish;
+}
+
+/// Picks, and says what to paste into the scene.
+int pick(Scene scene, const FidelityWish& wish, ProgressBar& bar) {
+  const FidelityChoice choice = chooseFidelity(scene, wish, bar.progress());
+  bar.clear();
+  if (!choice.is_met) {
+    say("no fidelity will do: " + choice.why_not);
+    return kBad;
+  }
+  std::printf("# %s\n%s", describe(choice).c_str(), toToml(choice.fidelity).c_str());
+  return kGood;
+}
+
 }  // namespace
 
 int runTrade(const TradeArguments& given) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
+  const std::optional<FidelityWish> wish = wishFrom(given);
   OutputFile json(given.json, {given.scene}), csv(given.csv, {given.scene});
   std::optional<OutputFolder> out;
   if (!given.out.empty()) out.emplace(given.out);
   ProgressBar bar;
   const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
+  if (wish) return pick(scene, *wish, bar);
   TradeOptions options;
   options.progress = bar.progress();
   options.warn = warn;

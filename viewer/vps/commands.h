@@ -76,6 +76,8 @@ struct TradeArguments {
   FidelityArguments fidelity;
   bool is_thorough = false;
   std::string out, csv, json;  ///< empty: none
+  double budget_hz = 0;        ///< wishes; 0 or empty: none
+  std::string tolerance, memory;
 };
 int runTrade(const TradeArguments& given);
 

@@ -15,7 +15,7 @@
 
 namespace vps {
 
-struct TradeResult;  // vps_scenes/trade.h
+struct TradeResult;       // vps_scenes/trade.h
 struct DualArmCharacter;  // vps_device/dual_arm_character.h
 struct DualArmFile;
 

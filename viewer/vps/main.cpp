@@ -185,6 +185,11 @@ class CommandLine {
     command->add_flag("--thorough", trade_.is_thorough,
                       "all steps and settings, however long it takes (left out: 50 s in all)");
     command->add_option("--out", trade_.out, "folder for plot, trade.csv and trade.json")->type_name("DIR");
+    command->add_option("--budget-hz", trade_.budget_hz, "pick a fidelity for this physics rate, and stop")
+        ->check(CLI::Range(1.0, 1e6));
+    command->add_option("--tolerance", trade_.tolerance,
+                        "pick one that reads depth to this length, with unit");
+    command->add_option("--memory", trade_.memory, "pick one whose models take no more: 64MB, 1GB");
     command->add_option("--csv", trade_.csv, "write the table there")->type_name("FILE");
     addFidelity(command, trade_.fidelity);
     addJson(command, trade_.json);

@@ -74,6 +74,7 @@ struct Scene {
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
   ContactKind contact = ContactKind::Rigid;
+  std::string fidelity_choice;  ///< what was chosen for `auto`, in words; empty: nothing was
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;

@@ -78,16 +78,18 @@ std::string knobLine(const TradeRow& own, const TradeRow& row) {
   const auto change = [](double value, double from) {
     return from > 0 ? number("%+.0f %%", 100 * (value / from - 1)) : std::string("-");
   };
-  std::string words = row.what.name + ": memory " +
-                      change(static_cast<double>(row.bytes), static_cast<double>(own.bytes)) +
-                      ", depth error " + change(row.probe.penetration_m, own.probe.penetration_m) +
-                      ", force error " + change(row.probe.force, own.probe.force) + ", query " +
-                      change(row.query.cpu_p50_us, own.query.cpu_p50_us);
+  std::string words = row.what.name + ": ";
+  if (row.points != own.points || row.bytes != own.bytes || row.points_read != own.points_read)
+    words += "memory " + change(static_cast<double>(row.bytes), static_cast<double>(own.bytes)) +
+             ", depth error " + change(row.probe.penetration_m, own.probe.penetration_m) + ", force error " +
+             change(row.probe.force, own.probe.force) + ", query " +
+             change(row.query.cpu_p50_us, own.query.cpu_p50_us) + ", ";
   if (row.has_run && own.has_run) {
-    words += ", step (p99) " + change(row.run.physics.cpu_p99_us, own.run.physics.cpu_p99_us);
+    words += "step (p99) " + change(row.run.physics.cpu_p99_us, own.run.physics.cpu_p99_us) + ", deepest " +
+             micrometres(own.run.deepest_m) + " -> " + micrometres(row.run.deepest_m);
     if (!row.run.completed) words += "; the procedure failed";
   } else {
-    words += "; not run";
+    words += "not run";
   }
   return words;
 }

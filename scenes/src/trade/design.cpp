@@ -101,7 +101,7 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
 
 TradeTry tradeReference(const Scene& scene) {
   return changed(scene, "reference", TradeKnob::Reference, [](TradeTry& t) {
-    scaleLengths(t.fidelity, 0.4);
+    scaleLengths(t.fidelity, 0.5);
     t.fidelity.sides = Sides::Both;
     t.fidelity.contact_limit *= 4;
     t.fidelity.solver_iterations *= 4;

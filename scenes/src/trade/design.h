@@ -12,7 +12,7 @@ namespace vps {
 /// finer.
 std::vector<TradeTry> tradeDesign(const Scene& scene);
 
-/// What the other rows are compared with: 0.4 of the lengths, twice the rates, four times the solver.
+/// What the other rows are compared with: half the lengths, twice the rates, four times the solver.
 TradeTry tradeReference(const Scene& scene);
 
 /// Each knob where it is cheapest without an error that is more than a tenth above the scene's own; empty

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t kPoses = 16;
 constexpr std::size_t kThoroughPoses = 96;
 constexpr std::size_t kJudgeStride = 200;  ///< the fifty suspects of a step are judged all the same
+constexpr double kSuggestionShare = 0.6;   ///< of the scene's own run, kept for what comes last
 constexpr double kReferenceShare = 0.4;    ///< of the time left, that the reference may take
 
 /// Models that rows share: a part's map by voxel size, its shell by spacing.
@@ -89,7 +90,7 @@ class Trade {
   /// Keeps room for the suggestion, which comes last.
   [[nodiscard]] double left_s() const {
     if (options_.is_thorough) return 1e9;
-    return options_.seconds - spent_s() - (is_last_ ? 0 : own_run_s_ + own_probe_s_);
+    return options_.seconds - spent_s() - (is_last_ ? 0 : kSuggestionShare * own_run_s_);
   }
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
   void tell(const std::string& doing) const {
@@ -116,6 +117,7 @@ class Trade {
   std::optional<Probe> probe_;
   double own_models_s_ = 0, own_run_s_ = 0, own_probe_s_ = 0;
   bool is_last_ = false;
+  double run_scale_ = 1;  ///< what runs took by what they were expected to, the latest
   std::size_t done_ = 0, planned_ = 1;
   TradeResult result_;
 };
@@ -154,7 +156,7 @@ void Trade::measure(const TradeTry& what) {
   ++done_;
   const bool is_own = what.knob == TradeKnob::Own;
   const double models_s = own_models_s_ * modelShare(what);
-  const double probe_s = models_s + own_probe_s_, run_s = own_run_s_ * runShare(what);
+  const double probe_s = models_s + own_probe_s_, run_s = run_scale_ * own_run_s_ * runShare(what);
   // A fifth in hand: what is expected is no more than that.
   const bool is_too_much = what.knob == TradeKnob::Reference ? probe_s + run_s > kReferenceShare * left_s()
                                                              : 1.2 * probe_s > left_s();
@@ -225,6 +227,7 @@ void Trade::runProcedure(Scene& scene, TradeRow& row) {
     result_.left_out.push_back(row.what.name + ": its run was cut, for want of time");
     return;
   }
+  if (!is_own) run_scale_ = 0.5 * (run_scale_ + row.run.wall_s / (own_run_s_ * runShare(row.what)));
   row.has_run = true;
   row.run.completed = result.completed;
   row.run.to_hand_J = result.energy.to_hand_J;
