@@ -137,7 +137,7 @@ PlotOutcome plotTrade(const TradeResult& result, const std::string& file) {
   plot.x_label = "physics step, 99th percentile of processor time [µs]";
   plot.y_label = "error of depth [µm]";
   plot.is_log_x = plot.is_log_y = true;
-  Series front{"front: none is quicker, smaller and truer", {}, false};
+  Series front{"front", {}, false};
   for (const TradeRow& row : result.rows) {
     if (!row.has_run || !row.has_probe) continue;
     const std::pair<double, double> point = {row.run.physics.cpu_p99_us, 1e6 * errorOf(row)};

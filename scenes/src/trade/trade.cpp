@@ -23,6 +23,7 @@ constexpr std::size_t kPoses = 16;
 constexpr std::size_t kThoroughPoses = 96;
 constexpr std::size_t kJudgeStride = 200;  ///< the fifty suspects of a step are judged all the same
 constexpr double kSuggestionShare = 0.6;   ///< of the scene's own run, kept for what comes last
+constexpr int kFewRuns = 4;                ///< with fewer there is nothing to suggest from
 constexpr double kReferenceShare = 0.4;    ///< of the time left, that the reference may take
 
 /// Models that rows share: a part's map by voxel size, its shell by spacing.
@@ -90,7 +91,7 @@ class Trade {
   /// Keeps room for the suggestion, which comes last.
   [[nodiscard]] double left_s() const {
     if (options_.is_thorough) return 1e9;
-    return options_.seconds - spent_s() - (is_last_ ? 0 : kSuggestionShare * own_run_s_);
+    return options_.seconds - spent_s() - (is_last_ || runs_ < kFewRuns ? 0 : kSuggestionShare * own_run_s_);
   }
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
   void tell(const std::string& doing) const {
@@ -117,6 +118,7 @@ class Trade {
   std::optional<Probe> probe_;
   double own_models_s_ = 0, own_run_s_ = 0, own_probe_s_ = 0;
   bool is_last_ = false;
+  int runs_ = 0;
   double run_scale_ = 1;  ///< what runs took by what they were expected to, the latest
   std::size_t done_ = 0, planned_ = 1;
   TradeResult result_;
@@ -229,6 +231,7 @@ void Trade::runProcedure(Scene& scene, TradeRow& row) {
   }
   if (!is_own) run_scale_ = 0.5 * (run_scale_ + row.run.wall_s / (own_run_s_ * runShare(row.what)));
   row.has_run = true;
+  ++runs_;
   row.run.completed = result.completed;
   row.run.to_hand_J = result.energy.to_hand_J;
   row.run.injected_J = result.energy.injected_J;
