@@ -14,20 +14,25 @@ class btCollisionShape;
 
 namespace vps {
 
-/// A point that can touch within the step.
+/// A point that can touch within the step: of a side's shell, or where an edge of body 0 crosses one of
+/// body 1.
 struct Candidate {
-  Vec3 p_W = Vec3::Zero();   ///< the shell's point now
-  Vec3 n_W = Vec3::Zero();   ///< unit, from body 1 to body 0
-  double distance_m = 0;     ///< signed gap now
-  double predicted_m = 0;    ///< the gap at the end of the step if nothing held the bodies
-  double area_m2 = 0;        ///< surface the point stands for
-  double impulse_Ns = 0;     ///< normal impulse it had last step
-  bool was_contact = false;  ///< was given to the solver last step
-  std::uint32_t id = 0;      ///< of the point in its shell
-  std::uint16_t owner = 0;   ///< part of the other side's map
-  std::uint8_t side = 0;     ///< whose shell the point is of: body 0 or 1
+  Vec3 p_W = Vec3::Zero();    ///< the shell's point now
+  Vec3 n_W = Vec3::Zero();    ///< unit, from body 1 to body 0
+  double distance_m = 0;      ///< signed gap now
+  double predicted_m = 0;     ///< the gap at the end of the step if nothing held the bodies
+  double area_m2 = 0;         ///< surface the point stands for
+  double impulse_Ns = 0;      ///< normal impulse it had last step
+  bool was_contact = false;   ///< was given to the solver last step
+  std::uint32_t id = 0;       ///< of the point in its shell; of a crossing body 0's edge
+  std::uint32_t crossed = 0;  ///< of a crossing 1 + body 1's edge; 0: a shell's point
+  std::uint16_t owner = 0;    ///< part of the other side's map
+  std::uint8_t side = 0;      ///< whose shell the point is of: body 0 or 1
 
-  [[nodiscard]] std::uint64_t key() const { return (std::uint64_t(side) << 32) | id; }
+  [[nodiscard]] bool isCrossing() const { return crossed != 0; }
+  [[nodiscard]] std::uint64_t key() const {
+    return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
+  }
 };
 
 /// How body 0 moves against body 1 in the step, and what that means for which points matter.
@@ -81,10 +86,11 @@ std::size_t collectFromSurfaces(const SideView& side, const SideView& other, dou
                                 const VpsBulletSettings& settings, std::vector<Candidate>& out,
                                 std::size_t& points_tested);
 
-/// Renews a candidate's position, distance and normal after a move. `theirs` is the other side's shape, a
-/// VpsShape with a map or surfaces or a primitive.
-void lookUp(const SideView& side, const SideView& other, const btCollisionShape& theirs,
-            const VpsBulletSettings& settings, Candidate& c);
+/// Where edges of two VpsShapes cross, nearer than the cutoff or overlapping by no more than the depth; their
+/// distance and normal are exact. Appends to out. Returns how many did not fit into settings.candidate_limit,
+/// after all that are there.
+std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
+                             const VpsBulletSettings& settings, std::vector<Candidate>& out);
 
 /// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction
 /// of contact survive, and what has survived once is preferred, so that the set does not flicker.

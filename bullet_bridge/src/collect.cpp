@@ -257,27 +257,4 @@ std::size_t collectFromSurfaces(const SideView& side, const SideView& other, dou
   return collectByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
 }
 
-void lookUp(const SideView& side, const SideView& other, const btCollisionShape& theirs,
-            const VpsBulletSettings& settings, Candidate& c) {
-  const double sign = side.side == 0 ? 1 : -1;
-  const PointShell& shell = *side.shape->models().shell;
-  c.p_W = side.X_WM * shell.points[c.id];
-  const Vec3 p_M = other.X_WM.inverse() * c.p_W;
-  SurfaceDistance at;
-  if (isPrimitive(theirs)) {
-    at = primitiveDistance(withoutStandIn(theirs), p_M);
-  } else if (other.shape->models().map) {
-    const VoxMap& map = *other.shape->models().map;
-    at = {map.distance(p_M), map.normal(p_M, settings.gradient)};
-  } else {
-    at = SurfaceView(side, other).at(shell.points[c.id], shell.inward[c.id], 1e300);
-  }
-  c.distance_m = at.distance_m;
-  c.n_W = sign * (other.X_WM.R * at.n);
-  // Deeper than the band the field knows no way out; the point's own inward normal is what queryContacts
-  // gives.
-  if (at.n.isZero(0)) c.n_W = sign * (side.X_WM.R * shell.inward[c.id]);
-  if (movesToRounds(settings) && isPrimitive(theirs)) touchRound(c, side, other, withoutStandIn(theirs));
-}
-
 }  // namespace vps

@@ -52,7 +52,7 @@ void ContactSweeps::prepareRow(ContactRow& row) const {
   row.W = 0;
   for (ContactRow::Side& side : row.side) {
     if (side.body < 0) continue;
-    side.MinvJ = inverse_[static_cast<std::size_t>(side.body)] * side.J;
+    side.MinvJ = body(side).held_inverse * side.J;
     row.W += side.J.dot(side.MinvJ);
   }
 }
@@ -95,16 +95,10 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
 }
 
 void ContactSweeps::prepare() {
-  inverse_.clear();
-  for (const IslandBody& b : island_.bodies) inverse_.push_back(b.held.llt().solve(Mat6::Identity()));
   drives_.clear();
   for (JointRow& row : joints_.rows) {
     Drive drive{&row, {Vec6::Zero(), Vec6::Zero()}, 0};
-    for (int i = 0; i < 2; ++i) {
-      if (row.body[i] < 0) continue;
-      drive.MinvJ[i] = inverse_[static_cast<std::size_t>(row.body[i])] * row.J[i];
-      drive.W += row.J[i].dot(drive.MinvJ[i]);
-    }
+    drive.W = row.inverseMass(island_, &drive.MinvJ);
     row.impulse_Ns = 0;
     if (drive.W > 0) drives_.push_back(drive);
   }
@@ -129,8 +123,7 @@ void ContactSweeps::start() {
 }
 
 void ContactSweeps::applyImpulses() {
-  for (std::size_t i = 0; i < inverse_.size(); ++i)
-    island_.bodies[i].u = inverse_[i] * (island_.bodies[i].momentum + island_.bodies[i].drive);
+  for (IslandBody& b : island_.bodies) b.u = b.held_inverse * (b.momentum + b.drive);
   for (const RigidContact& c : contacts_) {
     if (c.p_n != 0) apply(c.normal, c.p_n);
     for (int t = 0; t < 2; ++t)

@@ -89,8 +89,7 @@ class ContactSweeps {
   JointRows& joints_;
   std::vector<Drive> drives_;
   std::vector<RigidContact> contacts_;
-  std::vector<Mat6> inverse_;  // of each body's held mass
-  std::vector<Vec6> push_;     // velocities that only move, for one step
+  std::vector<Vec6> push_;  // velocities that only move, for one step
 };
 
 }  // namespace vps

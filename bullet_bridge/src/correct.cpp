@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "candidate.h"
 #include "partner.h"
@@ -15,8 +17,49 @@ namespace {
 // meets each face.
 constexpr double kFacing = 0.2;
 constexpr double kCosEdge = 0.94;     // 20 degrees, as in PointShellSettings::edge_angle_rad
+constexpr double kAlong = 0.087;      // 5 degrees, as findCrossings()
+constexpr double kInto = 0.17;        // 10 degrees. assumed: beyond the facets of what are flush round faces
 constexpr double kNever_m = 1;        // far beyond any step
 constexpr double kTouching_m = 1e-6;  // below this, p - q is too short to be trusted as a direction
+
+/// A shell point and what its own part is like around it.
+struct OwnPoint {
+  Vec3 p_W, inward_W;
+  bool is_edge = false;
+  const SideView* side = nullptr;             ///< null: edges are not asked for
+  std::span<const std::uint32_t> edges = {};  ///< of side, that the point stands on
+  Vec3 p_M = Vec3::Zero();                    ///< the point in its models' frame
+
+  OwnPoint movedTo(const Vec3& place_W) const {
+    OwnPoint moved = *this;
+    moved.p_W = place_W;
+    return moved;
+  }
+  [[nodiscard]] const EdgeSegment& segment(std::uint32_t i) const {
+    return side->shape->edges().segments()[i];
+  }
+  [[nodiscard]] Vec3 inModel(const Vec3& n_W) const { return side->X_WM.R.transpose() * n_W; }
+  /// True if the part lies, around the point, on the far side of a plane with this normal through it. If not,
+  /// another point is what meets the plane, and deeper.
+  [[nodiscard]] bool isFirstAlong(const Vec3& n_W) const {
+    const Vec3 n = inModel(n_W);
+    for (const std::uint32_t i : edges) {
+      const EdgeSegment& s = segment(i);
+      if (std::min(n.dot(s.into[0]), n.dot(s.into[1])) < -kInto) return false;
+      const Vec3 along = (s.to - s.from).normalized();
+      if ((p_M - s.from).norm() < kTouching_m && n.dot(along) < -kInto) return false;
+      if ((p_M - s.to).norm() < kTouching_m && n.dot(along) > kInto) return false;
+    }
+    return true;
+  }
+  /// True if its edge, no corner, runs towards the other along this normal: then it is nearer elsewhere,
+  /// where they cross, which is a candidate of its own.
+  [[nodiscard]] bool runsAlong(const Vec3& n_W) const {
+    if (edges.size() != 1) return false;
+    const EdgeSegment& s = segment(edges[0]);
+    return std::abs(inModel(n_W).dot((s.to - s.from).normalized())) > kAlong;
+  }
+};
 
 /// The nearest point q of a surface to a point p; in W.
 struct Foot {
@@ -25,6 +68,7 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
   Vec3 smooth = Vec3::Zero();  ///< the normal of the curved surface that the mesh stands for
   bool is_edge = false;
+  bool is_rim = false;  ///< of a sheet, which is no edge between two faces
 };
 
 struct Exact {
@@ -35,18 +79,19 @@ struct Exact {
   bool is_edge_on_edge = false;
 };
 
-Foot footOn(const VpsSurface& surface, const Pose& X_WM, const Vec3& p_W, const Vec3& inward, double max_m) {
+Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
   const Pose X_WP = X_WM * surface.X_MP;
-  const Vec3 p = X_WP.inverse() * p_W;
+  const Vec3 p = X_WP.inverse() * own.p_W;
   const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
   if (!closest.found) return {};
   const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
   Foot foot{true, X_WP.R * (p - closest.q), X_WP.R * closest.normal,
             X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q), is_edge};
   if (surface.sheet) {
-    const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * inward, closest);
+    const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * own.inward_W, closest);
     foot.normal = X_WP.R * seen.normal;
     if (foot.smooth.dot(foot.normal) < 0) foot.smooth = -foot.smooth;  // from behind
+    foot.is_rim = seen.is_rim;
     foot.is_edge |= seen.is_rim;
   }
   return foot;
@@ -67,15 +112,16 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
 // the contact's. The other's would be wrong near its edges: the plane of a chamfer, met a hair below the
 // chamfer's rim, would stop a peg that slides past. A point on an edge has no tangent plane; the other's face
 // has.
-Exact contactAt(const Foot& foot, const Vec3& inward, bool is_edge_point) {
+Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = foot.found;
   if (!foot.found) return exact;
-  const double cos_facing = inward.dot(foot.normal);
-  exact.meets = cos_facing > kFacing;
-  if (exact.meets && !(is_edge_point && foot.is_edge)) {
-    const bool is_smooth = is_edge_point || (!foot.is_edge && cos_facing > kCosEdge);
-    exact.n = is_smooth ? foot.smooth : inward;
+  const double cos_facing = own.inward_W.dot(foot.normal);
+  const bool is_edge_on_edge = own.is_edge && foot.is_edge;
+  exact.meets = own.edges.empty() || is_edge_on_edge ? cos_facing > kFacing : own.isFirstAlong(foot.normal);
+  if (exact.meets && !is_edge_on_edge) {
+    const bool is_smooth = own.is_edge || (!foot.is_edge && cos_facing > kCosEdge);
+    exact.n = is_smooth ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);
     return exact;
   }
@@ -83,7 +129,8 @@ Exact contactAt(const Foot& foot, const Vec3& inward, bool is_edge_point) {
   const double distance_m = foot.from_q.norm();
   exact.distance_m = sign * distance_m;
   exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
-  exact.is_edge_on_edge = is_edge_point && foot.is_edge;
+  exact.is_edge_on_edge = is_edge_on_edge;
+  if (is_edge_on_edge && !foot.is_rim && own.runsAlong(exact.n)) exact.meets = false;
   return exact;
 }
 
@@ -94,18 +141,28 @@ struct Corrector {
   const btCollisionShape& theirs;
   bool is_primitive;
 
-  Exact at(const Vec3& p_W, const Vec3& inward, bool is_edge_point, double max_m) const {
-    if (is_primitive) return contactAt(footOn(theirs, other.X_WM, p_W), inward, is_edge_point);
+  Exact at(const OwnPoint& own, double max_m) const {
+    if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
     for (const VpsSurface& surface : other.shape->models().surfaces) {
-      const Exact exact = contactAt(footOn(surface, other.X_WM, p_W, inward, max_m), inward, is_edge_point);
+      const Exact exact = contactAt(footOn(surface, other.X_WM, own, max_m), own);
       nearest.found |= exact.found;
       if (exact.meets && (!nearest.meets || exact.distance_m < nearest.distance_m)) nearest = exact;
     }
     return nearest;
   }
 };
+
+// The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
+// clear. What the point meets at the end of its way counts, as long as that is not an overlap.
+Exact whereItGoes(const Exact& now, const Corrector& corrector, const OwnPoint& own, const Vec3& way_W,
+                  double max_m) {
+  Exact end = corrector.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());
+  if (end.found && !(end.meets && end.distance_m >= 0)) return now;
+  end.distance_m -= end.n.dot(way_W);
+  return end;
+}
 
 }  // namespace
 
@@ -120,23 +177,19 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
   const double field_error_m =
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kTouching_m;
   for (Candidate& c : candidates) {
-    if (c.side != side.side) continue;
+    if (c.side != side.side || c.isCrossing()) continue;
     if (is_primitive && touchRound(c, side, other, corrector.theirs)) continue;
-    const Vec3 inward = side.X_WM.R * shell.inward[c.id];
-    const bool is_edge_point = side.shape->isEdgePoint(c.id);
+    const OwnPoint own{c.p_W,
+                       side.X_WM.R * shell.inward[c.id],
+                       side.shape->isEdgePoint(c.id),
+                       &side,
+                       is_primitive ? std::span<const std::uint32_t>() : side.shape->edgesAt(c.id),
+                       shell.points[c.id]};
     const double max_m = std::abs(c.distance_m) + field_error_m;
-    Exact exact = corrector.at(c.p_W, inward, is_edge_point, max_m);
+    Exact exact = corrector.at(own, max_m);
     if (!exact.found) continue;  // the field is all there is
-    if (exact.meets && exact.is_edge_on_edge) {
-      // The line between two edges turns fast as they pass each other, and would stop a point that is about
-      // to pass clear. What the point meets at the end of its way counts, as long as that is not an overlap.
-      const Vec3 way = sign * motion.dt_s * motion.velocityAt(c.p_W);
-      Exact end = corrector.at(c.p_W + way, inward, is_edge_point, max_m + way.norm());
-      if (!end.found || (end.meets && end.distance_m >= 0)) {
-        end.distance_m -= end.n.dot(way);
-        exact = end;
-      }
-    }
+    if (exact.meets && exact.is_edge_on_edge)
+      exact = whereItGoes(exact, corrector, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
   }
@@ -148,9 +201,10 @@ namespace {
 // of a voxel, but at sharp edges.
 Exact nearFieldDistance(const Corrector& corrector, const Vec3& p_W, const Vec3& inward, double field_m,
                         double voxel_m) {
+  const OwnPoint own{p_W, inward, true};  // springs know no crossings: the points of edges are all they have
   constexpr double kMostly = 0.05, kAlways = 1;  // of a voxel
-  Exact exact = corrector.at(p_W, inward, true, std::abs(field_m) + kMostly * voxel_m);
-  if (!exact.found) exact = corrector.at(p_W, inward, true, std::abs(field_m) + kAlways * voxel_m);
+  Exact exact = corrector.at(own, std::abs(field_m) + kMostly * voxel_m);
+  if (!exact.found) exact = corrector.at(own, std::abs(field_m) + kAlways * voxel_m);
   return exact;
 }
 

@@ -80,10 +80,9 @@ double Island::topSpeed(std::span<const Vec6> twists) const {
   return top_m_s;
 }
 
-std::vector<Vec6> Island::velocities() const {
-  std::vector<Vec6> u;
+void Island::readVelocities(std::vector<Vec6>& u) const {
+  u.clear();
   for (const IslandBody& b : bodies) u.push_back(b.u);
-  return u;
 }
 
 void Island::writeVelocities() const {

@@ -31,8 +31,9 @@ struct IslandBody {
   Mat6 mass = Mat6::Zero();
   Vec6 momentum = Vec6::Zero();  ///< mass times the velocity with external forces
   Mat6 held = Mat6::Zero();      ///< mass, and the implicit part of the couplings that hold it
-  Vec6 drive = Vec6::Zero();     ///< the couplings' constant part
-  Vec6 u = Vec6::Zero();         ///< at first that of the last step
+  Mat6 held_inverse = Mat6::Zero();
+  Vec6 drive = Vec6::Zero();  ///< the couplings' constant part
+  Vec6 u = Vec6::Zero();      ///< at first that of the last step
 };
 
 /// How a solver of the island ended.
@@ -50,7 +51,7 @@ class Island {
   /// Of a body that is not in the island but moves (kinematic), about its origin.
   [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
   void writeVelocities() const;
-  [[nodiscard]] std::vector<Vec6> velocities() const;
+  void readVelocities(std::vector<Vec6>& u) const;
   /// Greatest speed of any body's point at these twists, one a body [m/s]; infinite where one is no number.
   [[nodiscard]] double topSpeed(std::span<const Vec6> twists) const;
 

@@ -37,11 +37,15 @@ void addFeedback(btJointFeedback& feedback, const JointRow& row, double dt_s) {
 
 }  // namespace
 
-double JointRow::velocity(const Island& island) const {
-  double v = fixed_velocity;
-  for (int i = 0; i < 2; ++i)
-    if (body[i] >= 0) v += J[i].dot(island.bodies[static_cast<std::size_t>(body[i])].u);
-  return v;
+double JointRow::inverseMass(const Island& island, Vec6 (*MinvJ)[2]) const {
+  double W = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (body[i] < 0) continue;
+    const Vec6 each = island.bodies[static_cast<std::size_t>(body[i])].held_inverse * J[i];
+    W += J[i].dot(each);
+    if (MinvJ) (*MinvJ)[i] = each;
+  }
+  return W;
 }
 
 void JointRows::add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info) {

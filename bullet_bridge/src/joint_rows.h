@@ -23,7 +23,19 @@ struct JointRow {
   double lower_Ns = 0, upper_Ns = 0;
   double impulse_Ns = 0;
 
-  [[nodiscard]] double velocity(const Island& island) const;
+  /// @param twistOf  a body's twist by its index
+  template <typename TwistOf>
+  [[nodiscard]] double velocity(const TwistOf& twistOf) const {
+    double v = fixed_velocity;
+    for (int i = 0; i < 2; ++i)
+      if (body[i] >= 0) v += J[i].dot(twistOf(static_cast<std::size_t>(body[i])));
+    return v;
+  }
+  [[nodiscard]] double velocity(const Island& island) const {
+    return velocity([&](std::size_t i) -> const Vec6& { return island.bodies[i].u; });
+  }
+  /// J held^-1 J', with each body's held^-1 J' if asked for.
+  double inverseMass(const Island& island, Vec6 (*MinvJ)[2] = nullptr) const;
 };
 
 class JointRows {

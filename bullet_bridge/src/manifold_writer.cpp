@@ -20,6 +20,12 @@ void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
   on1 = c.side == 1 ? c.p_W : Vec3(c.p_W - c.distance_m * c.n_W);
 }
 
+// Of the shell's point on its own side, of an edge on both.
+int indexOn(const Candidate& c, int side) {
+  if (c.isCrossing() && side == 1) return static_cast<int>(c.crossed - 1);
+  return c.side == side ? static_cast<int>(c.id) : -1;
+}
+
 // Along the slip, so that the solver's friction pyramid is exact for a sliding part; for one at rest, along a
 // direction that depends on the normal alone, so that it does not turn with noise.
 void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& velocity) {
@@ -65,8 +71,8 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
                         toBt(c.distance_m));
   point.m_positionWorldOnA = p0;
   point.m_positionWorldOnB = p1;
-  point.m_index0 = c.side == 0 ? static_cast<int>(c.id) : -1;
-  point.m_index1 = c.side == 1 ? static_cast<int>(c.id) : -1;
+  point.m_index0 = indexOn(c, 0);
+  point.m_index1 = indexOn(c, 1);
   point.m_partId0 = c.side == 1 ? c.owner : 0;
   point.m_partId1 = c.side == 0 ? c.owner : 0;
   setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
@@ -90,6 +96,7 @@ void inherit(btManifoldPoint& point, const btManifoldPoint& old) {
 std::uint64_t keyOf(const btManifoldPoint& point) {
   Candidate c;
   c.side = point.m_index0 >= 0 ? 0 : 1;
+  if (point.m_index0 >= 0 && point.m_index1 >= 0) c.crossed = static_cast<std::uint32_t>(point.m_index1) + 1;
   c.id = static_cast<std::uint32_t>(c.side == 0 ? point.m_index0 : point.m_index1);
   return c.key();
 }
@@ -187,8 +194,8 @@ void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectW
   for (const Candidate& c : contacts) {
     Vec3 on0, on1;
     positions(c, on0, on1);
-    result.setShapeIdentifiersA(c.side == 1 ? c.owner : 0, c.side == 0 ? static_cast<int>(c.id) : -1);
-    result.setShapeIdentifiersB(c.side == 0 ? c.owner : 0, c.side == 1 ? static_cast<int>(c.id) : -1);
+    result.setShapeIdentifiersA(c.side == 1 ? c.owner : 0, indexOn(c, 0));
+    result.setShapeIdentifiersB(c.side == 0 ? c.owner : 0, indexOn(c, 1));
     result.addContactPoint(toBt(c.n_W), toBt(on1), toBt(c.distance_m));
   }
   result.setPersistentManifold(before);

@@ -18,7 +18,7 @@ struct btCollisionObjectWrapper;
 namespace vps {
 
 /// Candidate::key() of a contact we wrote: the side with the shell has the point's id as its index, the other
-/// -1.
+/// -1; of a crossing each has its edge's.
 std::uint64_t keyOf(const btManifoldPoint& point);
 
 class ManifoldWriter {

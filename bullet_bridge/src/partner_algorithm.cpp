@@ -67,7 +67,7 @@ PartnerAlgorithm::PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& i
                                    const btCollisionObjectWrapper* body0,
                                    const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
                                    int partner_side)
-    : btActivatingCollisionAlgorithm(info, body0, body1), state_(std::make_unique<State>()) {
+    : VpsPair(info, body0, body1), state_(std::make_unique<State>()) {
   state_->context = std::move(context);
   state_->partner_side = partner_side;
   state_->renew(*m_dispatcher, {body0, body1});

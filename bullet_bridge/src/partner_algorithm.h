@@ -2,8 +2,6 @@
 // Narrow phase for pairs of a VpsShape with a shape that a PartnerShape stands in for.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
-
 #include <memory>
 
 #include "vps_bullet/algorithm.h"
@@ -14,7 +12,7 @@ class PartnerShape;
 
 /// VpsAlgorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
 /// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
-class PartnerAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
+class PartnerAlgorithm final : public VpsPair {
  public:
   /// @param partner_side  0 or 1: whose shape is replaced. Throws as PartnerCache::get().
   PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -27,10 +25,6 @@ class PartnerAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
                const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
  private:

@@ -83,10 +83,7 @@ void PenaltyNewton::prepareJoints() {
   constexpr double kStiffer = 1e6;  // than the bodies are heavy
   joint_kg_.clear();
   for (const JointRow& row : joints_.rows) {
-    double W = 0;
-    for (int i = 0; i < 2; ++i)
-      if (row.body[i] >= 0)
-        W += row.J[i].dot(island_.bodies[static_cast<std::size_t>(row.body[i])].held.llt().solve(row.J[i]));
+    const double W = row.inverseMass(island_);
     joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.softness, 1 / kStiffer)) : 0);
   }
   is_free_.assign(joints_.rows.size(), 0);
@@ -94,9 +91,7 @@ void PenaltyNewton::prepareJoints() {
 
 double PenaltyNewton::jointImpulse(const JointRow& row, double stiffness_kg,
                                    const std::vector<Vec6>& u) const {
-  double velocity = row.fixed_velocity;
-  for (int i = 0; i < 2; ++i)
-    if (row.body[i] >= 0) velocity += row.J[i].dot(u[static_cast<std::size_t>(row.body[i])]);
+  const double velocity = row.velocity([&](std::size_t i) -> const Vec6& { return u[i]; });
   return std::clamp(stiffness_kg * (row.target - velocity), row.lower_Ns, row.upper_Ns);
 }
 
@@ -186,13 +181,13 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
 double PenaltyNewton::imbalance_m_s() {
   trial_.resize(gradient_.size());
   for (std::size_t i = 0; i < gradient_.size(); ++i)
-    trial_[i] = island_.bodies[i].held.llt().solve(gradient_[i]);
+    trial_[i] = island_.bodies[i].held_inverse * gradient_[i];
   return island_.topSpeed(trial_);
 }
 
 SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End end) {
   prepareJoints();
-  velocities();
+  island_.readVelocities(u_);
   gradient_.resize(u_.size());
   step_.resize(u_.size());
   SolveOutcome outcome;
@@ -219,21 +214,15 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
   return outcome;
 }
 
-const std::vector<Vec6>& PenaltyNewton::velocities() {
-  u_.clear();
-  for (const IslandBody& b : island_.bodies) u_.push_back(b.u);
-  return u_;
-}
-
 double PenaltyNewton::renewLimits() {
-  velocities();
+  island_.readVelocities(u_);
   double change = 0, greatest = 0;
   for (PenaltyPatch& patch : patches()) patch.renewLimits(twistOf(patch, u_), change, greatest);
   return greatest > 0 ? change / greatest : change;
 }
 
 void PenaltyNewton::finish() {
-  velocities();
+  island_.readVelocities(u_);
   for (std::size_t j = 0; j < joint_kg_.size(); ++j)
     joints_.rows[j].impulse_Ns = jointImpulse(joints_.rows[j], joint_kg_[j], u_);
   for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));

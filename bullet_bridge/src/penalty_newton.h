@@ -55,7 +55,6 @@ class PenaltyNewton {
   [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
   [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
-  const std::vector<Vec6>& velocities();
   [[nodiscard]] double imbalance_m_s();
 
   /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits

@@ -46,24 +46,26 @@ PenaltyPoint springOf(const RigidContact& c, double dt_s, double softness) {
 }  // namespace
 
 void RigidNewton::setAbout(std::span<const RigidContact> contacts, double dt_s) {
-  pairs_.clear();
+  pair_count_ = 0;
   for (const RigidContact& c : contacts) {
-    if (pairs_.empty() || !isOfPair(c, pairs_.back())) {
-      PenaltyPair& pair = pairs_.emplace_back();
+    if (pair_count_ == 0 || !isOfPair(c, pairs_[pair_count_ - 1])) {
+      if (pair_count_ == pairs_.size()) pairs_.emplace_back();
+      PenaltyPair& pair = pairs_[pair_count_++];
       for (int i = 0; i < 2; ++i) pair.object[i] = c.object[i];
       pair.mu = c.mu;
+      pair.points.clear();
     }
-    pairs_.back().points.push_back(springOf(c, dt_s, softness_));
+    pairs_[pair_count_ - 1].points.push_back(springOf(c, dt_s, softness_));
   }
   springs_.clear(dt_s);
-  for (PenaltyPair& pair : pairs_) springs_.add(pair, false);  // nor do sweeps foresee it
+  for (PenaltyPair& pair : pairs()) springs_.add(pair, false);  // nor do sweeps foresee it
 }
 
 // Returns the greatest give of a spring, which is the velocity by which its row misses its law.
-double RigidNewton::takeImpulses(std::span<RigidContact> contacts, double dt_s) const {
+double RigidNewton::takeImpulses(std::span<RigidContact> contacts, double dt_s) {
   double give_m_s = 0;
   auto c = contacts.begin();
-  for (const PenaltyPair& pair : pairs_)
+  for (const PenaltyPair& pair : pairs())
     for (const PenaltyPoint& p : pair.points) {
       const double p_n = dt_s * p.f_n_N;
       const Vec3 impulse_t = -dt_s * p.k_N_per_m * p.bend_W;
@@ -79,11 +81,6 @@ double RigidNewton::takeImpulses(std::span<RigidContact> contacts, double dt_s) 
   return give_m_s;
 }
 
-void RigidNewton::keepVelocities() {
-  before_.clear();
-  for (const IslandBody& b : island_.bodies) before_.push_back(b.u);
-}
-
 double RigidNewton::changeSinceKept_m_s() {
   change_.clear();
   for (std::size_t i = 0; i < before_.size(); ++i) change_.push_back(island_.bodies[i].u - before_[i]);
@@ -95,7 +92,7 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
   SolveOutcome outcome;
   softness_ = kSoftest;
   double missed_m_s = std::numeric_limits<double>::infinity();
-  keepVelocities();
+  island_.readVelocities(before_);
   while (outcome.steps < step_limit && missed_m_s > residual_m_s) {
     setAbout(contacts, dt_s);
     const double near_m_s = kShareOfMissed * std::clamp(missed_m_s, residual_m_s, kFirstMissed_m_s);
@@ -109,7 +106,7 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
     const double now_m_s = std::max(takeImpulses(contacts, dt_s), changeSinceKept_m_s());
     if (now_m_s > kGood * missed_m_s) softness_ = std::max(kStiffest, kStiffer * softness_);
     missed_m_s = now_m_s;
-    keepVelocities();
+    island_.readVelocities(before_);
   }
   outcome.is_settled = missed_m_s <= residual_m_s;
   return outcome;

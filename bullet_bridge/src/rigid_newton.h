@@ -30,16 +30,17 @@ class RigidNewton {
   SolveOutcome solve(std::span<RigidContact> contacts, double dt_s, double residual_m_s, int step_limit);
 
  private:
+  [[nodiscard]] std::span<PenaltyPair> pairs() { return {pairs_.data(), pair_count_}; }
   void setAbout(std::span<const RigidContact> contacts, double dt_s);
-  double takeImpulses(std::span<RigidContact> contacts, double dt_s) const;
+  double takeImpulses(std::span<RigidContact> contacts, double dt_s);
 
-  void keepVelocities();
   [[nodiscard]] double changeSinceKept_m_s();
 
   Island& island_;
   PenaltyNewton springs_;
   double softness_ = 0;
-  std::vector<PenaltyPair> pairs_;
+  std::vector<PenaltyPair> pairs_;  // the first pair_count_ of them; kept for their memory
+  std::size_t pair_count_ = 0;
   std::vector<Vec6> before_, change_;  // velocities of the round before, and what became of them
 };
 

@@ -51,9 +51,10 @@ struct PointNormals {
   std::vector<Vec3> smooth_inward;
 };
 
+constexpr double kOnSurface_m = 1e-6;
+
 // A point on a face has that face's normal; one on an edge has the mean of several.
 PointNormals findNormals(const VpsModels& models) {
-  constexpr double kOnSurface_m = 1e-6;
   constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
   if (!models.shell || models.surfaces.empty()) return {};
   PointNormals normals{std::vector<std::uint8_t>(models.shell->size(), 1), models.shell->inward};
@@ -70,6 +71,13 @@ PointNormals findNormals(const VpsModels& models) {
           -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
     }
   return normals;
+}
+
+EdgeSet edgesOf(const std::vector<VpsSurface>& surfaces) {
+  std::vector<EdgeSegment> segments;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
+  return EdgeSet(std::move(segments));
 }
 
 }  // namespace
@@ -206,6 +214,15 @@ void VpsShape::use(VpsModels models, const Pose& X_SM) {
   PointNormals normals = findNormals(models_);
   is_edge_point_ = std::move(normals.is_edge);
   smooth_inward_ = std::move(normals.smooth_inward);
+  edges_ = edgesOf(models_.surfaces);
+  edges_at_.clear();
+  first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
+  for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
+    if (is_edge_point_[i] != 0)
+      edges_.forEachNear(models_.shell->points[i], kOnSurface_m,
+                         [this](std::uint32_t segment) { edges_at_.push_back(segment); });
+    first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
+  }
   Box box_M;
   const auto include = [&box_M](const Box& box) {
     if (box.isEmpty()) return;

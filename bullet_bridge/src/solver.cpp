@@ -48,6 +48,7 @@ struct VpsSolver::Work {
   std::vector<Held> held;
   std::vector<PenaltyManifold> manifolds;  // of soft contacts
   std::deque<PenaltyPair> made;            // of manifolds that are nobody's pair
+  std::vector<Vec6> u;                     // room for velocities
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
@@ -154,6 +155,7 @@ void VpsSolver::Work::applyLaws() {
     b.held += h.J.transpose() * h.law.D.asDiagonal() * h.J;
     b.drive += h.J.transpose() * h.law.c;
   }
+  for (IslandBody& b : island.bodies) b.held_inverse = b.held.llt().solve(Mat6::Identity());
 }
 
 // True if the laws hold as they stand; else those that do not are replaced.
@@ -179,8 +181,8 @@ SolveOutcome VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, doub
   SolveOutcome outcome =
       rigid.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
   if (outcome.is_settled || newton_limit == 0) return outcome;
-  const double near_m_s =
-      std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(island.velocities()));
+  island.readVelocities(u);
+  const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u));
   const SolveOutcome newton = rigid_newton.solve(rigid.contacts(), dt_s, near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * newton.steps;
   outcome.is_settled = newton.is_settled;

@@ -32,6 +32,18 @@ Words wordsOf(Kind kind) {
       return {"the handle moved faster than a hand does", "hold the handle, then re-arm"};
     case Kind::PeerLost:
       return {"no force was asked for in time", "see that the rendering runs, then re-arm"};
+    case Kind::BadForce:
+      return {"the force worked out is not a number", "report it with a recording, then re-arm"};
+    case Kind::BadPose:
+      return {"the device's pose is not a number", "check the device, then re-arm"};
+    case Kind::PoseJump:
+      return {"the device's pose jumped", "hold the handle, then re-arm"};
+    case Kind::DeviceLost:
+      return {"the device does not answer", "check its power and cable, then re-arm"};
+    case Kind::BadGains:
+      return {"the coupling's gains are out of range", "correct [coupling], or leave it to the device's own"};
+    case Kind::PhysicsStalled:
+      return {"the simulation stands still", "wait until it goes on, then re-arm"};
     case Kind::NotCalibrated:
       return {"the encoders do not know where they are", "put the handle into its cradle and calibrate"};
     case Kind::BadWrench:
@@ -46,6 +58,14 @@ Words wordsOf(Kind kind) {
       return {"the handle is turned almost as far as it goes", "turn it back"};
     case Kind::ArmsNear:
       return {"the arms come near each other", "turn the handle back towards straight"};
+    case Kind::TicksMissed:
+      return {"the haptic loop came too late", "close other programs, or lower the haptic rate"};
+    case Kind::NoPriority:
+      return {"the system refuses the haptic loop its priority",
+              "allow it: ulimit -r 90, or rtprio in /etc/security/limits.conf"};
+    case Kind::NotLocked:
+      return {"the system refuses to keep the program in memory",
+              "allow it: ulimit -l unlimited, or memlock in /etc/security/limits.conf"};
     case Kind::Calibrated:
       return {"calibrated", ""};
     case Kind::Rearmed:
@@ -58,7 +78,7 @@ Words wordsOf(Kind kind) {
 
 Severity severityOf(Kind kind) noexcept {
   if (kind <= Kind::NotCalibrated) return Severity::Fault;
-  return kind <= Kind::ArmsNear ? Severity::Warning : Severity::Notice;
+  return kind <= Kind::NotLocked ? Severity::Warning : Severity::Notice;
 }
 
 const char* toText(Kind kind) noexcept {

@@ -49,7 +49,7 @@ HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& s
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
   delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMostDelay));
-  if (!areUsable(gains)) guard_.refuse(SafetyFault::BadGains);
+  if (!areUsable(gains)) refuse(SafetyFault::BadGains);
 }
 
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
@@ -72,15 +72,45 @@ void HapticLoop::release() noexcept {
 }
 
 void HapticLoop::rearm() noexcept {
+  const bool was_faulted = guard_.state().fault != SafetyFault::None;
   device_->rearm();
   guard_.rearm();
-  if (!areUsable(settings_.gains)) guard_.refuse(SafetyFault::BadGains);
+  if (was_faulted && settings_.events != nullptr)
+    settings_.events->push({report_.time_s, DeviceEventKind::Rearmed, 0});
+  if (!areUsable(settings_.gains)) refuse(SafetyFault::BadGains);
   has_before_ = false;
   const CouplingState& part = port_->part.read();
   if (is_holding_ && part.X_W.isFinite()) grasp(part.X_W);
 }
 
-const TickReport& HapticLoop::tick() noexcept {
+void HapticLoop::refuse(SafetyFault fault) noexcept {
+  guard_.refuse(fault);
+  tellFault();
+}
+
+void HapticLoop::tellFault() noexcept {
+  const SafetyState& state = guard_.state();
+  if (state.faults == told_faults_) return;
+  told_faults_ = state.faults;
+  if (settings_.events != nullptr)
+    settings_.events->push({report_.time_s, eventOf(state.fault), snapshot_age_s_});
+}
+
+// By ticks, since physics and the device need not share a clock. A time that is not a number is nothing new.
+void HapticLoop::watchPhysics(double dt_s) noexcept {
+  const CouplingState& part = port_->part.read();
+  const bool is_new = part.time_s < snapshot_time_s_ || part.time_s > snapshot_time_s_;
+  if (is_new) snapshot_time_s_ = part.time_s;
+  snapshot_age_s_ = is_new ? 0 : snapshot_age_s_ + dt_s;
+  if (settings_.physics_limit_s > 0 && is_holding_ && part.is_coupled &&
+      snapshot_age_s_ > settings_.physics_limit_s)
+    refuse(SafetyFault::PhysicsStalled);
+}
+
+const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
+  const double period_s = settings_.period_s;
+  const double dt_s = wished_dt_s > period_s ? std::min(wished_dt_s, 4 * period_s) : period_s;
+  watchPhysics(dt_s);
   const DeviceSample sample = device_->read();
   const bool is_good = sample.status == Status::Ok && sample.X_DH.isFinite() && sample.V_DH.isFinite();
   CouplingState proxy{report_.X_WG, Twist{}, sample.time_s, is_holding_};
@@ -93,9 +123,9 @@ const TickReport& HapticLoop::tick() noexcept {
     proxy.X_W = toGrasp(sample.X_DH);
     const Twist V_W = settings_.map.toScene(sample.V_DH);
     proxy.V_W = {share * V_W.w, share * V_W.v};
-    wanted_D = settings_.map.toDevice(-coupling(proxy)) * share + passivityDamping(sample.V_DH);
+    wanted_D = settings_.map.toDevice(-coupling(proxy, dt_s)) * share + passivityDamping(sample.V_DH);
   }
-  report_.F_hand_D = guard_.guard(sample, wanted_D, settings_.period_s);
+  report_.F_hand_D = guard_.guard(sample, wanted_D, dt_s);
   device_->write(report_.F_hand_D);
   std::rotate(F_written_D_.begin(), F_written_D_.end() - 1, F_written_D_.end());
   F_written_D_[0] = report_.F_hand_D;
@@ -109,6 +139,7 @@ const TickReport& HapticLoop::tick() noexcept {
   }
   port_->proxy.write(proxy);
   report_.time_s = sample.time_s;
+  tellFault();
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
   report_.V_WG = proxy.V_W;
@@ -118,10 +149,13 @@ const TickReport& HapticLoop::tick() noexcept {
   return report_;
 }
 
-Wrench HapticLoop::coupling(const CouplingState& proxy) noexcept {
+Wrench HapticLoop::coupling(const CouplingState& proxy, double dt_s) noexcept {
   // Read also when not holding, so that the port never hands out a part of long ago.
   const CouplingState& part = port_->part.read();
   if (!is_holding_ || !part.is_coupled) return {};
+  if (settings_.local != nullptr)
+    return couplingWrench(settings_.gains, proxy,
+                          settings_.local->follow(settings_.gains, proxy, part, dt_s));
   if (!settings_.extrapolates_part) return couplingWrench(settings_.gains, proxy, part);
   const double age_s = std::clamp(proxy.time_s - part.time_s, 0.0, settings_.hold_limit_s);
   CouplingState ahead = part;

@@ -39,8 +39,31 @@ const char* toText(SafetyFault fault) noexcept {
       return "device's clock went backwards";
     case SafetyFault::BadGains:
       return "coupling gains out of range";
+    case SafetyFault::PhysicsStalled:
+      return "physics stalled";
   }
   return "unknown";
+}
+
+DeviceEventKind eventOf(SafetyFault fault) noexcept {
+  switch (fault) {
+    case SafetyFault::BadPose:
+      return DeviceEventKind::BadPose;
+    case SafetyFault::Jump:
+      return DeviceEventKind::PoseJump;
+    case SafetyFault::DeviceLost:
+      return DeviceEventKind::DeviceLost;
+    case SafetyFault::ClockBackwards:
+      return DeviceEventKind::ClockBackwards;
+    case SafetyFault::BadGains:
+      return DeviceEventKind::BadGains;
+    case SafetyFault::PhysicsStalled:
+      return DeviceEventKind::PhysicsStalled;
+    case SafetyFault::None:
+    case SafetyFault::BadWrench:
+      break;
+  }
+  return DeviceEventKind::BadForce;
 }
 
 void SafetyGuard::trip(SafetyFault fault) noexcept {

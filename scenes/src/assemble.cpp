@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The procedure of the paper's section 5, step by step, in lockstep.
+// The procedure of the paper's section 5, step by step.
 #include "vps_scenes/assemble.h"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "box_motion.h"
 #include "exact_fit.h"
 #include "fit_record.h"
+#include "haptic_side.h"
 #include "procedure.h"
 #include "run_record.h"
 #include "scene_models.h"
@@ -71,21 +72,25 @@ class Procedure {
   Procedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
             const AssembleOptions& options)
       : scene_(scene),
-        hand_(hand),
         log_(log),
         options_(options),
         simulation_(scene),
         tapped_(hand.device(), log != nullptr ? *log : deaf_),
-        loop_(log != nullptr ? tapped_ : hand.device(), port_, settings),
         fit_bodies_(scene.parts.size()),
-        ticks_per_step_(ticksPerStep(scene)),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
+        gains_(settings.gains),
         trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
-        haptic_clock_(1 / scene.fidelity.haptic_rate_hz),
         physics_clock_(dt_s_),
         poses_(scene.parts.size()),
         roles_(scene.parts.size(), BodyRole::Waiting) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i) poses_[i] = scene.parts[i].X_WP;
+    const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
+    LoopSettings loop_settings = settings;
+    if (options.has_local_contact) loop_settings.local = &local_;
+    Device& device = log != nullptr ? tapped_ : hand.device();
+    side_ = options.is_real_time
+                ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
+                : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
   }
 
   AssembleResult run();
@@ -101,6 +106,7 @@ class Procedure {
   void mountFixed();
   void runStep(std::size_t index);
   void take(const SceneStep& step);
+  void takeLocally(const ScenePart& scene_part);
   void letGo();
   void rest(StepResult& result, const SceneStep& step);
   void judgeStep(StepResult& result, const SceneStep& step);
@@ -110,7 +116,6 @@ class Procedure {
   [[nodiscard]] bool advance();
   void record(int phase);
   void tellPhase();
-  void tellFaults();
   void tellEvent(RunEventKind kind, const std::string& words);
   const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
@@ -125,28 +130,27 @@ class Procedure {
   };
 
   Scene& scene_;
-  Hand& hand_;
   RunLog* log_;
   const AssembleOptions& options_;
   Simulation simulation_;
   DeafLog deaf_;
   TappedDevice tapped_;
   CouplingPort port_;
-  HapticLoop loop_;
+  LocalContact local_;
+  std::unique_ptr<HapticSide> side_;
   ExactFit fit_;
   std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
-  int ticks_per_step_;
   double dt_s_;
+  CouplingGains gains_;
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
-  TickClock haptic_clock_, physics_clock_;
+  TickClock physics_clock_;
   std::vector<Pose> poses_;
   std::vector<BodyRole> roles_;
   InHand held_;
   bool is_holding_ = false;
   bool is_over_ = false;  ///< the hand cannot go on
   std::optional<OperatorPhase> told_phase_;
-  std::uint64_t told_faults_ = 0;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
   std::size_t first_row_ = 0;   ///< of the step, in the trace
@@ -158,7 +162,8 @@ class Procedure {
 
 AssembleResult Procedure::run() {
   const double begun_s = wallSeconds();
-  for (const SceneStep& step : scene_.steps) handleStart(scene_, step);  // refuses before an hour is spent
+  for (const SceneStep& step : scene_.steps)
+    side_->hand().requireReachable(step);  // refuses before an hour is spent
   mountFixed();
   result_.completed = true;
   for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
@@ -170,9 +175,10 @@ AssembleResult Procedure::run() {
   if (result_.steps.size() < scene_.steps.size()) result_.completed = false;
   step_ = -1;
   result_.finished = snapshot();
-  result_.haptic = haptic_clock_.summary();
+  result_.haptic = side_->times();
+  result_.real_time = side_->realTime();
   result_.physics = physics_clock_.summary();
-  const HandLedger& ledger = loop_.ledger();
+  const HandLedger ledger = side_->ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = modelledCost(scene_);
@@ -181,6 +187,8 @@ AssembleResult Procedure::run() {
     ++result_.modelled.voxmaps;
     ++result_.modelled.pointshells;
   }
+  const LocalContact::Report& local = local_.report();
+  result_.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
   result_.simulated_s = time_s_;
   result_.run_wall_s = wallSeconds() - begun_s;
   return std::move(result_);
@@ -216,33 +224,42 @@ void Procedure::take(const SceneStep& step) {
   roles_[step.part] = BodyRole::InHand;
   held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target, 0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
-  simulation_.grasp(step.part, held_.X_PG, loop_.settings().gains);
-  loop_.grasp(step.X_WP_start * held_.X_PG);
+  simulation_.grasp(step.part, held_.X_PG, side_->loop().settings().gains);
+  side_->loop().grasp(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
+  if (options_.has_local_contact) takeLocally(scene_part);
+}
+
+void Procedure::takeLocally(const ScenePart& scene_part) {
+  local_.letGo();
+  if (!simulation_.hasFixed()) return;
+  LocalPart part;
+  part.map = simulation_.fixedMap();
+  part.shell = scene_part.part.shell.get();
+  part.X_PG = held_.X_PG;
+  part.mass_kg = simulation_.mass(held_.part);
+  part.inertia_G = simulation_.inertia(held_.part);
+  part.gravity_W = scene_.gravity_W;
+  part.friction = simulation_.friction(held_.part);
+  part.k_N_per_m3 = scene_part.part.material.stiffness_N_per_m3;
+  local_.take(part);
 }
 
 void Procedure::letGo() {
   // The ledger goes on from what is stored without the springs: letting go gives their energy to nobody.
   stored_before_J_ += simulation_.mechanicalEnergy() - held_.held_energy_J;
   simulation_.release();
-  loop_.release();
+  side_->loop().release();
+  local_.letGo();
   is_holding_ = false;
   roles_[held_.part] = BodyRole::Released;
 }
 
 bool Procedure::advance() {
-  if (!hand_.canGoOn(ticks_per_step_)) {
+  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part)})) {
     is_over_ = true;
     log_ = nullptr;  // what follows is no part of the run
     return false;
-  }
-  const double tick_s = dt_s_ / ticks_per_step_;
-  for (int i = 0; i < ticks_per_step_; ++i) {
-    haptic_clock_.start();
-    loop_.tick();
-    haptic_clock_.stop();
-    tellFaults();
-    hand_.step({poses_[held_.part], simulation_.twist(held_.part)}, loop_, tick_s);
   }
   X_WP_before_ = poses_[held_.part];
   physics_clock_.start();
@@ -258,9 +275,9 @@ bool Procedure::advance() {
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
   port_.part.write(part);
   if (is_holding_)
-    loop_.noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-                         springEnergy(loop_.settings().gains, proxy, part),
-                     0);
+    side_->noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
+                          springEnergy(gains_, proxy, part),
+                      0);
   return true;
 }
 
@@ -270,20 +287,13 @@ void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
   event.time_s = time_s_;
   event.step = step_;
   event.kind = kind;
-  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(hand_.phase());
+  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(side_->phase());
   event.say(words);
   log_->add(event);
 }
 
-void Procedure::tellFaults() {
-  const SafetyState& safety = loop_.safety();
-  if (safety.faults == told_faults_) return;
-  told_faults_ = safety.faults;
-  tellEvent(RunEventKind::Note, std::string("safety: ") + toText(safety.fault));
-}
-
 void Procedure::tellPhase() {
-  const OperatorPhase phase = hand_.phase();
+  const OperatorPhase phase = side_->phase();
   if (told_phase_ == phase) return;
   told_phase_ = phase;
   tellEvent(RunEventKind::Phase, toText(phase));
@@ -295,9 +305,9 @@ void Procedure::record(int phase) {
   row.time_s = time_s_;
   row.step = step_;
   row.phase = phase;
-  row.F_hand_W = is_holding_ ? loop_.last().F_hand_W : Wrench{};
+  row.F_hand_W = is_holding_ ? side_->last().F_hand_W : Wrench{};
   row.X_WP = poses_[held_.part];
-  row.X_W_Proxy = loop_.last().X_WG;
+  row.X_W_Proxy = side_->last().X_WG;
   row.contacts = touch.contacts;
   row.depth_m = touch.depth_m;
   result_.trace.push_back(row);
@@ -318,6 +328,7 @@ void Procedure::record(int phase) {
 }
 
 void Procedure::runStep(std::size_t index) {
+  side_->pause();
   const SceneStep& step = scene_.steps[index];
   const ScenePart& scene_part = scene_.parts[step.part];
   step_ = static_cast<int>(index);
@@ -345,7 +356,7 @@ void Procedure::runStep(std::size_t index) {
   task.timeout_s = step.timeout_s;
   task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
   tellEvent(RunEventKind::Take, "takes '" + scene_part.part.name + "'");
-  hand_.begin(task, index, time_s_);
+  side_->hand().begin(task, index, time_s_);
   told_phase_.reset();
   tellPhase();
 
@@ -355,17 +366,20 @@ void Procedure::runStep(std::size_t index) {
   part.time_s = time_s_;
   port_.part.write(part);
 
+  side_->resume();
   const auto is_busy = [&] {
-    return hand_.phase() != OperatorPhase::Done && hand_.phase() != OperatorPhase::Failed;
+    const OperatorPhase phase = side_->phase();
+    return phase != OperatorPhase::Done && phase != OperatorPhase::Failed;
   };
   while (is_busy() && !isStopped() && advance()) {
-    const OperatorPhase phase = hand_.phase();
+    const OperatorPhase phase = side_->phase();
     tellPhase();
     record(phase == OperatorPhase::Press || phase == OperatorPhase::Done ? 2
            : phase == OperatorPhase::Insert                              ? 1
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
   }
+  side_->pause();
   for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
     ++(episode.is_slide ? result.slides : result.impacts);
   result.duration_s = time_s_ - result.start_s;
@@ -382,11 +396,11 @@ void Procedure::runStep(std::size_t index) {
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
   const bool is_on_target =
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
-  result.completed = hand_.phase() == OperatorPhase::Done && is_on_target;
+  result.completed = side_->phase() == OperatorPhase::Done && is_on_target;
   if (!result.completed)
-    result.why_not = is_over_                               ? "the recording ends here"
-                     : isStopped()                          ? "stopped"
-                     : hand_.phase() == OperatorPhase::Done ? "moved off its target after it was let go"
+    result.why_not = is_over_                                ? "the recording ends here"
+                     : isStopped()                           ? "stopped"
+                     : side_->phase() == OperatorPhase::Done ? "moved off its target after it was let go"
                      : time_s_ - result.start_s > step.timeout_s
                          ? "the hand gave up: target not reached in time"
                          : "the hand gave up: target not reached";
@@ -406,9 +420,9 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
-  const Pose X_DH_back = next < scene_.steps.size() ? handleStart(scene_, scene_.steps[next]) : Pose{};
-  hand_.goBack(X_DH_back);
+  side_->hand().goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
   // At least until the hand is back.
+  side_->resume();
   const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
   result.rest_s = static_cast<double>(steps) * dt_s_;
   for (long i = 0; i < steps && !isStopped() && advance(); ++i) {
@@ -416,6 +430,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
     result.rest_drift_m =
         std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
   }
+  side_->pause();
 }
 
 void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
@@ -437,8 +452,8 @@ Snapshot Procedure::snapshot() const {
     shot.target_part = held_.part;
     shot.X_WP_target = held_.X_WP_target;
     shot.has_hand = is_holding_;
-    shot.X_W_Proxy = loop_.last().X_WG;
-    shot.F_hand_W = loop_.last().F_hand_W;
+    shot.X_W_Proxy = side_->last().X_WG;
+    shot.F_hand_W = side_->last().F_hand_W;
     simulation_.contactMarks(shot.contacts);
   }
   return shot;
@@ -497,6 +512,11 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   if (scene.steps.empty())
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+  if ((options.is_real_time || options.has_local_contact) && !options.record.empty())
+    throw LoadError(
+        options.record, "",
+        "a run in real time or with local contact cannot be replayed bit for bit; record it without "
+        "--real-time and --local-contact");
   const std::unique_ptr<Hand> hand = simulatedHand(scene);
   const LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);

@@ -22,12 +22,17 @@ OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
   return habits;
 }
 
+DualArmParameters armsOf(const Scene& scene) {
+  return scene.device.data.empty() ? DualArmParameters{} : loadDualArm(scene.device.data).parameters;
+}
+
 SimulatedDualArmSettings plantSettings(const Scene& scene) {
   if (scene.device.kind != "dual_arm")
     throw LoadError(scene.file, "",
                     "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
   SimulatedDualArmSettings settings;
-  settings.X_DH_start = handleStart(scene, scene.steps.front());
+  settings.arms = armsOf(scene);
+  settings.X_DH_start = handleStart(scene, scene.steps.front(), settings.arms.workspace_m);
   settings.has_quantised_encoders = scene.device.has_quantised_encoders;
   settings.rate_hz = scene.fidelity.haptic_rate_hz;
   return settings;
@@ -46,8 +51,10 @@ class SimulatedHand final : public Hand {
     is_going_back_ = false;
   }
 
-  void goBack(const Pose& X_DH) override {
-    X_DH_back_ = X_DH;
+  void requireReachable(const SceneStep& step) const override { handleStart(scene_, step, workspace_m()); }
+
+  void goBack(const SceneStep* next) override {
+    X_DH_back_ = next != nullptr ? handleStart(scene_, *next, workspace_m()) : Pose{};
     X_DH_from_ = plant_.truePose();
     turn_rad_ = rotationVector(X_DH_back_.R * X_DH_from_.R.transpose());
     time_s_ = 0;
@@ -62,6 +69,8 @@ class SimulatedHand final : public Hand {
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
+  [[nodiscard]] const Vec3& workspace_m() const { return plant_.plant().settings().arms.workspace_m; }
+
   HandForce atWork(const HeldPart& part, const HapticLoop& loop, double dt_s) {
     OperatorView view;
     view.time_s = time_s_;
@@ -98,7 +107,8 @@ class RecordedHand final : public Hand {
   explicit RecordedHand(Recording& recording) : recording_(recording) {}
   Device& device() override { return recording_; }
   void begin(const OperatorTask&, std::size_t, double) override {}
-  void goBack(const Pose&) override {}
+  void requireReachable(const SceneStep&) const override {}
+  void goBack(const SceneStep*) override {}
   void step(const HeldPart&, const HapticLoop&, double) override {}
   [[nodiscard]] OperatorPhase phase() const override {
     return static_cast<OperatorPhase>(recording_.phase().value_or(0));
@@ -113,12 +123,12 @@ class RecordedHand final : public Hand {
 
 }  // namespace
 
-Pose handleStart(const Scene& scene, const SceneStep& step) {
+Pose handleStart(const Scene& scene, const SceneStep& step, const Vec3& room_m) {
   Box path;
   path.add(Vec3::Zero());
   for (const Pose& X_WP : step.way_points) path.add(X_WP.p - step.X_WP_start.p);
   path.add(step.X_WP_target.p - step.X_WP_start.p);
-  const Vec3 room_m = DualArmParameters{}.workspace_m, needed_m = path.size() / scene.device.scale;
+  const Vec3 needed_m = path.size() / scene.device.scale;
   if ((needed_m.array() > room_m.array()).any()) {
     char words[160];
     std::snprintf(

@@ -26,8 +26,10 @@ class Hand {
   virtual Device& device() = 0;
   /// Takes the part of a step at time now_s.
   virtual void begin(const OperatorTask& task, std::size_t step, double now_s) = 0;
-  /// Empty, goes back to X_DH in returnTime_s().
-  virtual void goBack(const Pose& X_DH) = 0;
+  /// Empty, goes back to where the coming step starts, in kHandReturn_s; null: to the middle.
+  virtual void goBack(const SceneStep* next) = 0;
+  /// Throws LoadError for a step that the device cannot reach.
+  virtual void requireReachable(const SceneStep& step) const = 0;
   /// One tick of the hand, after the loop's own.
   virtual void step(const HeldPart& part, const HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual OperatorPhase phase() const = 0;
@@ -43,8 +45,8 @@ std::unique_ptr<Hand> simulatedHand(const Scene& scene);
 /// A recording, of whatever device and hand; it outlives the hand.
 std::unique_ptr<Hand> recordedHand(Recording& recording);
 
-/// Where the handle starts so that a step's path lies around the middle of the workspace. Throws LoadError
-/// for a path that is longer than the workspace.
-Pose handleStart(const Scene& scene, const SceneStep& step);
+/// Where the handle starts so that a step's path lies around the middle of a workspace of this size. Throws
+/// LoadError for a path that is longer than the workspace.
+Pose handleStart(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
 
 }  // namespace vps

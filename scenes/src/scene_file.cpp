@@ -10,6 +10,7 @@
 
 #include "scene_file_keys.h"
 #include "vps/load_error.h"
+#include "vps_device/dual_arm_parameters.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
@@ -306,10 +307,22 @@ class SceneReader {
   void readDevice() {
     const toml::table* table = top_.table("device");
     if (!table) return;
-    const SceneKeys keys(*table, context_, "[device]", {"kind", "scale", "quantised_encoders"});
+    const SceneKeys keys(*table, context_, "[device]", {"kind", "parameters", "scale", "quantised_encoders"});
     keys.text("kind", scene_.device.kind);
+    if (std::string file; keys.text("parameters", file)) readDeviceFile(keys, file);
     keys.number("scale", scene_.device.scale, kPositive);
     keys.flag("quantised_encoders", scene_.device.has_quantised_encoders);
+  }
+
+  /// Read when it is used; looked at here, so that what is wrong with it is said with line and key.
+  void readDeviceFile(const SceneKeys& keys, const std::string& file) {
+    if (scene_.device.kind != "dual_arm") keys.fail("parameters", "only a dual_arm has");
+    try {
+      loadDualArm(path(file));
+    } catch (const LoadError& error) {
+      keys.fail("parameters", std::string("cannot be used: ") + error.what());
+    }
+    scene_.device.data = path(file);
   }
 
   void readOperator() {

@@ -253,6 +253,21 @@ Vec3 Simulation::centreOfMass(std::size_t part) const {
   return world_->bodies.at(part).frame.X_PB.p;
 }
 
+Mat3 Simulation::inertia(std::size_t part) const {
+  const BodyFrame& frame = world_->bodies.at(part).frame;
+  return frame.X_PB.R * frame.inertia_kg_m2.asDiagonal() * frame.X_PB.R.transpose();
+}
+
+double Simulation::friction(std::size_t part) const {
+  const World& w = *world_;
+  const double fixed = w.fixed_body ? static_cast<double>(w.fixed_body->getFriction()) : 0;
+  return fixed * static_cast<double>(w.bodies.at(part).body->getFriction());
+}
+
+const VoxMap* Simulation::fixedMap() const {
+  return world_->fixed_shape ? world_->fixed_shape->models().map.get() : nullptr;
+}
+
 std::shared_ptr<const MeshDistance> Simulation::surface(std::size_t part) const {
   return world_->modelsOf(part).surfaces.front().distance;
 }

@@ -56,6 +56,12 @@ class Simulation {
   /// Kinetic energy and height of all dynamic bodies; its zero is arbitrary but fixed for a set of bodies.
   [[nodiscard]] double mechanicalEnergy() const;
   [[nodiscard]] double mass(std::size_t part) const;
+  /// About its centre of mass, in the part's frame [kg m^2].
+  [[nodiscard]] Mat3 inertia(std::size_t part) const;
+  /// Of the part against what is fixed.
+  [[nodiscard]] double friction(std::size_t part) const;
+  /// The cooked field, in W, until the next mount(); null if nothing is fixed.
+  [[nodiscard]] const VoxMap* fixedMap() const;
   /// Centre of mass in the part's frame.
   [[nodiscard]] Vec3 centreOfMass(std::size_t part) const;
   /// The part's models with its exact surface, shared with the world.

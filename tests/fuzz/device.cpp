@@ -26,7 +26,7 @@ std::vector<std::string> vps::fuzz::seeds() {
   // All well; each trouble in turn after ten good ticks; gains that are not numbers; a file.
   std::string calm = {1, char(128)}, all = {2, char(140)}, bad_gains = {0, 100};
   for (int i = 0; i < 40; ++i) calm.append({31, 0});
-  for (char code = 0; code < 21; ++code) {
+  for (char code = 0; code < 23; ++code) {
     for (int i = 0; i < 4; ++i) all.append({31, 0});
     all.append({code, 50, 16, 0});
   }

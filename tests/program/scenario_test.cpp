@@ -57,6 +57,46 @@ TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
     EXPECT_GT(fs::file_size(folder_ / "out" / file), 100u) << file;
 }
 
+TEST_F(Scenario, InRealTimeThePegGoesInAndTheReportSaysHowTimeWasKept) {
+  const Ran ran = run("assemble " + kScenes + "peg_in_hole/scene.toml --out out --no-pictures --real-time");
+  ASSERT_LE(ran.status, 1) << ran.err;  // a machine that is too busy may fail the step, never the program
+  const json data = read("out/assemble.json");
+  const json& haptic = data["wall"]["haptic"];
+  const long ticks = data["haptic"]["ticks"].get<long>();
+  // The loop and physics ran by one clock: as many periods of each, but for the rest of one when they stop.
+  const long periods = ticks + haptic["missed"].get<long>(),
+             steps =
+                 data["physics"]["ticks"].get<long>() + data["wall"]["physics"]["missed_periods"].get<long>();
+  EXPECT_GT(ticks, 1000);
+  EXPECT_NEAR(static_cast<double>(periods), static_cast<double>(steps), 0.05 * static_cast<double>(steps));
+  long by_cause = 0;
+  for (const json& missed : haptic["missed_by"]) by_cause += missed.get<long>();
+  EXPECT_EQ(by_cause, haptic["missed"].get<long>());
+  for (const char* what : {"tick_us", "late_us", "response_us"}) {
+    EXPECT_LE(haptic[what]["p50"].get<double>(), haptic[what]["p99"].get<double>()) << what;
+    EXPECT_LE(haptic[what]["p99"].get<double>(), haptic[what]["max"].get<double>()) << what;
+  }
+  EXPECT_FALSE(haptic["worst"]["cause"].get<std::string>().empty());
+  EXPECT_EQ(haptic["has_priority"].get<bool>() && haptic["has_locked_memory"].get<bool>(),
+            haptic["warnings"].empty());
+  EXPECT_NE(ran.out.find("haptic loop: "), std::string::npos) << ran.out;
+}
+
+TEST_F(Scenario, SlowPhysicsWithLocalContactMountsThePegToo) {
+  writePegScene("pose = {position = [0, 0, -15]}\n",
+                "clearance = 0.05\n[fidelity]\nphysics_rate_hz = 100\nhaptic_rate_hz = 1000\n");
+  const Ran ran = run("assemble scene.toml --out out --no-pictures --local-contact");
+  // Mounted. Status 1: once let go it drifts by 7.7 um (1.0 without local contact), beyond 5; why is not
+  // known.
+  ASSERT_LE(ran.status, 1) << ran.out << ran.err;
+  const json data = read("out/assemble.json");
+  EXPECT_TRUE(data["completed"].get<bool>()) << ran.out;
+  EXPECT_LE(data["steps"][0]["max_penetration_m"].get<double>(), 10e-6);
+  EXPECT_LE(data["energy"]["injected_J"].get<double>(), 1e-3);
+  EXPECT_EQ(data["local_contact"]["held_ticks"].get<long>(), 0);
+  EXPECT_GT(data["local_contact"]["greatest_jump_m"].get<double>(), 0) << "it took part";
+}
+
 TEST_F(Scenario, TwoRunsGiveTheSameBitsButForWallClocks) {
   for (const char* out : {"a", "b"})
     ASSERT_EQ(run("assemble " + kScenes + "peg_in_hole/scene.toml --out " + out).status, 0);

@@ -314,6 +314,17 @@ TEST_F(SceneFile, CutAtEveryByteItLoadsOrIsRefused) {
   EXPECT_GT(scenes, 0);
 }
 
+TEST_F(SceneFile, TheDualArmMayBeTheUsersOwn) {
+  const std::string scene = "unit = 'mm'\n[[part]]\nfile = 'pin.stl'\n[device]\nparameters = 'arms.toml'\n";
+  EXPECT_NE(complaint(scene).find("scene.toml:5: key 'parameters' cannot be used: arms.toml"),
+            std::string::npos)
+      << complaint(scene);
+  write("arms.toml", "[handle]\nmass_kg = 'heavy'\n");
+  EXPECT_NE(complaint(scene).find("key 'parameters' cannot be used: arms.toml"), std::string::npos);
+  write("arms.toml", "[handle]\nmass_kg = {value = 0.3, assumed = 'mine is heavier'}\n");
+  EXPECT_EQ(load(scene).device.data, (folder_ / "arms.toml").string());
+}
+
 TEST_F(SceneFile, ATableHeaderWithoutAKeyIsRefused) {
   // toml++ 3.3 would abort here where assertions are on.
   for (const char* header : {"[=]\n", "[[#]]\n", "[\n", "[[{x]]\n"})

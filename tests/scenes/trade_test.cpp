@@ -47,10 +47,14 @@ Scene ballOnPlate() {
   return scene;
 }
 
-/// The row of a ball 20 um deep in a plate's top, a little aside and turned.
+/// The row of a plate pushed 20 um into a ball, a little aside and turned; only the plate's points are asked,
+/// so that all depth comes out of the ball's round field.
 TradeRow rowAt(double voxel_m, double spacing_m) {
   Scene scene = ballOnPlate();
-  const Pose X_WP(rotationFromVector({0.3, 0.2, 0.1}), Vec3(0.31e-3, 0.17e-3, 1.5e-3 + kRadius_m - 20e-6));
+  std::swap(scene.parts[0].part, scene.parts[1].part);
+  scene.fidelity.sides = Sides::One;
+  const Mat3 R = rotationFromVector({0.3, 0.2, 0.1});
+  const Pose X_WP(R, -(R * Vec3(0.31e-3, 0.17e-3, 1.5e-3 + kRadius_m - 20e-6)));
   buildModels(scene, {});
   const Probe probe(scene, {X_WP}, {});
   EXPECT_EQ(probe.posesInside(), 1u);
@@ -69,16 +73,17 @@ TradeRow rowAt(double voxel_m, double spacing_m) {
 }
 
 TEST(Trade, AFinerVoxelIsTruerAndLarger) {
-  const TradeRow coarse = rowAt(1e-3, 0.25e-3), middle = rowAt(0.5e-3, 0.25e-3),
-                 fine = rowAt(0.25e-3, 0.25e-3);
+  const double s = 0.125e-3;
+  // Not coarser: with 1 mm, neither the field nor the points find the contact, and 20 um is all there is.
+  const TradeRow coarse = rowAt(0.5e-3, s), middle = rowAt(0.25e-3, s), fine = rowAt(0.125e-3, s);
   EXPECT_LT(middle.probe.penetration_m, coarse.probe.penetration_m);
   EXPECT_LT(fine.probe.penetration_m, middle.probe.penetration_m);
   EXPECT_GT(middle.bytes, coarse.bytes);
   EXPECT_GT(fine.bytes, middle.bytes);
-  // Trilinear in a ball's field: h^2/8 times its second derivatives, 2/r in sum; facets, and what lies
-  // between points s apart on them, s^2/(8 r), add to it.
-  const double h = 0.25e-3, s = 0.25e-3;
-  EXPECT_LE(fine.probe.penetration_m, h * h / (4 * kRadius_m) + s * s / (8 * kRadius_m) + 1e-6);
+  // Trilinear in a ball's field: h^2/8 times its second derivatives, 2/r in sum. The plate's nearest point
+  // lies within s of the deepest one, where the ball is s^2/(2 r) farther. ExactFit is certain to 0.5 um.
+  const double h = 0.125e-3, inner_m = kRadius_m - 20e-6;
+  EXPECT_LE(fine.probe.penetration_m, h * h / (4 * inner_m) + s * s / (2 * inner_m) + 0.5e-6);
 }
 
 TEST(Trade, FinerPointsGiveATruerForce) {
@@ -182,8 +187,9 @@ TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
 
 TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   Scene scene = ballOnPlate();
+  buildModels(scene, {});
   FidelityWish wish;
-  wish.memory_bytes = 200e3;
+  wish.memory_bytes = 1.4 * static_cast<double>(modelledCost(scene).bytes);  // with the cooked field: 2
   const FidelityChoice small = chooseFidelity(scene, wish);
   ASSERT_TRUE(small.is_met) << small.why_not;
   EXPECT_LE(2 * static_cast<double>(modelledCost(scene).bytes), *wish.memory_bytes);

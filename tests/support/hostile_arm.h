@@ -121,13 +121,18 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   if (has_bad_gains) settings.gains.k_N_per_m = kBad[data[0] / 8 % 4];
   settings.safety.force_N = p.force_peak_N;
   settings.safety.torque_Nm = p.torque_peak_Nm;
+  settings.physics_limit_s = 0.02;
+  settings.events = &events;
   HapticLoop loop(controller, port, settings);
   loop.grasp(Pose{});
   CouplingState part{Pose{}, Twist{}, 0, true};
+  port.part.write(part);
 
   HandForce hand = firmHand(300, 20);
   hand.F.f = 0.1 * (data[1] - 128.0) * Vec3::Unit(data[1] % 3);
 
+  std::uint64_t faults_told = 0;
+  int silent_ticks = 0;  // of physics
   const auto check = [&] {
     const Wrench& F = loop.last().F_hand_D;
     require(F.isFinite(), "the wrench is finite");
@@ -136,6 +141,11 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     const bool is_faulted = loop.safety().fault != SafetyFault::None;
     run.has_faulted = run.has_faulted || is_faulted;
     if (is_faulted) require(F.f.isZero() && F.tau.isZero(), "no wrench while a fault is latched");
+    if (silent_ticks > 22 && loop.isHolding()) require(is_faulted, "physics that stalls is a fault");
+    DeviceEvent event;
+    while (events.pop(event))
+      if (severityOf(event.kind) == Severity::Fault) ++faults_told;
+    require(faults_told >= loop.safety().faults, "every fault is told");
     if (controller.hasFault() && controller.fault() != DeviceEventKind::PeerLost)
       require(controller.efforts().isZero(), "motors are let go after a fault");
     Wrench felt;
@@ -145,10 +155,11 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     // The pose is known to 0.1 mm and 2 mrad, of levers of 0.1 m and more; at speed it is a tick old.
     require(felt.f.norm() <= 1.02 * p.force_peak_N + 0.2, "what the hand feels keeps within the limit");
   };
-  const auto tick = [&](bool is_asked) {
+  const auto tick = [&](bool is_asked, bool is_physics_alive = true, double dt_s = 1e-3) {
     if (is_asked) {
-      port.part.write(part);
-      loop.tick();
+      if (is_physics_alive) port.part.write(part);
+      silent_ticks = is_physics_alive ? 0 : silent_ticks + 1;
+      loop.tick(dt_s);
       check();
     }
     plant.step(1e-3, hand);
@@ -168,8 +179,11 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     if (code == 17) hand.F.f = 0.2 * (detail - 128.0) * Vec3::Unit(detail % 3);
     if (code == 18) loop.release();
     if (code == 19) loop.grasp(Pose{});
-    const int times = code == HostileArm::kSilent || code == 20 ? 1 + detail % 40 : 1;
-    for (int t = 0; t < times; ++t) tick(code != 20);  // 20: nobody asks
+    const int times = code == HostileArm::kSilent || code == 20 || code == 21 ? 1 + detail % 40 : 1;
+    static constexpr double kOdd_s[] = {std::numeric_limits<double>::quiet_NaN(), -1, 0, 1e300};
+    const double dt_s = code == 22 ? kOdd_s[detail % 4] : 1e-3;
+    for (int t = 0; t < times; ++t)
+      tick(code != 20, code != 21, dt_s);  // 20: nobody asks; 21: physics stalls
   }
 
   // All is well again.

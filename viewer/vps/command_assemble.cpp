@@ -7,10 +7,28 @@
 #include "output.h"
 #include "progress_bar.h"
 #include "run_report.h"
+#include "table.h"
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
 
 namespace vps {
+
+namespace {
+
+/// How well time was kept, in two lines.
+std::string describe(const AssembleResult& result) {
+  const RealTimeResult& kept = *result.real_time;
+  const auto us = [](double value) { return fixed(value, 0) + " us"; };
+  return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
+         fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
+         us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
+         std::to_string(result.haptic.missed) + " periods missed; due to written " + us(kept.worst_us) +
+         " at worst, by " + kept.worst_cause + "\nphysics: " + std::to_string(result.physics.count) +
+         " steps at " + fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
+         std::to_string(kept.physics_missed) + " periods missed\n";
+}
+
+}  // namespace
 
 int runAssemble(const AssembleArguments& given) {
   OutputFolder out(given.out);
@@ -27,6 +45,8 @@ int runAssemble(const AssembleArguments& given) {
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
   options.record = given.record;
+  options.is_real_time = given.is_real_time;
+  options.has_local_contact = given.has_local_contact;
   const AssembleResult result = assemble(scene, options);
   throwIfStopped();
 
@@ -39,6 +59,10 @@ int runAssemble(const AssembleArguments& given) {
 
   const bool is_good = printSteps(result);
   for (const std::string& note : notes) warn(note);
+  if (result.real_time) {
+    for (const std::string& words : result.real_time->warnings) warn(words);
+    std::fputs(describe(result).c_str(), stdout);
+  }
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
   return is_good ? kGood : kBad;

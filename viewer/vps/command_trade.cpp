@@ -52,6 +52,8 @@ double bytesFromText(const std::string& text) {
 
 std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
   FidelityWish wish;
+  if (!(given.budget_hz >= 0) || !std::isfinite(given.budget_hz))
+    throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
   if (given.budget_hz > 0) wish.budget_hz = given.budget_hz;
   if (!given.tolerance.empty()) {
     wish.tolerance_m = lengthFromText(given.tolerance, "--tolerance");

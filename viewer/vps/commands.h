@@ -37,6 +37,8 @@ struct AssembleArguments {
   FidelityArguments fidelity;
   bool has_pictures = true;
   bool stops_at_failure = false;
+  bool is_real_time = false;
+  bool has_local_contact = false;
 };
 int runAssemble(const AssembleArguments& given);
 

@@ -35,10 +35,27 @@ Json loop(double rate_hz, const TickTimes& times) {
   return {{"rate_hz", rate_hz}, {"ticks", times.count}};
 }
 
+Json percentiles(const TickTimes& times) {
+  return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p999", times.p999_us}, {"max", times.max_us}};
+}
+
 Json loopWall(const TickTimes& times) {
-  return {{"missed", times.missed},
-          {"tick_us",
-           {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p999", times.p999_us}, {"max", times.max_us}}}};
+  return {{"missed", times.missed}, {"tick_us", percentiles(times)}};
+}
+
+/// How well a run in real time kept its time, into the haptic and the physics loop's object.
+void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
+  haptic["missed_by"] = Json::object();
+  for (const auto& [cause, periods] : kept.missed_by) haptic["missed_by"][cause] = periods;
+  haptic["late_us"] = percentiles(kept.late);
+  haptic["response_us"] = percentiles(kept.response);
+  haptic["worst"] = {{"tick", kept.worst_tick}, {"response_us", kept.worst_us}, {"cause", kept.worst_cause}};
+  haptic["stale_ticks"] = kept.stale_ticks;
+  haptic["faults"] = kept.faults;
+  haptic["has_priority"] = kept.has_priority;
+  haptic["has_locked_memory"] = kept.has_locked_memory;
+  haptic["warnings"] = kept.warnings;
+  physics["missed_periods"] = kept.physics_missed;
 }
 
 Json modelled(const ModelledCost& cost) {
@@ -79,12 +96,14 @@ std::string toJson(const AssembleResult& result) {
     cook_s.push_back(s.cook_wall_s);
     steps.push_back(step(s));
   }
+  Json haptic = loopWall(result.haptic), physics = loopWall(result.physics);
+  if (result.real_time) addRealTime(*result.real_time, haptic, physics);
   return text({{"wall",
                 {{"build_s", result.build_wall_s},
                  {"run_s", result.run_wall_s},
                  {"cook_s", cook_s},
-                 {"haptic", loopWall(result.haptic)},
-                 {"physics", loopWall(result.physics)}}},
+                 {"haptic", haptic},
+                 {"physics", physics}}},
                {"scene", result.scene},
                {"completed", result.completed},
                {"contacts_left_out", result.contacts_left_out},
@@ -96,6 +115,10 @@ std::string toJson(const AssembleResult& result) {
                 {{"to_hand_J", result.energy.to_hand_J},
                  {"from_hand_J", result.energy.from_hand_J},
                  {"injected_J", result.energy.injected_J}}},
+               {"local_contact",
+                {{"held_ticks", result.local_contact.held},
+                 {"jump_J", result.local_contact.jump_J},
+                 {"greatest_jump_m", result.local_contact.greatest_jump_m}}},
                {"modelled", modelled(result.modelled)}});
 }
 

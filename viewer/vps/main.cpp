@@ -107,6 +107,10 @@ class CommandLine {
         ->type_name("DIR");
     command->add_flag("!--no-pictures", assemble_.has_pictures, "tables, plots and data only");
     command->add_flag("--stop-at-failure", assemble_.stops_at_failure, "end at the first step that fails");
+    command->add_flag("--local-contact", assemble_.has_local_contact,
+                      "the haptic loop moves the part by itself between physics steps; for slow physics");
+    command->add_flag("--real-time", assemble_.is_real_time,
+                      "by the clock, haptic loop and physics each on a thread of its own; not repeatable");
     command
         ->add_option("--record", assemble_.record,
                      "record the run there (MCAP), scene and meshes included, for vps replay")

@@ -39,6 +39,7 @@ Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   Scene scene = loadScene(file);
   std::vector<std::string> read;
   for (const ScenePart& part : scene.parts) read.push_back(part.file);
+  if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
   const Fidelity own = scene.fidelity;

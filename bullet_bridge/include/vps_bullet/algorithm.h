@@ -16,16 +16,21 @@ struct VpsPairState;
 struct VpsContext;
 
 /// A pair whose contacts can be chosen beside those of others.
-class VpsPair {
+class VpsPair : public btActivatingCollisionAlgorithm {
  public:
   /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
   /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
   /// ready.
   virtual void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                        const btDispatcherInfo& info) = 0;
+  /// CCD never runs on concave shapes; speculative contacts take its place.
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) final {
+    return 1;
+  }
 
  protected:
-  ~VpsPair() = default;
+  using btActivatingCollisionAlgorithm::btActivatingCollisionAlgorithm;
 };
 
 /// Contact of two VpsShapes, or of a VpsShape and one of Bullet's plane, box, sphere, capsule and cylinder.
@@ -38,8 +43,9 @@ class VpsPair {
 ///
 /// Manifold points are written directly: addContactPoint would merge neighbours nearer than the breaking
 /// threshold. gContactAddedCallback and the contact-stiffness flags are served all the same.
-/// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map).
-class VpsAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
+/// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map), or,
+/// where edges cross, each body's edge.
+class VpsAlgorithm final : public VpsPair {
  public:
   VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
                const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context);
@@ -49,11 +55,6 @@ class VpsAlgorithm : public btActivatingCollisionAlgorithm, public VpsPair {
                const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
-  /// CCD never runs on concave shapes; speculative contacts take its place.
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
  private:

@@ -6,8 +6,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "vps/edge_crossing.h"
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 #include "vps/part.h"
@@ -85,6 +87,14 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
+  /// Sharp edges of the surfaces, in the models' frame.
+  [[nodiscard]] const EdgeSet& edges() const { return edges_; }
+  /// The sharp edges that a shell point stands on, as indices of edges().segments(): one, more at corners and
+  /// joints, none on faces.
+  [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t id) const {
+    if (first_edge_.empty()) return {};
+    return std::span(edges_at_).subspan(first_edge_[id], first_edge_[id + 1] - first_edge_[id]);
+  }
   /// Box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
@@ -121,6 +131,8 @@ class VpsShape : public btConcaveShape {
   unsigned revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
+  EdgeSet edges_;
+  std::vector<std::uint32_t> edges_at_, first_edge_;  // edges_at_[first_edge_[id]] ... are those of a point
   std::unique_ptr<const TriangleTree> triangles_;
 };
 

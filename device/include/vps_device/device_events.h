@@ -20,6 +20,12 @@ enum class DeviceEventKind : std::uint8_t {
   Silent,          ///< nothing new from the hardware [s]
   SharpMotion,     ///< too fast [m/s or rad/s]
   PeerLost,        ///< no wrench was asked for in time [s]
+  BadForce,        ///< the loop's own force is not finite
+  BadPose,         ///< the device's pose is not finite
+  PoseJump,        ///< the device's pose jumped
+  DeviceLost,      ///< the device says that it is lost
+  BadGains,        ///< no loop can run with these coupling gains
+  PhysicsStalled,  ///< nothing new of the part in hand [s]
   NotCalibrated,
   // Warnings: it goes on, but look.
   BadWrench,     ///< the wrench asked for is not finite and counts as zero
@@ -28,6 +34,9 @@ enum class DeviceEventKind : std::uint8_t {
   NearStop,      ///< a joint nears its stop [joint: 0 to 6, 7 is q2]
   NearSingular,  ///< the gimbal nears its singularity [q2, rad]
   ArmsNear,      ///< the arms come near each other [m]
+  TicksMissed,   ///< the loop came too late for some periods [periods]
+  NoPriority,    ///< the system does not let the loop go before other programs
+  NotLocked,     ///< the system does not keep the program's memory from being paged out
   // Notices.
   Calibrated,
   Rearmed,

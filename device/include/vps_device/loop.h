@@ -9,7 +9,9 @@
 #include "vps/coupling_law.h"
 #include "vps_device/clutch.h"
 #include "vps_device/device.h"
+#include "vps_device/device_events.h"
 #include "vps_device/hand_force.h"
+#include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
 
 namespace vps {
@@ -73,6 +75,11 @@ struct LoopSettings {
       1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
   bool has_passivity_controller = true;  ///< works once noteStored() is called
   double clutch_s = 0.1;                 ///< hold and let go take so long. assumed: a startle takes longer
+  /// A part in hand whose snapshot (by its time stamp) stays the same for longer is a fault. 0: never, as in
+  /// lockstep, where physics cannot fall behind. Real time has 0.1 s: see real_time_loop.h.
+  double physics_limit_s = 0;
+  LocalContact* local = nullptr;       ///< tells where the part is between snapshots; null: where they say
+  DeviceEventQueue* events = nullptr;  ///< told of safety's faults, by the loop's thread; may be null
 };
 
 /// What one tick did.
@@ -112,7 +119,13 @@ class HapticLoop {
   void rearm() noexcept;
 
   /// One tick. Status of the device, or Fault while safety holds the force at zero.
-  const TickReport& tick() noexcept;
+  const TickReport& tick() noexcept { return tick(settings_.period_s); }
+  /// The same, dt_s after the last: a driver that missed periods says so. Counts as one to four periods, so
+  /// that no pause ever lets the force leap.
+  const TickReport& tick(double dt_s) noexcept;
+
+  /// Latches a fault that a driver has found; recovery is rearm().
+  void refuse(SafetyFault fault) noexcept;
 
   /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
   /// put in by others than the hand so far, both in scene joules. Call once a physics step, from the loop's
@@ -127,6 +140,8 @@ class HapticLoop {
   /// Ticks that ended with each Status, indexed by its value.
   [[nodiscard]] std::uint64_t count(Status status) const noexcept;
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
+  /// How long the part's snapshot has been the same, by ticks.
+  [[nodiscard]] double snapshotAge_s() const noexcept { return snapshot_age_s_; }
 
   /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D: what
   /// joins a VirtualOperator to a SimulatedDualArm.
@@ -134,12 +149,14 @@ class HapticLoop {
   [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
 
  private:
-  [[nodiscard]] Wrench coupling(const CouplingState& proxy) noexcept;
+  [[nodiscard]] Wrench coupling(const CouplingState& proxy, double dt_s) noexcept;
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
   void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
   void account(const DeviceSample& sample, const Twist& step_D) noexcept;
   [[nodiscard]] Wrench actingWrench() const noexcept;
+  void watchPhysics(double dt_s) noexcept;
+  void tellFault() noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
   static constexpr std::size_t kMostDelay = 14;  ///< ticks of the device's own that the ledger can follow
@@ -161,6 +178,8 @@ class HapticLoop {
   double delay_ticks_ = 0;                            ///< the device's own
   double net_scene_J_ = 0, balance_start_J_ = 0;      // scene joules
   bool has_stored_ = false;
+  double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
+  std::uint64_t told_faults_ = 0;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "vps_device/device.h"
+#include "vps_device/device_events.h"
 
 namespace vps {
 
@@ -20,8 +21,19 @@ struct SafetyLimits {
   double rearm_s = 0.2;  ///< force returns over this time after re-arming. assumed: slower than a startle
 };
 
-enum class SafetyFault { None, BadWrench, BadPose, Jump, DeviceLost, ClockBackwards, BadGains };
+enum class SafetyFault {
+  None,
+  BadWrench,
+  BadPose,
+  Jump,
+  DeviceLost,
+  ClockBackwards,
+  BadGains,
+  PhysicsStalled,  ///< the part in hand has not been heard of for too long
+};
 const char* toText(SafetyFault fault) noexcept;
+/// How a fault is told; not for None.
+DeviceEventKind eventOf(SafetyFault fault) noexcept;
 
 struct SafetyState {
   SafetyFault fault = SafetyFault::None;  ///< latched until rearm()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The main job: runs an assembly procedure with a device and an operator, in lockstep.
+// The main job: runs an assembly procedure with a device and an operator, in lockstep or in real time.
 #pragma once
 
 #include <atomic>
@@ -20,13 +20,21 @@ struct AssembleOptions : ModelOptions {
   /// vps_scenes/replay.h runs it again from this file alone; empty: not. A run that is stopped or fails
   /// leaves what it recorded beside it, and says where by `warn`.
   std::string record;
+  /// The haptic loop on a thread of its own, by the system's clock, and physics beside it by the same;
+  /// mounting and judging a step stand in between, when nothing is held. Not repeatable, so not with
+  /// `record`.
+  bool is_real_time = false;
+  /// Between physics steps the haptic loop works out the part's motion by itself
+  /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`.
+  bool has_local_contact = false;
 };
 
 /// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's
 /// handle, the handle's proxy pulls the part, contact decides where it goes; it is released, watched for
-/// scene.release_s, and cooked into the fixed voxmap. Simulated time on one thread: the same scene gives the
-/// same bits but for wall times. Throws LoadError for a scene that cannot be run (a part that starts inside
-/// another, a mesh that cannot be modelled). A step that does not reach its target is a result, not an error.
+/// scene.release_s, and cooked into the fixed voxmap. Simulated time on one thread, unless
+/// is_real_time: the same scene gives the same bits but for wall times. Throws LoadError for a scene that
+/// cannot be run (a part that starts inside another, a mesh that cannot be modelled). A step that does not
+/// reach its target is a result, not an error.
 AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
 }  // namespace vps

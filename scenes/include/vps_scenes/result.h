@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vps/wrench.h"
@@ -76,6 +78,21 @@ struct ModelledCost {
   std::size_t voxmaps = 0, pointshells = 0, points = 0, bytes = 0;
 };
 
+/// What a run in real time adds: how well time was kept.
+struct RealTimeResult {
+  bool has_priority = false, has_locked_memory = false;
+  std::vector<std::string> warnings;  ///< what the system refused, and what would help
+  TickTimes late;                     ///< from a tick's due time to its start
+  TickTimes response;                 ///< from a tick's due time to its wrench
+  std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
+  std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
+  std::uint64_t worst_tick = 0;   ///< the longest response
+  double worst_us = 0;
+  std::string worst_cause;
+  std::uint64_t physics_missed = 0;  ///< physics periods without a step of their own
+  std::uint64_t faults = 0;          ///< of safety
+};
+
 struct AssembleResult {
   std::string scene;
   bool completed = false;
@@ -85,6 +102,11 @@ struct AssembleResult {
   Snapshot finished;
   double haptic_rate_hz = 0, physics_rate_hz = 0;
   TickTimes haptic, physics;
+  std::optional<RealTimeResult> real_time;  ///< of a run in real time
+  struct {
+    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was held instead
+    double jump_J = 0, greatest_jump_m = 0;  ///< by new snapshots
+  } local_contact;
   EnergyLedger energy;
   ModelledCost modelled;
   std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set

@@ -53,8 +53,8 @@ void LossyHand::begin(const OperatorTask& task, std::size_t step, double now_s) 
   is_holding_ = is_new_ = true;
 }
 
-void LossyHand::goBack(const Pose& X_DH) {
-  hand_->goBack(X_DH);
+void LossyHand::goBack(const SceneStep* next) {
+  hand_->goBack(next);
   is_holding_ = false;  // what the springs hold then goes to nobody
 }
 

@@ -56,7 +56,8 @@ class LossyHand final : public Hand {
 
   Device& device() override { return device_; }
   void begin(const OperatorTask& task, std::size_t step, double now_s) override;
-  void goBack(const Pose& X_DH) override;
+  void goBack(const SceneStep* next) override;
+  void requireReachable(const SceneStep& step) const override { hand_->requireReachable(step); }
   void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override;
   [[nodiscard]] OperatorPhase phase() const override { return hand_->phase(); }
   [[nodiscard]] bool canGoOn(int ticks) const override { return hand_->canGoOn(ticks); }

@@ -32,5 +32,8 @@ void slideRow(const HapticOptions&, Table&);
 void freeMotionRow(const HapticOptions&, Table&);
 // Shipped scenes with their hand. Needs vps::scenes.
 void injectedRow(const HapticOptions&, Table&);
+// By the clock.
+void tickRow(const HapticOptions&, Table&);
+void pointsRow(const HapticOptions&, Table&);
 
 }  // namespace vps::bench

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pair of bodies remembers from step to step.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "candidate.h"
+#include "context.h"
+#include "manifold_writer.h"
+#include "motion.h"
+#include "partner.h"
+#include "penalty_pair.h"
+
+namespace vps {
+
+/// The points chosen in a full query, and where that was.
+struct Selection {
+  std::vector<Candidate> chosen;
+  bool is_valid = false;
+  Pose X_01;                       ///< body 1 in body 0
+  double reach_m = 0;              ///< how far the query looked
+  Pose X_W0;                       ///< of body 0
+  Twist V;                         ///< RelativeMotion::V
+  ShapeKey key[2];                 ///< of sides that are no VpsShape
+  std::vector<Candidate> springs;  ///< in penalty mode: all that were
+};
+
+struct VpsPairState {
+  std::shared_ptr<VpsContext> context;
+  std::unique_ptr<ManifoldWriter> writer;
+  Selection selection;
+  std::vector<Candidate> contacts;  ///< of the coming step
+  RelativeMotion motion;
+  bool is_prepared = false;
+  bool has_met = false;                  ///< contacts were looked for before
+  PenaltyPair penalty;                   ///< in penalty mode
+  bool is_registered = false;            ///< penalty is known to the solver
+  std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
+  QueryMemory& memoryOf(int side, const VoxMap& map, const PointShell& shell) {
+    std::optional<QueryMemory>& own = memory[side];
+    return own ? *own : own.emplace(map, shell);
+  }
+  unsigned revision[2] = {0, 0};  ///< of the shapes that writer's and selection's ids belong to
+};
+
+}  // namespace vps

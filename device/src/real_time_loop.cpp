@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/real_time_loop.h"
+
+#include <cmath>
+
+namespace vps {
+namespace {
+
+constexpr std::int64_t kQuietTicks = 1000;  // misses are told once, and again after so many good ticks
+
+RealTimeClock& clockOf(const RealTimeSettings& settings) {
+  return settings.clock != nullptr ? *settings.clock : monotonicClock();
+}
+
+LoopSettings watched(LoopSettings settings, const RealTimeSettings& real_time) {
+  if (!(settings.physics_limit_s > 0)) settings.physics_limit_s = real_time.physics_limit_s;
+  return settings;
+}
+
+std::int64_t nanoseconds(double s) {
+  return std::llround(1e9 * s);
+}
+
+}  // namespace
+
+DeviceSample TimedDevice::read() noexcept {
+  const std::int64_t begun_ns = clock_->now_ns();
+  const DeviceSample sample = device_->read();
+  spent_ns_ += clock_->now_ns() - begun_ns;
+  return sample;
+}
+
+void TimedDevice::write(const Wrench& F_Ho_D) noexcept {
+  const std::int64_t begun_ns = clock_->now_ns();
+  device_->write(F_Ho_D);
+  spent_ns_ += clock_->now_ns() - begun_ns;
+}
+
+std::int64_t TimedDevice::takeSpent_ns() noexcept {
+  const std::int64_t spent_ns = spent_ns_;
+  spent_ns_ = 0;
+  return spent_ns;
+}
+
+RealTimeLoop::RealTimeLoop(Device& device, CouplingPort& port, const LoopSettings& settings,
+                           const RealTimeSettings& real_time)
+    : settings_(real_time),
+      clock_(&clockOf(real_time)),
+      events_(settings.events),
+      device_(device, *clock_),
+      loop_(device_, port, watched(settings, real_time)),
+      thread_({1 / settings.period_s, real_time.priority, real_time.locks_memory, real_time.clock}),
+      statistics_(nanoseconds(real_time.stale_s)) {}
+
+RealTimeLoop::~RealTimeLoop() {
+  stop();
+}
+
+RealTimeReport RealTimeLoop::start() {
+  stop();
+  const RealTimeReport report = thread_.start([this](const Beat& beat) { this->beat(beat); });
+  lacks_priority_.store(settings_.priority > 0 && !report.has_priority);
+  lacks_locking_.store(settings_.locks_memory && !report.has_locked_memory);
+  return report;
+}
+
+void RealTimeLoop::stop() {
+  const bool was_running = thread_.isRunning();
+  thread_.stop();
+  if (was_running) device_.write({});  // the motors hold what they were last told
+}
+
+void RealTimeLoop::beat(const Beat& beat) noexcept {
+  const std::int64_t begun_ns = clock_->now_ns();
+  if (beat.has_clock_gone_back) loop_.refuse(SafetyFault::ClockBackwards);
+  tellMisses(beat);
+  tellRefusals();
+  answerRequests();
+  const double dt_s = loop_.settings().period_s * static_cast<double>(beat.periods);
+  device_.takeSpent_ns();
+  loop_.tick(dt_s);
+  const std::int64_t done_ns = clock_->now_ns();
+
+  TickTiming timing;
+  timing.tick = loop_.ticks();
+  timing.late_ns = begun_ns - beat.due_ns;
+  timing.device_ns = device_.takeSpent_ns();
+  timing.own_ns = done_ns - begun_ns - timing.device_ns;
+  timing.snapshot_ns = nanoseconds(loop_.isHolding() ? loop_.snapshotAge_s() : 0);
+  latest_.write({loop_.last(), loop_.safety(), loop_.ledger(), loop_.isHolding()});
+  if (settings_.beside) settings_.beside(loop_, dt_s);
+  timing.beside_ns = clock_->now_ns() - done_ns;
+  statistics_.add(timing);
+  before_ = timing;
+}
+
+void RealTimeLoop::tellMisses(const Beat& beat) noexcept {
+  if (beat.missed_before > 0)
+    statistics_.miss(static_cast<std::uint64_t>(beat.missed_before), before_.cause(true));
+  if (beat.missed_asleep > 0)
+    statistics_.miss(static_cast<std::uint64_t>(beat.missed_asleep), TickCause::WokenLate);
+  const std::int64_t missed = beat.periods - 1;
+  if (missed > 0 && quiet_ticks_ <= 0 && events_ != nullptr)
+    events_->push({loop_.last().time_s, DeviceEventKind::TicksMissed, static_cast<double>(missed)});
+  quiet_ticks_ = missed > 0 ? kQuietTicks : quiet_ticks_ - 1;
+}
+
+// The queue has one writer: this thread.
+void RealTimeLoop::tellRefusals() noexcept {
+  const auto tell = [this](std::atomic<bool>& is_untold, DeviceEventKind kind) {
+    if (!is_untold.load(std::memory_order_relaxed)) return;
+    is_untold.store(false, std::memory_order_relaxed);
+    if (events_ != nullptr) events_->push({loop_.last().time_s, kind, 0});
+  };
+  tell(lacks_priority_, DeviceEventKind::NoPriority);
+  tell(lacks_locking_, DeviceEventKind::NotLocked);
+}
+
+bool RealTimeLoop::ask(const Request& request) noexcept {
+  const std::size_t asked = asked_.load(std::memory_order_relaxed);
+  if (asked - answered_.load(std::memory_order_acquire) == kRequests) return false;
+  requests_[asked % kRequests] = request;
+  asked_.store(asked + 1, std::memory_order_release);
+  return true;
+}
+
+bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
+  return ask({Request::Grasp, X_WG});
+}
+bool RealTimeLoop::release() noexcept {
+  return ask({Request::Release, {}});
+}
+bool RealTimeLoop::rearm() noexcept {
+  return ask({Request::Rearm, {}});
+}
+
+void RealTimeLoop::answerRequests() noexcept {
+  const std::size_t asked = asked_.load(std::memory_order_acquire);
+  std::size_t answered = answered_.load(std::memory_order_relaxed);
+  for (; answered != asked; ++answered) {
+    const Request& request = requests_[answered % kRequests];
+    if (request.kind == Request::Grasp) loop_.grasp(request.X_WG);
+    if (request.kind == Request::Release) loop_.release();
+    if (request.kind == Request::Rearm) loop_.rearm();
+  }
+  answered_.store(answered, std::memory_order_release);
+  const Energies& energies = energies_.read();
+  if (energies.is_told) loop_.noteStored(energies.stored_J, energies.actuator_J);
+}
+
+}  // namespace vps

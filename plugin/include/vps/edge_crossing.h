@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The convex sharp edges of parts, and where those of two parts cross.
+//
+// Two parts touch at a point and a face, or where an edge crosses an edge. The second kind has no point of
+// either's shell to it: the samples on both edges lie up to half their spacing beside it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vps/mesh.h"
+
+namespace vps {
+
+/// A straight piece of an edge between two faces of a part, in the frame of its set.
+struct EdgeSegment {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+  Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each face
+  Vec3 outward = Vec3::Zero();                  ///< mean of the faces' outward normals, unit
+  std::uint16_t owner = 0;                      ///< part
+};
+
+/// Appends a mesh's edges that stick out and turn by more than 20 degrees, placed by X_MP. Edges of one face
+/// or of more than two, and of faces without an area, are left out. O(n log n).
+void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::vector<EdgeSegment>& out);
+
+/// Edges with a hierarchy of bounding spheres.
+class EdgeSet {
+ public:
+  EdgeSet() = default;
+  /// O(n log n).
+  explicit EdgeSet(std::vector<EdgeSegment> segments);
+  [[nodiscard]] const std::vector<EdgeSegment>& segments() const noexcept { return segments_; }
+  /// Calls visit(index) for each segment within radius_m of a point, in an order of its own.
+  template <typename Visit>
+  void forEachNear(const Vec3& p, double radius_m, Visit&& visit) const {
+    if (!nodes_.empty()) visitNear(0, p, radius_m, visit);
+  }
+
+ private:
+  friend class CrossingSearch;
+  struct Node {
+    Vec3 center = Vec3::Zero();
+    double radius_m = 0;
+    std::uint32_t first = 0;    ///< left child, the right one after it; of a leaf its segment
+    std::uint32_t is_leaf = 0;  ///< 1 or 0
+  };
+  void build();
+  [[nodiscard]] bool isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept;
+  template <typename Visit>
+  void visitNear(std::uint32_t at, const Vec3& p, double radius_m, Visit& visit) const {
+    const Node& node = nodes_[at];
+    if ((p - node.center).norm() > node.radius_m + radius_m) return;
+    if (node.is_leaf != 0) {
+      if (isNear(node.first, p, radius_m)) visit(node.first);
+      return;
+    }
+    visitNear(node.first, p, radius_m, visit);
+    visitNear(node.first + 1, p, radius_m, visit);
+  }
+
+  std::vector<EdgeSegment> segments_;
+  std::vector<Node> nodes_;
+};
+
+/// Where an edge of one set crosses an edge of another so that each part lies wholly, near by, on its own
+/// side of the plane along both: what holds them apart there is a force across that plane.
+struct EdgeCrossing {
+  std::uint32_t edge[2] = {0, 0};
+  Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each, in the frame of set 0
+  Vec3 n = Vec3::Zero();                     ///< across both edges, from set 1 to set 0, unit
+  double gap_m = 0;                          ///< n (p[0] - p[1]); negative where they overlap
+};
+
+/// Appends the crossings with -depth_m <= gap <= cutoff_m, by edges of set 0, then of set 1. Edges within 5
+/// degrees of parallel have no one crossing and are left to points.
+/// @param X_01  frame of set 1 in that of set 0
+/// Cost: the pairs of spheres that are near, and 30 ns a pair of segments. Allocates in `out` alone.
+/// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
+void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
+                   double depth_m, std::vector<EdgeCrossing>& out);
+
+}  // namespace vps

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "haptic_side.h"
+#include "tick_times.h"
+
+namespace vps {
+namespace {
+
+class LockstepSide final : public HapticSide {
+ public:
+  LockstepSide(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
+               int ticks_per_step, const TellFault& tell)
+      : hand_(hand),
+        loop_(device, port, settings),
+        ticks_per_step_(ticks_per_step),
+        tell_(tell),
+        clock_(settings.period_s) {}
+
+  void pause() override {}
+  void resume() override {}
+  Hand& hand() override { return hand_; }
+  HapticLoop& loop() override { return loop_; }
+
+  bool advance(const HeldPart& part) override {
+    if (!hand_.canGoOn(ticks_per_step_)) return false;
+    for (int i = 0; i < ticks_per_step_; ++i) {
+      clock_.start();
+      loop_.tick();
+      clock_.stop();
+      tellFaults();
+      hand_.step(part, loop_, loop_.settings().period_s);
+    }
+    return true;
+  }
+  void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
+  OperatorPhase phase() override { return hand_.phase(); }
+  const TickReport& last() override { return loop_.last(); }
+  HandLedger ledger() override { return loop_.ledger(); }
+  TickTimes times() override { return clock_.summary(); }
+  std::optional<RealTimeResult> realTime() override { return {}; }
+
+ private:
+  void tellFaults() {
+    const SafetyState& safety = loop_.safety();
+    if (safety.faults == told_faults_) return;
+    told_faults_ = safety.faults;
+    tell_(toText(safety.fault));
+  }
+
+  Hand& hand_;
+  HapticLoop loop_;
+  int ticks_per_step_;
+  TellFault tell_;
+  TickClock clock_;
+  std::uint64_t told_faults_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<HapticSide> lockstepSide(Hand& hand, Device& device, CouplingPort& port,
+                                         const LoopSettings& settings, int ticks_per_step,
+                                         const TellFault& tell) {
+  return std::make_unique<LockstepSide>(hand, device, port, settings, ticks_per_step, tell);
+}
+
+}  // namespace vps

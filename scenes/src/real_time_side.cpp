@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "haptic_side.h"
+#include "vps_device/real_time_loop.h"
+
+namespace vps {
+namespace {
+
+constexpr int kPhysicsPriority = 70;  // assumed: below the haptic loop's 80
+constexpr double kCatchUp =
+    20;  // periods that a simulated device makes up for; beyond that its time stands still
+
+double microseconds(std::int64_t ns) {
+  return 1e-3 * static_cast<double>(ns);
+}
+
+TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
+  return {all.count,
+          missed,
+          microseconds(all.p50_ns),
+          microseconds(all.p99_ns),
+          microseconds(all.p999_ns),
+          microseconds(all.max_ns),
+          0};
+}
+
+class RealTimeSide final : public HapticSide {
+ public:
+  RealTimeSide(Hand& hand, CouplingPort& port, LoopSettings settings, double physics_s, const TellFault& tell)
+      : hand_(hand),
+        physics_s_(physics_s),
+        tell_(tell),
+        loop_(hand.device(), port, told(settings), realTimeSettings()),
+        metronome_(std::llround(1e9 * physics_s), monotonicClock()) {}
+  ~RealTimeSide() override { pause(); }
+
+  void pause() override {
+    loop_.stop();
+    leaveRealTime();
+  }
+  void resume() override {
+    if (loop_.loop().safety().fault != SafetyFault::None)
+      loop_.loop().rearm();  // as a person does between steps
+    phase_.store(hand_.phase());
+    const RealTimeReport report = loop_.start();
+    result_.has_priority = report.has_priority;
+    result_.has_locked_memory = report.has_locked_memory;
+    result_.warnings = report.warnings;
+    const RealTimeReport physics = askForRealTime(kPhysicsPriority, false);
+    result_.has_priority = result_.has_priority && physics.has_priority;
+    metronome_.start();
+  }
+  Hand& hand() override { return hand_; }
+  HapticLoop& loop() override { return loop_.loop(); }
+
+  bool advance(const HeldPart& part) override {
+    part_.write(part);
+    const Beat beat = metronome_.wait();
+    result_.physics_missed += static_cast<std::uint64_t>(beat.periods - 1);
+    tellEvents();
+    return true;
+  }
+  void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
+  OperatorPhase phase() override { return loop_.isRunning() ? phase_.load() : hand_.phase(); }
+  const TickReport& last() override { return loop_.latest().report; }
+  HandLedger ledger() override { return loop_.latest().ledger; }
+  TickTimes times() override {
+    const TickStatistics::Summary all = loop_.statistics().summary();
+    return timesOf(all.tick, all.missed);
+  }
+  std::optional<RealTimeResult> realTime() override;
+
+ private:
+  LoopSettings told(LoopSettings settings) {
+    settings.events = &events_;
+    return settings;
+  }
+  RealTimeSettings realTimeSettings() {
+    RealTimeSettings settings;
+    settings.stale_s = 2 * physics_s_;
+    settings.physics_limit_s = std::max(settings.physics_limit_s, 10 * physics_s_);
+    settings.beside = [this](HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
+    return settings;
+  }
+
+  // The loop's thread: the simulated device and hand go on as far as time did, in steps they are made for.
+  void moveHand(HapticLoop& loop, double dt_s) {
+    const HeldPart& part = part_.read();
+    const double period_s = loop.settings().period_s;
+    const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
+    for (int i = 0; i < steps; ++i) hand_.step(part, loop, period_s);
+    phase_.store(hand_.phase());
+  }
+
+  void tellEvents() {
+    for (DeviceEvent event; events_.pop(event);) {
+      if (severityOf(event.kind) != Severity::Fault) continue;
+      ++result_.faults;
+      tell_(toText(event.kind));
+    }
+  }
+
+  Hand& hand_;
+  double physics_s_;
+  TellFault tell_;
+  DeviceEventQueue events_;
+  TripleBuffer<HeldPart> part_;
+  std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
+  RealTimeResult result_;
+  RealTimeLoop loop_;
+  Metronome metronome_;
+};
+
+std::optional<RealTimeResult> RealTimeSide::realTime() {
+  tellEvents();
+  const TickStatistics::Summary all = loop_.statistics().summary();
+  RealTimeResult result = result_;
+  result.late = timesOf(all.late, 0);
+  result.response = timesOf(all.response, 0);
+  for (int i = 0; i < kTickCauses; ++i)
+    result.missed_by.push_back(
+        {toText(static_cast<TickCause>(i)), all.missed_by[static_cast<std::size_t>(i)]});
+  result.stale_ticks = all.stale;
+  result.worst_tick = all.worst.tick;
+  result.worst_us = microseconds(all.worst.response_ns());
+  result.worst_cause = toText(all.worst.cause());
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
+                                         double physics_s, const TellFault& tell) {
+  return std::make_unique<RealTimeSide>(hand, port, settings, physics_s, tell);
+}
+
+}  // namespace vps

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Edges that lie across edges, between the points that stand on them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bullet_bridge/world.h"
+
+namespace vps {
+namespace {
+
+using test::build;
+using test::Built;
+using test::Solver;
+using test::World;
+
+constexpr double kWidth_m = 2e-3, kHalf_m = kWidth_m * std::numbers::sqrt2 / 2;  // of a bar; axis to edge
+
+Mesh turned(Mesh mesh, const Vec3& axis, const Vec3& by) {
+  const Mat3 R = rotationFromVector(axis * (std::numbers::pi / 4));
+  for (Vec3& v : mesh.vertices) v = R * v + by;
+  return mesh;
+}
+
+// Two bars side by side, each standing on an edge, as one part. Nothing is at a multiple of anything, so that
+// no points of two edges meet.
+Built bars(bool along_x) {
+  const Vec3 size = along_x ? Vec3(31.3e-3, kWidth_m, kWidth_m) : Vec3(kWidth_m, 29.7e-3, kWidth_m);
+  const Vec3 axis = along_x ? Vec3::UnitX() : Vec3::UnitY(), aside = along_x ? Vec3::UnitY() : Vec3::UnitX();
+  Mesh mesh = turned(makeBox(size), axis, 7.77e-3 * aside);
+  append(mesh, turned(makeBox(size), axis, -8.13e-3 * aside));
+  return build(mesh, 7850);
+}
+
+// Upper bars over lower ones, each where its frame says: the lower edges' top is at z = 0.
+struct Crossed {
+  explicit Crossed(double gap_m, Solver solver = Solver::Vps) : world(solver) {
+    ground = &world.add(lower, Pose::translation({0, 0, -kHalf_m}), true, 0.3);
+    body = &world.add(upper, Pose::translation({0.31e-3, 0.17e-3, kHalf_m + gap_m}), false, 0.3);
+  }
+  Built lower = bars(false), upper = bars(true);
+  World world;
+  btRigidBody *ground = nullptr, *body = nullptr;
+};
+
+struct Points : btCollisionWorld::ContactResultCallback {
+  double least_m = 1, most_m = -1;
+  int count = 0;
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    least_m = std::min<double>(least_m, point.getDistance());
+    most_m = std::max<double>(most_m, point.getDistance());
+    ++count;
+    return 0;
+  }
+};
+
+TEST(Crossing, OfFourEdgesIsFoundWithItsGap) {
+  Crossed scene(12e-6);
+  Points seen;
+  seen.m_closestDistanceThreshold = toBt(20e-6);
+  scene.world.world->contactPairTest(scene.ground, scene.body, seen);
+  EXPECT_EQ(seen.count, 4);
+  // A float holds a height of 1 mm to 1e-10 m, and this is a difference of a few.
+  EXPECT_NEAR(seen.least_m, 12e-6, 1e-9);
+  EXPECT_NEAR(seen.most_m, 12e-6, 1e-9);
+}
+
+TEST(Crossing, CarriesAPartThatTouchesNowhereElse) {
+  constexpr double kGap_m = 50e-6;
+  Crossed scene(kGap_m);
+  const Vec3 start = fromBt(scene.body->getWorldTransform().getOrigin());
+  scene.world.step(1000);
+  const Vec3 moved = fromBt(scene.body->getWorldTransform().getOrigin()) - start;
+  // Down by the gap and no farther. An overlap is left as it is below 1 um, which is what a step's slack may
+  // leave.
+  EXPECT_NEAR(moved.z(), -kGap_m, 1e-6);
+  EXPECT_LT(moved.head<2>().norm(), 1e-6);
+  const double speed_m_s = fromBt(scene.body->getLinearVelocity()).norm();
+  EXPECT_LE(speed_m_s, 1e-6);
+}
+
+TEST(Crossing, SlidesOverTheJointsOfShellsWithoutAStep) {
+  // Pushed along the lower bars at 20 mm/s: points of both edges pass each other all the time, and nothing is
+  // to be felt of them.
+  Crossed scene(0);
+  scene.body->setFriction(0);
+  scene.world.step(100);
+  scene.body->setLinearVelocity({0, toBt(0.02), 0});
+  double least_m = 1, most_m = -1, slowest_m_s = 1;
+  for (int i = 0; i < 100; ++i) {
+    scene.world.step();
+    const double z_m = scene.body->getWorldTransform().getOrigin().z();
+    least_m = std::min(least_m, z_m);
+    most_m = std::max(most_m, z_m);
+    slowest_m_s = std::min<double>(slowest_m_s, scene.body->getLinearVelocity().y());
+  }
+  EXPECT_LT(most_m - least_m, 1e-6);
+  EXPECT_GT(slowest_m_s, 0.02 * (1 - 1e-3));
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_device/metronome.h"
+
+#include <gtest/gtest.h>
+
+#include "support/fake_clock.h"
+
+namespace vps {
+namespace {
+
+using vps_test::FakeClock;
+
+constexpr std::int64_t kPeriod_ns = 1000;
+
+TEST(Metronome, BeatsAtMultiplesOfThePeriodHoweverLongTheWorkTakes) {
+  FakeClock clock(5'000'000);
+  Metronome metronome(kPeriod_ns, clock);
+  metronome.start();
+  for (int i = 1; i <= 1000; ++i) {
+    const Beat beat = metronome.wait();
+    EXPECT_EQ(beat.due_ns, 5'000'000 + i * kPeriod_ns) << "no drift";
+    EXPECT_EQ(beat.woke_ns, beat.due_ns);
+    EXPECT_EQ(beat.periods, 1);
+    clock.now += i % 7 * 150;  // at most 900 of 1000
+  }
+}
+
+TEST(Metronome, AfterAMissedPeriodGoesOnAtTheNextBoundaryAndNeverBursts) {
+  FakeClock clock;
+  Metronome metronome(kPeriod_ns, clock);
+  metronome.start();
+  metronome.wait();  // 1000
+  clock.now += 3500;
+  Beat beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 5000);
+  EXPECT_EQ(beat.woke_ns, 5000);
+  EXPECT_EQ(beat.periods, 4);
+  EXPECT_EQ(beat.missed_before, 3);
+  EXPECT_EQ(beat.missed_asleep, 0);
+  beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 6000);
+  EXPECT_EQ(beat.periods, 1);
+  clock.now += 1000;  // exactly up to the boundary is in time
+  EXPECT_EQ(metronome.wait().due_ns, 7000);
+}
+
+TEST(Metronome, WokenLateItSaysSoAndKeepsItsBoundaries) {
+  FakeClock clock;
+  Metronome metronome(kPeriod_ns, clock);
+  metronome.start();
+  clock.oversleep = 400;
+  Beat beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 1000);
+  EXPECT_EQ(beat.woke_ns, 1400);
+  EXPECT_EQ(beat.periods, 1);
+  clock.oversleep = 2300;
+  beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 4000);
+  EXPECT_EQ(beat.woke_ns, 4300);
+  EXPECT_EQ(beat.missed_asleep, 2);
+  EXPECT_EQ(beat.missed_before, 0);
+  EXPECT_EQ(beat.periods, 3);
+  clock.oversleep = 0;
+  EXPECT_EQ(metronome.wait().due_ns, 5000);
+}
+
+TEST(Metronome, AClockThatGoesBackwardsIsToldAndTheBeatGoesOn) {
+  FakeClock clock(1'000'000'000);
+  Metronome metronome(kPeriod_ns, clock);
+  metronome.start();
+  EXPECT_FALSE(metronome.wait().has_clock_gone_back);
+  clock.now = 500;
+  Beat beat = metronome.wait();
+  EXPECT_TRUE(beat.has_clock_gone_back);
+  EXPECT_EQ(beat.due_ns, 1500) << "a period from the new time, not a second from it";
+  EXPECT_EQ(beat.periods, 1);
+  clock.oversleep = -1200;  // back while it sleeps
+  beat = metronome.wait();
+  EXPECT_TRUE(beat.has_clock_gone_back);
+  EXPECT_EQ(beat.periods, 1);
+  clock.oversleep = 0;
+  EXPECT_FALSE(metronome.wait().has_clock_gone_back);
+}
+
+TEST(Metronome, TheSystemsClockNeverWakesEarly) {
+  Metronome metronome(200'000, monotonicClock());
+  metronome.start();
+  std::int64_t due_ns = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Beat beat = metronome.wait();
+    EXPECT_GE(beat.woke_ns, beat.due_ns);
+    EXPECT_LT(beat.woke_ns, beat.due_ns + metronome.period_ns());
+    if (i > 0) {
+      EXPECT_EQ(beat.due_ns - due_ns, beat.periods * metronome.period_ns());
+    }
+    due_ns = beat.due_ns;
+  }
+}
+
+}  // namespace
+}  // namespace vps

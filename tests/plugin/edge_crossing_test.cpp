@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/edge_crossing.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "support/lathe.h"
+#include "vps/mesh_distance.h"
+
+namespace vps {
+namespace {
+
+// Lengths here are of the order of 1 and sums of a few products: 1e-12 is thousands of roundings.
+constexpr double kRounding = 1e-12;
+
+EdgeSet edgesOf(const Mesh& mesh) {
+  std::vector<EdgeSegment> segments;
+  appendEdges(mesh, Pose{}, 0, segments);
+  return EdgeSet(std::move(segments));
+}
+
+std::vector<EdgeCrossing> crossings(const EdgeSet& a, const EdgeSet& b, const Pose& X_ab, double cutoff) {
+  std::vector<EdgeCrossing> out;
+  findCrossings(a, b, X_ab, cutoff, cutoff, out);
+  return out;
+}
+
+Pose randomPose(std::mt19937& random, double reach) {
+  std::normal_distribution<double> normal;
+  const Vec3 p(normal(random), normal(random), normal(random));
+  return {Quat(normal(random), normal(random), normal(random), normal(random)), Vec3(reach * p.normalized())};
+}
+
+Mat3 turned(const Vec3& axis, double angle_rad) {
+  return rotationFromVector(angle_rad * axis);
+}
+
+TEST(EdgeSet, ABoxHasTwelveAndNoneOnItsDiagonals) {
+  const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
+  ASSERT_EQ(edges.segments().size(), 12U);
+  double length = 0;
+  for (const EdgeSegment& s : edges.segments()) length += (s.to - s.from).norm();
+  EXPECT_NEAR(length, 4 * (1 + 2 + 3), kRounding);
+}
+
+TEST(EdgeSet, GroovesAndTheFacetsOfRoundFacesAreNone) {
+  // A flanged bush of 24 flats, 15 degrees apart. Its five convex rims, and not the root of the flange.
+  const EdgeSet edges = edgesOf(test::lathe({{6, 0}, {15, 0}, {15, 4}, {9, 4}, {9, 20}, {6, 20}}, 24));
+  EXPECT_EQ(edges.segments().size(), 5U * 24U);
+}
+
+TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
+  const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
+  const auto countAt = [&](const Vec3& p) {
+    int count = 0;
+    edges.forEachNear(p, 1e-9, [&](std::uint32_t) { ++count; });
+    return count;
+  };
+  EXPECT_EQ(countAt({0.5, 0.3, 1.5}), 1);
+  EXPECT_EQ(countAt({0.5, 1, 1.5}), 3) << "a corner";
+  EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
+}
+
+// Two bars on edge, one across the other.
+TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
+  const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
+  const double half = std::sqrt(0.5);  // from the axis to an edge
+  for (const double gap : {0.01, 0.0, -0.01}) {
+    // In the frame of the upper bar, which is turned 45 degrees about its length.
+    const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, half + gap)),
+        X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3(0, 0, -half));
+    const auto found = crossings(along_x, along_y, X_W0.inverse() * X_W1, 0.05);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].gap_m, gap, kRounding);
+    EXPECT_LT((X_W0.R * found[0].n - Vec3::UnitZ()).norm(), kRounding);
+    EXPECT_LT((X_W0 * found[0].p[0] - Vec3(0, 0.2, gap)).norm(), kRounding);
+    EXPECT_LT((X_W0 * found[0].p[1] - Vec3(0, 0.2, 0)).norm(), kRounding);
+  }
+}
+
+TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
+  const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
+  const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, 2 * std::sqrt(0.5) - 0.1)),
+      X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3::Zero());
+  std::vector<EdgeCrossing> out;
+  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.09, out);
+  EXPECT_TRUE(out.empty());
+  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.11, out);
+  ASSERT_EQ(out.size(), 1U);
+  EXPECT_NEAR(out[0].gap_m, -0.1, kRounding);
+}
+
+TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {
+  // Upper bar flat over the lower one's edge: its own edges cross that edge nowhere near the ends it has.
+  const EdgeSet bar = edgesOf(makeBox({10, 1, 1}));
+  const double half = std::sqrt(0.5);
+  const Pose X_01(Mat3(turned(Vec3::UnitZ(), 0.5) * turned(Vec3::UnitX(), std::numbers::pi / 4)),
+                  Vec3(0, 0, -0.5 - half - 0.01));
+  for (const EdgeCrossing& c : crossings(bar, bar, X_01, 0.05))
+    EXPECT_NEAR(std::abs(c.n.z()), 1, 0.02 + kRounding) << "the rims of the face that lies on it, at most";
+}
+
+TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
+  const EdgeSet a = edgesOf(makeBox({1, 2, 3})),
+                b = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 2}, {0, 2}}, 17));
+  std::mt19937 random(1);
+  std::size_t seen = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Pose X_ab = randomPose(random, 1.5);
+    const auto forth = crossings(a, b, X_ab, 0.3), back = crossings(b, a, X_ab.inverse(), 0.3);
+    ASSERT_EQ(forth.size(), back.size());
+    seen += forth.size();
+    for (const EdgeCrossing& f : forth) {
+      const auto same = std::find_if(back.begin(), back.end(), [&](const EdgeCrossing& r) {
+        return r.edge[0] == f.edge[1] && r.edge[1] == f.edge[0];
+      });
+      ASSERT_NE(same, back.end());
+      EXPECT_NEAR(same->gap_m, f.gap_m, 1e3 * kRounding);  // a sine of 0.087 costs a hundredfold
+      EXPECT_LT((X_ab.R * same->n + f.n).norm(), 1e3 * kRounding);
+    }
+  }
+  EXPECT_GT(seen, 100U);
+}
+
+TEST(EdgeCrossing, TheHierarchyMissesNone) {
+  const Mesh part = test::lathe({{0.6, 0}, {1.5, 0}, {1.5, 0.4}, {0.9, 0.4}, {0.9, 2}, {0.6, 2}}, 40);
+  const EdgeSet edges = edgesOf(part);
+  std::vector<EdgeSet> alone;
+  for (const EdgeSegment& s : edges.segments()) alone.emplace_back(std::vector<EdgeSegment>{s});
+  std::mt19937 random(2);
+  std::size_t seen = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Pose X = randomPose(random, 1.2);
+    const auto found = crossings(edges, edges, X, 0.4);
+    std::size_t i = 0;
+    for (std::uint32_t e0 = 0; e0 < alone.size(); ++e0)
+      for (std::uint32_t e1 = 0; e1 < alone.size(); ++e1)
+        for (const EdgeCrossing& truth : crossings(alone[e0], alone[e1], X, 0.4)) {
+          ASSERT_LT(i, found.size());
+          EXPECT_EQ(found[i].edge[0], e0);
+          EXPECT_EQ(found[i].edge[1], e1);
+          EXPECT_EQ(found[i].gap_m, truth.gap_m);
+          ++i;
+        }
+    EXPECT_EQ(i, found.size());
+    seen += i;
+  }
+  EXPECT_GT(seen, 50U);
+}
+
+// True if a part of the segment is in the box about the origin.
+bool pierces(const Vec3& from, const Vec3& to, const Vec3& size) {
+  double first = 0, last = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double way = to[k] - from[k], low = (-size[k] / 2 - from[k]) / way,
+                 high = (size[k] / 2 - from[k]) / way;
+    first = std::max(first, std::min(low, high));
+    last = std::min(last, std::max(low, high));
+  }
+  return first < last;
+}
+
+// Of boxes apart, the distance is that of a corner to the other, or of two edges: so where no corner is
+// nearest, a crossing is.
+TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
+  const Vec3 size0(1, 2, 3), size1(2, 1.5, 1);
+  const Mesh box0 = makeBox(size0), box1 = makeBox(size1);
+  const MeshDistance to0(box0), to1(box1);
+  const EdgeSet edges0 = edgesOf(box0), edges1 = edgesOf(box1);
+  std::mt19937 random(3);
+  int edge_cases = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Pose X_01 = randomPose(random, 2.6);
+    double corner = 1e300, edge = 1e300, sine = 0;
+    for (const Vec3& v : box1.vertices) corner = std::min(corner, to0.signedDistance(X_01 * v));
+    for (const Vec3& v : box0.vertices) corner = std::min(corner, to1.signedDistance(X_01.inverse() * v));
+    // Exhaustively: nearest points of segments, by how near the lines are and where.
+    for (const EdgeSegment& s0 : edges0.segments())
+      for (const EdgeSegment& s1 : edges1.segments()) {
+        const Vec3 a = s0.from, d0 = s0.to - s0.from, b = X_01 * s1.from, d1 = X_01.R * (s1.to - s1.from);
+        Eigen::Matrix<double, 3, 2> M;
+        M << d0, -d1;
+        const Eigen::Vector2d at = (M.transpose() * M).ldlt().solve(M.transpose() * (b - a));
+        const double apart = (a + at[0] * d0 - b - at[1] * d1).norm();
+        if (at.minCoeff() <= 0 || at.maxCoeff() >= 1 || apart >= edge) continue;
+        edge = apart;
+        sine = d0.normalized().cross(d1.normalized()).norm();
+      }
+    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // left to points
+    // Boxes that overlap without a corner inside have no distance: an edge then pierces a face.
+    bool overlaps = false;
+    for (const EdgeSegment& s : edges0.segments())
+      overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
+    for (const EdgeSegment& s : edges1.segments()) overlaps |= pierces(X_01 * s.from, X_01 * s.to, size0);
+    if (overlaps) continue;
+    double least = 1e300;
+    for (const EdgeCrossing& c : crossings(edges0, edges1, X_01, 0.5))
+      if (c.gap_m >= 0) least = std::min(least, c.gap_m);
+    EXPECT_NEAR(least, edge, 1e3 * kRounding);
+    ++edge_cases;
+  }
+  EXPECT_GT(edge_cases, 100);
+}
+
+// A rim of chords: a bar's edge that goes round it is always crossed, at the joints too.
+TEST(EdgeCrossing, IsNotLostAtTheJointsOfARim) {
+  const EdgeSet disc = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 96)),
+                bar = edgesOf(makeBox({1, 4, 1}));
+  // The bar lies on edge across the rim of the disc's top face.
+  for (int k = 0; k <= 400; ++k) {
+    const double angle_rad = 0.2 * k / 400;
+    const Pose X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3(0.9, 0, 1 + std::sqrt(0.5) + 1e-7));
+    const Pose X(turned(Vec3::UnitZ(), angle_rad), Vec3::Zero());
+    const auto found = crossings(disc, bar, X * X_W1, 1e-3);
+    const bool both = std::count_if(found.begin(), found.end(), [](const EdgeCrossing& c) {
+                        return std::abs(c.gap_m - 1e-7) < 1e-9;
+                      }) >= 2;
+    EXPECT_TRUE(both) << "at " << angle_rad;
+  }
+}
+
+}  // namespace
+}  // namespace vps
