@@ -77,7 +77,7 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairS
   PairView later = pair;
   for (int k = 0; k < strides && out.empty(); ++k) {
     const double t_s = motion.dt_s * k / strides;
-    if (k > 0) advance(later, pair, t_s);
+    if (k > 0) advance(later, pair, motion.dt_s, t_s);
     collect(later, std::min(motion.slack_m + travel_m / strides, sight), context, out);
     takeSpringNormals(later, context.settings, out);
     // Keep what is met in this stride, as planes seen from where the bodies are now.

@@ -35,11 +35,11 @@ int sideCount(const PairView& pair, Sides sides) {
   return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
 }
 
-void advance(PairView& pair, const PairView& start, double dt_s) {
+void advance(PairView& pair, const PairView& start, double dt_s, double t_s) {
   for (int i = 0; i < 2; ++i) {
-    const Twist V = predictedVelocity(*pair.wrapper[i]->getCollisionObject(), dt_s > 0 ? dt_s : 0);
-    const Mat3 R = rotationFromVector(V.w * dt_s);
-    pair.X_WS[i] = Pose(Mat3(R * start.X_WS[i].R), R * start.X_WS[i].p + V.v * dt_s);
+    const Twist V = predictedVelocity(*pair.wrapper[i]->getCollisionObject(), dt_s);
+    const Mat3 R = rotationFromVector(V.w * t_s);
+    pair.X_WS[i] = Pose(Mat3(R * start.X_WS[i].R), R * start.X_WS[i].p + V.v * t_s);
   }
 }
 

@@ -61,8 +61,9 @@ double sight_m(const PairView& pair);
 /// How many sides' points answer for the same surface.
 int sideCount(const PairView& pair, Sides sides);
 
-/// Moves both bodies on from where they are in `start`, freely, for a share of the step.
-void advance(PairView& pair, const PairView& start, double dt_s);
+/// Where both bodies are t_s into a step of dt_s, moving freely at the velocity of its end, as all that looks
+/// ahead takes it. (That of t_s is another: a stiff coupling pulls nearly as far in a part of the step.)
+void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 
 /// Where the bodies go in the step if they keep their velocities: what takes each from its place to that one.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);

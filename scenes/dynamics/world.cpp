@@ -101,11 +101,11 @@ void World::removeBody(btRigidBody* body) {
   std::erase_if(bodies_, [&](const auto& owned) { return owned.get() == body; });
 }
 
-void World::step(int count) {
+void World::step(int count, double dt_s) {
   for (int i = 0; i < count; ++i) {
     t_narrow_s = t_solve_s = 0;
     const double start_s = threadTime_s();
-    world_->stepSimulation(btScalar(kStep_s), 0);
+    world_->stepSimulation(btScalar(dt_s), 0);
     times_.step_s.push_back(threadTime_s() - start_s);
     times_.narrow_s += t_narrow_s;
     times_.solve_s += t_solve_s;

@@ -49,7 +49,7 @@ class World {
     world_->setGravity({btScalar(g_W.x()), btScalar(g_W.y()), btScalar(g_W.z())});
   }
 
-  void step(int count = 1);
+  void step(int count = 1, double dt_s = kStep_s);
   [[nodiscard]] const StepTimes& times() const { return times_; }
   void forgetTimes() { times_ = {}; }
   [[nodiscard]] btDiscreteDynamicsWorld& bullet() { return *world_; }

@@ -228,6 +228,26 @@ INSTANTIATE_TEST_SUITE_P(Each, CouplingWithSolver,
                          testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
+// In a step of 1 ms this pull takes the block's free path 3 mm on, farther than its map sees.
+TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
+  for (const Solver solver : {Solver::Vps, Solver::Penalty}) {
+    World world(solver);
+    const test::Built plate = test::plate(), box = test::steelBox();  // 10 mm thick, both
+    world.add(plate, Pose::translation(Vec3(0, 0, -5e-3)), true);
+    btRigidBody& part = world.add(box, Pose::translation(Vec3(0, 0, 6e-3)));
+    CouplingGains gains = gainsOf(1e6, box.frame.mass_kg);
+    gains.k_Nm_per_rad = 100;
+    VpsCoupling coupling(part, Pose(), gains);
+    world.world->addConstraint(&coupling, true);
+    coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0, 3e-3))));
+    world.step(200);
+    // Springs give way to 2 kN on 300 mm^2 of 1e12 N/m^3 by 6.7 um.
+    EXPECT_NEAR(test::partPose(part, box).p.z(), 5e-3, solver == Solver::Penalty ? 10e-6 : 1e-6)
+        << nameOf(solver);
+    world.world->removeConstraint(&coupling);
+  }
+}
+
 TEST(Coupling, RefusesASolverThatNeverCallsIt) {
   btDantzigSolver dantzig;
   btMLCPSolver mlcp(&dantzig);

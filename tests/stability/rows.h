@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All rows, in the order of the table; each function is a file of its own.
+#pragma once
+
+#include <vector>
+
+#include "row.h"
+
+namespace vps::stability {
+
+std::vector<Row> scaleRows();   ///< sizes, distances, steps
+std::vector<Row> loadRows();    ///< masses, stiffness, friction, many contacts
+std::vector<Row> impactRows();  ///< impacts, thin walls, spin
+std::vector<Row> shapeRows();   ///< edges, tips, overlaps at the start, fits
+std::vector<Row> restRows();    ///< long rest, copies of a scene
+std::vector<Row> inputRows();   ///< what is no number
+std::vector<Row> deviceRows();  ///< a hand that jerks; where vps::device is built
+
+/// All of them.
+std::vector<Row> allRows();
+
+}  // namespace vps::stability
