@@ -17,7 +17,7 @@ namespace vps {
 /// A point that can touch within the step: of a side's shell, or where an edge of body 0 crosses one of
 /// body 1.
 struct Candidate {
-  Vec3 p_W = Vec3::Zero();    ///< the shell's point now
+  Vec3 p_W = Vec3::Zero();    ///< the shell's point now; of a crossing that on body 0's edge
   Vec3 n_W = Vec3::Zero();    ///< unit, from body 1 to body 0
   double distance_m = 0;      ///< signed gap now
   double predicted_m = 0;     ///< the gap at the end of the step if nothing held the bodies

@@ -19,7 +19,10 @@ double roundedUp(double cutoff_m, double most_m) {
 
 // How deep edges may overlap and still push each other out, as a share of what the fields see. assumed:
 // deeper, points lie inside and do it.
-constexpr double kDeepShare = 0.25;
+double edgeDepth_m(const PairView& pair, double cutoff_m) {
+  constexpr double kShare = 0.25;
+  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * sight_m(pair)) : cutoff_m;
+}
 
 // In penalty mode the points of faces press along their own normals.
 void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
@@ -55,8 +58,8 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
   // Springs stand for areas, and a crossing has none.
   if (context.settings.mode == ContactMode::Constraint && context.settings.use_surfaces && pair.vps[0] &&
       pair.vps[1])
-    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m,
-                                 std::max(cutoff_m, kDeepShare * sight_m(pair)), context.settings, out);
+    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
+                                 context.settings, out);
   context.points_tested += tested;
   context.left_out += left_out;
 }
@@ -141,6 +144,12 @@ bool isWhereItWas(const Selection& selection, const PairView& pair, const Relati
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
   const double turned_rad = (moved.R - Mat3::Identity()).norm();
   return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kStill_m;
+}
+
+double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
+  RelativeMotion change = motion;
+  change.V = {motion.V.w - selection.V.w, motion.V.v - selection.V.v};
+  return (change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m()) * motion.dt_s;
 }
 
 Carry carryOf(const Selection& selection, const PairView& pair) {

@@ -42,6 +42,9 @@ constexpr double kStill_m = 1e-6;
 /// True if the selection's points are still the ones to look at.
 bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
+/// How much farther than foreseen then any point of the smaller body may go in the step [m].
+double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
+
 /// What takes a selection's planes to where the bodies are now. Within kStill_m that is as good as a look.
 Carry carryOf(const Selection& selection, const PairView& pair);
 

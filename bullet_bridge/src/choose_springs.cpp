@@ -48,10 +48,8 @@ void chooseSprings(const PairView& pair, VpsPairState& state) {
 bool recallSprings(const PairView& pair, VpsPairState& state, Carry& carry) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
-  RelativeMotion change = motion;
-  change.V = {motion.V.w - selection.V.w, motion.V.v - selection.V.v};
-  const double change_m_s = change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m();
-  if (!(change_m_s * motion.dt_s <= kStill_m) || !isWhereItWas(selection, pair, motion)) return false;
+  if (!(motionChange_m(selection, pair, motion) <= kStill_m) || !isWhereItWas(selection, pair, motion))
+    return false;
   carry = carryOf(selection, pair);
   state.contacts = selection.chosen;
   for (Candidate& c : state.contacts) carry(c);

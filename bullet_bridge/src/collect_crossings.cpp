@@ -7,12 +7,41 @@
 
 namespace vps {
 
+namespace {
+
+// A cooked body is the union of its parts: an edge that another part covers is no edge of the body's.
+// @param out_M  the way from the edge's place p_M out of the body
+bool isCovered(const VpsShape& shape, std::uint16_t owner, const Vec3& p_M, const Vec3& out_M) {
+  constexpr double kOff_m = 10e-6;  // assumed: seams of parts that are mounted on each other are flatter
+  const std::vector<VpsSurface>& surfaces = shape.models().surfaces;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (i == owner || surfaces[i].sheet) continue;
+    const Vec3 p = surfaces[i].X_MP.inverse() * (p_M + kOff_m * out_M);
+    if (surfaces[i].distance->signedDistance(p, kOff_m) < 0.5 * kOff_m) return true;
+  }
+  return false;
+}
+
+bool isCovered(const EdgeCrossing& at, const SideView& body0, const SideView& body1, const Pose& X_10) {
+  const auto ownerOf = [&](const SideView& body, int k) {
+    return body.shape->edges().segments()[at.edge[k]].owner;
+  };
+  return isCovered(*body0.shape, ownerOf(body0, 0), at.p[0], -at.n) ||
+         isCovered(*body1.shape, ownerOf(body1, 1), X_10 * at.p[1], X_10.R * at.n);
+}
+
+}  // namespace
+
 std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
                              const VpsBulletSettings& settings, std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();
-  findCrossings(edges0, edges1, body0.X_WM.inverse() * body1.X_WM, cutoff_m, depth_m, crossings);
+  const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
+  findCrossings(edges0, edges1, X_01, cutoff_m, depth_m, crossings);
+  std::erase_if(crossings, [&, X_10 = X_01.inverse()](const EdgeCrossing& at) {
+    return isCovered(at, body0, body1, X_10);
+  });
   std::size_t room = crossings.size();
   if (const auto limit = static_cast<std::size_t>(settings.candidate_limit); limit > 0)
     room = std::min(room, limit - std::min(limit, out.size()));

@@ -68,7 +68,7 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
   Vec3 smooth = Vec3::Zero();  ///< the normal of the curved surface that the mesh stands for
   bool is_edge = false;
-  bool is_rim = false;  ///< of a sheet, which is no edge between two faces
+  bool is_sheet = false;  ///< whose edges may be wound either way: crossings do not cover them
 };
 
 struct Exact {
@@ -91,7 +91,7 @@ Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, do
     const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * own.inward_W, closest);
     foot.normal = X_WP.R * seen.normal;
     if (foot.smooth.dot(foot.normal) < 0) foot.smooth = -foot.smooth;  // from behind
-    foot.is_rim = seen.is_rim;
+    foot.is_sheet = true;
     foot.is_edge |= seen.is_rim;
   }
   return foot;
@@ -130,7 +130,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.distance_m = sign * distance_m;
   exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
   exact.is_edge_on_edge = is_edge_on_edge;
-  if (is_edge_on_edge && !foot.is_rim && own.runsAlong(exact.n)) exact.meets = false;
+  if (is_edge_on_edge && !foot.is_sheet && own.runsAlong(exact.n)) exact.meets = false;
   return exact;
 }
 

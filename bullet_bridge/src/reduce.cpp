@@ -47,7 +47,8 @@ std::uint64_t cellOf(const Candidate& c, const Vec3& origin, double cell_m) {
   const auto at = [&](int axis) {
     return static_cast<std::uint64_t>(std::clamp((c.p_W[axis] - origin[axis]) / cell_m, 0.0, 65535.0));
   };
-  return (((at(0) << 16 | at(1)) << 16 | at(2)) << 8) | (directionCell(c.n_W) << 1) | c.side;
+  return (((at(0) << 16 | at(1)) << 16 | at(2)) << 8) | (directionCell(c.n_W) << 2) |
+         (c.isCrossing() ? 2U : 0U) | c.side;
 }
 
 // Marks the most urgent candidate of each cell. A small open-addressed table, cell -> its best so far: one

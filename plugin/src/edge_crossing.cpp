@@ -19,7 +19,8 @@ constexpr double kLeastSlimness = 1e-10;  // as MeshDistance: twice the area ove
 /// next of a fine polygon stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
 /// How far past its end a segment still crosses: at the joints of a curved edge the crossing falls between
-/// two, by a share of the gap. Assumed.
+/// two, by a share of the gap. Assumed. At a true end the way out of an overlap past it must not be shorter
+/// than the one across: a square peg's rim in a square hole has long passed the hole's.
 constexpr double kPast_m = 1e-6, kPastShare = 0.1;
 
 struct Face {
@@ -37,9 +38,32 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
   return {n.normalized(), corner[(e.side + 2) % 3], n.norm() > kLeastSlimness * longest2};
 }
 
+/// An end of a segment at a vertex.
+struct Tip {
+  std::uint32_t vertex, segment;
+  int end;
+  Vec3 away;  ///< unit, along the segment
+};
+
+// Two edges that meet in a line with no third are one curved edge.
+void joinTips(std::vector<Tip>& tips, std::vector<EdgeSegment>& segments) {
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.segment < b.segment;
+  });
+  for (std::size_t i = 0; i < tips.size();) {
+    std::size_t end = i + 1;
+    while (end < tips.size() && tips[end].vertex == tips[i].vertex) ++end;
+    if (end - i == 2 && tips[i].away.dot(tips[i + 1].away) < -kCosSharp)
+      for (std::size_t k = i; k < end; ++k) segments[tips[k].segment].ends[tips[k].end] = false;
+    i = end;
+  }
+}
+
 }  // namespace
 
 void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::vector<EdgeSegment>& out) {
+  const std::size_t first = out.size();
+  std::vector<Tip> tips;
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     if (same.size() != 2 || same[0].is_forward == same[1].is_forward) return;
     EdgeSegment s;
@@ -57,8 +81,11 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
     const Vec3 mean = face[0].normal + face[1].normal;
     s.outward = mean.norm() > 1e-6 ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
     s.owner = owner;
+    tips.push_back({same[0].low, static_cast<std::uint32_t>(out.size()), 0, along});
+    tips.push_back({same[0].high, static_cast<std::uint32_t>(out.size()), 1, -along});
     out.push_back(s);
   });
+  if (out.size() > first) joinTips(tips, out);
 }
 
 EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segments)) {
@@ -119,7 +146,13 @@ class CrossingSearch {
  public:
   CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
                  double depth_m, std::vector<EdgeCrossing>& out)
-      : edges0_(edges0), edges1_(edges1), X_01_(X_01), cutoff_m_(cutoff_m), depth_m_(depth_m), out_(out) {}
+      : edges0_(edges0),
+        edges1_(edges1),
+        X_01_(X_01),
+        X_10_(X_01.inverse()),
+        cutoff_m_(cutoff_m),
+        depth_m_(depth_m),
+        out_(out) {}
 
   void run() {
     if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty()) visit(edges0_.nodes_[0], edges1_.nodes_[0]);
@@ -130,8 +163,13 @@ class CrossingSearch {
 
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   void visit(const Node& a, const Node& b) {
+    const Vec3 b_center = X_01_ * b.center;
     const double reach_m = a.radius_m + b.radius_m + std::max(cutoff_m_, depth_m_);
-    if ((a.center - X_01_ * b.center).squaredNorm() > reach_m * reach_m) return;
+    if ((a.center - b_center).squaredNorm() > reach_m * reach_m) return;
+    // A long segment's sphere holds much that the segment is far from.
+    const double near_m = std::max(cutoff_m_, depth_m_);
+    if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + near_m)) return;
+    if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + near_m)) return;
     if (a.is_leaf != 0 && b.is_leaf != 0) {
       cross(a.first, b.first);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
@@ -158,9 +196,12 @@ class CrossingSearch {
     // The nearest points of two lines [Ericson 2005, section 5.1.8].
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
-    const double past_m = kPast_m + kPastShare * std::abs(c.gap_m);
-    if (at0_m < -past_m || at0_m > length0_m + past_m || at1_m < -past_m || at1_m > length1_m + past_m)
-      return;
+    const double joint_m = kPast_m + kPastShare * std::abs(c.gap_m);
+    const double end_m = c.gap_m >= 0 ? joint_m : kPast_m + c.gap_m;
+    const auto isOn = [&](const EdgeSegment& s, double at_m, double length_m) {
+      return at_m >= -(s.ends[0] ? end_m : joint_m) && at_m <= length_m + (s.ends[1] ? end_m : joint_m);
+    };
+    if (!isOn(s0, at0_m, length0_m) || !isOn(s1, at1_m, length1_m)) return;
     for (int k = 0; k < 2; ++k)
       if (-c.n.dot(s0.into[k]) > kLean || c.n.dot(X_01_.R * s1.into[k]) > kLean) return;
     c.edge[0] = i0;
@@ -172,6 +213,7 @@ class CrossingSearch {
 
   const EdgeSet &edges0_, &edges1_;
   const Pose& X_01_;
+  const Pose X_10_;
   double cutoff_m_, depth_m_;
   std::vector<EdgeCrossing>& out_;
 };

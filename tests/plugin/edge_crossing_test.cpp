@@ -109,7 +109,7 @@ TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
                 b = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 2}, {0, 2}}, 17));
   std::mt19937 random(1);
   std::size_t seen = 0;
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 3000; ++k) {
     const Pose X_ab = randomPose(random, 1.5);
     const auto forth = crossings(a, b, X_ab, 0.3), back = crossings(b, a, X_ab.inverse(), 0.3);
     ASSERT_EQ(forth.size(), back.size());
@@ -133,7 +133,7 @@ TEST(EdgeCrossing, TheHierarchyMissesNone) {
   for (const EdgeSegment& s : edges.segments()) alone.emplace_back(std::vector<EdgeSegment>{s});
   std::mt19937 random(2);
   std::size_t seen = 0;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 80; ++k) {
     const Pose X = randomPose(random, 1.2);
     const auto found = crossings(edges, edges, X, 0.4);
     std::size_t i = 0;

@@ -35,8 +35,8 @@ class VpsPair : public btActivatingCollisionAlgorithm {
 
 /// Contact of two VpsShapes, or of a VpsShape and one of Bullet's plane, box, sphere, capsule and cylinder.
 ///
-///   1. query: points of each side that can touch the other within the step (speculative contact: distance
-///   may be > 0)
+///   1. query: crossings of edges, and points of each side that can touch the other within the step
+///   (speculative contact: distance may be > 0)
 ///   2. reduce to contact_limit contacts that keep depth, extent and directions, preferring last step's
 ///   3. correct them by the exact surfaces
 ///   4. write them into as many manifolds of four as needed, each with the impulses it had last step

@@ -19,6 +19,7 @@ struct EdgeSegment {
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each face
   Vec3 outward = Vec3::Zero();                  ///< mean of the faces' outward normals, unit
   std::uint16_t owner = 0;                      ///< part
+  bool ends[2] = {true, true};  ///< at from, at to: false where a curved edge goes on in another segment
 };
 
 /// Appends a mesh's edges that stick out and turn by more than 20 degrees, placed by X_MP. Edges of one face
