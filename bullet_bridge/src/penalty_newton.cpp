@@ -177,7 +177,6 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
   return speed_m_s;
 }
 
-// What the momentum that is missing would do to the bodies.
 double PenaltyNewton::imbalance_m_s() {
   trial_.resize(gradient_.size());
   for (std::size_t i = 0; i < gradient_.size(); ++i)

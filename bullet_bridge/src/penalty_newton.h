@@ -38,6 +38,9 @@ class PenaltyNewton {
   /// Velocities for the bodies' masses and the limits as they stand. Not settled: the limit came first, or
   /// something is no number.
   SolveOutcome solve(double residual_m_s, int iteration_limit, End end = End::Short);
+  /// What the momentum that the last velocities looked at leave missing would do to the bodies. After a
+  /// solve that ended Balanced those are the bodies'.
+  [[nodiscard]] double imbalance_m_s();
   /// Limits of friction by the forces just found. Returns the greatest change, relative to the greatest
   /// limit.
   double renewLimits();
@@ -55,7 +58,6 @@ class PenaltyNewton {
   [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
   [[nodiscard]] double shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
-  [[nodiscard]] double imbalance_m_s();
 
   /// Joints as springs of the velocity, so stiff that they miss their target by a millionth: their limits
   /// make the potential's slope constant, as a bristle's does.

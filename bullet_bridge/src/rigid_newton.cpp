@@ -102,8 +102,10 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
     // Cut short, springs have pushed by more than they should: that would be energy from nowhere.
     if (!round.is_settled) break;
     springs_.finish();
-    // What new limits of friction do to the velocities counts as much as what springs give.
-    const double now_m_s = std::max(takeImpulses(contacts, dt_s), changeSinceKept_m_s());
+    // What new limits of friction do to the velocities counts as much as what springs give, and so does
+    // what the round left out of balance: the velocities are the springs', not what the impulses give.
+    const double now_m_s =
+        std::max({takeImpulses(contacts, dt_s), changeSinceKept_m_s(), springs_.imbalance_m_s()});
     if (now_m_s > kGood * missed_m_s) softness_ = std::max(kStiffest, kStiffer * softness_);
     missed_m_s = now_m_s;
     island_.readVelocities(before_);

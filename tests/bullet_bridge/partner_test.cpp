@@ -684,47 +684,28 @@ TEST(Partners, AShapeThatIsResizedIsMetAsItIsNow) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.007, 1e-6);
 }
 
-// Seven cubes over four kinds of partner; where they are after a tenth of a second.
-std::vector<btTransform> fallOnPartners(btCollisionDispatcher& dispatcher,
-                                        btDefaultCollisionConfiguration& config) {
+// Seven cubes over four kinds of partner; where they are after a tenth of a second. 0 threads: the stock
+// dispatcher.
+std::vector<btTransform> fallOnPartners(int threads) {
   Ground ground;
   btBoxShape box(at(0.02, 0.02, 0.01));
   btSphereShape ball(toBt(0.02));
   btCollisionShape* shapes[] = {&slabHull(ground, 0.5), &box,
                                 &ground.keep<btBvhTriangleMeshShape>(&floorMesh(ground), true), &ball};
-  btDbvtBroadphase broadphase;
-  VpsSolver solver;
-  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
-  installVps(dispatcher);
-  world.setGravity(btVector3(0, 0, toBt(-9.81)));
-  std::vector<std::unique_ptr<btRigidBody>> bodies;
-  const auto add = [&](btCollisionShape& shape, double mass_kg, const Vec3& inertia, const Pose& X_WB) {
-    bodies.push_back(std::make_unique<btRigidBody>(toBt(mass_kg), nullptr, &shape, toBt(inertia)));
-    bodies.back()->setWorldTransform(toBt(X_WB));
-    world.addRigidBody(bodies.back().get());
-  };
+  World world(Solver::Vps, {}, 100, {}, threads);
   for (int i = 0; i < 4; ++i)
-    add(*shapes[i], 0, Vec3::Zero(), Pose::translation(Vec3(0.015 * i, 0.01 * (i % 2), -0.012)));
+    world.addShape(*shapes[i], 0, Vec3::Zero(), Pose::translation(Vec3(0.015 * i, 0.01 * (i % 2), -0.012)));
   for (int i = 0; i < 7; ++i)
-    add(*cube().shape, cube().frame.mass_kg, cube().frame.inertia_kg_m2,
-        Pose(rotationFromVector(Vec3(0.3 * i, 0.2, 0.1 * i)),
-             Vec3(0.012 * (i % 4), 0, 0.01 + 0.012 * (i / 4))));
-  tuneWorld(world);
-  for (int i = 0; i < 100; ++i) world.stepSimulation(toBt(1e-3), 0);
-  std::vector<btTransform> end;
-  for (auto& body : bodies) end.push_back(body->getWorldTransform());
-  for (auto& body : bodies) world.removeRigidBody(body.get());
-  uninstallVps(dispatcher);
-  return end;
+    world.addShape(*cube().shape, cube().frame.mass_kg, cube().frame.inertia_kg_m2,
+                   Pose(rotationFromVector(Vec3(0.3 * i, 0.2, 0.1 * i)),
+                        Vec3(0.012 * (i % 4), 0, 0.01 + 0.012 * (i / 4))));
+  return test::placesAfter(world, 100);
 }
 
 TEST(Partners, AreMetBySeveralThreadsWithTheSameBits) {
-  btDefaultCollisionConfiguration config;
-  btCollisionDispatcher stock(&config);
-  const std::vector<btTransform> expected = fallOnPartners(stock, config);
+  const std::vector<btTransform> expected = fallOnPartners(0);
   for (const int threads : {1, 3}) {
-    VpsDispatcher dispatcher(&config, threads);
-    const std::vector<btTransform> got = fallOnPartners(dispatcher, config);
+    const std::vector<btTransform> got = fallOnPartners(threads);
     for (std::size_t i = 0; i < expected.size(); ++i)
       ASSERT_TRUE(got[i] == expected[i]) << threads << ", body " << i;
   }

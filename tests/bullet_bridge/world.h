@@ -11,6 +11,7 @@
 
 #include "vps/mesh_distance.h"
 #include "vps_bullet/convert.h"
+#include "vps_bullet/dispatcher.h"
 #include "vps_bullet/install.h"
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
@@ -62,9 +63,12 @@ inline Built plate() {
 
 class World {
  public:
+  /// @param threads  0: Bullet's own dispatcher
   explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100,
-                 const VpsSolverSettings& solver_settings = {})
-      : dispatcher(&config) {
+                 const VpsSolverSettings& solver_settings = {}, int threads = 0)
+      : dispatcher_(threads > 0 ? std::make_unique<VpsDispatcher>(&config, threads)
+                                : std::make_unique<btCollisionDispatcher>(&config)),
+        dispatcher(*dispatcher_) {
     if (solver == Solver::Stock)
       solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
     else
@@ -102,12 +106,21 @@ class World {
   }
 
   btDefaultCollisionConfiguration config;
-  btCollisionDispatcher dispatcher;
+  std::unique_ptr<btCollisionDispatcher> dispatcher_;
+  btCollisionDispatcher& dispatcher;
   btDbvtBroadphase broadphase;
   std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
   std::unique_ptr<btDiscreteDynamicsWorld> world;
   std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
+
+/// Where the bodies are after so many steps.
+inline std::vector<btTransform> placesAfter(World& world, int steps) {
+  world.step(steps);
+  std::vector<btTransform> places;
+  for (const auto& body : world.bodies) places.push_back(body->getWorldTransform());
+  return places;
+}
 
 /// Pose of the part's own frame.
 inline Pose partPose(const btRigidBody& body, const Built& part) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks.h"
 #include "rows.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -26,10 +27,9 @@ double springEnergy_J(const CouplingGains& gains, const CouplingState& proxy, co
 Judgement shake(const Run& run) {
   constexpr double amplitude_m = 10e-3, dt_s = 1e-3;
   const double turn_rad_s = std::cbrt(run.value / amplitude_m);
-  dynamics::World world({run.mode, true, dynamics::vpsEngine({0.5e-3, 1e-3})});
-  const dynamics::PartMesh block_part = dynamics::makePart(makeBox(Vec3(20e-3, 15e-3, 10e-3)));
-  const Placed floor = world.add(dynamics::makePart(makeBox(Vec3(60e-3, 60e-3, 10e-3))),
-                                 Pose::translation(Vec3(0, 0, -5e-3)), true);
+  World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
+  const PartMesh block_part = block();
+  const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed block = world.add(block_part, Pose::translation(Vec3(0, 0, 5e-3 + amplitude_m / 2)));
   SimulatedDualArm device;
   LoopSettings settings;

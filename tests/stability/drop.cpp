@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::stability {
 
 namespace {
-
-const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
-constexpr double kPlate_m = 60e-3;
 
 Mesh mirroredMesh(Mesh mesh) {
   for (Vec3& p : mesh.vertices) p.x() = -p.x();

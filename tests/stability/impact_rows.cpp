@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks.h"
 #include "rows.h"
 #include "support/lathe.h"
 #include "vps_bullet/convert.h"
@@ -11,14 +12,6 @@
 namespace vps::stability {
 
 namespace {
-
-using dynamics::makePart;
-using dynamics::PartMesh;
-using dynamics::World;
-
-constexpr double kVoxel_m = 0.5e-3;
-const dynamics::Resolution kCoarse{kVoxel_m, 1e-3};
-const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
 
 enum class First { Face, Edge, Corner };
 

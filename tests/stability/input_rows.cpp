@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "dynamics/part.h"
+#include "blocks.h"
 #include "rows.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -13,13 +13,6 @@
 namespace vps::stability {
 
 namespace {
-
-using dynamics::makePart;
-using dynamics::PartMesh;
-using dynamics::World;
-
-const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
-const dynamics::Resolution kCoarse{0.5e-3, 1e-3};
 
 // What a bad value is given to.
 struct Scene {
@@ -146,12 +139,12 @@ bool isInWords(const std::string& text) {
 void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, double value) {
   const std::string told = toText(value);
   World world({mode, true, dynamics::vpsEngine(kCoarse)});
-  const PartMesh block = makePart(makeBox(kBlock_m));
+  const PartMesh part = block();
   world.add(makePart(makeBox(Vec3(120e-3, 60e-3, 10e-3))), Pose::translation(Vec3(0, 0, -5e-3)), true);
-  const Placed neighbour = world.add(block, Pose::translation(Vec3(40e-3, 0, 5e-3)));
+  const Placed neighbour = world.add(part, Pose::translation(Vec3(40e-3, 0, 5e-3)));
   double dt_s = 1e-3;
   // A mesh of its own: engines share shapes.
-  Scene scene{world, world.add(makePart(makeBox(kBlock_m)), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
+  Scene scene{world, world.add(block(), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
   world.step(5);
   const Pose before = neighbour.pose();
   try {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks.h"
 #include "drop.h"
 #include "rows.h"
 #include "vps_bullet/convert.h"
@@ -11,22 +12,6 @@
 namespace vps::stability {
 
 namespace {
-
-using dynamics::makePart;
-using dynamics::PartMesh;
-using dynamics::World;
-
-constexpr double kGravity_m_s2 = World::kGravity_m_s2;
-const dynamics::Resolution kCoarse{0.5e-3, 1e-3};
-const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
-
-PartMesh block() {
-  return makePart(makeBox(kBlock_m));
-}
-
-PartMesh plate(double side_m = 60e-3) {
-  return makePart(makeBox(Vec3(side_m, side_m, 10e-3)));
-}
 
 World makeWorld(Mode mode, const VpsBulletSettings& settings = {}) {
   return World({mode, true, dynamics::vpsEngine(kCoarse, settings)});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blocks.h"
 #include "rows.h"
 #include "support/lathe.h"
 #include "vps_bullet/convert.h"
@@ -11,18 +12,6 @@
 namespace vps::stability {
 
 namespace {
-
-using dynamics::makePart;
-using dynamics::PartMesh;
-using dynamics::World;
-
-constexpr double kGravity_m_s2 = World::kGravity_m_s2;
-const dynamics::Resolution kCoarse{0.5e-3, 1e-3};
-const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
-
-PartMesh plate() {
-  return makePart(makeBox(Vec3(60e-3, 60e-3, 10e-3)));
-}
 
 // A wedge whose edge, along y at z = 0, has this angle; 10 mm high, 20 mm long.
 Mesh wedge(double angle_rad) {
@@ -95,7 +84,7 @@ Judgement crossKnives(const Run& run) {
 // Blocks of one size in a tower, every face, edge and corner on its like.
 Judgement tower(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
-  const PartMesh cube = makePart(makeBox(kBlock_m));
+  const PartMesh cube = block();
   std::vector<Placed> parts{world.add(cube, Pose::translation(Vec3(0, 0, -5e-3)), true)};
   for (int i = 0; i < static_cast<int>(run.value); ++i)
     parts.push_back(world.add(cube, Pose::translation(Vec3(0, 0, 5e-3 + i * 10e-3))));

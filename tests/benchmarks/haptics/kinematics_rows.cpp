@@ -23,24 +23,30 @@ int poses(const HapticOptions& options) {
   return options.is_short ? 2000 : 200000;
 }
 
+// Poses all over the workspace; at(pose, random) says whether the device takes one.
+template <typename At>
+int countRefused(const HapticOptions& options, unsigned seed, const DualArmParameters& p, At&& at) {
+  Random random(seed);
+  int refused = 0;
+  for (int i = 0; i < poses(options); ++i)
+    if (!at(anyPose(random, p), random)) ++refused;
+  return refused;
+}
+
 }  // namespace
 
 void kinematicsRow(const HapticOptions& options, Table& table) {
   const DualArmParameters p;
-  Random random(1);
   double worst_m = 0, worst_rad = 0;
-  int refused = 0;
-  for (int i = 0; i < poses(options); ++i) {
-    const Pose X_DH = anyPose(random, p);
+  const int refused = countRefused(options, 1, p, [&](const Pose& X_DH, Random&) {
     DualArmJoints joints;
     Pose back;
-    if (handleJoints(p, X_DH, joints) != Status::Ok || handlePose(p, joints, back) != Status::Ok) {
-      ++refused;
-      continue;
-    }
+    if (handleJoints(p, X_DH, joints) != Status::Ok || handlePose(p, joints, back) != Status::Ok)
+      return false;
     worst_m = std::max(worst_m, (back.p - X_DH.p).norm());
     worst_rad = std::max(worst_rad, rotationVector(back.R * X_DH.R.transpose()).norm());
-  }
+    return true;
+  });
   table.add({"kinematics there and back",
              text("%d poses, workspace, tilt to 45 deg", poses(options)),
              {atMost("position", worst_m, 1e-9, 1, "m"), atMost("angle", worst_rad, 1e-9, 1, "rad"),
@@ -50,11 +56,8 @@ void kinematicsRow(const HapticOptions& options, Table& table) {
 
 void staticsRow(const HapticOptions& options, Table& table) {
   const DualArmParameters p;
-  Random random(2);
   double worst_power = 0, worst_wrench = 0;
-  int refused = 0;
-  for (int i = 0; i < poses(options); ++i) {
-    const Pose X_DH = anyPose(random, p);
+  const int refused = countRefused(options, 2, p, [&](const Pose& X_DH, Random& random) {
     const Wrench F{random.normal3(), 10 * random.normal3()};
     const Twist V{random.normal3(), 0.1 * random.normal3()};
     Eigen::Matrix<double, 6, 1> v;
@@ -63,15 +66,14 @@ void staticsRow(const HapticOptions& options, Table& table) {
     JointMatrix J;
     Wrench back;
     if (motorEfforts(p, X_DH, F, efforts) != Status::Ok || handleJacobian(p, X_DH, J) != Status::Ok ||
-        handleWrench(p, X_DH, efforts, back) != Status::Ok) {
-      ++refused;
-      continue;
-    }
+        handleWrench(p, X_DH, efforts, back) != Status::Ok)
+      return false;
     const JointVector powers = efforts.cwiseProduct(J * v);
     worst_power = std::max(worst_power, std::abs(powers.sum() - power(F, V)) / powers.cwiseAbs().sum());
     worst_wrench = std::max(
         {worst_wrench, (back.f - F.f).norm() / F.f.norm(), (back.tau - F.tau).norm() / F.tau.norm()});
-  }
+    return true;
+  });
   table.add({"statics",
              text("%d poses and wrenches", poses(options)),
              {atMost("power, motors against handle", worst_power, 1e-9, 1, "relative"),
