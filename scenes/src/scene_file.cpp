@@ -362,22 +362,14 @@ class SceneReader {
   /// A preset's name, or a table of single knobs over a preset.
   void readFidelity() {
     scene_.fidelity = fidelityPreset("normal");
-    FidelityWish wish;
-    bool is_auto = false;
     if (!top_.has("fidelity")) return;
-    const std::vector<std::string> presets = {"fast", "normal", "fine"};
-    std::size_t index = 1;
-    if (top_.isText("fidelity")) {
-      std::string word;
-      if (top_.text("fidelity", word) && word == "auto") return choose(kAutoWish);
-      top_.word("fidelity", presets, index);
-      scene_.fidelity = fidelityPreset(presets[index]);
-      return;
-    }
+    if (top_.isText("fidelity")) return readNamedFidelity();
     const SceneKeys keys(
         *top_.table("fidelity"), context_, "[fidelity]",
         {"preset", "auto", "budget_hz", "tolerance", "memory_MB", "voxel", "spacing", "sides", "gradient",
          "contact", "contact_limit", "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
+    const std::vector<std::string> presets = {"fast", "normal", "fine"};
+    std::size_t index = 1;
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     Fidelity& fidelity = scene_.fidelity;
     keys.length("voxel", fidelity.voxel_m, kPositive);
@@ -395,6 +387,20 @@ class SceneReader {
     constexpr Range kRate{.min = 1, .max = 1e6};
     keys.number("haptic_rate_hz", fidelity.haptic_rate_hz, kRate);
     keys.number("physics_rate_hz", fidelity.physics_rate_hz, kRate);
+    readFidelityWish(keys);
+  }
+
+  void readNamedFidelity() {
+    const std::vector<std::string> names = {"fast", "normal", "fine", "auto"};
+    std::size_t index = 1;
+    top_.word("fidelity", names, index);
+    if (names[index] == "auto") return choose(kAutoWish);
+    scene_.fidelity = fidelityPreset(names[index]);
+  }
+
+  void readFidelityWish(const SceneKeys& keys) {
+    FidelityWish wish;
+    bool is_auto = false;
     keys.flag("auto", is_auto);
     const auto wished = [&](const char* key, std::optional<double>& out) {
       if (!keys.has(key)) return false;
@@ -402,6 +408,7 @@ class SceneReader {
       out = 0;
       return true;
     };
+    constexpr Range kRate{.min = 1, .max = 1e6};
     if (wished("budget_hz", wish.budget_hz)) keys.number("budget_hz", *wish.budget_hz, kRate);
     if (wished("tolerance", wish.tolerance_m)) keys.length("tolerance", *wish.tolerance_m, kPositive);
     if (wished("memory_MB", wish.memory_bytes)) {

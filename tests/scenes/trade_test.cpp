@@ -90,6 +90,15 @@ TEST(Trade, FinerPointsGiveATruerForce) {
   EXPECT_LT(rowAt(0.125e-3, 0.125e-3).probe.force, rowAt(0.125e-3, 1e-3).probe.force);
 }
 
+TEST(Trade, MorePointsTakeMoreTime) {
+  // An eighth of the spacing is 64 times the points. A tree that works reads far fewer; all of them take
+  // longer by that, less what a query takes by itself: a quarter of it is left for other people's load.
+  const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);
+  EXPECT_GT(many.points_read, few.points_read);
+  EXPECT_GT(many.all_points.cpu_p50_us, 16 * few.all_points.cpu_p50_us);
+  EXPECT_GT(many.query.cpu_p50_us, few.query.cpu_p50_us);
+}
+
 TEST(Trade, TheSceneAsItIsIsRunAndTheRestIsMeasuredOrSaidToBeLeftOut) {
   TradeOptions options;
   options.seconds = 1e-3;  // no time for more than the first
@@ -139,6 +148,22 @@ TEST(Trade, TheFrontHoldsWhatNothingBeats) {
   EXPECT_FALSE(rows[2].is_on_front);
   EXPECT_TRUE(rows[3].is_on_front);
   EXPECT_FALSE(rows[4].is_on_front);
+}
+
+TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
+  TradeResult result;
+  result.rows = {judged(100, 5e-6, 10), judged(400, 4e-6, 10)};
+  result.rows[0].what.name = "quick";
+  result.rows[0].probe.force = 2.2;
+  result.rows[1].what.name = "slow";
+  result.rows[1].probe.force = 0.1;
+  for (const std::string& answer : tradeAnswers(result)) {
+    EXPECT_EQ(answer.find("'quick'"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("'slow'"), std::string::npos) << answer;
+  }
+  result.rows.pop_back();
+  for (const std::string& answer : tradeAnswers(result))
+    EXPECT_NE(answer.find("no answer"), std::string::npos) << answer;
 }
 
 /// Error of depth that 95 of 100 points near a surface do not exceed, at points of the test's own.
@@ -204,6 +229,18 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   EXPECT_LE(sides * again.parts[1].part.shell->size(), 10910u);
   EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points came first
   EXPECT_EQ(few.fidelity.voxel_m, ballOnPlate().fidelity.voxel_m);
+}
+
+TEST(FidelityChoice, TakesOneSideForARateAloneButNotBesideATolerance) {
+  FidelityWish wish;
+  wish.budget_hz = 1e6 / (kStepBase_us + 1);  // 18 points: fewer than any spacing leaves both sides
+  Scene scene = ballOnPlate();
+  EXPECT_EQ(chooseFidelity(scene, wish).fidelity.sides, Sides::One);
+  wish.tolerance_m = 20e-6;
+  scene = ballOnPlate();
+  const FidelityChoice kept = chooseFidelity(scene, wish);
+  EXPECT_EQ(kept.fidelity.sides, Sides::Both);
+  EXPECT_NE(kept.why_not.find("more tolerance"), std::string::npos) << kept.why_not;
 }
 
 TEST(FidelityChoice, SaysWhichWishNobodyCanMeet) {

@@ -51,23 +51,26 @@ double bytesFromText(const std::string& text) {
 }
 
 std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
+  if (!given.budget_hz && !given.tolerance && !given.memory) return std::nullopt;
+  if (given.is_thorough || !given.out.empty() || !given.csv.empty())
+    throw LoadError("", "",
+                    "--thorough, --out and --csv are for what is measured; with --tolerance, --budget-hz or "
+                    "--memory nothing is: leave out one or the other");
   FidelityWish wish;
-  if (!(given.budget_hz >= 0) || !std::isfinite(given.budget_hz))
-    throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
-  if (given.budget_hz > 0) wish.budget_hz = given.budget_hz;
-  if (!given.tolerance.empty()) {
-    wish.tolerance_m = lengthFromText(given.tolerance, "--tolerance");
+  wish.budget_hz = given.budget_hz;  // the command line has looked at it
+  if (given.tolerance) {
+    wish.tolerance_m = lengthFromText(*given.tolerance, "--tolerance");
     if (!(*wish.tolerance_m > 0))
-      throw LoadError("", "", "--tolerance is " + given.tolerance + "; expected more than 0");
+      throw LoadError("", "", "--tolerance is " + *given.tolerance + "; expected more than 0");
   }
-  if (!given.memory.empty()) wish.memory_bytes = bytesFromText(given.memory);
-  if (!wish.budget_hz && !wish.tolerance_m && !wish.memory_bytes) return std::nullopt;
+  if (given.memory) wish.memory_bytes = bytesFromText(*given.memory);
   return wish;
 }
 
 /// Picks, and says what to paste into the scene.
-int pick(Scene scene, const FidelityWish& wish, ProgressBar& bar) {
+int pick(Scene scene, const FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
   const FidelityChoice choice = chooseFidelity(scene, wish, bar.progress());
+  json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
     say("no fidelity will do: " + choice.why_not);
@@ -88,7 +91,7 @@ int runTrade(const TradeArguments& given) {
   if (!given.out.empty()) out.emplace(given.out);
   ProgressBar bar;
   const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
-  if (wish) return pick(scene, *wish, bar);
+  if (wish) return pick(scene, *wish, json, bar);
   TradeOptions options;
   options.progress = bar.progress();
   options.warn = warn;

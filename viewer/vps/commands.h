@@ -78,8 +78,8 @@ struct TradeArguments {
   FidelityArguments fidelity;
   bool is_thorough = false;
   std::string out, csv, json;  ///< empty: none
-  double budget_hz = 0;        ///< wishes; 0 or empty: none
-  std::string tolerance, memory;
+  std::optional<double> budget_hz;
+  std::optional<std::string> tolerance, memory;  ///< "10um", "64MB"
 };
 int runTrade(const TradeArguments& given);
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vps_device/dual_arm_character.h"
+#include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/trade.h"
 
 namespace vps {
@@ -198,13 +199,11 @@ std::string toJson(const SnapshotAnswer& answer) {
 
 namespace {
 
-Json fidelity(const TradeTry& what) {
-  const Fidelity& f = what.fidelity;
+Json fidelity(const Fidelity& f) {
   return {{"voxel_m", f.voxel_m},
           {"spacing_m", f.spacing_m},
-          {"sides", f.sides == Sides::Both ? "both" : "one"},
-          {"gradient", f.gradient == Gradient::Continuous ? "continuous" : "trilinear"},
-          {"contact", what.contact == ContactKind::Rigid ? "rigid" : "compliant"},
+          {"sides", toText(f.sides)},
+          {"gradient", toText(f.gradient)},
           {"contact_limit", f.contact_limit},
           {"haptic_rate_hz", f.haptic_rate_hz},
           {"physics_rate_hz", f.physics_rate_hz},
@@ -221,7 +220,8 @@ Json cpuTimes(const TickTimes& times) {
 Json tradeRow(const TradeRow& row) {
   Json json = {{"name", row.what.name},
                {"knob", toText(row.what.knob)},
-               {"fidelity", fidelity(row.what)},
+               {"fidelity", fidelity(row.what.fidelity)},
+               {"contact", toText(row.what.contact)},
                {"points", row.points},
                {"models_bytes", row.bytes}};
   if (row.has_probe)
@@ -263,6 +263,19 @@ Json tradeRowWall(const TradeRow& row) {
 }
 
 }  // namespace
+
+std::string toJson(const std::string& scene, const FidelityChoice& choice) {
+  const Json json = {{"scene", scene},
+                     {"is_met", choice.is_met},
+                     {"why_not", choice.why_not},
+                     {"fidelity", fidelity(choice.fidelity)},
+                     {"error_m", choice.error_m},
+                     {"points", choice.points},
+                     {"points_near", choice.points_near},
+                     {"bytes", choice.bytes},
+                     {"step_by_model_us", choice.step_us}};
+  return text(json);
+}
 
 std::string toJson(const TradeResult& result) {
   Json rows = Json::array(), wall = Json::array();

@@ -35,11 +35,11 @@ struct FidelityChoice {
 };
 
 /// The coarsest voxel that keeps the tolerance (measured against the exact surfaces at seeded points), points
-/// at twice its size; then, for the budget and the memory, fewer points first (up to four times), then one
-/// side, then a smaller solver; without a tolerance, larger voxels last. Starts from the scene's own
-/// fidelity, and leaves the scene's parts with the models of the choice, if it is met. Deterministic: same
-/// scene, same choice, on every machine. Seconds for a scene of ten parts. Throws LoadError for a part that
-/// cannot be modelled.
+/// at twice its size; then, for the budget and the memory, fewer points first (spacing up to four times, a
+/// sixteenth of the points); then, where there is no tolerance, one side for the budget and larger voxels for
+/// the memory. Starts from the scene's own fidelity, and leaves the scene's parts with the models of the
+/// choice, if it is met. Deterministic: same scene, same choice, on every machine. Seconds for a scene of ten
+/// parts. Throws LoadError for a part that cannot be modelled.
 FidelityChoice chooseFidelity(Scene& scene, const FidelityWish& wish, const Progress& progress = {});
 
 /// The choice as lines of a scene file, to paste.

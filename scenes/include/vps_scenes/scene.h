@@ -61,6 +61,17 @@ enum class ContactKind {
   Compliant,  ///< every touching point presses with the softest part's stiffness times area times depth
 };
 
+/// As scene files and reports spell them.
+inline const char* toText(Sides sides) {
+  return sides == Sides::One ? "one" : "both";
+}
+inline const char* toText(Gradient gradient) {
+  return gradient == Gradient::Continuous ? "continuous" : "trilinear";
+}
+inline const char* toText(ContactKind contact) {
+  return contact == ContactKind::Rigid ? "rigid" : "compliant";
+}
+
 struct RecordSettings {
   double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };

@@ -105,6 +105,7 @@ double rateOf(const TradeRow& row);
 TradeResult trade(const Scene& scene, const TradeOptions& options = {});
 
 /// The answers in words, one a line: "for 1000 Hz on this machine choose ...". What cannot be had is said.
+/// Chosen from the rows that ran to the end and whose force is less than half off.
 std::vector<std::string> tradeAnswers(const TradeResult& result);
 /// Which knob buys what, against the scene's own setting, a line for each row.
 std::vector<std::string> tradeKnobs(const TradeResult& result);

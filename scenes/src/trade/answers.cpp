@@ -19,8 +19,10 @@ std::string micrometres(double m) {
   return number("%.3g um", 1e6 * m);
 }
 
+constexpr double kForceLimit = 0.5;  // assumed: a force that is farther off tells the hand nothing
+
 bool isUsable(const TradeRow& row) {
-  return row.has_run && row.has_probe && row.run.completed;
+  return row.has_run && row.has_probe && row.run.completed && row.probe.force <= kForceLimit;
 }
 
 /// "'voxel x2' (voxel 0.5 mm, spacing 0.5 mm, both sides)"
@@ -48,7 +50,8 @@ std::string forRate(const TradeResult& result, double rate_hz) {
     if (is_better) best = &row;
   }
   const std::string head = "for " + number("%.0f Hz", rate_hz) + " of physics on this machine ";
-  if (quickest == nullptr) return head + "nothing was run to the end, so there is no answer";
+  if (quickest == nullptr)
+    return head + "nothing that ran to the end gave a force within 50 %, so there is no answer";
   if (best == nullptr)
     return head + "no setting tried will do; the quickest, " + named(*quickest) + ", sustains " +
            number("%.0f Hz", rateOf(*quickest));
@@ -65,7 +68,8 @@ std::string forError(const TradeResult& result, double error_m) {
     if (errorOf(row) <= error_m && (best == nullptr || rateOf(row) > rateOf(*best))) best = &row;
   }
   const std::string head = "for " + micrometres(error_m) + " of depth ";
-  if (truest == nullptr) return head + "nothing was run to the end, so there is no answer";
+  if (truest == nullptr)
+    return head + "nothing that ran to the end gave a force within 50 %, so there is no answer";
   if (best == nullptr)
     return head + "no setting tried will do; the truest, " + named(*truest) + ", comes to " +
            micrometres(errorOf(*truest));

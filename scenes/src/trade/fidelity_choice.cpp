@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <random>
 #include <vector>
 
 #include "scene_models.h"
+#include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
 #include "vps/mesh_distance.h"
 #include "vps_scenes/scene.h"
@@ -34,8 +33,7 @@ Check makeCheck(const Mesh& mesh, double reach_m) {
   Check check;
   const double spacing_m = std::sqrt(area(mesh) / static_cast<double>(kSamples));
   const MeshDistance exact(mesh);
-  std::mt19937_64 random(7);
-  const auto draw = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  SeededDraw draw(7);
   for (const SurfaceSample& sample : sampleSurface(mesh, spacing_m, bounds(mesh))) {
     if (sample.area_m2 == 0 || draw() * static_cast<double>(kSamples) * sample.area_m2 > 2 * area(mesh))
       continue;
@@ -147,7 +145,8 @@ bool Chooser::coarsen() {
     f.spacing_m /= kStep;
     return true;
   }
-  if (!isQuickEnough() && f.sides == Sides::Both) {
+  // One side's points do not see the other's edges: no tolerance can be kept by them.
+  if (!isQuickEnough() && f.sides == Sides::Both && !wish_.tolerance_m) {
     f.sides = Sides::One;
     return true;
   }
@@ -171,7 +170,7 @@ void Chooser::finish() {
   else
     std::snprintf(
         words, sizeof words,
-        "the models take %.1f MB at the fewest points, and %.1f MB are allowed; ask for more memory%s",
+        "the models take %.3g MB at the fewest points, and %.3g MB are allowed; ask for more memory%s",
         1e-6 * static_cast<double>(choice_.bytes), 1e-6 * *wish_.memory_bytes,
         wish_.tolerance_m ? ", or more tolerance" : "");
   choice_.why_not = words;
@@ -188,8 +187,7 @@ std::string toToml(const Fidelity& f) {
   std::snprintf(text, sizeof text,
                 "[fidelity]\nvoxel = \"%.6gum\"\nspacing = \"%.6gum\"\nsides = \"%s\"\ngradient = \"%s\"\n"
                 "contact_limit = %d\nhaptic_rate_hz = %.6g\nphysics_rate_hz = %.6g\nsolver_iterations = %d\n",
-                1e6 * f.voxel_m, 1e6 * f.spacing_m, f.sides == Sides::Both ? "both" : "one",
-                f.gradient == Gradient::Continuous ? "continuous" : "trilinear", f.contact_limit,
+                1e6 * f.voxel_m, 1e6 * f.spacing_m, toText(f.sides), toText(f.gradient), f.contact_limit,
                 f.haptic_rate_hz, f.physics_rate_hz, f.solver_iterations);
   return text;
 }

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <optional>
 
 #include "scene_models.h"
 #include "trade/design.h"
 #include "trade/excerpt.h"
 #include "trade/front.h"
+#include "trade/model_store.h"
+#include "trade/plan.h"
 #include "trade/probe.h"
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
@@ -22,36 +23,6 @@ namespace {
 constexpr std::size_t kPoses = 16;
 constexpr std::size_t kThoroughPoses = 96;
 constexpr std::size_t kJudgeStride = 200;  ///< the fifty suspects of a step are judged all the same
-constexpr double kSuggestionShare = 0.6;   ///< of the scene's own run, kept for what comes last
-constexpr int kFewRuns = 4;                ///< with fewer there is nothing to suggest from
-constexpr double kReferenceShare = 0.4;    ///< of the time left, that the reference may take
-
-/// Models that rows share: a part's map by voxel size, its shell by spacing.
-class ModelStore {
- public:
-  /// Gives the scene's parts their models. Returns the seconds that building took.
-  double fill(Scene& scene, const ModelOptions& options) {
-    const double voxel_m = scene.fidelity.voxel_m, spacing_m = scene.fidelity.spacing_m;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-      scene.parts[i].part.map = maps_[{i, voxel_m}];
-      scene.parts[i].part.shell = shells_[{i, spacing_m}];
-    }
-    const auto begun = std::chrono::steady_clock::now();
-    ModelOptions quiet = options;
-    quiet.progress = {};
-    buildModels(scene, quiet);
-    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-      maps_[{i, voxel_m}] = scene.parts[i].part.map;
-      shells_[{i, spacing_m}] = scene.parts[i].part.shell;
-    }
-    return wall_s;
-  }
-
- private:
-  std::map<std::pair<std::size_t, double>, std::shared_ptr<const VoxMap>> maps_;
-  std::map<std::pair<std::size_t, double>, std::shared_ptr<const PointShell>> shells_;
-};
 
 std::vector<std::string> whatAScenesCannotChoose() {
   return {
@@ -67,11 +38,32 @@ std::vector<std::string> whatAScenesCannotChoose() {
   };
 }
 
+/// What a run came to, into its row.
+void note(const AssembleResult& result, TradeRow& row) {
+  row.has_run = true;
+  row.run.completed = result.completed;
+  row.run.to_hand_J = result.energy.to_hand_J;
+  row.run.injected_J = result.energy.injected_J;
+  row.run.contacts_left_out = result.contacts_left_out;
+  row.run.build_wall_s = result.build_wall_s;
+  row.run.physics = result.physics;
+  row.run.haptic = result.haptic;
+  for (const StepResult& step : result.steps) {
+    row.run.deepest_m = std::max(row.run.deepest_m, step.max_penetration_m);
+    row.run.final_error_m = std::max(row.run.final_error_m, step.final_error_m);
+    row.run.peak_force_N = std::max(row.run.peak_force_N, step.peak_force_N);
+  }
+  if (!result.trace.empty()) row.run.p_W_end = result.trace.back().X_WP.p;
+  row.run.bytes = result.modelled.bytes;
+}
+
 /// One measurement of a scene's trade.
 class Trade {
  public:
   Trade(const Scene& scene, const TradeOptions& options)
-      : options_(options), begun_(Clock::now()), scene_(options.is_thorough ? scene : excerptOf(scene, 0)) {
+      : options_(options),
+        scene_(options.is_thorough ? scene : excerptOf(scene, 0)),
+        plan_(options, scene_.fidelity) {
     const SceneStep& first = scene.steps.front();
     result_.scene = scene.name;
     result_.excerpt = options.is_thorough ? "all " + std::to_string(scene.steps.size()) + " steps"
@@ -85,58 +77,31 @@ class Trade {
  private:
   using Clock = std::chrono::steady_clock;
 
-  [[nodiscard]] double spent_s() const {
-    return std::chrono::duration<double>(Clock::now() - begun_).count();
-  }
-  /// Keeps room for the suggestion, which comes last.
-  [[nodiscard]] double left_s() const {
-    if (options_.is_thorough) return 1e9;
-    return options_.seconds - spent_s() - (is_last_ || runs_ < kFewRuns ? 0 : kSuggestionShare * own_run_s_);
-  }
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
   void tell(const std::string& doing) const {
     if (options_.progress)
       options_.progress(doing, options_.is_thorough
                                    ? static_cast<double>(done_) / static_cast<double>(planned_)
-                                   : spent_s() / options_.seconds);
+                                   : plan_.spent_s() / options_.seconds);
   }
 
-  /// How much more than the scene's own a setting is expected to take: to plan by, no more.
-  [[nodiscard]] double modelShare(const TradeTry& what) const;
-  [[nodiscard]] double runShare(const TradeTry& what) const;
   void measure(const TradeTry& what);
-  bool probe(const Scene& scene, TradeRow& row);
+  void probe(const Scene& scene, TradeRow& row);
   /// Takes over what a row of the same models was measured to be. False: there is none.
   bool copyProbe(TradeRow& row) const;
   void runProcedure(Scene& scene, TradeRow& row);
+  /// Works out the truth where the scene's own run touched, and asks its models there.
+  void beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row);
   void compareWithReference();
 
   const TradeOptions& options_;
-  Clock::time_point begun_;
   Scene scene_;
+  TradePlan plan_;
   ModelStore store_;
   std::optional<Probe> probe_;
-  double own_models_s_ = 0, own_run_s_ = 0, own_probe_s_ = 0;
-  bool is_last_ = false;
-  int runs_ = 0;
-  double run_scale_ = 1;  ///< what runs took by what they were expected to, the latest
   std::size_t done_ = 0, planned_ = 1;
   TradeResult result_;
 };
-
-double Trade::modelShare(const TradeTry& what) const {
-  // Maps and shells follow the surface: their number of nodes and points goes with the inverse square.
-  const double h = scene_.fidelity.voxel_m / what.fidelity.voxel_m,
-               s = scene_.fidelity.spacing_m / what.fidelity.spacing_m;
-  return 0.5 * (h * h + s * s);
-}
-
-double Trade::runShare(const TradeTry& what) const {
-  // Half of a run is the judge and what follows the meshes alone; the rest goes with points and rates.
-  const double s = scene_.fidelity.spacing_m / what.fidelity.spacing_m;
-  const double rate = what.fidelity.physics_rate_hz / scene_.fidelity.physics_rate_hz;
-  return 0.5 + 0.5 * std::max(0.25, s * s) * rate;
-}
 
 TradeResult Trade::run() {
   std::vector<TradeTry> design = tradeDesign(scene_);
@@ -147,7 +112,7 @@ TradeResult Trade::run() {
   design.insert(design.begin() + 2, reference);
   for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) measure(design[i]);
   const TradeTry suggestion = tradeSuggestion(scene_, result_.rows);
-  is_last_ = true;
+  plan_.goLast();
   if (!suggestion.name.empty() && !isStopped()) measure(suggestion);
   compareWithReference();
   markFront(result_.rows);
@@ -157,12 +122,7 @@ TradeResult Trade::run() {
 void Trade::measure(const TradeTry& what) {
   ++done_;
   const bool is_own = what.knob == TradeKnob::Own;
-  const double models_s = own_models_s_ * modelShare(what);
-  const double probe_s = models_s + own_probe_s_, run_s = run_scale_ * own_run_s_ * runShare(what);
-  // A fifth in hand: what is expected is no more than that.
-  const bool is_too_much = what.knob == TradeKnob::Reference ? probe_s + run_s > kReferenceShare * left_s()
-                                                             : 1.2 * probe_s > left_s();
-  if (!is_own && is_too_much) {
+  if (!is_own && !plan_.hasTimeForModels(what)) {
     result_.left_out.push_back(what.name + ": not measured");
     return;
   }
@@ -176,9 +136,9 @@ void Trade::measure(const TradeTry& what) {
   const ModelledCost cost = modelledCost(scene);
   row.points = cost.points;
   row.bytes = cost.bytes;
-  if (is_own) own_models_s_ = row.models_wall_s;
+  if (is_own) plan_.ownModelsTook(row.models_wall_s);
   if (!is_own && !copyProbe(row)) probe(scene, row);
-  if (is_own || 1.2 * run_s <= left_s())
+  if (is_own || plan_.hasTimeForRun(what))
     runProcedure(scene, row);
   else
     result_.left_out.push_back(what.name + ": its models were measured, the procedure was not run");
@@ -202,13 +162,12 @@ bool Trade::copyProbe(TradeRow& row) const {
   return false;
 }
 
-bool Trade::probe(const Scene& scene, TradeRow& row) {
-  if (!probe_) return false;
+void Trade::probe(const Scene& scene, TradeRow& row) {
+  if (!probe_) return;
   const auto begun = Clock::now();
   probe_->measure(scene, row);
   if (row.what.knob == TradeKnob::Own)
-    own_probe_s_ = std::chrono::duration<double>(Clock::now() - begun).count();
-  return true;
+    plan_.ownProbeTook(std::chrono::duration<double>(Clock::now() - begun).count());
 }
 
 void Trade::runProcedure(Scene& scene, TradeRow& row) {
@@ -221,7 +180,7 @@ void Trade::runProcedure(Scene& scene, TradeRow& row) {
   options.stop = &is_late;
   options.progress = [&](std::string_view, double) {
     tell(row.what.name);
-    if (isStopped() || (!is_own && left_s() < 0)) is_late = true;
+    if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
   };
   const AssembleResult result = assemble(scene, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
@@ -229,25 +188,12 @@ void Trade::runProcedure(Scene& scene, TradeRow& row) {
     result_.left_out.push_back(row.what.name + ": its run was cut, for want of time");
     return;
   }
-  if (!is_own) run_scale_ = 0.5 * (run_scale_ + row.run.wall_s / (own_run_s_ * runShare(row.what)));
-  row.has_run = true;
-  ++runs_;
-  row.run.completed = result.completed;
-  row.run.to_hand_J = result.energy.to_hand_J;
-  row.run.injected_J = result.energy.injected_J;
-  row.run.contacts_left_out = result.contacts_left_out;
-  row.run.build_wall_s = result.build_wall_s;
-  row.run.physics = result.physics;
-  row.run.haptic = result.haptic;
-  for (const StepResult& step : result.steps) {
-    row.run.deepest_m = std::max(row.run.deepest_m, step.max_penetration_m);
-    row.run.final_error_m = std::max(row.run.final_error_m, step.final_error_m);
-    row.run.peak_force_N = std::max(row.run.peak_force_N, step.peak_force_N);
-  }
-  if (!result.trace.empty()) row.run.p_W_end = result.trace.back().X_WP.p;
-  row.run.bytes = result.modelled.bytes;
-  if (!is_own) return;
-  own_run_s_ = row.run.wall_s;
+  plan_.runTook(row.what, row.run.wall_s);
+  note(result, row);
+  if (is_own) beginProbe(scene, result, row);
+}
+
+void Trade::beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row) {
   tell("exact surfaces");
   const auto poses = probePoses(scene, result, options_.is_thorough ? kThoroughPoses : kPoses);
   if (poses.empty()) {
