@@ -98,7 +98,8 @@ std::size_t collectCrossings(const SideView& body0, const SideView& body1, doubl
 void thinOut(std::vector<Candidate>& candidates, double cell_m);
 
 /// Replaces distance and normal of the candidates of `side` by the exact ones: of the other VpsShape's
-/// surfaces (if it has any) or of the primitive `theirs`. The field still decides where no surface is near.
+/// surfaces (if it has any) or of the primitive `theirs`. What meets flush on curved faces, or a primitive's
+/// round side, moves to where they are nearest. The field still decides where no surface is near.
 /// @param is_answered  the other side's points are looked at too: a contact that one of them has is left to
 /// it
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "candidate.h"
+#include "curved_contact.h"
 #include "partner.h"
 #include "primitive.h"
 #include "round_contact.h"
@@ -79,6 +80,7 @@ struct Exact {
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
   bool is_edge_on_edge = false;
+  bool is_smooth = false;  ///< two faces that touch flush
 };
 
 Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
@@ -125,8 +127,9 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
                     ? is_facing
                     : own.isFirstAlong(foot.normal) || (is_facing && !own.is_answered);
   if (exact.meets && !is_edge_on_edge) {
-    const bool is_smooth = own.is_edge || (!foot.is_edge && cos_facing > kCosEdge);
-    exact.n = is_smooth ? foot.smooth : own.inward_W;
+    const bool is_flush = !foot.is_edge && cos_facing > kCosEdge;
+    exact.is_smooth = is_flush && !own.is_edge;
+    exact.n = own.is_edge || is_flush ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);
     return exact;
   }
@@ -198,6 +201,7 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
       exact = whereItGoes(exact, corrector, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
+    if (exact.meets && exact.is_smooth && !is_primitive) moveToNearest(c, side, other);
   }
 }
 

@@ -287,4 +287,23 @@ Vec3 MeshDistance::smoothNormal(std::uint32_t triangle, const Vec3& q) const noe
   return length > 0 ? Vec3(sum / length) : face;
 }
 
+Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
+  if (is_thin_[triangle] != 0) return Mat3::Zero();
+  const auto& t = mesh_.triangles[triangle];
+  const Vec3& face = face_normals_[triangle];
+  const Vec3 e1 = mesh_.vertices[t[1]] - mesh_.vertices[t[0]],
+             e2 = mesh_.vertices[t[2]] - mesh_.vertices[t[0]];
+  const double twice_area_m2 = face.dot(e1.cross(e2));
+  if (!(twice_area_m2 > 0)) return Mat3::Zero();
+  const auto turn = [&](int corner) -> Vec3 {
+    const auto& corners = smooth_corners_[triangle];
+    return (corners[static_cast<std::size_t>(corner)] - corners[0]).cast<double>();
+  };
+  // The edges' dual vectors take a way along the triangle to its shares of the edges.
+  const Mat3 S =
+      (turn(1) * e2.cross(face).transpose() + turn(2) * face.cross(e1).transpose()) / twice_area_m2;
+  const Mat3 along = Mat3::Identity() - face * face.transpose();
+  return along * (0.5 * (S + S.transpose())) * along;
+}
+
 }  // namespace vps

@@ -29,8 +29,8 @@ struct VpsBulletSettings {
   Sides sides = Sides::Both;
   Gradient gradient = Gradient::Continuous;
   bool use_surfaces = true;  ///< correct contacts by VpsModels::surfaces where there are any
-  /// Near points of one side of a pair looked at, lowest ids first; 0: all. Bounds a step's time, and leaves
-  /// a patch without contact where points are left out. At least contact_limit.
+  /// Near points of one side of a pair, and crossings of edges, looked at, lowest ids first; 0: all. Bounds a
+  /// step's time, and leaves a patch without contact where points are left out. At least contact_limit.
   int candidate_limit = 0;
 };
 
@@ -38,7 +38,7 @@ struct VpsBulletSettings {
 struct VpsBulletStats {
   std::size_t pair_updates = 0;  ///< pairs whose points were queried
   std::size_t points_tested = 0;
-  std::size_t candidates = 0;  ///< points that could touch within the step
+  std::size_t candidates = 0;  ///< points and crossings that could touch within the step
   std::size_t contacts = 0;    ///< of them given to the solver
   std::size_t left_out = 0;    ///< candidates beyond candidate_limit: raise it
   /// Pairs that were inside each other when they first met, deeper than their motion explains; they are moved

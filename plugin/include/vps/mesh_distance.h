@@ -49,6 +49,9 @@ class MeshDistance {
   /// between the corners' (Phong 1975), each the mean of the faces around it that are within 20 degrees of
   /// this one. On a flat face it is the face's own. Unit.
   [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept;
+  /// How that normal turns along a triangle: dn = S dx, symmetric, zero across [1/m]. A ball of radius r has
+  /// 1/r in both directions, a hollow the negative; a flat face, and a triangle without an area, zero.
+  [[nodiscard]] Mat3 smoothCurvature(std::uint32_t triangle) const noexcept;
 
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
 

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where curved faces are nearest, against balls and cylinders as formulas.
+#include "curved_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "bullet_bridge/world.h"
+
+namespace vps {
+namespace {
+
+using test::Built;
+
+constexpr double kSpacing_m = 0.5e-3, kBall_m = 5e-3, kBelow_m = 20e-3;
+
+const Built& ball() {
+  static const Built built = test::build(makeSphere(kBall_m, 5), 7850, 0.25e-3, kSpacing_m);
+  return built;
+}
+
+SideView viewOf(const Built& part, const Pose& X_WP, int side) {
+  return {part.shape.get(), X_WP, static_cast<std::uint8_t>(side)};
+}
+
+// A point of a side's shell as correct() leaves one that meets a face flush.
+std::optional<Candidate> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
+  const VpsModels& models = side.shape->models();
+  const MeshDistance& theirs = *other.shape->models().surfaces[0].distance;
+  const Vec3 p_W = side.X_WM * models.shell->points[id];
+  const MeshDistance::Closest closest = theirs.closest(other.X_WM.inverse() * p_W, 0.1e-3);
+  if (!closest.found) return {};
+  const Vec3 n_W = other.X_WM.R * theirs.smoothNormal(closest.triangle, closest.q);
+  if (n_W.dot(side.X_WM.R * models.shell->inward[id]) < 0.94) return {};
+  Candidate c;
+  c.id = id;
+  c.side = side.side;
+  c.p_W = p_W;
+  c.n_W = (side.side == 0 ? 1 : -1) * n_W;
+  c.distance_m = n_W.dot(p_W - other.X_WM * closest.q);
+  return c;
+}
+
+/// Where two faces are nearest, by a formula.
+struct Truth {
+  Vec3 p_W, n_W;  ///< n_W from the part below to the ball
+  double gap_m = 0;
+};
+
+struct Found {
+  int moved = 0;
+  double off_m = 0, gap_off_m = 0, tilt_rad = 0;  ///< of the moved, at worst
+  double least_gap_m = 1e300;                     ///< of all
+};
+
+// All points of either shell that are within the spacing of where the faces touch.
+Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
+  const SideView sides[2] = {viewOf(ball(), X_WBall, 0), viewOf(below, Pose(), 1)};
+  Found found;
+  for (const SideView& side : sides)
+    for (std::uint32_t id = 0; id < side.shape->models().shell->size(); ++id) {
+      const Vec3 p_W = side.X_WM * side.shape->models().shell->points[id];
+      if ((p_W - truth.p_W).norm() > kSpacing_m || side.shape->isEdgePoint(id)) continue;
+      std::optional<Candidate> c = corrected(side, sides[1 - side.side], id);
+      if (!c) continue;
+      const bool has_moved = moveToNearest(*c, side, sides[1 - side.side]);
+      found.least_gap_m = std::min(found.least_gap_m, c->distance_m);
+      if (!has_moved) continue;
+      ++found.moved;
+      found.off_m = std::max(found.off_m, (c->p_W - truth.p_W).norm());
+      found.gap_off_m = std::max(found.gap_off_m, std::abs(c->distance_m - truth.gap_m));
+      found.tilt_rad = std::max(found.tilt_rad, c->n_W.cross(truth.n_W).norm());
+    }
+  return found;
+}
+
+// Facets of the ball are sqrt(4 pi / 20480 * 4 / sqrt(3)) r = 0.19 mm wide and lie up to a third of that
+// squared over 2 r inside it, 1.2 um; those of the parts below, too.
+constexpr double kFacets_m = 2.4e-6;
+// Steps end within 5e-3 of the spacing, over the smaller radius; as much again for interpolated normals.
+constexpr double kTilt_rad = 2 * 5e-3 * kSpacing_m / kBall_m;
+
+// A ball that hovers over, or is pressed a little into, ten places of a part: all points near the contact
+// find it.
+void expectFound(const Built& below, const std::function<Truth(int)>& at) {
+  for (int i = 0; i < 10; ++i) {
+    const Truth truth = at(i);
+    const Vec3 center = truth.p_W + (truth.gap_m + kBall_m) * truth.n_W;
+    const Found found = find(below, Pose(rotationFromVector(Vec3(0.3 * i, 0.5, 0.7 * i)), center), truth);
+    EXPECT_GE(found.moved, 2) << i;
+    EXPECT_LE(found.tilt_rad, kTilt_rad) << i;
+    EXPECT_LE(found.off_m, kTilt_rad * kBall_m + kFacets_m) << i;
+    EXPECT_LE(found.gap_off_m, kFacets_m) << i;
+  }
+}
+
+double gapAt(int i) {
+  return (i - 5) * 1e-6;
+}
+
+TEST(CurvedContact, PointsOfABallAndAPlateFindTheLowestPoint) {
+  const Built plate = test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.25e-3, kSpacing_m);
+  expectFound(plate, [](int i) {
+    return Truth{Vec3(1.7e-3 * i, -0.9e-3 * i, 5e-3), Vec3::UnitZ(), gapAt(i)};
+  });
+}
+
+TEST(CurvedContact, PointsOfABallAndACylinderFindTheLineOfCentres) {
+  const Built cylinder =
+      test::build(transformed(makeCylinder(kBelow_m, 60e-3, 512),
+                              Pose(rotationFromVector(Vec3(std::numbers::pi / 2, 0, 0)), Vec3::Zero())),
+                  7850, 0.25e-3, kSpacing_m);
+  expectFound(cylinder, [](int i) {
+    const Vec3 n(std::sin(0.0377 * i), 0, std::cos(0.0377 * i));
+    return Truth{kBelow_m * n + Vec3(0, 0.33e-3 * i, 0), n, gapAt(i)};
+  });
+}
+
+TEST(CurvedContact, PointsOfTwoBallsFindTheLineOfCentres) {
+  const Built large = test::build(makeSphere(kBelow_m, 6), 7850, 0.25e-3, kSpacing_m);
+  expectFound(large, [](int i) {
+    const Vec3 n = Vec3(0.3 * i - 1, 0.4, 1).normalized();
+    return Truth{kBelow_m * n, n, gapAt(i)};
+  });
+}
+
+TEST(CurvedContact, PointsOfABallInAHollowFindItsBottom) {
+  const Built tube = test::build(makeTube(30e-3, 10e-3, 40e-3, 512), 7850, 0.25e-3, kSpacing_m);
+  expectFound(tube, [](int i) {
+    const Vec3 n(std::sin(0.0377 * i), std::cos(0.0377 * i), 0);
+    return Truth{-10e-3 * n + Vec3(0, 0, 0.33e-3 * i), n, gapAt(i)};
+  });
+}
+
+// The plate ends at x = 30 mm, where the ball hangs over: nothing there may hold it as the face would.
+TEST(CurvedContact, APointDoesNotLeaveItsFaceOverTheEdge) {
+  const Built plate = test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.25e-3, kSpacing_m);
+  for (int i = 0; i < 10; ++i) {
+    const double over_m = 0.05e-3 * i;
+    const Vec3 edge(30e-3, 0.77e-3 * i, 5e-3), center = edge + Vec3(over_m, 0, kBall_m);
+    const double gap_m = (center - edge).norm() - kBall_m;
+    const Found found = find(plate, Pose::translation(center), {edge, Vec3::UnitZ(), gap_m});
+    EXPECT_LT(found.least_gap_m, 1);
+    EXPECT_GE(found.least_gap_m, gap_m - kFacets_m) << i;
+  }
+}
+
+TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
+  const Built bore = test::build(makeTube(10e-3, 4.01e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);
+  const Built peg = test::build(makeCylinder(4e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);
+  const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};
+  int met = 0;
+  for (std::uint32_t id = 0; id < peg.shape->models().shell->size(); ++id) {
+    std::optional<Candidate> c = corrected(sides[0], sides[1], id);
+    if (!c || peg.shape->isEdgePoint(id)) continue;
+    ++met;
+    EXPECT_FALSE(moveToNearest(*c, sides[0], sides[1])) << id;
+  }
+  EXPECT_GT(met, 100);
+}
+
+}  // namespace
+}  // namespace vps
