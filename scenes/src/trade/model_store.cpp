@@ -14,9 +14,7 @@ double ModelStore::fill(Scene& scene, const ModelOptions& options) {
     scene.parts[i].part.shell = shells_[{i, spacing_m}];
   }
   const auto begun = std::chrono::steady_clock::now();
-  ModelOptions quiet = options;
-  quiet.progress = {};
-  buildModels(scene, quiet);
+  buildModels(scene, options);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     maps_[{i, voxel_m}] = scene.parts[i].part.map;

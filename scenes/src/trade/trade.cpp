@@ -132,7 +132,10 @@ void Trade::measure(const TradeTry& what) {
   Scene scene = scene_;
   scene.fidelity = what.fidelity;
   scene.contact = what.contact;
-  row.models_wall_s = store_.fill(scene, options_);
+  ModelOptions quiet = options_;
+  quiet.progress = {};
+  if (!is_own) quiet.warn = nullptr;  // a mesh that is not closed is told once
+  row.models_wall_s = store_.fill(scene, quiet);
   const ModelledCost cost = modelledCost(scene);
   row.points = cost.points;
   row.bytes = cost.bytes;
