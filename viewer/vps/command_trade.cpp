@@ -57,7 +57,10 @@ std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
                     "--thorough, --out and --csv are for what is measured; with --tolerance, --budget-hz or "
                     "--memory nothing is: leave out one or the other");
   FidelityWish wish;
-  wish.budget_hz = given.budget_hz;  // the command line has looked at it
+  // The command line has looked at its range, which lets nan through.
+  if (given.budget_hz && !std::isfinite(*given.budget_hz))
+    throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
+  wish.budget_hz = given.budget_hz;
   if (given.tolerance) {
     wish.tolerance_m = lengthFromText(*given.tolerance, "--tolerance");
     if (!(*wish.tolerance_m > 0))
