@@ -26,7 +26,6 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
-constexpr std::size_t kJudgeStride = 20;
 
 double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -436,7 +435,11 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
 
 void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
   samples_.push_back({time_s_, poses_[step.part], 0});
-  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, kJudgeStride);
+  // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
+  if (scene_.fidelity.sides == Sides::One)
+    for (FitSample& sample : samples_)
+      sample.depth_m = std::max(sample.depth_m, fit_.fieldDepth_m(fitBody(step.part), sample.X_WP));
+  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, options_.judge_stride);
   result.max_penetration_m = verdict.worst.depth_m;
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;
