@@ -29,7 +29,7 @@ def run(vps, scene, flags):
 
 ROWS = [
     ("models [MB]", lambda r: r["modelled"]["bytes"] / 1e6, 1),
-    ("points of the fixed field", lambda r: r["modelled"]["field_points"], 0),
+    ("points of the fixed field, at the most memory", lambda r: r["modelled"]["field_points"], 0),
     ("peak memory of the program [MB]", lambda r: r["peak_bytes"] / 1e6, 0),
     ("load [s]", lambda r: r["wall"]["build_s"], 2),
     ("cooking between steps, all [s]", lambda r: sum(r["wall"]["cook_s"]), 2),

@@ -100,8 +100,10 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m);
 /// Replaces distance and normal of the candidates of `side` by the exact ones: of the other VpsShape's
 /// surfaces (if it has any) or of the primitive `theirs`. What meets flush on curved faces, or a primitive's
 /// round side, moves to where they are nearest. The field still decides where no surface is near.
+/// @param is_answered  the other side's points are looked at too: a contact that one of them has is left to
+/// it
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
-             const btCollisionShape& theirs, const RelativeMotion& motion);
+             const btCollisionShape& theirs, const RelativeMotion& motion, bool is_answered);
 
 /// Exact distance and normal of the points of `side` that are on edges, where the other side has a map and
 /// surfaces: seen from where both bodies would be at the end of the step if they kept their velocities,

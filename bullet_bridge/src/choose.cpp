@@ -36,12 +36,8 @@ void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
 void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
              VpsPairState* state) {
   std::size_t tested = 0, left_out = 0;
-  // One-sided: the smaller body's points, since a larger one's may be too far apart to catch it.
-  int only = -1;
-  if (context.settings.sides == Sides::One && pair.canLookBothWays())
-    only = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm() ? 0 : 1;
   for (int i = 0; i < 2; ++i) {
-    if (!pair.hasShell(i) || (only >= 0 && i != only)) continue;
+    if (!asksPoints(pair, i, context.settings.sides)) continue;
     const int j = 1 - i;
     if (isPrimitive(*pair.wrapper[j]->getCollisionShape()))
       left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
@@ -100,8 +96,9 @@ void correctAll(const PairView& pair, const RelativeMotion& motion, const VpsBul
                 std::vector<Candidate>& candidates) {
   if (!settings.use_surfaces) return;
   for (int i = 0; i < 2; ++i)
-    if (pair.hasShell(i))
-      correct(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion);
+    if (asksPoints(pair, i, settings.sides))
+      correct(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion,
+              asksPoints(pair, 1 - i, settings.sides));
 }
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates) {

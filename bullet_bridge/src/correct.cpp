@@ -30,6 +30,7 @@ struct OwnPoint {
   const SideView* side = nullptr;             ///< null: edges are not asked for
   std::span<const std::uint32_t> edges = {};  ///< of side, that the point stands on
   Vec3 p_M = Vec3::Zero();                    ///< the point in its models' frame
+  bool is_answered = true;                    ///< the other part's points are looked at too
 
   OwnPoint movedTo(const Vec3& place_W) const {
     OwnPoint moved = *this;
@@ -41,7 +42,8 @@ struct OwnPoint {
   }
   [[nodiscard]] Vec3 inModel(const Vec3& n_W) const { return side->X_WM.R.transpose() * n_W; }
   /// True if the part lies, around the point, on the far side of a plane with this normal through it. If not,
-  /// another point is what meets the plane, and deeper.
+  /// another point is what meets the plane, and deeper; or where the other part ends before, its edge is what
+  /// meets this part's face.
   [[nodiscard]] bool isFirstAlong(const Vec3& n_W) const {
     const Vec3 n = inModel(n_W);
     for (const std::uint32_t i : edges) {
@@ -120,7 +122,10 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   if (!foot.found) return exact;
   const double cos_facing = own.inward_W.dot(foot.normal);
   const bool is_edge_on_edge = own.is_edge && foot.is_edge;
-  exact.meets = own.edges.empty() || is_edge_on_edge ? cos_facing > kFacing : own.isFirstAlong(foot.normal);
+  const bool is_facing = cos_facing > kFacing;
+  exact.meets = own.edges.empty() || is_edge_on_edge
+                    ? is_facing
+                    : own.isFirstAlong(foot.normal) || (is_facing && !own.is_answered);
   if (exact.meets && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosEdge;
     exact.is_smooth = is_flush && !own.is_edge;
@@ -170,7 +175,7 @@ Exact whereItGoes(const Exact& now, const Corrector& corrector, const OwnPoint& 
 }  // namespace
 
 void correct(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
-             const btCollisionShape& theirs, const RelativeMotion& motion) {
+             const btCollisionShape& theirs, const RelativeMotion& motion, bool is_answered) {
   const bool is_primitive = isPrimitive(theirs);
   if (!is_primitive && other.shape->models().surfaces.empty()) return;
   const Corrector corrector{side, other, withoutStandIn(theirs), is_primitive};
@@ -187,7 +192,8 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
                        side.shape->isEdgePoint(c.id),
                        &side,
                        is_primitive ? std::span<const std::uint32_t>() : side.shape->edgesAt(c.id),
-                       shell.points[c.id]};
+                       shell.points[c.id],
+                       is_answered};
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = corrector.at(own, max_m);
     if (!exact.found) continue;  // the field is all there is

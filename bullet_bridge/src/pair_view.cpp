@@ -31,6 +31,13 @@ double sight_m(const PairView& pair) {
   return sight_m;
 }
 
+bool asksPoints(const PairView& pair, int i, Sides sides) {
+  if (!pair.hasShell(i)) return false;
+  if (sides == Sides::Both || !pair.canLookBothWays()) return true;
+  const bool is_first = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm();
+  return i == (is_first ? 0 : 1);
+}
+
 int sideCount(const PairView& pair, Sides sides) {
   return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
 }

@@ -58,6 +58,10 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m)
 /// How far the fields can see [m]: the band bounds it.
 double sight_m(const PairView& pair);
 
+/// True if the points of side i are looked at. One-sided: only the smaller body's, since a larger one's may
+/// be too far apart to catch it.
+bool asksPoints(const PairView& pair, int i, Sides sides);
+
 /// How many sides' points answer for the same surface.
 int sideCount(const PairView& pair, Sides sides);
 

@@ -29,7 +29,6 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
-constexpr std::size_t kJudgeStride = 20;
 
 double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -458,7 +457,11 @@ std::future<FitVerdict> Procedure::judgeBeside() {
   const FitBody& body = placed_.fitBody(held_.part);
   return std::async(std::launch::async, [this, &body] {
     leaveRealTime();  // threads are born with their maker's priority
-    return judge(placed_.fit(), body, samples_, kJudgeStride);
+    // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
+    if (scene_.fidelity.sides == Sides::One)
+      for (FitSample& sample : samples_)
+        sample.depth_m = std::max(sample.depth_m, placed_.fit().fieldDepth_m(body, sample.X_WP));
+    return judge(placed_.fit(), body, samples_, options_.judge_stride);
   });
 }
 

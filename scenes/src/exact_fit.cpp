@@ -134,4 +134,15 @@ Penetration ExactFit::deepest(const FitBody& moving, const Pose& X_WP) const {
   return worst;
 }
 
+double ExactFit::fieldDepth_m(const FitBody& moving, const Pose& X_WP) const {
+  double least_m = 0;
+  for (const auto& [body, X_WB] : mounted_) {
+    const Pose X_BP = X_WB.inverse() * X_WP;
+    for (const QueryResult& result : {queryDistance(*body.map, *moving.shell, X_BP),
+                                      queryDistance(*moving.map, *body.shell, X_BP.inverse())})
+      if (result.status == Status::Ok) least_m = std::min(least_m, result.min_distance_m);
+  }
+  return -least_m;
+}
+
 }  // namespace vps

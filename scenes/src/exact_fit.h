@@ -50,6 +50,10 @@ class ExactFit {
   /// threads. Allocates; not for the haptic path.
   [[nodiscard]] Penetration deepest(const FitBody& moving, const Pose& X_WP) const;
 
+  /// The same as the fields read it at the points of both sides [m]; 0 when free. Off by a voxel at sharp
+  /// edges: tells poses apart, no more. O(points visited).
+  [[nodiscard]] double fieldDepth_m(const FitBody& moving, const Pose& X_WP) const;
+
  private:
   struct Mounted {
     FitBody body;

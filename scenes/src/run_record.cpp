@@ -28,8 +28,9 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"models_everything", options.models_everything ? "1" : "0"},
       {"fidelity.voxel_m", exact(f.voxel_m)},
       {"fidelity.spacing_m", exact(f.spacing_m)},
-      {"fidelity.sides", f.sides == Sides::One ? "one" : "both"},
-      {"fidelity.gradient", f.gradient == Gradient::Continuous ? "continuous" : "trilinear"},
+      {"fidelity.sides", toText(f.sides)},
+      {"fidelity.gradient", toText(f.gradient)},
+      {"fidelity.contact", toText(scene.contact)},
       {"fidelity.contact_limit", std::to_string(f.contact_limit)},
       {"fidelity.haptic_rate_hz", exact(f.haptic_rate_hz)},
       {"fidelity.physics_rate_hz", exact(f.physics_rate_hz)},
@@ -41,6 +42,7 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"chosen.max_force_N", exact(gains.max_force_N)},
       {"chosen.max_torque_Nm", exact(gains.max_torque_Nm)},
   };
+  if (!scene.fidelity_choice.empty()) about["chosen.fidelity"] = scene.fidelity_choice;
   for (const ScenePart& part : scene.parts)
     about["mesh_hash." + part.part.name] = contentHash(part.part.mesh);
   return about;

@@ -18,7 +18,8 @@ namespace vps {
 
 namespace {
 
-constexpr std::string_view kMagic = "vps-scene-1\n";
+constexpr std::string_view kMagic = "vps-scene-2\n";
+constexpr std::string_view kMagicBefore = "vps-scene-1\n";  // without Scene::contact
 
 class Writer {
  public:
@@ -81,7 +82,7 @@ class Reader {
   requires std::is_enum_v<T>
   void get(T& x) {
     const auto value = bytes_.get<std::uint8_t>();
-    is_good_ = is_good_ && value <= 1;  // Sides and Gradient have two values
+    is_good_ = is_good_ && value <= 1;  // all enums of a scene have two values
     x = static_cast<T>(value & 1);
   }
   void get(int& x) { x = bytes_.getInt(); }
@@ -179,8 +180,8 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<Scene> T>
 void fields(Archive& archive, T& x) {
-  auto& [file, name, warnings, parts, steps, gravity, fidelity, coupling, device, hand, record, release_s] =
-      x;
+  auto& [file, name, warnings, parts, steps, gravity, fidelity, contact, choice, coupling, device, hand,
+         record, release_s] = x;
   archive(file, name, parts, steps, gravity, fidelity, coupling, device, hand, record, release_s);
 }
 
@@ -224,15 +225,18 @@ std::string sceneToBytes(const Scene& scene) {
   std::string out(kMagic);
   Writer writer(out);
   fields(writer, std::as_const(plain));
+  writer(plain.contact);
   return out;
 }
 
 Scene sceneFromBytes(std::string_view bytes, const std::string& file) {
   Scene scene;
-  if (!bytes.starts_with(kMagic))
+  const bool has_contact = bytes.starts_with(kMagic);
+  if (!has_contact && !bytes.starts_with(kMagicBefore))
     throw LoadError(file, "", "holds a scene in a form that this version does not know");
   Reader reader(bytes.substr(kMagic.size()));
   fields(reader, scene);
+  if (has_contact) reader(scene.contact);
   if (!reader.isAllRead()) throw LoadError(file, "", "holds a scene that is not whole");
   if (const char* what = impossible(scene))
     throw LoadError(file, "", std::string("holds a scene with ") + what);

@@ -11,6 +11,7 @@
 #include "scene_file_keys.h"
 #include "vps/load_error.h"
 #include "vps_device/dual_arm_parameters.h"
+#include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
@@ -113,6 +114,9 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
 bool isMissingReader(const LoadError& error) {
   return std::string_view(error.what()).find("Open CASCADE") != std::string_view::npos;
 }
+
+/// What `fidelity = "auto"` asks for by itself: the designers' usual bound of 10 um.
+const FidelityWish kAutoWish{.budget_hz = std::nullopt, .tolerance_m = 10e-6, .memory_bytes = std::nullopt};
 
 class SceneReader {
  public:
@@ -359,16 +363,13 @@ class SceneReader {
   void readFidelity() {
     scene_.fidelity = fidelityPreset("normal");
     if (!top_.has("fidelity")) return;
+    if (top_.isText("fidelity")) return readNamedFidelity();
+    const SceneKeys keys(
+        *top_.table("fidelity"), context_, "[fidelity]",
+        {"preset", "auto", "budget_hz", "tolerance", "memory_MB", "voxel", "spacing", "sides", "gradient",
+         "contact", "contact_limit", "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
     const std::vector<std::string> presets = {"fast", "normal", "fine"};
     std::size_t index = 1;
-    if (top_.isText("fidelity")) {
-      top_.word("fidelity", presets, index);
-      scene_.fidelity = fidelityPreset(presets[index]);
-      return;
-    }
-    const SceneKeys keys(*top_.table("fidelity"), context_, "[fidelity]",
-                         {"preset", "voxel", "spacing", "sides", "gradient", "contact_limit",
-                          "haptic_rate_hz", "physics_rate_hz", "solver_iterations"});
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     Fidelity& fidelity = scene_.fidelity;
     keys.length("voxel", fidelity.voxel_m, kPositive);
@@ -376,6 +377,8 @@ class SceneReader {
     if (keys.word("sides", {"one", "both"}, index)) fidelity.sides = index == 0 ? Sides::One : Sides::Both;
     if (keys.word("gradient", {"continuous", "trilinear"}, index))
       fidelity.gradient = index == 0 ? Gradient::Continuous : Gradient::Trilinear;
+    if (keys.word("contact", {"rigid", "compliant"}, index))
+      scene_.contact = index == 0 ? ContactKind::Rigid : ContactKind::Compliant;
     constexpr Range kCount{.min = 1, .max = 1e6};
     std::int64_t count = 0;
     if (keys.integer("contact_limit", count, kCount)) fidelity.contact_limit = static_cast<int>(count);
@@ -384,6 +387,47 @@ class SceneReader {
     constexpr Range kRate{.min = 1, .max = 1e6};
     keys.number("haptic_rate_hz", fidelity.haptic_rate_hz, kRate);
     keys.number("physics_rate_hz", fidelity.physics_rate_hz, kRate);
+    readFidelityWish(keys);
+  }
+
+  void readNamedFidelity() {
+    const std::vector<std::string> names = {"fast", "normal", "fine", "auto"};
+    std::size_t index = 1;
+    top_.word("fidelity", names, index);
+    if (names[index] == "auto") return choose(kAutoWish);
+    scene_.fidelity = fidelityPreset(names[index]);
+  }
+
+  void readFidelityWish(const SceneKeys& keys) {
+    FidelityWish wish;
+    bool is_auto = false;
+    keys.flag("auto", is_auto);
+    const auto wished = [&](const char* key, std::optional<double>& out) {
+      if (!keys.has(key)) return false;
+      if (!is_auto) keys.fail(key, "stands without 'auto = true', which would heed it");
+      out = 0;
+      return true;
+    };
+    constexpr Range kRate{.min = 1, .max = 1e6};
+    if (wished("budget_hz", wish.budget_hz)) keys.number("budget_hz", *wish.budget_hz, kRate);
+    if (wished("tolerance", wish.tolerance_m)) keys.length("tolerance", *wish.tolerance_m, kPositive);
+    if (wished("memory_MB", wish.memory_bytes)) {
+      keys.number("memory_MB", *wish.memory_bytes, kPositive);
+      *wish.memory_bytes *= 1e6;
+    }
+    if (!is_auto) return;
+    for (const char* key : {"voxel", "spacing"})
+      if (keys.has(key)) keys.fail(key, "stands beside 'auto = true', which chooses it");
+    const bool has_wish = wish.budget_hz || wish.tolerance_m || wish.memory_bytes;
+    choose(has_wish ? wish : kAutoWish);
+  }
+
+  /// Chooses by counts, so that the same file gives the same scene everywhere.
+  void choose(const FidelityWish& wish) {
+    const FidelityChoice choice = chooseFidelity(scene_, wish);
+    if (!choice.is_met) top_.fail("fidelity", "is auto and cannot be met: " + choice.why_not);
+    scene_.fidelity = choice.fidelity;
+    scene_.fidelity_choice = describe(choice);
   }
 
   void readRecord() {

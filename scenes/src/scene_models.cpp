@@ -105,6 +105,15 @@ std::vector<BuildTimes> buildModels(Scene& scene, const Plan& plan, const ModelO
   return times;
 }
 
+void buildModels(Scene& scene, const ModelOptions& options) {
+  Plan plan = makePlan(scene, PlanFor::Assemble, true);
+  for (std::size_t i = 0; i < scene.parts.size(); ++i)
+    for (std::size_t j = 0; j < i && !plan.parts[i].same_as; ++j)
+      if (!plan.parts[j].same_as && isEqualGeometry(scene.parts[i].part.mesh, scene.parts[j].part.mesh))
+        plan.parts[i].same_as = j;
+  buildModels(scene, plan, options);
+}
+
 void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     PlannedPart& planned = plan.parts[i];

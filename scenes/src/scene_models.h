@@ -24,6 +24,9 @@ struct BuildTimes {
 /// the file and part that cannot be modelled.
 std::vector<BuildTimes> buildModels(Scene& scene, const Plan& plan, const ModelOptions& options);
 
+/// Whole models for every part that lacks them; equal ones are shared.
+void buildModels(Scene& scene, const ModelOptions& options);
+
 /// For a run that comes to the border of the plan's regions: whole models for what was left out or cropped,
 /// and a plan without regions.
 void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options);

@@ -26,8 +26,15 @@ struct DynamicBody {
   BodyFrame frame;
 };
 
-VpsBulletSettings bulletSettings(const Fidelity& fidelity) {
+VpsBulletSettings bulletSettings(const Scene& scene) {
+  const Fidelity& fidelity = scene.fidelity;
   VpsBulletSettings settings;
+  settings.mode = scene.contact == ContactKind::Compliant ? ContactMode::Penalty : ContactMode::Constraint;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
+    // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
+    if (i == 0 || stiffness < settings.stiffness_N_per_m3) settings.stiffness_N_per_m3 = stiffness;
+  }
   settings.contact_limit = fidelity.contact_limit;
   settings.sides = fidelity.sides;
   settings.gradient = fidelity.gradient;
@@ -60,7 +67,7 @@ struct Simulation::World {
   Pose X_PG;
 
   World(const Scene& s, const Plan& p) : scene(s), plan(p), solver(solverSettings(s.fidelity)) {
-    installVps(dispatcher, bulletSettings(scene.fidelity));
+    installVps(dispatcher, bulletSettings(scene));
     tuneWorld(world, scene.fidelity.solver_iterations);
     world.setGravity(toBt(scene.gravity_W));
   }

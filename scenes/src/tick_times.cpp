@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tick_times.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -17,6 +19,12 @@ double percentile(const std::vector<double>& sorted, double share) {
 
 }  // namespace
 
+double TickClock::threadTime_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
 TickTimes TickClock::summary() const {
   TickTimes times;
   times.count = us_.size();
@@ -31,6 +39,11 @@ TickTimes TickClock::summary() const {
   if (period_us_ > 0)
     times.missed =
         static_cast<std::uint64_t>(sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), period_us_));
+  if (cpu_us_.empty()) return times;
+  sorted = cpu_us_;
+  std::sort(sorted.begin(), sorted.end());
+  times.cpu_p50_us = percentile(sorted, 0.5);
+  times.cpu_p99_us = percentile(sorted, 0.99);
   return times;
 }
 

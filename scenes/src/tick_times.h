@@ -14,18 +14,25 @@ namespace vps {
 class TickClock {
  public:
   explicit TickClock(double period_s = 0) : period_us_(period_s * 1e6) {}
-  void reserve(std::size_t ticks) { us_.reserve(ticks); }
-  void start() { begun_ = Clock::now(); }
-  void stop() { add(std::chrono::duration<double, std::micro>(Clock::now() - begun_).count()); }
+  void start() {
+    cpu_begun_us_ = threadTime_us();
+    begun_ = Clock::now();
+  }
+  void stop() {
+    add(std::chrono::duration<double, std::micro>(Clock::now() - begun_).count());
+    cpu_us_.push_back(threadTime_us() - cpu_begun_us_);
+  }
   void add(double us) { us_.push_back(us); }
   /// O(n log n).
   [[nodiscard]] TickTimes summary() const;
 
  private:
   using Clock = std::chrono::steady_clock;
+  static double threadTime_us();
   double period_us_;
+  double cpu_begun_us_ = 0;
   Clock::time_point begun_;
-  std::vector<double> us_;
+  std::vector<double> us_, cpu_us_;
 };
 
 }  // namespace vps

@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"assemble", "replay",   "simulate", "query",
-                                         "import",   "snapshot", "device"};
-const std::vector<std::string> kComing = {"check", "trade", "view", "render", "watch"};
+const std::vector<std::string> kReady = {"assemble", "replay", "simulate", "query",  "import",
+                                         "snapshot", "device", "trade",    "explain"};
+const std::vector<std::string> kComing = {"check", "view", "render", "watch"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   std::vector<std::string> all = kReady;
@@ -54,6 +54,39 @@ TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("snapshot scene.toml -o a.png --view north", "--view");
   expectRefused("snapshot scene.toml --compare gone.png", "gone.png");
   expectRefused("query plate.stl", "see vps query --help");
+}
+
+TEST_F(Program, TradePicksAFidelityToPasteOrSaysThatNoneWillDo) {
+  const Ran picked = run("trade scene.toml --tolerance 20um");
+  EXPECT_EQ(picked.status, 0) << picked.err;
+  EXPECT_NE(picked.out.find("[fidelity]\nvoxel = \""), std::string::npos) << picked.out;
+  // What it prints is what a scene file takes.
+  write("picked.toml", std::string(kScene) + picked.out);
+  EXPECT_EQ(run("simulate picked.toml --seconds 0.01").status, 0);
+
+  ASSERT_EQ(run("trade scene.toml --tolerance 20um --json picked.json").status, 0);
+  const json chosen = json::parse(slurp(folder_ / "picked.json"));
+  EXPECT_TRUE(chosen["is_met"]);
+  EXPECT_LE(chosen["error_m"], 20e-6);
+  write("misspelt.toml", "fidelity = 'autp'\n" + std::string(kScene));
+  expectRefused("simulate misspelt.toml --seconds 0.01", "fast, normal, fine, auto");
+
+  const Ran none = run("trade scene.toml --budget-hz 500000");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("no fidelity will do"), std::string::npos) << none.err;
+  EXPECT_EQ(none.out, "");
+  expectRefused("trade scene.toml --tolerance -1um", "--tolerance");
+  expectRefused("trade scene.toml --tolerance soon", "--tolerance");
+  expectRefused("trade scene.toml --tolerance ''", "--tolerance");
+  expectRefused("trade scene.toml --tolerance 0um", "more than 0");
+  expectRefused("trade scene.toml --tolerance 10kg", "'kg'");
+  expectRefused("trade scene.toml --tolerance 1um --csv rows.csv", "--csv");
+  expectRefused("trade nowhere.toml --tolerance 1um", "nowhere.toml");
+  expectRefused("trade scene.toml --budget-hz 0", "--budget-hz");
+  expectRefused("trade scene.toml --memory 3parsec", "--memory");
+  expectRefused("trade scene.toml --budget-hz nan", "--budget-hz");
+  expectRefused("trade scene.toml --voxle 1mm", "see vps trade --help");
+  expectRefused("trade scene.toml", "has no [[step]]");
 }
 
 TEST_F(Program, DeviceShowsItsOwnTableOneAndRefusesABadFile) {

@@ -59,6 +59,17 @@ TEST_F(ExactFitOfBoxes, FloorsOwnEdgeInsideTheMovingPartIsFoundToo) {
   EXPECT_NEAR(fit_.deepest(box_, X_WP).depth_m, deep_m, kRounding_m);
 }
 
+TEST_F(ExactFitOfBoxes, FieldsTellADeeperPoseOfTheFloorsEdgeInAFaceFromAFreeOne) {
+  const Mat3 R = rotationFromVector({0, 0.3, 0});
+  const auto at = [&](double deep_m) {
+    return fit_.fieldDepth_m(box_, Pose(R, Vec3(10e-3, 0, 5e-3) + R * Vec3(0, 0, 5e-3 - deep_m)));
+  };
+  EXPECT_EQ(at(-1e-3), 0);
+  // By the floor's own points on its edge: the box's lie off it, and see nothing.
+  EXPECT_NEAR(at(50e-6), 50e-6, 5e-6);
+  EXPECT_NEAR(at(20e-6), 20e-6, 5e-6);
+}
+
 TEST_F(ExactFitOfBoxes, APartWhollyInsideAnotherIsAsDeepAsItsDeepestPoint) {
   const FitBody block = makeBody("block", makeBox(Vec3::Constant(30e-3)));
   ExactFit fit;

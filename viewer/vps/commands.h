@@ -85,6 +85,16 @@ struct QueryArguments {
 };
 int runQuery(const QueryArguments& given);
 
+struct TradeArguments {
+  std::string scene;
+  FidelityArguments fidelity;
+  bool is_thorough = false;
+  std::string out, csv, json;  ///< empty: none
+  std::optional<double> budget_hz;
+  std::optional<std::string> tolerance, memory;  ///< "10um", "64MB"
+};
+int runTrade(const TradeArguments& given);
+
 struct ImportArguments {
   std::string cad, out;
   std::string units, deflection, json;

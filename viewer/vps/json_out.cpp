@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "vps_device/dual_arm_character.h"
+#include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/trade.h"
 
 namespace vps {
 
@@ -249,6 +251,69 @@ Json explainWall(const PlanCost& cost) {
   return {{"build_s", cost.build_wall_s}, {"cook_s", cost.cook_wall_s}, {"parts", parts}, {"steps", steps}};
 }
 
+Json fidelity(const Fidelity& f) {
+  return {{"voxel_m", f.voxel_m},
+          {"spacing_m", f.spacing_m},
+          {"sides", toText(f.sides)},
+          {"gradient", toText(f.gradient)},
+          {"contact_limit", f.contact_limit},
+          {"haptic_rate_hz", f.haptic_rate_hz},
+          {"physics_rate_hz", f.physics_rate_hz},
+          {"solver_iterations", f.solver_iterations}};
+}
+
+Json cpuTimes(const TickTimes& times) {
+  return {{"median", times.p50_us},
+          {"p99", times.p99_us},
+          {"cpu_median", times.cpu_p50_us},
+          {"cpu_p99", times.cpu_p99_us}};
+}
+
+Json tradeRow(const TradeRow& row) {
+  Json json = {{"name", row.what.name},
+               {"knob", toText(row.what.knob)},
+               {"fidelity", fidelity(row.what.fidelity)},
+               {"contact", toText(row.what.contact)},
+               {"points", row.points},
+               {"models_bytes", row.bytes}};
+  if (row.has_probe)
+    json["probe"] = {{"distance_error_m", row.probe.distance_m},
+                     {"penetration_error_m", row.probe.penetration_m},
+                     {"force_error", row.probe.force},
+                     {"torque_error", row.probe.torque},
+                     {"points_read", row.points_read}};
+  if (row.has_run)
+    json["run"] = {{"completed", row.run.completed},
+                   {"max_penetration_m", row.run.deepest_m},
+                   {"final_error_m", row.run.final_error_m},
+                   {"peak_force_N", row.run.peak_force_N},
+                   {"to_hand_J", row.run.to_hand_J},
+                   {"injected_J", row.run.injected_J},
+                   {"contacts_left_out", row.run.contacts_left_out},
+                   {"bytes", row.run.bytes}};
+  if (row.has_reference)
+    json["off_reference"] = {{"final_m", row.off.final_m},
+                             {"peak_force_N", row.off.peak_force_N},
+                             {"to_hand_J", row.off.to_hand_J}};
+  return json;
+}
+
+Json tradeRowWall(const TradeRow& row) {
+  Json json = {{"name", row.what.name}, {"models_s", row.models_wall_s}, {"on_front", row.is_on_front}};
+  if (row.has_probe) {
+    json["query_us"] = cpuTimes(row.query);
+    json["all_points_us"] = cpuTimes(row.all_points);
+  }
+  if (row.has_run) {
+    json["build_s"] = row.run.build_wall_s;
+    json["run_s"] = row.run.wall_s;
+    json["physics_us"] = cpuTimes(row.run.physics);
+    json["haptic_us"] = cpuTimes(row.run.haptic);
+    json["rate_hz"] = rateOf(row);
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string toJson(const ExplainAnswer& answer) {
@@ -272,6 +337,39 @@ std::string toJson(const ExplainAnswer& answer) {
   json["wall"]["everything"] = {{"build_s", answer.everything->cost.build_wall_s},
                                 {"cook_s", answer.everything->cost.cook_wall_s}};
   return text(json);
+}
+
+std::string toJson(const std::string& scene, const FidelityChoice& choice) {
+  const Json json = {{"scene", scene},
+                     {"is_met", choice.is_met},
+                     {"why_not", choice.why_not},
+                     {"fidelity", fidelity(choice.fidelity)},
+                     {"error_m", choice.error_m},
+                     {"points", choice.points},
+                     {"points_near", choice.points_near},
+                     {"bytes", choice.bytes},
+                     {"step_by_model_us", choice.step_us}};
+  return text(json);
+}
+
+std::string toJson(const TradeResult& result) {
+  Json rows = Json::array(), wall = Json::array();
+  for (const TradeRow& row : result.rows) {
+    rows.push_back(tradeRow(row));
+    wall.push_back(tradeRowWall(row));
+  }
+  return text({{"wall",
+                {{"rows", wall},
+                 {"answers", tradeAnswers(result)},
+                 {"knobs", tradeKnobs(result)},
+                 {"left_out", result.left_out}}},
+               {"scene", result.scene},
+               {"excerpt", result.excerpt},
+               {"poses", result.poses},
+               {"poses_inside", result.poses_inside},
+               {"reference_spacing_m", result.reference_spacing_m},
+               {"cannot_choose", result.fixed},
+               {"rows", rows}});
 }
 
 namespace {

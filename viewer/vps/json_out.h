@@ -17,6 +17,8 @@
 
 namespace vps {
 
+struct FidelityChoice;
+struct TradeResult;       // vps_scenes/trade.h
 struct DualArmCharacter;  // vps_device/dual_arm_character.h
 struct DualArmFile;
 
@@ -79,6 +81,8 @@ std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const ExplainAnswer& answer);
+std::string toJson(const TradeResult& result);
+std::string toJson(const std::string& scene, const FidelityChoice& choice);
 std::string toJson(const DualArmCharacter& character, const DualArmFile& file);
 
 }  // namespace vps

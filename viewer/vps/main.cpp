@@ -41,7 +41,7 @@ class CommandLine {
     addComing("check", "fit of an assembly as designed: interference, clearance, play",
               "vps check bearing_block.step");
     addExplain();
-    addComing("trade", "measures speed against accuracy on a scene", "vps trade scene.toml");
+    addTrade();
     addComing("view", "opens a window on a scene", "vps view scene.toml");
     addDevice();
     addComing("render", "the haptic rendering node", "vps render scene.toml");
@@ -201,6 +201,24 @@ class CommandLine {
     addJson(command, query_.json);
   }
 
+  void addTrade() {
+    CLI::App* command =
+        add("trade", "measures speed against accuracy on a scene",
+            "vps trade scenes/peg_in_hole/scene.toml --out out/trade", [this] { return runTrade(trade_); });
+    command->add_option("scene", trade_.scene, "scene file")->required()->type_name("SCENE");
+    command->add_flag("--thorough", trade_.is_thorough,
+                      "all steps and settings, however long it takes (left out: 50 s in all)");
+    command->add_option("--out", trade_.out, "folder for plot, trade.csv and trade.json")->type_name("DIR");
+    command->add_option("--budget-hz", trade_.budget_hz, "pick a fidelity for this physics rate, and stop")
+        ->check(CLI::Range(1.0, 1e6));
+    command->add_option("--tolerance", trade_.tolerance,
+                        "pick one that reads depth to this length, with unit");
+    command->add_option("--memory", trade_.memory, "pick one whose models take no more: 64MB, 1GB");
+    command->add_option("--csv", trade_.csv, "write the table there")->type_name("FILE");
+    addFidelity(command, trade_.fidelity);
+    addJson(command, trade_.json);
+  }
+
   void addImport() {
     CLI::App* command = add("import", "turns a CAD file into a scene: parts, poses, steps proposed",
                             "vps import assembly.step -o my_scene", [this] { return runImport(import_); });
@@ -275,6 +293,7 @@ class CommandLine {
   SimulateArguments simulate_;
   ExplainArguments explain_;
   QueryArguments query_;
+  TradeArguments trade_;
   ImportArguments import_;
   SnapshotArguments snapshot_;
   DeviceArguments device_;

@@ -42,7 +42,19 @@ Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
-  scene.fidelity = fidelityFrom(given, scene.fidelity);
+  const Fidelity own = scene.fidelity;
+  scene.fidelity = fidelityFrom(given, own);
+  if (scene.fidelity_choice.empty()) return scene;
+  if (scene.fidelity.voxel_m == own.voxel_m && scene.fidelity.spacing_m == own.spacing_m) {
+    say("chosen: " + scene.fidelity_choice);
+    return scene;
+  }
+  // What was chosen at load has been overruled, and its models with it.
+  scene.fidelity_choice.clear();
+  for (ScenePart& part : scene.parts) {
+    part.part.map.reset();
+    part.part.shell.reset();
+  }
   return scene;
 }
 

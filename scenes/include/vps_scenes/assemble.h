@@ -12,6 +12,9 @@ namespace vps {
 
 struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< place a part that failed at its target and go on with the next step
+  /// The exact judge looks at every so many poses of a step, and always at the fifty with the deepest
+  /// contacts. Changes only max_penetration_m and what goes with it.
+  std::size_t judge_stride = 20;
   const std::atomic<bool>* stop = nullptr;  ///< set it to end early; the result then says "stopped"
   /// Records the run there (vps_device/recorder.h says how), scene and meshes included, so that
   /// vps_scenes/replay.h runs it again from this file alone; empty: not. A run that is stopped or fails

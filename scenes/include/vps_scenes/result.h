@@ -18,6 +18,8 @@ struct TickTimes {
   std::uint64_t count = 0;
   std::uint64_t missed = 0;  ///< took longer than the period
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
+  /// The same by the processor time of the thread: without what other programs took meanwhile. 0: not taken.
+  double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
 struct StepResult {

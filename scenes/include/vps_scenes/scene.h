@@ -56,6 +56,23 @@ struct CouplingWishes {
   std::optional<double> k_N_per_m, b_Ns_per_m, k_Nm_per_rad, b_Nms_per_rad, max_force_N, max_torque_Nm;
 };
 
+/// How contact is turned into motion: DESIGN.md section 8.
+enum class ContactKind {
+  Rigid,      ///< a few contacts for the solver
+  Compliant,  ///< every touching point presses with the softest part's stiffness times area times depth
+};
+
+/// As scene files and reports spell them.
+inline const char* toText(Sides sides) {
+  return sides == Sides::One ? "one" : "both";
+}
+inline const char* toText(Gradient gradient) {
+  return gradient == Gradient::Continuous ? "continuous" : "trilinear";
+}
+inline const char* toText(ContactKind contact) {
+  return contact == ContactKind::Rigid ? "rigid" : "compliant";
+}
+
 struct RecordSettings {
   double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };
@@ -68,6 +85,8 @@ struct Scene {
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
+  ContactKind contact = ContactKind::Rigid;
+  std::string fidelity_choice;  ///< what was chosen for `auto`, in words; empty: nothing was
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;

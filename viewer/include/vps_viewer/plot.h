@@ -15,6 +15,7 @@ struct Series {
   std::string name;
   std::vector<std::pair<double, double>> points;
   bool has_markers = false;
+  bool is_scatter = false;  ///< markers alone
 };
 
 struct Plot {

@@ -207,8 +207,10 @@ PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
     addPoints(script, name, s.points);
     has_points = has_points || !s.points.empty();
     commands += std::string("$").append(name) + " with " +
-                (s.has_markers ? "linespoints pt 7 ps 0.8" : "lines") + " lw 1.6 lc rgb \"" +
-                kColors[i % kColors.size()] + "\" title " + quoted(s.name) + ", \\\n  ";
+                (s.is_scatter    ? "points pt 7 ps 1.1"
+                 : s.has_markers ? "linespoints pt 7 ps 0.8"
+                                 : "lines") +
+                " lw 1.6 lc rgb \"" + kColors[i % kColors.size()] + "\" title " + quoted(s.name) + ", \\\n  ";
   }
   if (!has_points) return {false, "no points to plot"};
   return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "trade/exact_touch.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace vps {
+
+Touch exactTouch(const FitBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
+                 const Vec3& p_SO) {
+  std::vector<double> reading(samples.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(),
+                    [&](std::size_t i) { reading[i] = solid.map->distance(X_SB * samples[i].p); });
+  const double error_m = solid.map->sampleError_m();
+  const double least_m = reading.empty() ? 0 : *std::min_element(reading.begin(), reading.end());
+  const double cutoff_m = std::max(least_m + 2 * error_m, error_m);
+  std::vector<MeshDistance::Closest> found(samples.size());
+  std::vector<double> exact(samples.size(), std::numeric_limits<double>::infinity());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    if (reading[i] > cutoff_m || reading[i] >= solid.map->band_m()) return;
+    const Vec3 p_S = X_SB * samples[i].p;
+    found[i] = solid.distance->closest(p_S);
+    const bool is_inside = (p_S - found[i].q).dot(found[i].normal) < 0;
+    exact[i] = is_inside ? -found[i].distance_m : found[i].distance_m;
+  });
+  Touch touch;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    touch.least_m = std::min(touch.least_m, exact[i]);
+    if (!(exact[i] < 0)) continue;
+    const Vec3 f_S = kProbeStiffness_N_per_m3 * samples[i].area_m2 * -exact[i] * found[i].normal;
+    touch.F_S.f += f_S;
+    touch.F_S.tau += (X_SB * samples[i].p - p_SO).cross(f_S);
+  }
+  return touch;
+}
+
+}  // namespace vps

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of a scene as a scene of its own.
+#pragma once
+
+#include "vps_scenes/scene.h"
+
+namespace vps {
+
+/// The step with all that is in place by then: fixed parts, and those of earlier steps, fixed on their
+/// targets. Parts of later steps are left out. The hand aims as it does in the whole scene.
+Scene excerptOf(const Scene& scene, std::size_t step);
+
+}  // namespace vps

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/fidelity_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "scene_models.h"
+#include "trade/seeded_draw.h"
+#include "trade/surface_samples.h"
+#include "vps/mesh_distance.h"
+#include "vps_scenes/scene.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kCoarsest_m = 2e-3, kFinest_m = 15e-6;
+constexpr double kStep = 0.70710678118654752;  ///< from one voxel size tried to the next
+constexpr std::size_t kSamples = 2000;         ///< a part
+constexpr double kShare = 0.95;
+constexpr double kMargin = 0.8;      ///< of the tolerance: other samples than these must keep it too
+constexpr double kFewestPoints = 4;  ///< spacing by that at first, at most
+
+/// Points on and just off a part's surface, with their exact distances.
+struct Check {
+  std::vector<Vec3> points;
+  std::vector<double> exact_m;
+};
+
+Check makeCheck(const Mesh& mesh, double reach_m) {
+  Check check;
+  const double spacing_m = std::sqrt(area(mesh) / static_cast<double>(kSamples));
+  const MeshDistance exact(mesh);
+  SeededDraw draw(7);
+  for (const SurfaceSample& sample : sampleSurface(mesh, spacing_m, bounds(mesh))) {
+    if (sample.area_m2 == 0 || draw() * static_cast<double>(kSamples) * sample.area_m2 > 2 * area(mesh))
+      continue;
+    const Vec3 aside = Vec3(draw() - 0.5, draw() - 0.5, draw() - 0.5) * (2 * reach_m);
+    check.points.push_back(sample.p + aside);
+    check.exact_m.push_back(exact.signedDistance(check.points.back()));
+  }
+  return check;
+}
+
+/// Error of the field that kShare of the points do not exceed [m].
+double errorOf(const VoxMap& map, const Check& check) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < check.points.size(); ++i)
+    errors.push_back(std::abs(map.distance(check.points[i]) - check.exact_m[i]));
+  if (errors.empty()) return 0;
+  std::sort(errors.begin(), errors.end());
+  return errors[static_cast<std::size_t>(kShare * static_cast<double>(errors.size() - 1))];
+}
+
+/// One scene's models at settings that change.
+class Chooser {
+ public:
+  Chooser(Scene& scene, const FidelityWish& wish, const Progress& progress)
+      : scene_(scene), wish_(wish), progress_(progress) {
+    choice_.fidelity = scene.fidelity;
+  }
+
+  FidelityChoice run() {
+    if (wish_.tolerance_m && !findVoxel()) return choice_;
+    count();
+    while (!isAffordable() && coarsen()) count();
+    finish();
+    return choice_;
+  }
+
+ private:
+  [[nodiscard]] bool isQuickEnough() const {
+    return !wish_.budget_hz || choice_.step_us <= 1e6 / *wish_.budget_hz;
+  }
+  [[nodiscard]] bool isSmallEnough() const {
+    return !wish_.memory_bytes || static_cast<double>(choice_.bytes) <= *wish_.memory_bytes;
+  }
+  [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
+
+  bool findVoxel();
+  [[nodiscard]] double worstError(double voxel_m, double enough_m);
+  void count();
+  bool coarsen();
+  void finish();
+
+  Scene& scene_;
+  const FidelityWish& wish_;
+  const Progress& progress_;
+  std::vector<Check> checks_;
+  double first_spacing_m_ = 0;
+  FidelityChoice choice_;
+};
+
+/// Over the parts that are not yet known to be worse than `enough_m`: the first that is ends the search.
+double Chooser::worstError(double voxel_m, double enough_m) {
+  double worst_m = 0;
+  VoxMapSettings settings;
+  settings.voxel_m = voxel_m;
+  for (std::size_t i = 0; i < scene_.parts.size() && worst_m <= enough_m; ++i)
+    worst_m = std::max(
+        worst_m,
+        errorOf(buildVoxMap(scene_.parts[i].part.mesh, settings, scene_.parts[i].part.name), checks_[i]));
+  return worst_m;
+}
+
+bool Chooser::findVoxel() {
+  for (const ScenePart& part : scene_.parts)
+    checks_.push_back(makeCheck(part.part.mesh, std::min(*wish_.tolerance_m, 50e-6)));
+  for (double voxel_m = kCoarsest_m; voxel_m >= kFinest_m; voxel_m *= kStep) {
+    if (progress_) progress_("looking for a voxel size", 0.5);
+    choice_.error_m = worstError(voxel_m, kMargin * *wish_.tolerance_m);
+    if (choice_.error_m > kMargin * *wish_.tolerance_m) continue;
+    choice_.fidelity.voxel_m = voxel_m;
+    choice_.fidelity.spacing_m = 2 * voxel_m;  // as in the presets
+    return true;
+  }
+  choice_.why_not = "no voxel down to 15 um reads depth to the tolerance; ask for less";
+  return false;
+}
+
+void Chooser::count() {
+  scene_.fidelity = choice_.fidelity;
+  for (ScenePart& part : scene_.parts) {
+    if (part.part.shell && part.part.shell->spacing_m != choice_.fidelity.spacing_m) part.part.shell.reset();
+    if (part.part.map && part.part.map->voxel_m() != choice_.fidelity.voxel_m) part.part.map.reset();
+  }
+  buildModels(scene_, {});
+  const ModelledCost cost = modelledCost(scene_);
+  choice_.points = cost.points;
+  choice_.bytes = 2 * cost.bytes;  // once in the parts, once cooked
+  std::size_t most = 0;
+  for (const ScenePart& part : scene_.parts)
+    if (!part.is_fixed) most = std::max(most, part.part.shell->size());
+  // The others can touch it with no more surface than it has.
+  choice_.points_near = choice_.fidelity.sides == Sides::Both ? 2 * most : most;
+  choice_.step_us = kStepBase_us + kStepPoint_us * static_cast<double>(choice_.points_near);
+  if (first_spacing_m_ == 0) first_spacing_m_ = choice_.fidelity.spacing_m;
+}
+
+bool Chooser::coarsen() {
+  Fidelity& f = choice_.fidelity;
+  if (f.spacing_m / kStep <= 1.001 * kFewestPoints * first_spacing_m_) {
+    f.spacing_m /= kStep;
+    return true;
+  }
+  // One side's points do not see the other's edges: no tolerance can be kept by them.
+  if (!isQuickEnough() && f.sides == Sides::Both && !wish_.tolerance_m) {
+    f.sides = Sides::One;
+    return true;
+  }
+  if (!isSmallEnough() && !wish_.tolerance_m && f.voxel_m / kStep <= kCoarsest_m) {
+    f.voxel_m /= kStep;
+    return true;
+  }
+  return false;
+}
+
+void Chooser::finish() {
+  choice_.is_met = isAffordable();
+  if (choice_.is_met) return;
+  char words[200];
+  if (!isQuickEnough())
+    std::snprintf(
+        words, sizeof words,
+        "a step takes %.0f us by the cost model at the fewest points, and %.0f Hz leave %.0f us; ask "
+        "for a lower rate, or more tolerance",
+        choice_.step_us, *wish_.budget_hz, 1e6 / *wish_.budget_hz);
+  else
+    std::snprintf(
+        words, sizeof words,
+        "the models take %.3g MB at the fewest points, and %.3g MB are allowed; ask for more memory%s",
+        1e-6 * static_cast<double>(choice_.bytes), 1e-6 * *wish_.memory_bytes,
+        wish_.tolerance_m ? ", or more tolerance" : "");
+  choice_.why_not = words;
+}
+
+}  // namespace
+
+FidelityChoice chooseFidelity(Scene& scene, const FidelityWish& wish, const Progress& progress) {
+  return Chooser(scene, wish, progress).run();
+}
+
+std::string toToml(const Fidelity& f) {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "[fidelity]\nvoxel = \"%.6gum\"\nspacing = \"%.6gum\"\nsides = \"%s\"\ngradient = \"%s\"\n"
+                "contact_limit = %d\nhaptic_rate_hz = %.6g\nphysics_rate_hz = %.6g\nsolver_iterations = %d\n",
+                1e6 * f.voxel_m, 1e6 * f.spacing_m, toText(f.sides), toText(f.gradient), f.contact_limit,
+                f.haptic_rate_hz, f.physics_rate_hz, f.solver_iterations);
+  return text;
+}
+
+std::string describe(const FidelityChoice& choice) {
+  char text[300];
+  const Fidelity& f = choice.fidelity;
+  std::snprintf(
+      text, sizeof text,
+      "voxel %.3g mm, spacing %.3g mm, %s: %zu points, %.1f MB, a step of %.0f us by the cost model",
+      1e3 * f.voxel_m, 1e3 * f.spacing_m, f.sides == Sides::Both ? "both sides" : "one side", choice.points,
+      1e-6 * static_cast<double>(choice.bytes), choice.step_us);
+  std::string words = text;
+  if (choice.error_m > 0) {
+    std::snprintf(text, sizeof text, ", depth read to %.2g um", 1e6 * choice.error_m);
+    words += text;
+  }
+  return words;
+}
+
+}  // namespace vps

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "trade/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trade/exact_touch.h"
+#include "trade/model_reading.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kFiner = 0.35;              ///< spacing of the truth's samples by that of the scene's points
+constexpr std::size_t kMostSamples = 40000;  ///< a side; more spacing where it would be more
+constexpr double kReach_m = 0.3e-3;          ///< samples farther than this from all poses are left out
+
+Box boxAt(const Mesh& mesh, const std::vector<Pose>& X_BPs) {
+  Box box;
+  for (const Pose& X_BP : X_BPs)
+    for (const Vec3& p : mesh.vertices) box.add(X_BP * p);
+  box.min -= Vec3::Constant(kReach_m);
+  box.max += Vec3::Constant(kReach_m);
+  return box;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// |v - truth| by |truth|.
+double relative(const Vec3& v, const Vec3& truth) {
+  return truth.norm() > 0 ? (v - truth).norm() / truth.norm() : 0;
+}
+
+}  // namespace
+
+Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progress)
+    : moving_(scene.steps.front().part), poses_(std::move(poses)) {
+  const auto bodyOf = [&](const ScenePart& part) {
+    return makeFitBody(part.part, std::make_shared<MeshDistance>(part.part.mesh));
+  };
+  held_.body = bodyOf(scene.parts[moving_]);
+  std::vector<Pose> X_PWs;
+  for (const Pose& X_WP : poses_) X_PWs.push_back(X_WP.inverse());
+  Box near_held;
+  for (const ScenePart& part : scene.parts) {
+    if (!part.is_fixed) continue;
+    mounted_.push_back({bodyOf(part), part.X_WP, {}});
+    fit_.mount(mounted_.back().body, part.X_WP);
+    std::vector<Pose> X_PBs;
+    for (const Pose& X_PW : X_PWs) X_PBs.push_back(X_PW * part.X_WP);
+    const Box box = boxAt(part.part.mesh, X_PBs);
+    near_held.add(box.min);
+    near_held.add(box.max);
+  }
+  for (spacing_m_ = kFiner * scene.fidelity.spacing_m;; spacing_m_ *= 1.4) {
+    held_.samples = sampleSurface(held_.body.distance->mesh(), spacing_m_, near_held);
+    std::size_t most = held_.samples.size();
+    for (Side& side : mounted_) {
+      std::vector<Pose> X_BPs;
+      for (const Pose& X_WP : poses_) X_BPs.push_back(side.X_WB.inverse() * X_WP);
+      side.samples =
+          sampleSurface(side.body.distance->mesh(), spacing_m_, boxAt(held_.body.distance->mesh(), X_BPs));
+      most = std::max(most, side.samples.size());
+    }
+    if (most <= kMostSamples) break;
+  }
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    if (progress) progress("exact surfaces", static_cast<double>(i) / static_cast<double>(poses_.size()));
+    truths_.push_back(truthAt(poses_[i]));
+  }
+}
+
+Probe::Truth Probe::truthAt(const Pose& X_WP) const {
+  Truth truth;
+  truth.distance_m = std::numeric_limits<double>::infinity();
+  for (const Side& side : mounted_) {
+    const Pose X_SP = side.X_WB.inverse() * X_WP;
+    const Touch on_held = exactTouch(side.body, held_.samples, X_SP, X_SP.p);
+    const Touch on_fixed = exactTouch(held_.body, side.samples, X_SP.inverse(), Vec3::Zero());
+    truth.distance_m = std::min({truth.distance_m, on_held.least_m, on_fixed.least_m});
+    // Half of each way, as queryBothSides(): both converge to the same force.
+    truth.F_W.f += 0.5 * (side.X_WB.R * on_held.F_S.f - X_WP.R * on_fixed.F_S.f);
+    truth.F_W.tau += 0.5 * (side.X_WB.R * on_held.F_S.tau - X_WP.R * on_fixed.F_S.tau);
+  }
+  const double depth_m = fit_.deepest(held_.body, X_WP).depth_m;
+  if (depth_m > 0) truth.distance_m = std::min(truth.distance_m, -depth_m);
+  return truth;
+}
+
+std::size_t Probe::posesInside() const {
+  return static_cast<std::size_t>(
+      std::count_if(truths_.begin(), truths_.end(), [](const Truth& t) { return t.distance_m < 0; }));
+}
+
+void Probe::measure(const Scene& scene, TradeRow& row) const {
+  std::vector<double> forces, torques;
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Truth& truth = truths_[i];
+    const double least_m = leastDistance(scene, moving_, poses_[i]);
+    const Reading reading = readAll(scene, moving_, poses_[i], false);
+    row.points_read += static_cast<double>(reading.points) / static_cast<double>(poses_.size());
+    row.probe.distance_m = std::max(row.probe.distance_m, std::abs(least_m - truth.distance_m));
+    if (truth.distance_m >= 0) continue;
+    const double depth_m = std::max(0.0, -least_m);
+    row.probe.penetration_m = std::max(row.probe.penetration_m, std::abs(depth_m + truth.distance_m));
+    forces.push_back(relative(reading.F_W.f, truth.F_W.f));
+    torques.push_back(relative(reading.F_W.tau, truth.F_W.tau));
+  }
+  row.probe.force = median(std::move(forces));
+  row.probe.torque = median(std::move(torques));
+  row.query = timeQueries(scene, moving_, poses_, false);
+  row.all_points = timeQueries(scene, moving_, poses_, true);
+  row.has_probe = true;
+}
+
+}  // namespace vps

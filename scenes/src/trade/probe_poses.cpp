@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a trade asks the models.
+#include <algorithm>
+
+#include "trade/probe.h"
+#include "trade/seeded_draw.h"
+
+namespace vps {
+
+std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count) {
+  std::vector<const TraceRow*> touching;
+  for (const TraceRow& row : run.trace)
+    if (row.step == 0 && row.contacts > 0 && row.phase < 3) touching.push_back(&row);
+  std::vector<Pose> poses;
+  SeededDraw draw(1);
+  const double reach_m = scene.steps.front().clearance_m + 20e-6;
+  for (std::size_t i = 0; i < std::min(count, touching.size()); ++i) {
+    Pose X_WP = touching[i * touching.size() / std::min(count, touching.size())]->X_WP;
+    const Vec3 way = Vec3(draw() - 0.5, draw() - 0.5, draw() - 0.5).normalized() * (draw() * reach_m);
+    if (i % 2 == 1) X_WP.p += way;
+    poses.push_back(X_WP);
+  }
+  return poses;
+}
+
+}  // namespace vps

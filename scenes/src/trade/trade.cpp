@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/trade.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "scene_models.h"
+#include "trade/design.h"
+#include "trade/excerpt.h"
+#include "trade/front.h"
+#include "trade/model_store.h"
+#include "trade/plan.h"
+#include "trade/probe.h"
+#include "vps/load_error.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps {
+
+namespace {
+
+constexpr std::size_t kPoses = 16;
+constexpr std::size_t kThoroughPoses = 96;
+constexpr std::size_t kJudgeStride = 200;  ///< the fifty suspects of a step are judged all the same
+
+std::vector<std::string> whatAScenesCannotChoose() {
+  return {
+      "tree or exhaustive query: a run always takes the tree, whose answer is the exhaustive one to the bit; "
+      "both are timed here",
+#ifdef VPS_BULLET_DOUBLE
+      "float or double: chosen when Bullet and this program are built (cmake -DVPS_BULLET_DOUBLE=OFF); this "
+      "one is double",
+#else
+      "float or double: chosen when Bullet and this program are built (cmake -DVPS_BULLET_DOUBLE=ON); this "
+      "one is float",
+#endif
+  };
+}
+
+/// What a run came to, into its row.
+void note(const AssembleResult& result, TradeRow& row) {
+  row.has_run = true;
+  row.run.completed = result.completed;
+  row.run.to_hand_J = result.energy.to_hand_J;
+  row.run.injected_J = result.energy.injected_J;
+  row.run.contacts_left_out = result.contacts_left_out;
+  row.run.build_wall_s = result.build_wall_s;
+  row.run.physics = result.physics;
+  row.run.haptic = result.haptic;
+  for (const StepResult& step : result.steps) {
+    row.run.deepest_m = std::max(row.run.deepest_m, step.max_penetration_m);
+    row.run.final_error_m = std::max(row.run.final_error_m, step.final_error_m);
+    row.run.peak_force_N = std::max(row.run.peak_force_N, step.peak_force_N);
+  }
+  if (!result.trace.empty()) row.run.p_W_end = result.trace.back().X_WP.p;
+  row.run.bytes = result.modelled.bytes;
+}
+
+/// One measurement of a scene's trade.
+class Trade {
+ public:
+  Trade(const Scene& scene, const TradeOptions& options)
+      : options_(options),
+        scene_(options.is_thorough ? scene : excerptOf(scene, 0)),
+        plan_(options, scene_.fidelity) {
+    const SceneStep& first = scene.steps.front();
+    result_.scene = scene.name;
+    result_.excerpt = options.is_thorough ? "all " + std::to_string(scene.steps.size()) + " steps"
+                                          : "step 1 of " + std::to_string(scene.steps.size()) + ": " +
+                                                scene.parts[first.part].part.name;
+    result_.fixed = whatAScenesCannotChoose();
+  }
+
+  TradeResult run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
+  void tell(const std::string& doing) const {
+    if (options_.progress)
+      options_.progress(doing, options_.is_thorough
+                                   ? static_cast<double>(done_) / static_cast<double>(planned_)
+                                   : plan_.spent_s() / options_.seconds);
+  }
+
+  void measure(const TradeTry& what);
+  void probe(const Scene& scene, TradeRow& row);
+  /// Takes over what a row of the same models was measured to be. False: there is none.
+  bool copyProbe(TradeRow& row) const;
+  void runProcedure(Scene& scene, TradeRow& row);
+  /// Works out the truth where the scene's own run touched, and asks its models there.
+  void beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row);
+  void compareWithReference();
+
+  const TradeOptions& options_;
+  Scene scene_;
+  TradePlan plan_;
+  ModelStore store_;
+  std::optional<Probe> probe_;
+  std::size_t done_ = 0, planned_ = 1;
+  TradeResult result_;
+};
+
+TradeResult Trade::run() {
+  std::vector<TradeTry> design = tradeDesign(scene_);
+  planned_ = design.size() + 2;
+  measure(design.front());
+  // Early, while there is time for it: all else is compared with it.
+  const TradeTry reference = tradeReference(scene_);
+  design.insert(design.begin() + 2, reference);
+  for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) measure(design[i]);
+  const TradeTry suggestion = tradeSuggestion(scene_, result_.rows);
+  plan_.goLast();
+  if (!suggestion.name.empty() && !isStopped()) measure(suggestion);
+  compareWithReference();
+  markFront(result_.rows);
+  return std::move(result_);
+}
+
+void Trade::measure(const TradeTry& what) {
+  ++done_;
+  const bool is_own = what.knob == TradeKnob::Own;
+  if (!is_own && !plan_.hasTimeForModels(what)) {
+    result_.left_out.push_back(what.name + ": not measured");
+    return;
+  }
+  tell(what.name);
+  TradeRow row;
+  row.what = what;
+  Scene scene = scene_;
+  scene.fidelity = what.fidelity;
+  scene.contact = what.contact;
+  ModelOptions quiet = options_;
+  quiet.progress = {};
+  if (!is_own) quiet.warn = nullptr;  // a mesh that is not closed is told once
+  row.models_wall_s = store_.fill(scene, quiet);
+  const ModelledCost cost = modelledCost(scene);
+  row.points = cost.points;
+  row.bytes = cost.bytes;
+  if (is_own) plan_.ownModelsTook(row.models_wall_s);
+  if (!is_own && !copyProbe(row)) probe(scene, row);
+  if (is_own || plan_.hasTimeForRun(what))
+    runProcedure(scene, row);
+  else
+    result_.left_out.push_back(what.name + ": its models were measured, the procedure was not run");
+  result_.rows.push_back(std::move(row));
+}
+
+bool Trade::copyProbe(TradeRow& row) const {
+  const Fidelity& f = row.what.fidelity;
+  for (const TradeRow& other : result_.rows) {
+    const Fidelity& g = other.what.fidelity;
+    if (!other.has_probe || f.voxel_m != g.voxel_m || f.spacing_m != g.spacing_m || f.sides != g.sides ||
+        f.gradient != g.gradient)
+      continue;
+    row.probe = other.probe;
+    row.points_read = other.points_read;
+    row.query = other.query;
+    row.all_points = other.all_points;
+    row.has_probe = true;
+    return true;
+  }
+  return false;
+}
+
+void Trade::probe(const Scene& scene, TradeRow& row) {
+  if (!probe_) return;
+  const auto begun = Clock::now();
+  probe_->measure(scene, row);
+  if (row.what.knob == TradeKnob::Own)
+    plan_.ownProbeTook(std::chrono::duration<double>(Clock::now() - begun).count());
+}
+
+void Trade::runProcedure(Scene& scene, TradeRow& row) {
+  const auto begun = Clock::now();
+  const bool is_own = row.what.knob == TradeKnob::Own;
+  std::atomic<bool> is_late = false;
+  AssembleOptions options;
+  options.warn = is_own ? options_.warn : nullptr;
+  if (!options_.is_thorough) options.judge_stride = kJudgeStride;
+  options.stop = &is_late;
+  options.progress = [&](std::string_view, double) {
+    tell(row.what.name);
+    if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
+  };
+  const AssembleResult result = assemble(scene, options);
+  row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
+  if (is_late) {
+    result_.left_out.push_back(row.what.name + ": its run was cut, for want of time");
+    return;
+  }
+  plan_.runTook(row.what, row.run.wall_s);
+  note(result, row);
+  if (is_own) beginProbe(scene, result, row);
+}
+
+void Trade::beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row) {
+  tell("exact surfaces");
+  const auto poses = probePoses(scene, result, options_.is_thorough ? kThoroughPoses : kPoses);
+  if (poses.empty()) {
+    result_.left_out.emplace_back(
+        "errors of the models: nothing touched in the run, so there is no pose to ask at");
+    return;
+  }
+  probe_.emplace(scene, poses, Progress{});
+  result_.poses = probe_->poses();
+  result_.poses_inside = probe_->posesInside();
+  result_.reference_spacing_m = probe_->spacing_m();
+  probe(scene, row);
+}
+
+void Trade::compareWithReference() {
+  const auto reference = std::find_if(result_.rows.begin(), result_.rows.end(), [](const TradeRow& row) {
+    return row.what.knob == TradeKnob::Reference && row.has_run;
+  });
+  if (reference == result_.rows.end()) return;
+  for (TradeRow& row : result_.rows) {
+    if (!row.has_run) continue;
+    row.has_reference = true;
+    row.off.final_m = (row.run.p_W_end - reference->run.p_W_end).norm();
+    row.off.peak_force_N = std::abs(row.run.peak_force_N - reference->run.peak_force_N);
+    row.off.to_hand_J = std::abs(row.run.to_hand_J - reference->run.to_hand_J);
+  }
+}
+
+}  // namespace
+
+TradeResult trade(const Scene& scene, const TradeOptions& options) {
+  if (scene.steps.empty())
+    throw LoadError(
+        scene.file, "",
+        "has no [[step]], so there is nothing to run; add one, or use `vps query` for two meshes");
+  return Trade(scene, options).run();
+}
+
+}  // namespace vps

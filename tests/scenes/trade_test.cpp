@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "scene_archive.h"
+#include "scene_models.h"
+#include "support/stl_box.h"
+#include "support/temporary_folder.h"
+#include "trade/design.h"
+#include "trade/excerpt.h"
+#include "trade/front.h"
+#include "trade/probe.h"
+#include "vps/load_error.h"
+#include "vps/mesh_distance.h"
+#include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/trade.h"
+
+namespace vps {
+namespace {
+
+constexpr double kRadius_m = 3e-3;
+constexpr int kRings = 5;  // facets of some 0.2 mm
+
+/// A ball over a plate: no scene that anything was tuned on.
+Scene ballOnPlate() {
+  Scene scene;
+  scene.file = "scene.toml";
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({12e-3, 12e-3, 3e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].is_fixed = true;
+  scene.parts[1].part = {"ball", makeSphere(kRadius_m, kRings), {}, {}, nullptr, nullptr};
+  scene.steps.resize(1);
+  scene.steps[0].part = 1;
+  const double top_m = 1.5e-3;
+  scene.steps[0].X_WP_target = Pose::translation({0, 0, top_m + kRadius_m});
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, top_m + kRadius_m + 0.2e-3});
+  scene.fidelity.voxel_m = 0.5e-3;
+  scene.fidelity.spacing_m = 0.5e-3;
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 250;
+  scene.hand.aim_error_m = 0;
+  scene.hand.aim_error_rad = 0;
+  scene.release_s = 0.1;
+  return scene;
+}
+
+/// The row of a plate pushed 20 um into a ball, a little aside and turned; only the plate's points are asked,
+/// so that all depth comes out of the ball's round field.
+TradeRow rowAt(double voxel_m, double spacing_m) {
+  Scene scene = ballOnPlate();
+  std::swap(scene.parts[0].part, scene.parts[1].part);
+  scene.fidelity.sides = Sides::One;
+  const Mat3 R = rotationFromVector({0.3, 0.2, 0.1});
+  const Pose X_WP(R, -(R * Vec3(0.31e-3, 0.17e-3, 1.5e-3 + kRadius_m - 20e-6)));
+  buildModels(scene, {});
+  const Probe probe(scene, {X_WP}, {});
+  EXPECT_EQ(probe.posesInside(), 1u);
+  scene.fidelity.voxel_m = voxel_m;
+  scene.fidelity.spacing_m = spacing_m;
+  for (ScenePart& part : scene.parts) {
+    part.part.map.reset();
+    part.part.shell.reset();
+  }
+  buildModels(scene, {});
+  TradeRow row;
+  row.what.fidelity = scene.fidelity;
+  row.bytes = modelledCost(scene).bytes;
+  probe.measure(scene, row);
+  return row;
+}
+
+TEST(Trade, AFinerVoxelIsTruerAndLarger) {
+  const double s = 0.125e-3;
+  // Not coarser: with 1 mm, neither the field nor the points find the contact, and 20 um is all there is.
+  const TradeRow coarse = rowAt(0.5e-3, s), middle = rowAt(0.25e-3, s), fine = rowAt(0.125e-3, s);
+  EXPECT_LT(middle.probe.penetration_m, coarse.probe.penetration_m);
+  EXPECT_LT(fine.probe.penetration_m, middle.probe.penetration_m);
+  EXPECT_GT(middle.bytes, coarse.bytes);
+  EXPECT_GT(fine.bytes, middle.bytes);
+  // Trilinear in a ball's field: h^2/8 times its second derivatives, 2/r in sum. The plate's nearest point
+  // lies within s of the deepest one, where the ball is s^2/(2 r) farther. ExactFit is certain to 0.5 um.
+  const double h = 0.125e-3, inner_m = kRadius_m - 20e-6;
+  EXPECT_LE(fine.probe.penetration_m, h * h / (4 * inner_m) + s * s / (2 * inner_m) + 0.5e-6);
+}
+
+TEST(Trade, FinerPointsGiveATruerForce) {
+  EXPECT_LT(rowAt(0.125e-3, 0.125e-3).probe.force, rowAt(0.125e-3, 1e-3).probe.force);
+}
+
+TEST(Trade, MorePointsTakeMoreTime) {
+  // An eighth of the spacing is 64 times the points. A tree that works reads far fewer; all of them take
+  // longer by that, less what a query takes by itself: a quarter of it is left for other people's load.
+  const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);
+  EXPECT_GT(many.points_read, few.points_read);
+  EXPECT_GT(many.all_points.cpu_p50_us, 16 * few.all_points.cpu_p50_us);
+  EXPECT_GT(many.query.cpu_p50_us, few.query.cpu_p50_us);
+}
+
+TEST(Trade, TheSceneAsItIsIsRunAndTheRestIsMeasuredOrSaidToBeLeftOut) {
+  TradeOptions options;
+  options.seconds = 1e-3;  // no time for more than the first
+  const Scene scene = ballOnPlate();
+  const TradeResult result = trade(scene, options);
+  ASSERT_EQ(result.rows.size(), 1u);
+  EXPECT_TRUE(result.rows[0].has_run);
+  EXPECT_EQ(result.excerpt, "step 1 of 1: ball");
+  EXPECT_EQ(result.left_out.size(), tradeDesign(scene).size());  // with the reference, without the first
+  EXPECT_EQ(result.fixed.size(), 2u);
+}
+
+TEST(Trade, AnExcerptHoldsItsStepAndWhatIsInPlaceByThen) {
+  Scene scene = ballOnPlate();
+  scene.parts.push_back(scene.parts[1]);
+  scene.parts[2].part.name = "second";
+  scene.parts.push_back(scene.parts[1]);
+  scene.parts[3].part.name = "third";
+  scene.steps.push_back(scene.steps[0]);
+  scene.steps[1].part = 2;
+  scene.steps.push_back(scene.steps[0]);
+  scene.steps[2].part = 3;
+  const Scene excerpt = excerptOf(scene, 1);
+  ASSERT_EQ(excerpt.parts.size(), 3u);
+  EXPECT_TRUE(excerpt.parts[1].is_fixed);
+  EXPECT_EQ(excerpt.parts[1].X_WP.p, scene.steps[0].X_WP_target.p);
+  EXPECT_EQ(excerpt.parts[excerpt.steps.at(0).part].part.name, "second");
+  EXPECT_EQ(excerpt.hand.seed, scene.hand.seed + 1);
+}
+
+TradeRow judged(double step_us, double error_m, std::size_t bytes) {
+  TradeRow row;
+  row.has_run = row.has_probe = row.run.completed = true;
+  row.run.physics.cpu_p99_us = step_us;
+  row.probe.penetration_m = error_m;
+  row.bytes = bytes;
+  return row;
+}
+
+TEST(Trade, TheFrontHoldsWhatNothingBeats) {
+  std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 5e-6, 20),
+                                judged(300, 1e-6, 5), judged(50, 9e-6, 99)};
+  rows.back().run.completed = false;  // quick, and did not get there
+  markFront(rows);
+  EXPECT_TRUE(rows[0].is_on_front);
+  EXPECT_TRUE(rows[1].is_on_front);
+  EXPECT_FALSE(rows[2].is_on_front);
+  EXPECT_TRUE(rows[3].is_on_front);
+  EXPECT_FALSE(rows[4].is_on_front);
+}
+
+TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
+  TradeResult result;
+  result.rows = {judged(100, 5e-6, 10), judged(400, 4e-6, 10)};
+  result.rows[0].what.name = "quick";
+  result.rows[0].probe.force = 2.2;
+  result.rows[1].what.name = "slow";
+  result.rows[1].probe.force = 0.1;
+  for (const std::string& answer : tradeAnswers(result)) {
+    EXPECT_EQ(answer.find("'quick'"), std::string::npos) << answer;
+    EXPECT_NE(answer.find("'slow'"), std::string::npos) << answer;
+  }
+  result.rows.pop_back();
+  for (const std::string& answer : tradeAnswers(result))
+    EXPECT_NE(answer.find("no answer"), std::string::npos) << answer;
+}
+
+/// Error of depth that 95 of 100 points near a surface do not exceed, at points of the test's own.
+double errorByOtherPoints(const Part& part, double reach_m) {
+  const MeshDistance exact(part.mesh);
+  std::mt19937_64 random(99);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<double> errors;
+  double total = 0;
+  std::vector<double> until;
+  for (const auto& [a, b, c] : part.mesh.triangles) {
+    const Vec3 &p = part.mesh.vertices[a], &q = part.mesh.vertices[b], &r = part.mesh.vertices[c];
+    until.push_back(total += (q - p).cross(r - p).norm());
+  }
+  for (int i = 0; i < 4000; ++i) {
+    const auto at = std::lower_bound(until.begin(), until.end(), share(random) * total) - until.begin();
+    const auto& [a, b, c] = part.mesh.triangles[static_cast<std::size_t>(at)];
+    double u = share(random), v = share(random);
+    if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    const Vec3 p = part.mesh.vertices[a] + u * (part.mesh.vertices[b] - part.mesh.vertices[a]) +
+                   v * (part.mesh.vertices[c] - part.mesh.vertices[a]) +
+                   Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5) * 2 * reach_m;
+    errors.push_back(std::abs(part.map->distance(p) - exact.signedDistance(p)));
+  }
+  std::sort(errors.begin(), errors.end());
+  return errors[errors.size() * 95 / 100];
+}
+
+TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
+  for (const double tolerance_m : {20e-6, 5e-6, 2e-6}) {
+    Scene scene = ballOnPlate();
+    FidelityWish wish;
+    wish.tolerance_m = tolerance_m;
+    const FidelityChoice choice = chooseFidelity(scene, wish);
+    ASSERT_TRUE(choice.is_met) << choice.why_not;
+    for (const ScenePart& part : scene.parts) {
+      ASSERT_TRUE(part.part.map);
+      EXPECT_EQ(part.part.map->voxel_m(), choice.fidelity.voxel_m);
+      EXPECT_LE(errorByOtherPoints(part.part, tolerance_m), tolerance_m) << part.part.name;
+    }
+  }
+}
+
+TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
+  Scene scene = ballOnPlate();
+  buildModels(scene, {});
+  FidelityWish wish;
+  wish.memory_bytes = 1.4 * static_cast<double>(modelledCost(scene).bytes);  // with the cooked field: 2
+  const FidelityChoice small = chooseFidelity(scene, wish);
+  ASSERT_TRUE(small.is_met) << small.why_not;
+  EXPECT_LE(2 * static_cast<double>(modelledCost(scene).bytes), *wish.memory_bytes);
+
+  Scene again = ballOnPlate();
+  again.fidelity.spacing_m = 0.05e-3;
+  FidelityWish quick;
+  quick.budget_hz = 1000;  // 1000 us: 600 us by the model are 10,909 points
+  const FidelityChoice few = chooseFidelity(again, quick);
+  ASSERT_TRUE(few.is_met) << few.why_not;
+  const std::size_t sides = few.fidelity.sides == Sides::Both ? 2 : 1;
+  EXPECT_LE(sides * again.parts[1].part.shell->size(), 10910u);
+  EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points came first
+  EXPECT_EQ(few.fidelity.voxel_m, ballOnPlate().fidelity.voxel_m);
+}
+
+TEST(FidelityChoice, TakesOneSideForARateAloneButNotBesideATolerance) {
+  FidelityWish wish;
+  wish.budget_hz = 1e6 / (kStepBase_us + 1);  // 18 points: fewer than any spacing leaves both sides
+  Scene scene = ballOnPlate();
+  EXPECT_EQ(chooseFidelity(scene, wish).fidelity.sides, Sides::One);
+  wish.tolerance_m = 20e-6;
+  scene = ballOnPlate();
+  const FidelityChoice kept = chooseFidelity(scene, wish);
+  EXPECT_EQ(kept.fidelity.sides, Sides::Both);
+  EXPECT_NE(kept.why_not.find("more tolerance"), std::string::npos) << kept.why_not;
+}
+
+TEST(FidelityChoice, SaysWhichWishNobodyCanMeet) {
+  Scene scene = ballOnPlate();
+  FidelityWish wish;
+  wish.budget_hz = 1e5;
+  EXPECT_NE(chooseFidelity(scene, wish).why_not.find("ask for a lower rate"), std::string::npos);
+  wish = {};
+  wish.memory_bytes = 10;
+  EXPECT_NE(chooseFidelity(scene, wish).why_not.find("ask for more memory"), std::string::npos);
+  wish = {};
+  wish.tolerance_m = 1e-12;
+  EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
+}
+
+TEST(FidelityChoice, ASceneFileThatSaysAutoIsTheSameEachTimeAndGoesIntoTheRecording) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "plate.stl", std::ios::binary) << stlBox(Vec3(20, 20, 5));
+  const std::string file = folder.path() / "scene.toml";
+  std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\n[fidelity]\nauto = true\n"
+                         "tolerance = 0.05\n";
+  const Scene scene = loadScene(file), again = loadScene(file);
+  EXPECT_FALSE(scene.fidelity_choice.empty());
+  EXPECT_EQ(scene.fidelity_choice, again.fidelity_choice);
+  EXPECT_EQ(sceneToBytes(scene), sceneToBytes(again));
+  const Scene back = sceneFromBytes(sceneToBytes(scene), "x");
+  EXPECT_EQ(back.fidelity.voxel_m, scene.fidelity.voxel_m);
+  EXPECT_EQ(back.fidelity.spacing_m, scene.fidelity.spacing_m);
+}
+
+TEST(FidelityChoice, ASceneFileWhoseWishCannotBeMetIsRefusedByLine) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "plate.stl", std::ios::binary) << stlBox(Vec3(20, 20, 5));
+  const std::string file = folder.path() / "scene.toml";
+  const std::string head = "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\n[fidelity]\n";
+  const auto complaint = [&](const std::string& keys) {
+    std::ofstream(file) << head << keys;
+    try {
+      loadScene(file);
+      return std::string();
+    } catch (const LoadError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_NE(complaint("auto = true\nmemory_MB = 1e-6\n").find("cannot be met"), std::string::npos);
+  EXPECT_NE(complaint("auto = true\ntolerance = -1\n").find("tolerance"), std::string::npos);
+  EXPECT_NE(complaint("tolerance = 1\n").find("stands without 'auto = true'"), std::string::npos);
+  EXPECT_NE(complaint("auto = true\nvoxel = 1\n").find("stands beside 'auto = true'"), std::string::npos);
+  EXPECT_NE(complaint("voxle = 1\n").find("voxle"), std::string::npos);
+  EXPECT_EQ(complaint("contact = 'compliant'\n"), "");
+}
+
+}  // namespace
+}  // namespace vps
