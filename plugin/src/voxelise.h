@@ -22,6 +22,7 @@ class VoxMapBuilder {
   static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
   static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
   static VoxMap packed(const VoxMap& map);
+  static VoxMap cropped(const VoxMap& map, const std::vector<Box>& boxes_M);
   static void save(const VoxMap& map, const std::string& file);
   /// A layout as a map, whose box of the surface is known; the band as it was asked for or as nodes hold it.
   static VoxMap wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,

@@ -112,6 +112,12 @@ std::size_t VoxMap::memoryBytes() const noexcept {
   return bytesOf(*layout_);
 }
 
+std::size_t VoxMap::memoryBytesBeside(const VoxMap& other) const noexcept {
+  if (isSame(other)) return 0;
+  const bool is_mounted_on_one = layout_->pool == other.layout_->pool;
+  return memoryBytes() - (is_mounted_on_one ? layout_->pool->size() * VoxPool::kBytes : 0);
+}
+
 double VoxMap::voxelAt(const Vec3& p_M) const noexcept {
   const VoxSampler::Place at = VoxSampler(*this).place(p_M);
   const bool is_coarse = layout_->coarse != nullptr && !layout_->hasOwnNodes(at.brick);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <future>
 #include <optional>
 
 #include "box_motion.h"
-#include "exact_fit.h"
 #include "fit_record.h"
 #include "haptic_side.h"
+#include "placed_parts.h"
 #include "procedure.h"
 #include "run_record.h"
 #include "scene_models.h"
@@ -18,6 +20,7 @@
 #include "tick_times.h"
 #include "vps/load_error.h"
 #include "vps_device/gains.h"
+#include "vps_device/periodic_thread.h"
 #include "vps_scenes/contact_episodes.h"
 
 namespace vps {
@@ -53,6 +56,11 @@ double springEnergy(const CouplingGains& gains, const CouplingState& proxy, cons
                 gains.max_torque_Nm);
 }
 
+template <typename T>
+bool isReady(const std::future<T>& future) {
+  return !future.valid() || future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 RunTrace logged(const TraceRow& row) {
   RunTrace trace;
   trace.time_s = row.time_s;
@@ -69,14 +77,15 @@ RunTrace logged(const TraceRow& row) {
 /// One run of a procedure. Lives as long as the run.
 class Procedure {
  public:
-  Procedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
+  Procedure(Scene& scene, const Plan& plan, Hand& hand, RunLog* log, const LoopSettings& settings,
             const AssembleOptions& options)
       : scene_(scene),
+        plan_(plan),
         log_(log),
         options_(options),
-        simulation_(scene),
+        simulation_(scene, plan_),
         tapped_(hand.device(), log != nullptr ? *log : deaf_),
-        fit_bodies_(scene.parts.size()),
+        placed_(scene, plan_, simulation_, options),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
         gains_(settings.gains),
         trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
@@ -91,6 +100,7 @@ class Procedure {
     side_ = options.is_real_time
                 ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
                 : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
+    mountFixed();
   }
 
   AssembleResult run();
@@ -100,24 +110,38 @@ class Procedure {
     std::size_t part = 0;
     Pose X_PG;
     Pose X_WP_target;
+    Box box_P;
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
   void mountFixed();
   void runStep(std::size_t index);
+  void work(StepResult& result, const SceneStep& step, std::size_t index);
+  [[nodiscard]] OperatorTask taskOf(const SceneStep& step) const;
   void take(const SceneStep& step);
   void takeLocally(const ScenePart& scene_part);
   void letGo();
   void rest(StepResult& result, const SceneStep& step);
-  void judgeStep(StepResult& result, const SceneStep& step);
+  void findWhetherCompleted(StepResult& result, const SceneStep& step) const;
+
+  /// Judges the part that was let go and cooks the field of the next step, on other threads. In lockstep time
+  /// stands meanwhile, so that the swap comes at a step's number; by the clock, loop and physics go on until
+  /// it is ready.
+  void settle(StepResult& result, std::size_t index);
+  std::future<FitVerdict> judgeBeside();
+  std::future<CookedField> cookBeside(std::size_t step);  ///< without a state if none is needed
+  void goOnUntil(const std::function<bool()>& is_done);
+  void swapIn(CookedField field, StepResult& result);
+  void tellVerdict(StepResult& result, const FitVerdict& verdict) const;
   void mount(std::size_t part);
+  /// Models the rest of what is fixed, if the part in hand comes near the border of its region.
+  void keepCovered();
 
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
   void record(int phase);
   void tellPhase();
   void tellEvent(RunEventKind kind, const std::string& words);
-  const FitBody& fitBody(std::size_t part);
   [[nodiscard]] Snapshot snapshot() const;
   void tell(std::size_t index, double share) const;
   [[nodiscard]] bool isStopped() const {
@@ -130,6 +154,7 @@ class Procedure {
   };
 
   Scene& scene_;
+  Plan plan_;
   RunLog* log_;
   const AssembleOptions& options_;
   Simulation simulation_;
@@ -138,10 +163,10 @@ class Procedure {
   CouplingPort port_;
   LocalContact local_;
   std::unique_ptr<HapticSide> side_;
-  ExactFit fit_;
-  std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part, made when first asked for
+  PlacedParts placed_;
   double dt_s_;
   CouplingGains gains_;
+  double sight_m_;     ///< within which a part reads the field
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock physics_clock_;
@@ -149,7 +174,8 @@ class Procedure {
   std::vector<BodyRole> roles_;
   InHand held_;
   bool is_holding_ = false;
-  bool is_over_ = false;  ///< the hand cannot go on
+  bool is_over_ = false;      ///< the hand cannot go on
+  bool is_settling_ = false;  ///< the part is judged and cooked: what it does no longer counts
   std::optional<OperatorPhase> told_phase_;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
@@ -163,8 +189,7 @@ class Procedure {
 AssembleResult Procedure::run() {
   const double begun_s = wallSeconds();
   for (const SceneStep& step : scene_.steps)
-    side_->hand().requireReachable(step);  // refuses before an hour is spent
-  mountFixed();
+    side_->requireReachable(step);  // refuses before an hour is spent
   result_.completed = true;
   for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
     runStep(i);
@@ -173,6 +198,7 @@ AssembleResult Procedure::run() {
     if (!options_.keep_going) break;
   }
   if (result_.steps.size() < scene_.steps.size()) result_.completed = false;
+  side_->pause();
   step_ = -1;
   result_.finished = snapshot();
   result_.haptic = side_->times();
@@ -181,12 +207,8 @@ AssembleResult Procedure::run() {
   const HandLedger ledger = side_->ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
-  result_.modelled = modelledCost(scene_);
-  result_.modelled.bytes += simulation_.fixedBytes();
-  if (simulation_.hasFixed()) {
-    ++result_.modelled.voxmaps;
-    ++result_.modelled.pointshells;
-  }
+  result_.modelled = placed_.modelled();
+  result_.widened = placed_.widened();
   const LocalContact::Report& local = local_.report();
   result_.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
   result_.simulated_s = time_s_;
@@ -195,37 +217,51 @@ AssembleResult Procedure::run() {
 }
 
 void Procedure::mountFixed() {
-  for (std::size_t i = 0; i < scene_.parts.size(); ++i)
-    if (scene_.parts[i].is_fixed) mount(i);
+  for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
+    if (!scene_.parts[i].is_fixed) continue;
+    placed_.add(i, poses_[i]);
+    mount(i);
+  }
+  if (const auto order = placed_.orderFor(0)) placed_.setField(cookField(*order));
 }
 
 void Procedure::mount(std::size_t part) {
-  fit_.mount(fitBody(part), poses_[part]);
-  simulation_.mount(part, poses_[part]);
+  placed_.addToFit(part);
   roles_[part] = BodyRole::Mounted;
 }
 
-const FitBody& Procedure::fitBody(std::size_t part) {
-  std::optional<FitBody>& body = fit_bodies_[part];
-  if (!body) body = makeFitBody(scene_.parts[part].part, simulation_.surface(part));
-  return *body;
+void Procedure::keepCovered() {
+  const auto step = static_cast<std::size_t>(step_);
+  const std::size_t part = held_.part;
+  if (placed_.isCovered(step, held_.box_P, poses_[part], simulation_.twist(part), dt_s_)) return;
+  if (options_.warn)
+    options_.warn(
+        "'" + scene_.parts[part].part.name +
+        "' came to the border of where it was expected; all that is fixed is modelled from there on");
+  if (options_.has_local_contact) side_->pause();
+  placed_.widen(step);
+  if (!options_.has_local_contact) return;
+  if (is_holding_) takeLocally(scene_.parts[part]);
+  side_->resume();
 }
 
 void Procedure::take(const SceneStep& step) {
   const ScenePart& scene_part = scene_.parts[step.part];
   if (!scene_part.allow_overlap) {
-    const Penetration overlap = fit_.deepest(fitBody(step.part), step.X_WP_start);
+    const Penetration overlap = placed_.fit().deepest(placed_.fitBody(step.part), step.X_WP_start);
     if (overlap.depth_m > kStartOverlap_m)
       throw LoadError(scene_.file, scene_part.part.name,
                       "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
-                          fit_.name(overlap.against) + "'; move its start, or say allow_overlap = true");
+                          placed_.fit().name(overlap.against) +
+                          "'; move its start, or say allow_overlap = true");
   }
   simulation_.addBody(step.part, step.X_WP_start);
   roles_[step.part] = BodyRole::InHand;
-  held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target, 0};
+  held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target,
+           bounds(scene_part.part.mesh), 0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
-  simulation_.grasp(step.part, held_.X_PG, side_->loop().settings().gains);
-  side_->loop().grasp(step.X_WP_start * held_.X_PG);
+  simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
+  side_->grasp(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
 }
@@ -249,7 +285,7 @@ void Procedure::letGo() {
   // The ledger goes on from what is stored without the springs: letting go gives their energy to nobody.
   stored_before_J_ += simulation_.mechanicalEnergy() - held_.held_energy_J;
   simulation_.release();
-  side_->loop().release();
+  side_->letGo();
   local_.letGo();
   is_holding_ = false;
   roles_[held_.part] = BodyRole::Released;
@@ -262,6 +298,7 @@ bool Procedure::advance() {
     return false;
   }
   X_WP_before_ = poses_[held_.part];
+  if (!is_settling_) keepCovered();
   physics_clock_.start();
   const CouplingState& proxy = port_.proxy.read();
   simulation_.setProxy(proxy);
@@ -327,13 +364,26 @@ void Procedure::record(int phase) {
   }
 }
 
+OperatorTask Procedure::taskOf(const SceneStep& step) const {
+  OperatorTask task;
+  task.X_WP_start = step.X_WP_start;
+  task.way_points = step.way_points;
+  task.X_WP_target = step.X_WP_target;
+  task.X_PG = held_.X_PG;
+  task.tolerance_m = step.tolerance_m;
+  task.tolerance_rad = step.tolerance_rad;
+  task.timeout_s = step.timeout_s;
+  task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
+  return task;
+}
+
 void Procedure::runStep(std::size_t index) {
-  side_->pause();
+  if (options_.has_local_contact) side_->pause();
   const SceneStep& step = scene_.steps[index];
-  const ScenePart& scene_part = scene_.parts[step.part];
+  const std::string& name = scene_.parts[step.part].part.name;
   step_ = static_cast<int>(index);
   StepResult& result = result_.steps.emplace_back();
-  result.part = scene_part.part.name;
+  result.part = name;
   result.start_s = time_s_;
   result.penetration_limit_m =
       step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
@@ -345,27 +395,31 @@ void Procedure::runStep(std::size_t index) {
   take(step);
   result_.start.push_back(snapshot());
   result_.contact.push_back(snapshot());
+  tellEvent(RunEventKind::Take, "takes '" + name + "'");
+  work(result, step, index);
+  if (options_.has_local_contact) side_->pause();
+  for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
+    ++(episode.is_slide ? result.slides : result.impacts);
+  result.duration_s = time_s_ - result.start_s;
+  result_.end.push_back(snapshot());
 
-  OperatorTask task;
-  task.X_WP_start = step.X_WP_start;
-  task.way_points = step.way_points;
-  task.X_WP_target = step.X_WP_target;
-  task.X_PG = held_.X_PG;
-  task.tolerance_m = step.tolerance_m;
-  task.tolerance_rad = step.tolerance_rad;
-  task.timeout_s = step.timeout_s;
-  task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
-  tellEvent(RunEventKind::Take, "takes '" + scene_part.part.name + "'");
-  side_->hand().begin(task, index, time_s_);
-  told_phase_.reset();
-  tellPhase();
+  letGo();
+  tellEvent(RunEventKind::LetGo, "lets go of '" + name + "'");
+  rest(result, step);
+  tell(index, 0.9);
+  findWhetherCompleted(result, step);
+  settle(result, index);
+}
 
+void Procedure::work(StepResult& result, const SceneStep& step, std::size_t index) {
   // The part is still where it was taken when the first tick looks.
   CouplingState part = simulation_.graspState();
   part.is_coupled = true;
   part.time_s = time_s_;
   port_.part.write(part);
-
+  side_->begin(taskOf(step), index, time_s_);
+  told_phase_.reset();
+  tellPhase();
   side_->resume();
   const auto is_busy = [&] {
     const OperatorPhase phase = side_->phase();
@@ -379,38 +433,83 @@ void Procedure::runStep(std::size_t index) {
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
   }
-  side_->pause();
-  for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
-    ++(episode.is_slide ? result.slides : result.impacts);
-  result.duration_s = time_s_ - result.start_s;
-  result_.end.push_back(snapshot());
+}
 
-  letGo();
-  tellEvent(RunEventKind::LetGo, "lets go of '" + scene_part.part.name + "'");
-  rest(result, step);
-  tell(index, 0.9);
-  judgeStep(result, step);
-
+void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) const {
   const Pose& X_WP = poses_[step.part];
   result.final_error_m = (X_WP.p - step.X_WP_target.p).norm();
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
   const bool is_on_target =
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
-  result.completed = side_->phase() == OperatorPhase::Done && is_on_target;
+  const bool is_done = side_->phase() == OperatorPhase::Done;
+  result.completed = is_done && is_on_target;
   if (!result.completed)
-    result.why_not = is_over_                                ? "the recording ends here"
-                     : isStopped()                           ? "stopped"
-                     : side_->phase() == OperatorPhase::Done ? "moved off its target after it was let go"
+    result.why_not = is_over_      ? "the recording ends here"
+                     : isStopped() ? "stopped"
+                     : is_done     ? "moved off its target after it was let go"
                      : time_s_ - result.start_s > step.timeout_s
                          ? "the hand gave up: target not reached in time"
                          : "the hand gave up: target not reached";
+}
 
-  simulation_.removeBody(step.part);
-  if (!result.completed)
-    poses_[step.part] = step.X_WP_target;  // so that the next step has what it is mounted on
+std::future<FitVerdict> Procedure::judgeBeside() {
+  samples_.push_back({time_s_, poses_[held_.part], 0});
+  const FitBody& body = placed_.fitBody(held_.part);
+  return std::async(std::launch::async, [this, &body] {
+    leaveRealTime();  // threads are born with their maker's priority
+    // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
+    if (scene_.fidelity.sides == Sides::One)
+      for (FitSample& sample : samples_)
+        sample.depth_m = std::max(sample.depth_m, placed_.fit().fieldDepth_m(body, sample.X_WP));
+    return judge(placed_.fit(), body, samples_, options_.judge_stride);
+  });
+}
+
+std::future<CookedField> Procedure::cookBeside(std::size_t step) {
+  auto order = placed_.orderFor(step);
+  if (!order) return {};
+  return std::async(std::launch::async, [order = std::move(*order)] {
+    leaveRealTime();
+    return cookField(order);
+  });
+}
+
+void Procedure::goOnUntil(const std::function<bool()>& is_done) {
+  is_settling_ = true;
+  while (!is_done() && advance()) {
+  }
+  is_settling_ = false;
+}
+
+void Procedure::settle(StepResult& result, std::size_t index) {
+  const std::size_t part = held_.part;
+  std::future<FitVerdict> verdict = judgeBeside();
+  // So that the next step has what it is mounted on.
+  const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
+  placed_.add(part, X_WP);
+  std::future<CookedField> field = cookBeside(index + 1);
+  const std::uint64_t missed_before = side_->missed();
+  if (side_->isByClock()) goOnUntil([&] { return isReady(verdict) && isReady(field); });
+  result.missed_while_cooking = side_->missed() - missed_before;
+  tellVerdict(result, verdict.get());
+  simulation_.removeBody(part);
+  poses_[part] = X_WP;
+  mount(part);
+  if (field.valid()) swapIn(field.get(), result);
+}
+
+void Procedure::swapIn(CookedField field, StepResult& result) {
+  result.cook_wall_s = field.wall_s;
   const double begun_s = wallSeconds();
-  mount(step.part);
-  result.cook_wall_s = wallSeconds() - begun_s;
+  placed_.setField(std::move(field));
+  result.swap_wall_s = wallSeconds() - begun_s;
+}
+
+void Procedure::tellVerdict(StepResult& result, const FitVerdict& verdict) const {
+  result.max_penetration_m = verdict.worst.depth_m;
+  result.deepest_at_W = verdict.worst.p_W;
+  result.deepest_time_s = verdict.time_s;
+  if (verdict.worst.depth_m > 0) result.deepest_against = placed_.fit().name(verdict.worst.against);
 }
 
 void Procedure::rest(StepResult& result, const SceneStep& step) {
@@ -420,7 +519,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
-  side_->hand().goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
+  side_->goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
   // At least until the hand is back.
   side_->resume();
   const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
@@ -430,20 +529,6 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
     result.rest_drift_m =
         std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
   }
-  side_->pause();
-}
-
-void Procedure::judgeStep(StepResult& result, const SceneStep& step) {
-  samples_.push_back({time_s_, poses_[step.part], 0});
-  // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
-  if (scene_.fidelity.sides == Sides::One)
-    for (FitSample& sample : samples_)
-      sample.depth_m = std::max(sample.depth_m, fit_.fieldDepth_m(fitBody(step.part), sample.X_WP));
-  const FitVerdict verdict = judge(fit_, fitBody(step.part), samples_, options_.judge_stride);
-  result.max_penetration_m = verdict.worst.depth_m;
-  result.deepest_at_W = verdict.worst.p_W;
-  result.deepest_time_s = verdict.time_s;
-  if (verdict.worst.depth_m > 0) result.deepest_against = fit_.name(verdict.worst.against);
 }
 
 Snapshot Procedure::snapshot() const {
@@ -501,8 +586,9 @@ LoopSettings loopSettings(const Scene& scene, const Device& device) {
 AssembleResult runProcedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
                             const AssembleOptions& options) {
   const double begun_s = wallSeconds();
-  buildModels(scene, options);
-  Procedure procedure(scene, hand, log, settings, options);
+  const Plan plan = makePlan(scene, PlanFor::Assemble, options.models_everything);
+  buildModels(scene, plan, options);
+  Procedure procedure(scene, plan, hand, log, settings, options);
   const double built_s = wallSeconds() - begun_s;
   AssembleResult result = procedure.run();
   result.scene = scene.name;

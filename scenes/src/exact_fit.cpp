@@ -65,9 +65,9 @@ bool isSurelyOutside(const FitBody& solid, const Vec3& a, const Vec3& b) {
 }
 
 Deepest deepestEdge(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
-  std::vector<EdgeSegment> near;
-  for (const EdgeSegment& edge : *other.edges) {
-    const EdgeSegment edge_S = {X_SO * edge.a, X_SO * edge.b};
+  std::vector<FitEdge> near;
+  for (const FitEdge& edge : *other.edges) {
+    const FitEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
     if (!isSurelyOutside(solid, edge_S.a, edge_S.b)) near.push_back(edge_S);
   }
   std::vector<Deepest> found(near.size());
@@ -109,11 +109,11 @@ Deepest deepestIn(const FitBody& solid, const FitBody& other, const Pose& X_SO) 
 
 FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distance) {
   const Mesh& mesh = distance->mesh();
-  std::vector<EdgeSegment> edges;
+  std::vector<FitEdge> edges;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});
   return {part.name, part.map, part.shell, std::move(distance),
-          std::make_shared<const std::vector<EdgeSegment>>(std::move(edges))};
+          std::make_shared<const std::vector<FitEdge>>(std::move(edges))};
 }
 
 void ExactFit::mount(FitBody body, const Pose& X_WB) {

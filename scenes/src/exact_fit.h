@@ -12,7 +12,7 @@
 namespace vps {
 
 /// A sharp edge of a part, in its frame.
-struct EdgeSegment {
+struct FitEdge {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
 };
 
@@ -22,7 +22,7 @@ struct FitBody {
   std::shared_ptr<const VoxMap> map;        ///< says what is surely outside; does not decide
   std::shared_ptr<const PointShell> shell;  ///< probes on faces
   std::shared_ptr<const MeshDistance> distance;
-  std::shared_ptr<const std::vector<EdgeSegment>> edges;
+  std::shared_ptr<const std::vector<FitEdge>> edges;
 };
 
 /// With the part's sharp edges (more than 20 degrees). O(n log n).

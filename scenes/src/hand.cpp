@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "vps/load_error.h"
 #include "vps_device/simulated_dual_arm.h"
@@ -44,10 +45,15 @@ class SimulatedHand final : public Hand {
 
   Device& device() override { return plant_; }
 
-  void begin(const OperatorTask& task, std::size_t step, double now_s) override {
-    operator_ = VirtualOperator(habitsOf(scene_.hand, step));
-    operator_.begin(task, now_s);
-    time_s_ = now_s;
+  void prepare(const OperatorTask& task, std::size_t step, double now_s) override {
+    next_ = VirtualOperator(habitsOf(scene_.hand, step));
+    next_.begin(task, now_s);
+    next_s_ = now_s;
+  }
+
+  void begin() override {
+    std::swap(operator_, next_);  // moves; what was before is freed by the next prepare()
+    time_s_ = next_s_;
     is_going_back_ = false;
   }
 
@@ -94,7 +100,8 @@ class SimulatedHand final : public Hand {
 
   const Scene& scene_;
   SimulatedDualArm plant_;
-  VirtualOperator operator_;
+  VirtualOperator operator_, next_;
+  double next_s_ = 0;
   double time_s_ = 0;  ///< of the run while at work, else since it let go
   bool is_going_back_ = false;
   Pose X_DH_from_, X_DH_back_;
@@ -106,7 +113,8 @@ class RecordedHand final : public Hand {
  public:
   explicit RecordedHand(Recording& recording) : recording_(recording) {}
   Device& device() override { return recording_; }
-  void begin(const OperatorTask&, std::size_t, double) override {}
+  void prepare(const OperatorTask&, std::size_t, double) override {}
+  void begin() override {}
   void requireReachable(const SceneStep&) const override {}
   void goBack(const SceneStep*) override {}
   void step(const HeldPart&, const HapticLoop&, double) override {}

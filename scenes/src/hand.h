@@ -24,9 +24,12 @@ class Hand {
  public:
   virtual ~Hand() = default;
   virtual Device& device() = 0;
-  /// Takes the part of a step at time now_s.
-  virtual void begin(const OperatorTask& task, std::size_t step, double now_s) = 0;
-  /// Empty, goes back to where the coming step starts, in kHandReturn_s; null: to the middle.
+  /// Makes up its mind how to do a step from time now_s on. May allocate; beside step(), by another thread.
+  virtual void prepare(const OperatorTask& task, std::size_t step, double now_s) = 0;
+  /// Starts what was prepared. As step(), never allocates.
+  virtual void begin() = 0;
+  /// Empty, goes back to where the coming step starts, in kHandReturn_s; null: to the middle. Never allocates
+  /// for a step that can be reached.
   virtual void goBack(const SceneStep* next) = 0;
   /// Throws LoadError for a step that the device cannot reach.
   virtual void requireReachable(const SceneStep& step) const = 0;

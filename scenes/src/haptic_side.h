@@ -14,15 +14,25 @@
 
 namespace vps {
 
-/// What a procedure asks of it, from the physics thread. Between pause() and resume() the loop stands still,
-/// and hand() and loop() may be used; in lockstep always.
+/// What a procedure asks of it, from the physics thread. In lockstep it runs while advance() does; in real
+/// time from resume() to pause(), through all that is asked of it meanwhile.
 class HapticSide {
  public:
   virtual ~HapticSide() = default;
   virtual void pause() = 0;
+  /// Does nothing but clear a safety fault, as a person does between steps, where it runs already.
   virtual void resume() = 0;
-  virtual Hand& hand() = 0;
-  virtual HapticLoop& loop() = 0;
+  [[nodiscard]] virtual const LoopSettings& settings() const = 0;
+
+  /// Throws as Hand::requireReachable().
+  virtual void requireReachable(const SceneStep& step) const = 0;
+  /// The part whose grasp frame is at X_WG now. No force flows before the port says that it is coupled.
+  virtual void grasp(const Pose& X_WG) = 0;
+  /// The hand begins a step; when this returns, phase() is that of the step.
+  virtual void begin(const OperatorTask& task, std::size_t step, double now_s) = 0;
+  virtual void letGo() = 0;
+  /// The empty hand, as Hand::goBack().
+  virtual void goBack(const SceneStep* next) = 0;
 
   /// Until the next physics step is due: lockstep does that step's ticks, real time waits. Afterwards the
   /// port has the proxy to step with. False, and nothing done, where the hand cannot go on.
@@ -33,6 +43,10 @@ class HapticSide {
   [[nodiscard]] virtual OperatorPhase phase() = 0;
   /// As of the last tick.
   [[nodiscard]] virtual const TickReport& last() = 0;
+  /// Haptic periods that had no tick so far; 0 in lockstep.
+  [[nodiscard]] virtual std::uint64_t missed() = 0;
+  /// Whether time goes on while the physics thread does other things.
+  [[nodiscard]] virtual bool isByClock() const = 0;
   [[nodiscard]] virtual HandLedger ledger() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
   /// What only real time has.

@@ -17,8 +17,18 @@ class LockstepSide final : public HapticSide {
 
   void pause() override {}
   void resume() override {}
-  Hand& hand() override { return hand_; }
-  HapticLoop& loop() override { return loop_; }
+  [[nodiscard]] const LoopSettings& settings() const override { return loop_.settings(); }
+  [[nodiscard]] bool isByClock() const override { return false; }
+  std::uint64_t missed() override { return 0; }
+
+  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
+  void grasp(const Pose& X_WG) override { loop_.grasp(X_WG); }
+  void begin(const OperatorTask& task, std::size_t step, double now_s) override {
+    hand_.prepare(task, step, now_s);
+    hand_.begin();
+  }
+  void letGo() override { loop_.release(); }
+  void goBack(const SceneStep* next) override { hand_.goBack(next); }
 
   bool advance(const HeldPart& part) override {
     if (!hand_.canGoOn(ticks_per_step_)) return false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "haptic_side.h"
 #include "vps_device/real_time_loop.h"
@@ -12,6 +14,8 @@ namespace {
 constexpr int kPhysicsPriority = 70;  // assumed: below the haptic loop's 80
 constexpr double kCatchUp =
     20;  // periods that a simulated device makes up for; beyond that its time stands still
+
+constexpr std::chrono::microseconds kOrderWait{200};  // assumed: well below a haptic period
 
 double microseconds(std::int64_t ns) {
   return 1e-3 * static_cast<double>(ns);
@@ -31,6 +35,7 @@ class RealTimeSide final : public HapticSide {
  public:
   RealTimeSide(Hand& hand, CouplingPort& port, LoopSettings settings, double physics_s, const TellFault& tell)
       : hand_(hand),
+        settings_(settings),
         physics_s_(physics_s),
         tell_(tell),
         loop_(hand.device(), port, told(settings), realTimeSettings()),
@@ -42,8 +47,11 @@ class RealTimeSide final : public HapticSide {
     leaveRealTime();
   }
   void resume() override {
-    if (loop_.loop().safety().fault != SafetyFault::None)
-      loop_.loop().rearm();  // as a person does between steps
+    if (loop_.isRunning()) {
+      if (loop_.latest().safety.fault != SafetyFault::None) loop_.rearm();
+      return;
+    }
+    if (loop_.loop().safety().fault != SafetyFault::None) loop_.loop().rearm();
     phase_.store(hand_.phase());
     const RealTimeReport report = loop_.start();
     result_.has_priority = report.has_priority;
@@ -53,8 +61,37 @@ class RealTimeSide final : public HapticSide {
     result_.has_priority = result_.has_priority && physics.has_priority;
     metronome_.start();
   }
-  Hand& hand() override { return hand_; }
-  HapticLoop& loop() override { return loop_.loop(); }
+  [[nodiscard]] const LoopSettings& settings() const override { return settings_; }
+  [[nodiscard]] bool isByClock() const override { return true; }
+  std::uint64_t missed() override { return loop_.statistics().summary().missed; }
+
+  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
+  void grasp(const Pose& X_WG) override {
+    if (loop_.isRunning())
+      loop_.grasp(X_WG);
+    else
+      loop_.loop().grasp(X_WG);
+  }
+  void begin(const OperatorTask& task, std::size_t step, double now_s) override {
+    hand_.prepare(task, step, now_s);
+    if (loop_.isRunning())
+      order(Order::Begin);
+    else
+      hand_.begin();
+  }
+  void letGo() override {
+    if (loop_.isRunning())
+      loop_.release();
+    else
+      loop_.loop().release();
+  }
+  void goBack(const SceneStep* next) override {
+    next_ = next;
+    if (loop_.isRunning())
+      order(Order::GoBack);
+    else
+      hand_.goBack(next_);
+  }
 
   bool advance(const HeldPart& part) override {
     part_.write(part);
@@ -74,6 +111,26 @@ class RealTimeSide final : public HapticSide {
   std::optional<RealTimeResult> realTime() override;
 
  private:
+  /// What the hand is told while the loop runs; the loop's thread does it.
+  enum class Order { None, Begin, GoBack };
+
+  /// Waits for the tick that does it.
+  void order(Order what) {
+    order_.store(what, std::memory_order_release);
+    while (order_.load(std::memory_order_acquire) != Order::None && loop_.isRunning())
+      std::this_thread::sleep_for(kOrderWait);
+  }
+
+  // The loop's thread.
+  void obey() {
+    const Order what = order_.load(std::memory_order_acquire);
+    if (what == Order::None) return;
+    if (what == Order::Begin) hand_.begin();
+    if (what == Order::GoBack) hand_.goBack(next_);
+    phase_.store(hand_.phase());
+    order_.store(Order::None, std::memory_order_release);
+  }
+
   LoopSettings told(LoopSettings settings) {
     settings.events = &events_;
     return settings;
@@ -88,6 +145,7 @@ class RealTimeSide final : public HapticSide {
 
   // The loop's thread: the simulated device and hand go on as far as time did, in steps they are made for.
   void moveHand(HapticLoop& loop, double dt_s) {
+    obey();
     const HeldPart& part = part_.read();
     const double period_s = loop.settings().period_s;
     const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
@@ -104,11 +162,14 @@ class RealTimeSide final : public HapticSide {
   }
 
   Hand& hand_;
+  LoopSettings settings_;
   double physics_s_;
   TellFault tell_;
   DeviceEventQueue events_;
   TripleBuffer<HeldPart> part_;
   std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
+  std::atomic<Order> order_{Order::None};
+  const SceneStep* next_ = nullptr;  ///< of Order::GoBack
   RealTimeResult result_;
   RealTimeLoop loop_;
   Metronome metronome_;

@@ -36,6 +36,7 @@ ReplayResult replay(const RecordedRun& run, const ReplayOptions& options) {
   AssembleOptions assembling;
   static_cast<ModelOptions&>(assembling) = options;
   assembling.stop = options.stop;
+  assembling.models_everything = about(run, "models_everything") == "1";
   assembling.keep_going = about(run, "keeps_going") != "0";
   Recording recording(run);
   ReplayCheck check(run);

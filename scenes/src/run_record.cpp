@@ -16,7 +16,7 @@ std::string exact(double x) {
 
 /// What a person and a tool want to know; the replay takes it from the scene.
 std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGains& gains,
-                                            const std::string& scene_bytes, bool keeps_going) {
+                                            const std::string& scene_bytes, const AssembleOptions& options) {
   const Fidelity& f = scene.fidelity;
   std::map<std::string, std::string> about = {
       {"program", "vps assemble"},
@@ -24,7 +24,8 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"scene", scene.name},
       {"scene_hash", contentHash(scene_bytes)},
       {"seed", std::to_string(scene.hand.seed)},
-      {"keeps_going", keeps_going ? "1" : "0"},
+      {"keeps_going", options.keep_going ? "1" : "0"},
+      {"models_everything", options.models_everything ? "1" : "0"},
       {"fidelity.voxel_m", exact(f.voxel_m)},
       {"fidelity.spacing_m", exact(f.spacing_m)},
       {"fidelity.sides", toText(f.sides)},
@@ -47,7 +48,8 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
   return about;
 }
 
-RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGains& gains, bool keeps_going) {
+RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGains& gains,
+                     const AssembleOptions& options) {
   Scene chosen = scene;
   chosen.coupling = {gains.k_N_per_m,     gains.b_Ns_per_m,  gains.k_Nm_per_rad,
                      gains.b_Nms_per_rad, gains.max_force_N, gains.max_torque_Nm};
@@ -55,7 +57,7 @@ RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGai
   head.device = device.name();
   head.limits = device.limits();
   head.attachments = {{kSceneAttachment, "application/octet-stream", sceneToBytes(chosen)}};
-  head.about = aboutRun(scene, gains, head.attachments[0].data, keeps_going);
+  head.about = aboutRun(scene, gains, head.attachments[0].data, options);
   return head;
 }
 
@@ -63,7 +65,7 @@ RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGai
 
 RunRecord::RunRecord(const std::string& file, const Scene& scene, const Device& device,
                      const CouplingGains& gains, const AssembleOptions& options)
-    : recorder_(file, headOf(scene, device, gains, options.keep_going)), warn_(options.warn) {}
+    : recorder_(file, headOf(scene, device, gains, options)), warn_(options.warn) {}
 
 RunRecord::~RunRecord() {
   if (is_finished_ || !has_read_ || !warn_) return;

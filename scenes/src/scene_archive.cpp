@@ -144,7 +144,8 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  auto& [part, X_WP, is_fixed, allow_overlap, file] = x;
+  [[maybe_unused]] auto& [part, X_WP, is_fixed, allow_overlap, file, is_cropped] =
+      x;  // models are built anew
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_models.h"
 
+#include <chrono>
 #include <set>
 
+#include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 
@@ -10,8 +12,10 @@ namespace vps {
 
 namespace {
 
-bool isEqualGeometry(const Mesh& a, const Mesh& b) {
-  return a.triangles == b.triangles && a.vertices == b.vertices;
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point begun) {
+  return std::chrono::duration<double>(Clock::now() - begun).count();
 }
 
 /// Builds a part's map, or takes it from the cache.
@@ -41,28 +45,86 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity) {
   return settings;
 }
 
-void buildModels(Scene& scene, const ModelOptions& options) {
+bool isEqualGeometry(const Mesh& a, const Mesh& b) {
+  return a.triangles == b.triangles && a.vertices == b.vertices;
+}
+
+namespace {
+
+void forgetCropped(ScenePart& scene_part) {
+  if (!scene_part.is_cropped) return;
+  scene_part.part.map.reset();
+  scene_part.part.shell.reset();
+  scene_part.is_cropped = false;
+}
+
+void crop(ScenePart& scene_part, const std::vector<Box>& kept_P) {
+  if (kept_P.empty()) return;
+  Part& part = scene_part.part;
+  if (part.map) part.map = std::make_shared<VoxMap>(croppedVoxMap(*part.map, kept_P));
+  if (part.shell) part.shell = std::make_shared<PointShell>(croppedShell(*part.shell, kept_P));
+  scene_part.is_cropped = true;
+}
+
+BuildTimes buildPart(ScenePart& scene_part, const PlannedPart& planned, const Fidelity& fidelity,
+                     const ModelOptions& options) {
+  Part& part = scene_part.part;
+  BuildTimes times;
+  auto begun = Clock::now();
+  if (planned.has_map && !part.map) part.map = mapOf(scene_part, voxMapSettings(fidelity), options);
+  times.map_wall_s = secondsSince(begun);
+  begun = Clock::now();
+  if (planned.has_shell && !part.shell)
+    part.shell =
+        std::make_shared<PointShell>(buildPointShell(part.mesh, pointShellSettings(fidelity), part.name));
+  crop(scene_part, planned.kept_P);
+  times.shell_wall_s = secondsSince(begun);
+  return times;
+}
+
+}  // namespace
+
+std::vector<BuildTimes> buildModels(Scene& scene, const Plan& plan, const ModelOptions& options) {
   const Progress& progress = options.progress;
+  std::vector<BuildTimes> times(scene.parts.size());
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    Part& part = scene.parts[i].part;
-    if (part.map && part.shell) continue;
+    ScenePart& part = scene.parts[i];
     if (progress)
-      progress("modelling " + part.name, static_cast<double>(i) / static_cast<double>(scene.parts.size()));
-    requireUsable(part.mesh, scene.parts[i].file, part.name);
-    for (std::size_t j = 0; j < i; ++j) {
-      const Part& other = scene.parts[j].part;
-      if (isEqualGeometry(part.mesh, other.mesh)) {
-        part.map = other.map;
-        part.shell = other.shell;
-        break;
-      }
+      progress("modelling " + part.part.name,
+               static_cast<double>(i) / static_cast<double>(scene.parts.size()));
+    requireUsable(part.part.mesh, part.file, part.part.name);
+    forgetCropped(part);
+    if (const auto same_as = plan.parts[i].same_as) {
+      part.part.map = scene.parts[*same_as].part.map;
+      part.part.shell = scene.parts[*same_as].part.shell;
+    } else {
+      times[i] = buildPart(part, plan.parts[i], scene.fidelity, options);
     }
-    if (!part.map) part.map = mapOf(scene.parts[i], voxMapSettings(scene.fidelity), options);
-    if (!part.shell)
-      part.shell = std::make_shared<PointShell>(
-          buildPointShell(part.mesh, pointShellSettings(scene.fidelity), part.name));
   }
   if (progress) progress("modelling", 1);
+  return times;
+}
+
+void buildModels(Scene& scene, const ModelOptions& options) {
+  Plan plan = makePlan(scene, PlanFor::Assemble, true);
+  for (std::size_t i = 0; i < scene.parts.size(); ++i)
+    for (std::size_t j = 0; j < i && !plan.parts[i].same_as; ++j)
+      if (!plan.parts[j].same_as && isEqualGeometry(scene.parts[i].part.mesh, scene.parts[j].part.mesh))
+        plan.parts[i].same_as = j;
+  buildModels(scene, plan, options);
+}
+
+void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options) {
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    PlannedPart& planned = plan.parts[i];
+    planned.kept_P.clear();
+    if (scene.parts[i].is_fixed) planned.has_map = planned.has_shell = true;
+  }
+  for (PlannedStep& step : plan.steps) {
+    step.region_W.reset();
+    step.has_shell = true;
+  }
+  buildModels(scene, plan, options);
 }
 
 ModelledCost modelledCost(const Scene& scene) {

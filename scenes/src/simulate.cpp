@@ -11,15 +11,30 @@
 
 namespace vps {
 
+namespace {
+
+/// All that is fixed at once; one after the other where nothing is to be spared.
+void cookFixed(const Scene& scene, const Plan& plan, Simulation& simulation) {
+  const PlannedStep& step = plan.steps.front();
+  std::vector<FixedPart> fixed;
+  for (const std::size_t i : step.cooked) {
+    fixed.push_back({i, scene.parts[i].X_WP});
+    if (plan.models_everything || i == step.cooked.back())
+      simulation.setField(cookField(simulation.orderField(fixed, step)), fixed.front().part);
+  }
+}
+
+}  // namespace
+
 SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
   const auto begun = std::chrono::steady_clock::now();
-  buildModels(scene, options);
-  Simulation simulation(scene);
+  const Plan plan = makePlan(scene, PlanFor::Simulate, options.models_everything);
+  buildModels(scene, plan, options);
+  Simulation simulation(scene, plan);
   std::vector<std::size_t> moving;
-  for (std::size_t i = 0; i < scene.parts.size(); ++i)
-    if (scene.parts[i].is_fixed) simulation.mount(i, scene.parts[i].X_WP);
+  cookFixed(scene, plan, simulation);
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     if (scene.parts[i].is_fixed) continue;
     simulation.addBody(i, scene.parts[i].X_WP);
@@ -55,6 +70,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   result.step = all.summary();
   result.contact_step = touching.summary();
   result.modelled = modelledCost(scene);
+  simulation.addField(result.modelled);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "scene_models.h"
+#include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -23,11 +24,6 @@ struct DynamicBody {
   std::unique_ptr<VpsShape> shape;
   std::unique_ptr<btRigidBody> body;
   BodyFrame frame;
-};
-
-struct MountedPart {
-  std::size_t part;
-  Pose X_WP;
 };
 
 VpsBulletSettings bulletSettings(const Scene& scene) {
@@ -55,6 +51,7 @@ VpsSolverSettings solverSettings(const Fidelity& fidelity) {
 
 struct Simulation::World {
   const Scene& scene;
+  const Plan& plan;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
@@ -63,14 +60,13 @@ struct Simulation::World {
 
   std::map<std::size_t, VpsModels> models;  // by part; the exact surface is built once
   std::map<std::size_t, DynamicBody> bodies;
-  std::vector<MountedPart> mounted;
-  std::unique_ptr<VpsShape> fixed_shape;
+  CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
   std::unique_ptr<VpsCoupling> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
 
-  explicit World(const Scene& s) : scene(s), solver(solverSettings(s.fidelity)) {
+  World(const Scene& s, const Plan& p) : scene(s), plan(p), solver(solverSettings(s.fidelity)) {
     installVps(dispatcher, bulletSettings(scene));
     tuneWorld(world, scene.fidelity.solver_iterations);
     world.setGravity(toBt(scene.gravity_W));
@@ -83,9 +79,10 @@ struct Simulation::World {
   }
 
   const VpsModels& modelsOf(std::size_t part) {
-    const auto found = models.find(part);
+    const std::size_t own = plan.parts[part].same_as.value_or(part);
+    const auto found = models.find(own);
     return found != models.end() ? found->second
-                                 : models.emplace(part, makeModels(scene.parts[part].part)).first->second;
+                                 : models.emplace(own, makeModels(scene.parts[own].part)).first->second;
   }
 
   void letGo() {
@@ -111,48 +108,55 @@ struct Simulation::World {
   }
 };
 
-Simulation::Simulation(const Scene& scene) : world_(std::make_unique<World>(scene)) {}
+Simulation::Simulation(const Scene& scene, const Plan& plan) : world_(std::make_unique<World>(scene, plan)) {}
 Simulation::~Simulation() = default;
 
-void Simulation::mount(std::size_t part, const Pose& X_WP) {
+bool Simulation::needsField(const std::vector<FixedPart>& parts, const PlannedStep& step) const {
+  const CookedField& now = world_->field;
+  if (parts.size() != now.parts.size()) return true;
+  if (parts.empty() || !now.region_W) return false;
+  return !step.region_W || !isWithin(*step.region_W, *now.region_W);
+}
+
+FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const PlannedStep& step,
+                                  bool is_anew) {
   World& w = *world_;
-  w.remove(part);
-  w.mounted.push_back({part, X_WP});
-
-  const Part& added = w.scene.parts[part].part;
-  const PlacedMesh placed{&added.mesh, X_WP};
-  VpsModels models;
-  models.map =
-      std::make_shared<VoxMap>(w.fixed_shape ? mountVoxMap(*w.fixed_shape->models().map, placed)
-                                             : cookVoxMap({placed}, voxMapSettings(w.scene.fidelity)));
-  std::vector<const PointShell*> shells;
-  std::vector<Pose> poses;
-  for (const MountedPart& mounted : w.mounted) {
-    const VpsModels& own = w.modelsOf(mounted.part);
-    shells.push_back(own.shell.get());
-    poses.push_back(mounted.X_WP);
-    models.surfaces.push_back({own.surfaces.front().distance, mounted.X_WP});
+  FieldOrder order;
+  order.region_W = step.region_W;
+  order.has_shell = step.has_shell;
+  order.has_mesh = order.builds_anew = w.plan.models_everything;
+  order.fidelity = w.scene.fidelity;
+  for (const FixedPart& placed : parts) {
+    const Part& part = w.scene.parts[placed.part].part;
+    order.parts.push_back({placed, &part.mesh, part.map, part.shell,
+                           w.modelsOf(placed.part).surfaces.front().distance,
+                           w.plan.parts[placed.part].kept_P});
   }
-  models.shell = std::make_shared<PointShell>(mergedShells(shells, poses));
-  Mesh mesh = w.fixed_shape ? *w.fixed_shape->models().mesh : Mesh{};
-  append(mesh, transformed(added.mesh, X_WP));
-  models.mesh = std::make_shared<Mesh>(std::move(mesh));
-
-  if (!w.fixed_shape) {
-    w.fixed_shape = std::make_unique<VpsShape>(std::move(models));
-    w.fixed_body = std::make_unique<btRigidBody>(
-        btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.fixed_shape.get()));
-    // One body, one friction in Bullet: the first fixed part's, usually the housing.
-    w.setMaterial(*w.fixed_body, part);
-    w.world.addRigidBody(w.fixed_body.get());
-  } else {
-    w.fixed_shape->setModels(std::move(models));
-    w.world.updateSingleAabb(w.fixed_body.get());
+  if (hasFixed() && !is_anew) {
+    order.below = w.field.shape->models().map;
+    order.below_count = w.field.parts.size();
   }
+  return order;
+}
+
+void Simulation::setField(CookedField field, std::size_t material) {
+  World& w = *world_;
+  for (const FixedPart& placed : field.parts) w.remove(placed.part);
+  if (w.fixed_body) w.world.removeRigidBody(w.fixed_body.get());
+  w.fixed_body.reset();
+  w.field = std::move(field);
+  w.fixed_body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));
+  w.setMaterial(*w.fixed_body, material);
+  w.world.addRigidBody(w.fixed_body.get());
+}
+
+const CookedField& Simulation::field() const {
+  return world_->field;
 }
 
 bool Simulation::hasFixed() const {
-  return world_->fixed_shape != nullptr;
+  return world_->field.shape != nullptr;
 }
 
 void Simulation::addBody(std::size_t part, const Pose& X_WP) {
@@ -265,7 +269,7 @@ double Simulation::friction(std::size_t part) const {
 }
 
 const VoxMap* Simulation::fixedMap() const {
-  return world_->fixed_shape ? world_->fixed_shape->models().map.get() : nullptr;
+  return hasFixed() ? world_->field.shape->models().map.get() : nullptr;
 }
 
 std::shared_ptr<const MeshDistance> Simulation::surface(std::size_t part) const {
@@ -309,10 +313,16 @@ std::size_t Simulation::contactsLeftOut() const {
   return vpsStats(world_->dispatcher).left_out;
 }
 
-std::size_t Simulation::fixedBytes() const {
-  if (!world_->fixed_shape) return 0;
-  const VpsModels& models = world_->fixed_shape->models();
-  return models.map->memoryBytes() + models.shell->memoryBytes();
+void Simulation::addField(ModelledCost& cost) const {
+  if (!hasFixed()) return;
+  std::vector<std::shared_ptr<const VoxMap>> own;
+  for (const FixedPart& placed : world_->field.parts)
+    own.push_back(world_->scene.parts[placed.part].part.map);
+  const PointShell* shell = world_->field.shape->models().shell.get();
+  cost.bytes += world_->field.memoryBytes(own);
+  ++cost.voxmaps;
+  cost.pointshells += shell != nullptr;
+  cost.field_points = shell != nullptr ? shell->size() : 0;
 }
 
 }  // namespace vps

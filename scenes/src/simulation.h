@@ -6,8 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "fixed_field.h"
 #include "vps/coupling_law.h"
 #include "vps/mesh_distance.h"
+#include "vps_scenes/plan.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
@@ -24,13 +26,22 @@ struct TouchState {
 /// pointer.
 class Simulation {
  public:
-  /// Parts must have their models (buildModels()). Bodies are added one by one.
-  explicit Simulation(const Scene& scene);
+  /// Parts must have the models that the plan says (buildModels()). Bodies are added one by one. Both outlive
+  /// it.
+  Simulation(const Scene& scene, const Plan& plan);
   ~Simulation();
 
-  /// Fuses a part into the fixed field at this pose (paper, section 5: "cooked"). From the part's own mesh,
-  /// never from a field already merged. O(the part's surface), and O(all points) for the merged shell.
-  void mount(std::size_t part, const Pose& X_WP);
+  /// Whether the field in place will not do for a step that wants these parts, the first of them being those
+  /// in place.
+  [[nodiscard]] bool needsField(const std::vector<FixedPart>& parts, const PlannedStep& step) const;
+  /// What cookField() needs to make a field of these parts, on any thread. Where the field in place holds the
+  /// first of them, in this order, its map is built upon, unless `is_anew`.
+  FieldOrder orderField(const std::vector<FixedPart>& parts, const PlannedStep& step, bool is_anew = false);
+  /// Puts a field in the place of the one before, between two steps. Its parts are no bodies any more. O(1)
+  /// but for freeing. One body, one friction in Bullet: `material`'s, usually the housing.
+  void setField(CookedField field, std::size_t material);
+  /// In place; without parts where nothing is fixed.
+  [[nodiscard]] const CookedField& field() const;
   [[nodiscard]] bool hasFixed() const;
 
   /// Adds a part as a dynamic body at rest. Sleeping off, no damping. Throws LoadError where its mass makes
@@ -60,7 +71,7 @@ class Simulation {
   [[nodiscard]] Mat3 inertia(std::size_t part) const;
   /// Of the part against what is fixed.
   [[nodiscard]] double friction(std::size_t part) const;
-  /// The cooked field, in W, until the next mount(); null if nothing is fixed.
+  /// The cooked field, in W, until the next setField(); null if nothing is fixed.
   [[nodiscard]] const VoxMap* fixedMap() const;
   /// Centre of mass in the part's frame.
   [[nodiscard]] Vec3 centreOfMass(std::size_t part) const;
@@ -70,8 +81,8 @@ class Simulation {
   void contactMarks(std::vector<ContactMark>& marks) const;
   /// Near points that did not fit a query's limit, so far.
   [[nodiscard]] std::size_t contactsLeftOut() const;
-  /// Bytes of the cooked field and its points.
-  [[nodiscard]] std::size_t fixedBytes() const;
+  /// Adds the cooked field and its points, beside the parts' own models.
+  void addField(ModelledCost& cost) const;
 
  private:
   struct World;

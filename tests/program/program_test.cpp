@@ -15,9 +15,9 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"assemble", "replay",   "simulate", "query",
-                                         "import",   "snapshot", "device",   "trade"};
-const std::vector<std::string> kComing = {"check", "explain", "view", "render", "watch"};
+const std::vector<std::string> kReady = {"assemble", "replay", "simulate", "query",  "import",
+                                         "snapshot", "device", "trade",    "explain"};
+const std::vector<std::string> kComing = {"check", "view", "render", "watch"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   std::vector<std::string> all = kReady;

@@ -46,6 +46,7 @@ int runAssemble(const AssembleArguments& given) {
   options.stop = &stopRequested();
   options.record = given.record;
   options.is_real_time = given.is_real_time;
+  options.models_everything = given.models_everything;
   options.has_local_contact = given.has_local_contact;
   const AssembleResult result = assemble(scene, options);
   throwIfStopped();

@@ -50,6 +50,7 @@ int runSimulate(const SimulateArguments& given) {
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   options.cache = cache ? &*cache : nullptr;
   options.warn = warn;
+  options.models_everything = given.models_everything;
   if (!given.trace.empty())
     options.trace = [&rows](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
       if (rows.empty()) rows = traceHead(bodies);

@@ -39,6 +39,7 @@ struct AssembleArguments {
   bool stops_at_failure = false;
   bool is_real_time = false;
   bool has_local_contact = false;
+  bool models_everything = false;
 };
 int runAssemble(const AssembleArguments& given);
 
@@ -57,8 +58,19 @@ struct SimulateArguments {
   double seconds = 1;
   std::string trace, json;
   FidelityArguments fidelity;
+  bool models_everything = false;
 };
 int runSimulate(const SimulateArguments& given);
+
+struct ExplainArguments {
+  std::string scene;
+  std::string cache;  ///< as in AssembleArguments
+  std::string json;
+  FidelityArguments fidelity;
+  bool is_for_simulate = false;  ///< what vps simulate would model; without steps always
+  bool models_everything = false;
+};
+int runExplain(const ExplainArguments& given);
 
 struct QueryArguments {
   std::string mesh_a, mesh_b;

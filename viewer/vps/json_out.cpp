@@ -63,6 +63,7 @@ Json modelled(const ModelledCost& cost) {
   return {{"voxmaps", cost.voxmaps},
           {"pointshells", cost.pointshells},
           {"points", cost.points},
+          {"field_points", cost.field_points},
           {"bytes", cost.bytes}};
 }
 
@@ -92,9 +93,11 @@ Json step(const StepResult& step) {
 }  // namespace
 
 std::string toJson(const AssembleResult& result) {
-  Json cook_s = Json::array(), steps = Json::array();
+  Json cook_s = Json::array(), swap_s = Json::array(), missed = Json::array(), steps = Json::array();
   for (const StepResult& s : result.steps) {
     cook_s.push_back(s.cook_wall_s);
+    swap_s.push_back(s.swap_wall_s);
+    missed.push_back(s.missed_while_cooking);
     steps.push_back(step(s));
   }
   Json haptic = loopWall(result.haptic), physics = loopWall(result.physics);
@@ -103,6 +106,8 @@ std::string toJson(const AssembleResult& result) {
                 {{"build_s", result.build_wall_s},
                  {"run_s", result.run_wall_s},
                  {"cook_s", cook_s},
+                 {"swap_s", swap_s},
+                 {"missed_while_cooking", missed},
                  {"haptic", haptic},
                  {"physics", physics}}},
                {"scene", result.scene},
@@ -120,6 +125,7 @@ std::string toJson(const AssembleResult& result) {
                 {{"held_ticks", result.local_contact.held},
                  {"jump_J", result.local_contact.jump_J},
                  {"greatest_jump_m", result.local_contact.greatest_jump_m}}},
+               {"widened", result.widened},
                {"modelled", modelled(result.modelled)}});
 }
 
@@ -199,6 +205,52 @@ std::string toJson(const SnapshotAnswer& answer) {
 
 namespace {
 
+Json list(const Box& box) {
+  return {list(box.min), list(box.max)};
+}
+
+Json names(const Scene& scene, const std::vector<std::size_t>& parts) {
+  Json out = Json::array();
+  for (const std::size_t i : parts) out.push_back(scene.parts[i].part.name);
+  return out;
+}
+
+Json plannedPart(const Scene& scene, const ExplainedPlan& explained, std::size_t i) {
+  const PlannedPart& part = explained.plan.parts[i];
+  const PartCost& cost = explained.cost.parts[i];
+  Json kept = Json::array();
+  for (const Box& box : part.kept_P) kept.push_back(list(box));
+  return {{"part", scene.parts[i].part.name},
+          {"map", part.has_map},
+          {"shell", part.has_shell},
+          {"same_as", part.same_as ? Json(scene.parts[*part.same_as].part.name) : Json(nullptr)},
+          {"kept_m", kept},
+          {"map_bytes", cost.map_bytes},
+          {"shell_bytes", cost.shell_bytes},
+          {"points", cost.points},
+          {"why", part.why}};
+}
+
+Json plannedStep(const Scene& scene, const ExplainedPlan& explained, std::size_t s) {
+  const PlannedStep& step = explained.plan.steps[s];
+  const StepCost& cost = explained.cost.steps[s];
+  return {{"moves", step.part ? Json(scene.parts[*step.part].part.name) : Json(nullptr)},
+          {"region_m", step.region_W ? list(*step.region_W) : Json(nullptr)},
+          {"cooked", names(scene, step.cooked)},
+          {"left_out", names(scene, step.left_out)},
+          {"is_cooked_anew", cost.is_cooked},
+          {"field_bytes", cost.bytes},
+          {"field_points", cost.points}};
+}
+
+Json explainWall(const PlanCost& cost) {
+  Json parts = Json::array(), steps = Json::array();
+  for (const PartCost& part : cost.parts)
+    parts.push_back({{"map_s", part.map_wall_s}, {"shell_s", part.shell_wall_s}});
+  for (const StepCost& step : cost.steps) steps.push_back(step.cook_wall_s);
+  return {{"build_s", cost.build_wall_s}, {"cook_s", cost.cook_wall_s}, {"parts", parts}, {"steps", steps}};
+}
+
 Json fidelity(const Fidelity& f) {
   return {{"voxel_m", f.voxel_m},
           {"spacing_m", f.spacing_m},
@@ -263,6 +315,29 @@ Json tradeRowWall(const TradeRow& row) {
 }
 
 }  // namespace
+
+std::string toJson(const ExplainAnswer& answer) {
+  const Scene& scene = answer.scene;
+  const Plan& plan = answer.chosen.plan;
+  Json parts = Json::array(), steps = Json::array();
+  for (std::size_t i = 0; i < plan.parts.size(); ++i) parts.push_back(plannedPart(scene, answer.chosen, i));
+  for (std::size_t s = 0; s < plan.steps.size(); ++s) steps.push_back(plannedStep(scene, answer.chosen, s));
+  Json json = {{"wall", explainWall(answer.chosen.cost)},
+               {"scene", scene.name},
+               {"for", plan.purpose == PlanFor::Assemble ? "assemble" : "simulate"},
+               {"models_everything", plan.models_everything},
+               {"voxel_m", scene.fidelity.voxel_m},
+               {"point_spacing_m", scene.fidelity.spacing_m},
+               {"sides", scene.fidelity.sides == Sides::Both ? "both" : "one"},
+               {"parts", parts},
+               {"steps", steps},
+               {"modelled", modelled(answer.chosen.cost.most)}};
+  if (!answer.everything) return text(json);
+  json["everything"] = modelled(answer.everything->cost.most);
+  json["wall"]["everything"] = {{"build_s", answer.everything->cost.build_wall_s},
+                                {"cook_s", answer.everything->cost.cook_wall_s}};
+  return text(json);
+}
 
 std::string toJson(const std::string& scene, const FidelityChoice& choice) {
   const Json json = {{"scene", scene},

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vps/wrench.h"
+#include "vps_scenes/explain.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
@@ -66,11 +68,19 @@ struct SnapshotAnswer {
   int greatest_difference = 0, tolerance = 0;
 };
 
+/// What `vps explain` found, beside what everything would cost if that was asked.
+struct ExplainAnswer {
+  Scene scene;
+  ExplainedPlan chosen;
+  std::optional<ExplainedPlan> everything;
+};
+
 std::string toJson(const AssembleResult& result);
 std::string toJson(const std::string& scene, double seconds, const SimulateResult& result);
 std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
+std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const TradeResult& result);
 std::string toJson(const std::string& scene, const FidelityChoice& choice);
 std::string toJson(const DualArmCharacter& character, const DualArmFile& file);

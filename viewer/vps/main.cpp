@@ -40,7 +40,7 @@ class CommandLine {
     addSnapshot();
     addComing("check", "fit of an assembly as designed: interference, clearance, play",
               "vps check bearing_block.step");
-    addComing("explain", "what of a scene will be modelled, why, at what cost", "vps explain scene.toml");
+    addExplain();
     addTrade();
     addComing("view", "opens a window on a scene", "vps view scene.toml");
     addDevice();
@@ -96,6 +96,24 @@ class CommandLine {
     command->add_option("--json", json, "write the numbers there")->type_name("FILE");
   }
 
+  static void addEverything(CLI::App* command, bool& models_everything) {
+    command->add_flag("--model-everything", models_everything,
+                      "spare nothing: a map and a shell for each part, none shared, nothing left out");
+  }
+
+  void addExplain() {
+    CLI::App* command =
+        add("explain", "what of a scene is modelled, what not, why, and what it costs",
+            "vps explain scenes/bearing_block/scene.toml", [this] { return runExplain(explain_); });
+    command->add_option("scene", explain_.scene, "scene file")->required()->type_name("SCENE");
+    command->add_flag("--simulate", explain_.is_for_simulate,
+                      "for vps simulate; left out: for vps assemble, if the scene has steps");
+    addEverything(command, explain_.models_everything);
+    addFidelity(command, explain_.fidelity);
+    addCache(command, explain_.cache);
+    addJson(command, explain_.json);
+  }
+
   void addAssemble() {
     CLI::App* command =
         add("assemble", "runs the assembly procedure by contact; writes report, pictures and data",
@@ -115,6 +133,7 @@ class CommandLine {
         ->add_option("--record", assemble_.record,
                      "record the run there (MCAP), scene and meshes included, for vps replay")
         ->type_name("FILE");
+    addEverything(command, assemble_.models_everything);
     addFidelity(command, assemble_.fidelity);
     addCache(command, assemble_.cache);
     addJson(command, assemble_.json);
@@ -145,6 +164,7 @@ class CommandLine {
         ->capture_default_str()
         ->type_name("S");
     command->add_option("--trace", simulate_.trace, "one CSV row per step")->type_name("FILE");
+    addEverything(command, simulate_.models_everything);
     addFidelity(command, simulate_.fidelity);
     addCache(command, simulate_.cache);
     addJson(command, simulate_.json);
@@ -271,6 +291,7 @@ class CommandLine {
   AssembleArguments assemble_;
   ReplayArguments replay_;
   SimulateArguments simulate_;
+  ExplainArguments explain_;
   QueryArguments query_;
   TradeArguments trade_;
   ImportArguments import_;

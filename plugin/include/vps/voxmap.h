@@ -57,6 +57,8 @@ class VoxMap {
   [[nodiscard]] std::size_t brickCount() const noexcept;
   /// What this map keeps in memory; maps that were mounted one on another share the most of it.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
+  /// What it keeps in memory beside another that is kept anyway.
+  [[nodiscard]] std::size_t memoryBytesBeside(const VoxMap& other) const noexcept;
 
   /// Trilinear signed distance [m] at p_M, saturated at +-band_m().
   [[nodiscard]] double distance(const Vec3& p_M) const noexcept;

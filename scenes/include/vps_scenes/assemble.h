@@ -20,16 +20,17 @@ struct AssembleOptions : ModelOptions {
   /// vps_scenes/replay.h runs it again from this file alone; empty: not. A run that is stopped or fails
   /// leaves what it recorded beside it, and says where by `warn`.
   std::string record;
-  /// The haptic loop on a thread of its own, by the system's clock, and physics beside it by the same;
-  /// mounting and judging a step stand in between, when nothing is held. Not repeatable, so not with
-  /// `record`.
+  /// The haptic loop on a thread of its own, by the system's clock, and physics beside it by the same, from
+  /// the first step to the last: a step is judged and the next one's field cooked on other threads meanwhile.
+  /// Not repeatable, so not with `record`.
   bool is_real_time = false;
   /// Between physics steps the haptic loop works out the part's motion by itself
-  /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`.
+  /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`. In real time the loop
+  /// stops where a part is taken and let go.
   bool has_local_contact = false;
 };
 
-/// Builds what the scene lacks (voxmaps, pointshells), then runs every step: the hand moves the device's
+/// Builds what the scene requires and lacks (plan.h), then runs every step: the hand moves the device's
 /// handle, the handle's proxy pulls the part, contact decides where it goes; it is released, watched for
 /// scene.release_s, and cooked into the fixed voxmap. Simulated time on one thread, unless
 /// is_real_time: the same scene gives the same bits but for wall times. Throws LoadError for a scene that

@@ -12,6 +12,7 @@ namespace vps {
 
 struct ModelOptions {
   Progress progress;
+  bool models_everything = false;      ///< no sparing: plan.h
   const VoxMapCache* cache = nullptr;  ///< where voxmaps are kept; null: built each time
   /// Told, in one line, of each part whose inside and outside could not be told for sure.
   std::function<void(const std::string&)> warn;

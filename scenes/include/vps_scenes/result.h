@@ -39,7 +39,9 @@ struct StepResult {
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
   double rest_s = 0;
   bool is_placed = false;  ///< not completed, and set on its target by us, for the next step to stand on
-  double cook_wall_s = 0;
+  double cook_wall_s = 0;  ///< making the fixed field of the next step, on a thread of its own
+  double swap_wall_s = 0;  ///< putting it in place, between two physics steps
+  std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
 };
 
 /// Greatest drift of a part that was let go and should rest.
@@ -75,7 +77,10 @@ struct EnergyLedger {
 };
 
 struct ModelledCost {
-  std::size_t voxmaps = 0, pointshells = 0, points = 0, bytes = 0;
+  std::size_t voxmaps = 0, pointshells = 0;
+  std::size_t points = 0;        ///< of the parts' own shells
+  std::size_t field_points = 0;  ///< of the cooked field's
+  std::size_t bytes = 0;         ///< of all
 };
 
 /// What a run in real time adds: how well time was kept.
@@ -108,7 +113,8 @@ struct AssembleResult {
     double jump_J = 0, greatest_jump_m = 0;  ///< by new snapshots
   } local_contact;
   EnergyLedger energy;
-  ModelledCost modelled;
+  ModelledCost modelled;  ///< at its most, with the fixed field
+  int widened = 0;        ///< times a part came to the border of its region, so that the rest was modelled
   std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };

@@ -19,6 +19,7 @@ struct ScenePart {
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another (interference fits)
   std::string file;            ///< where it came from, for messages
+  bool is_cropped = false;     ///< its models are those of a neighbourhood: good for the plan they came from
 };
 
 /// One step of the procedure: bring `part` from its start to its target by contact.

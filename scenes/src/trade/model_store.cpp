@@ -10,6 +10,7 @@ namespace vps {
 double ModelStore::fill(Scene& scene, const ModelOptions& options) {
   const double voxel_m = scene.fidelity.voxel_m, spacing_m = scene.fidelity.spacing_m;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    scene.parts[i].is_cropped = false;
     scene.parts[i].part.map = maps_[{i, voxel_m}];
     scene.parts[i].part.shell = shells_[{i, spacing_m}];
   }

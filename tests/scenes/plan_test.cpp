@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "vps/crop.h"
+#include "vps_scenes/assemble.h"
+#include "vps_scenes/explain.h"
+#include "vps_scenes/simulate.h"
+
+namespace vps {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+ScenePart part(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool is_fixed) {
+  ScenePart out;
+  out.part.name = name;
+  out.part.mesh = mesh;
+  out.X_WP = Pose::translation(p_WP);
+  out.is_fixed = is_fixed;
+  out.file = name + ".stl";
+  return out;
+}
+
+/// A pin that is set down on a plate of 40 mm; a shelf 100 mm beside it that nothing comes near; a label that
+/// no step moves; a twin of the pin for the second step. At a coarse rate: a second of work.
+Scene pinsOnPlate() {
+  Scene scene;
+  scene.file = scene.name = "pins";
+  const Mesh pin = makeBox({2 * kMm, 2 * kMm, 2 * kMm});
+  scene.parts = {part("plate", makeBox({40 * kMm, 40 * kMm, 2 * kMm}), Vec3::Zero(), true),
+                 part("shelf", makeBox({9 * kMm, 9 * kMm, 9 * kMm}), {100 * kMm, 0, 0}, true),
+                 part("label", makeBox({3 * kMm, 3 * kMm, 1 * kMm}), {0, 0, 50 * kMm}, false),
+                 part("pin", pin, {0, 0, 2 * kMm}, false), part("twin", pin, {10 * kMm, 0, 2 * kMm}, false)};
+  for (const std::size_t i : {3u, 4u}) {
+    SceneStep step;
+    step.part = i;
+    step.X_WP_target = scene.parts[i].X_WP;
+    step.X_WP_start = Pose::translation(scene.parts[i].X_WP.p + Vec3(0, 0, 0.2 * kMm));
+    scene.steps.push_back(step);
+  }
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.1;
+  scene.hand.aim_error_m = 0.05 * kMm;
+  return scene;
+}
+
+AssembleResult assembled(Scene scene, bool models_everything) {
+  AssembleOptions options;
+  options.models_everything = models_everything;
+  return assemble(scene, options);
+}
+
+SimulateResult simulated(Scene scene, bool models_everything) {
+  SimulateOptions options;
+  options.models_everything = models_everything;
+  return simulate(scene, 0.2, options);
+}
+
+/// How far two runs are apart at the same step, at most; infinite if they have not the same steps.
+double greatestDistance(const AssembleResult& a, const AssembleResult& b) {
+  if (a.trace.size() != b.trace.size()) return INFINITY;
+  double greatest_m = 0;
+  for (std::size_t i = 0; i < a.trace.size(); ++i)
+    greatest_m = std::max(greatest_m, (a.trace[i].X_WP.p - b.trace[i].X_WP.p).norm());
+  return greatest_m;
+}
+
+TEST(Plan, WhatNobodyCanTouchIsNotModelledAndTheReasonIsSaid) {
+  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble);
+  for (const std::size_t i : {1u, 2u}) {
+    EXPECT_FALSE(plan.parts[i].has_map || plan.parts[i].has_shell) << i;
+    EXPECT_NE(plan.parts[i].why.find("nobody can touch it"), std::string::npos) << plan.parts[i].why;
+  }
+  for (const std::size_t i : {0u, 3u, 4u}) EXPECT_TRUE(plan.parts[i].has_map && plan.parts[i].has_shell) << i;
+  EXPECT_NE(plan.parts[3].why.find("moves in step 1"), std::string::npos) << plan.parts[3].why;
+  EXPECT_EQ(useOf(plan, 1, 0), PartUse::LeftOut);
+  EXPECT_EQ(useOf(plan, 3, 0), PartUse::Moves);
+  EXPECT_EQ(useOf(plan, 4, 0), PartUse::Absent);
+  EXPECT_EQ(useOf(plan, 3, 1), PartUse::LeftOut) << "mounted 8 mm beside the twin's path";
+}
+
+TEST(Plan, EqualGeometryIsBuiltOnce) {
+  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble);
+  EXPECT_EQ(plan.parts[4].same_as, std::optional<std::size_t>(3));
+  EXPECT_FALSE(plan.parts[3].same_as);
+}
+
+TEST(Plan, ARegionHoldsTheWholePathAndWhatTheHandMayMiss) {
+  Scene scene = pinsOnPlate();
+  scene.steps[0].way_points = {Pose::translation({0, 20 * kMm, 30 * kMm})};
+  const Plan plan = makePlan(scene, PlanFor::Assemble);
+  // The band is 4 voxels of 0.25 mm; 4 deviations of 0.05 mm; the rest comes on top.
+  for (const Pose& X_WP :
+       {scene.steps[0].X_WP_start, scene.steps[0].way_points[0], scene.steps[0].X_WP_target})
+    EXPECT_TRUE(
+        isWithin(grown(moved(bounds(scene.parts[3].part.mesh), X_WP), 1.2 * kMm), *plan.steps[0].region_W));
+}
+
+TEST(Plan, EverythingSparesNothing) {
+  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble, true);
+  for (const PlannedPart& planned : plan.parts)
+    EXPECT_TRUE(planned.has_map && planned.has_shell && !planned.same_as && planned.kept_P.empty());
+  for (const PlannedStep& step : plan.steps) EXPECT_TRUE(!step.region_W && step.left_out.empty());
+}
+
+TEST(Plan, OneSidedTheLargerBodyNeedsNoPoints) {
+  Scene scene = pinsOnPlate();
+  scene.fidelity.sides = Sides::One;
+  for (const PlannedStep& step : makePlan(scene, PlanFor::Assemble).steps) EXPECT_FALSE(step.has_shell);
+  scene.parts.resize(4);  // one that is free beside the label
+  scene.parts.erase(scene.parts.begin() + 2);
+  scene.steps.clear();
+  const Plan plan = makePlan(scene, PlanFor::Simulate);
+  EXPECT_FALSE(plan.parts[2].has_map) << "nobody's points meet the only part that moves";
+  EXPECT_TRUE(plan.parts[2].has_shell);
+}
+
+TEST(Plan, WithNothingThatMovesNothingIsModelled) {
+  Scene scene = pinsOnPlate();
+  scene.parts.resize(2);
+  scene.steps.clear();
+  const Plan plan = makePlan(scene, PlanFor::Simulate);
+  for (const PlannedPart& planned : plan.parts) EXPECT_FALSE(planned.has_map || planned.has_shell);
+  EXPECT_TRUE(plan.steps[0].cooked.empty());
+}
+
+// Within its region a part reads the same nodes and the same points in the same order (crop.h): the same
+// bits, so no tolerance.
+TEST(Plan, ASparedAssemblyIsTheOneThatModelsEverythingToTheBitForLess) {
+  const AssembleResult spared = assembled(pinsOnPlate(), false), all = assembled(pinsOnPlate(), true);
+  ASSERT_TRUE(spared.completed) << spared.steps[0].why_not;
+  EXPECT_EQ(greatestDistance(spared, all), 0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(spared.steps[i].max_penetration_m, all.steps[i].max_penetration_m);
+    EXPECT_EQ(spared.steps[i].final_error_m, all.steps[i].final_error_m);
+    EXPECT_EQ(spared.steps[i].peak_force_N, all.steps[i].peak_force_N);
+  }
+  EXPECT_EQ(spared.widened, 0);
+  EXPECT_LT(spared.modelled.bytes, all.modelled.bytes / 2);
+  EXPECT_LT(spared.modelled.field_points, all.modelled.field_points / 4);
+}
+
+// It is let go 10 mm above the plate, and falls out of its region onto what was not modelled.
+TEST(Plan, APartThatLeavesItsRegionFindsTheRestModelled) {
+  Scene scene = pinsOnPlate();
+  scene.steps.resize(1);
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 12.2 * kMm});
+  scene.steps[0].X_WP_target = Pose::translation({0, 0, 12 * kMm});
+  EXPECT_EQ(useOf(makePlan(scene, PlanFor::Assemble), 0, 0), PartUse::LeftOut);
+  const AssembleResult spared = assembled(scene, false), all = assembled(scene, true);
+  EXPECT_EQ(spared.widened, 1);
+  EXPECT_EQ(all.widened, 0);
+  // It lies on the plate: 1 mm of plate, 1 mm of pin.
+  EXPECT_NEAR(spared.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
+  // The field is another body from then on, which may turn the pair round, so not the same bits; within what
+  // a part at rest may drift. Measured 0.4 um.
+  EXPECT_LE(greatestDistance(spared, all), kRestDriftLimit_m);
+  EXPECT_LE(spared.steps[0].max_penetration_m, spared.steps[0].penetration_limit_m);
+}
+
+TEST(Plan, ASparedSimulationIsTheOneThatModelsEverythingToTheBitForLess) {
+  Scene scene = pinsOnPlate();
+  scene.steps.clear();
+  for (const Sides sides : {Sides::Both, Sides::One}) {
+    scene.fidelity.sides = sides;
+    const SimulateResult spared = simulated(scene, false), all = simulated(scene, true);
+    for (std::size_t i = 0; i < spared.bodies.size(); ++i)
+      EXPECT_EQ((spared.bodies[i].X_WP.p - all.bodies[i].X_WP.p).norm(), 0) << spared.bodies[i].name;
+    EXPECT_EQ(spared.max_penetration_m, all.max_penetration_m);
+    EXPECT_GT(spared.contact_step.count, 10u);
+    EXPECT_LT(spared.modelled.bytes, all.modelled.bytes);
+  }
+}
+
+TEST(Explain, CostsAreThoseOfTheRun) {
+  const AssembleResult run = assembled(pinsOnPlate(), false);
+  const ExplainedPlan explained = explain(pinsOnPlate(), PlanFor::Assemble, {});
+  EXPECT_EQ(explained.cost.most.bytes, run.modelled.bytes);
+  EXPECT_EQ(explained.cost.most.field_points, run.modelled.field_points);
+  EXPECT_EQ(explained.cost.parts[1].map_bytes, 0u);
+  EXPECT_EQ(explained.cost.parts[4].points, 0u) << "shared";
+  EXPECT_TRUE(explained.cost.steps[0].is_cooked && explained.cost.steps[1].is_cooked);
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps explain: what of a scene is modelled, what not, why, at what cost.
+#include <cstdio>
+
+#include "commands.h"
+#include "json_out.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "table.h"
+#include "terminal.h"
+
+namespace vps {
+
+namespace {
+
+std::string megabytes(std::size_t bytes) {
+  return fixed(1e-6 * static_cast<double>(bytes), 2);
+}
+
+std::string namesOf(const Scene& scene, const std::vector<std::size_t>& parts) {
+  std::string names;
+  for (const std::size_t i : parts) names += (names.empty() ? "" : ", ") + scene.parts[i].part.name;
+  return names.empty() ? "-" : names;
+}
+
+std::string modelsOf(const PlannedPart& part) {
+  if (part.has_map && part.has_shell) return "map and shell";
+  return part.has_map ? "map" : part.has_shell ? "shell" : "neither";
+}
+
+std::string whyOf(const Scene& scene, const PlannedPart& part) {
+  if (!part.same_as) return part.why;
+  return part.why + "; shares the models of " + scene.parts[*part.same_as].part.name;
+}
+
+std::string whereOf(const PlannedPart& part) {
+  if (!part.has_map && !part.has_shell) return "-";
+  if (part.kept_P.empty()) return "whole";
+  return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
+}
+
+std::string tableOfParts(const Scene& scene, const ExplainedPlan& explained) {
+  Table table({"<part", "<modelled", "<where", "MB", "points", "build [s]", "<why"});
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const PlannedPart& part = explained.plan.parts[i];
+    const PartCost& cost = explained.cost.parts[i];
+    table.add({scene.parts[i].part.name, modelsOf(part), whereOf(part),
+               megabytes(cost.map_bytes + cost.shell_bytes), std::to_string(cost.points),
+               fixed(cost.map_wall_s + cost.shell_wall_s, 3), whyOf(scene, part)});
+  }
+  return table.text();
+}
+
+std::string regionOf(const PlannedStep& step) {
+  if (!step.region_W) return "anywhere";
+  const Vec3 size = 1e3 * step.region_W->size();
+  return fixed(size.x(), 0) + " x " + fixed(size.y(), 0) + " x " + fixed(size.z(), 0);
+}
+
+std::string tableOfSteps(const Scene& scene, const ExplainedPlan& explained) {
+  Table table({"<step", "<moves", "<within [mm]", "<against the field of", "<left out", "field MB", "points",
+               "cook [s]"});
+  for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
+    const PlannedStep& step = explained.plan.steps[s];
+    const StepCost& cost = explained.cost.steps[s];
+    table.add({std::to_string(s + 1), step.part ? scene.parts[*step.part].part.name : "all that is not fixed",
+               regionOf(step), namesOf(scene, step.cooked), namesOf(scene, step.left_out),
+               megabytes(cost.bytes), std::to_string(cost.points),
+               cost.is_cooked ? fixed(cost.cook_wall_s, 3) : "as before"});
+  }
+  return table.text();
+}
+
+std::string totalOf(const char* words, const PlanCost& cost) {
+  return std::string(words) + megabytes(cost.most.bytes) + " MB at most (" +
+         std::to_string(cost.most.voxmaps) + " voxmaps, " + std::to_string(cost.most.pointshells) +
+         " pointshells, " + std::to_string(cost.most.points) + " points and " +
+         std::to_string(cost.most.field_points) + " of the field's), " + fixed(cost.build_wall_s, 2) +
+         " s to build, " + fixed(cost.cook_wall_s, 2) + " s to cook\n";
+}
+
+}  // namespace
+
+int runExplain(const ExplainArguments& given) {
+  OutputFile json(given.json, {given.scene});
+  ProgressBar bar;
+  const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
+  ModelOptions options;
+  options.progress = bar.progress();
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  options.cache = cache ? &*cache : nullptr;
+  options.warn = warn;
+  options.models_everything = given.models_everything;
+  const PlanFor purpose =
+      given.is_for_simulate || scene.steps.empty() ? PlanFor::Simulate : PlanFor::Assemble;
+  ExplainAnswer answer = {scene, explain(scene, purpose, options), {}};
+  if (!given.models_everything) {
+    options.models_everything = true;
+    options.warn = {};  // said once
+    answer.everything = explain(scene, purpose, options);
+  }
+  throwIfStopped();
+  json.write(toJson(answer));
+  bar.clear();
+
+  const Fidelity& fidelity = scene.fidelity;
+  std::printf("%s: voxels of %s mm, points every %s mm, %s\n\n%s\n%s\n", scene.name.c_str(),
+              fixed(1e3 * fidelity.voxel_m, 3).c_str(), fixed(1e3 * fidelity.spacing_m, 3).c_str(),
+              fidelity.sides == Sides::Both ? "both sides" : "one side",
+              tableOfParts(scene, answer.chosen).c_str(), tableOfSteps(scene, answer.chosen).c_str());
+  std::fputs(totalOf("in all                   ", answer.chosen.cost).c_str(), stdout);
+  if (answer.everything)
+    std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);
+  return kGood;
+}
+
+}  // namespace vps
