@@ -71,7 +71,8 @@ CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) 
     for (const Vec3& p : blockPart().mesh.vertices)
       result.speed_m_s = std::max(result.speed_m_s, (after * p - before * p).norm() / World::kStep_s);
   }
-  result.left_m = penetration_m(fixed.part, Pose(), block.part, block.pose());
+  // Far apart, no vertex is near enough to have a depth.
+  result.left_m = std::max(0.0, penetration_m(fixed.part, Pose(), block.part, block.pose()));
   return result;
 }
 
