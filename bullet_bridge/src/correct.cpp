@@ -201,7 +201,7 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
       exact = whereItGoes(exact, corrector, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
-    if (exact.meets && exact.is_smooth && !is_primitive) moveToNearest(c, side, other);
+    if (exact.meets && exact.is_smooth && !is_primitive) moveToNearest(c, side, other, motion.slack_m);
   }
 }
 

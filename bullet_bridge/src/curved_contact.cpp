@@ -71,7 +71,7 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
 
 }  // namespace
 
-bool moveToNearest(Candidate& c, const SideView& side, const SideView& other) {
+bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, double most_gain_m) {
   const double reach_m = side.shape->models().shell->spacing_m;
   const double sign = side.side == 0 ? 1 : -1;
   const Vec3 n_W = sign * c.n_W;
@@ -80,7 +80,8 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other) {
   constexpr double kOn_m = 1e-6;  // shell points are on the surface, to rounding
   std::optional<FacePoint> own = nearestFace(side, c.p_W, kOn_m);
   std::optional<FacePoint> their = nearestFace(other, c.p_W, 1.01 * std::abs(c.distance_m) + kOn_m);
-  if (!own || !their) return false;
+  // Of several parts the nearest surface need not be the one that the point meets.
+  if (!own || !their || !(their->outward_W.dot(n_W) > kCosFlush)) return false;
   constexpr int kSteps = 5;        // most need one or two
   constexpr double kThere = 5e-3;  // of the reach: leans by less than a thousandth
   for (int i = 0; i < kSteps; ++i) {
@@ -94,9 +95,12 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other) {
     if (own) their = nearestFace(other, own->q_W, gap_m + 2 * way.norm());
     if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosFlush)) return false;
   }
+  const double gap_m = (own->q_W - their->q_W).dot(their->outward_W);
+  if (c.distance_m - gap_m > most_gain_m) return false;
   c.p_W = own->q_W;
   c.n_W = sign * their->outward_W;
-  c.distance_m = (own->q_W - their->q_W).dot(their->outward_W);
+  // A corner between facets is nearer than the facets' middles, whatever the curved surface says.
+  c.distance_m = std::min(c.distance_m, gap_m);
   return true;
 }
 

@@ -166,7 +166,6 @@ class Procedure {
   PlacedParts placed_;
   double dt_s_;
   CouplingGains gains_;
-  double sight_m_;     ///< within which a part reads the field
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock physics_clock_;
@@ -238,10 +237,12 @@ void Procedure::keepCovered() {
     options_.warn(
         "'" + scene_.parts[part].part.name +
         "' came to the border of where it was expected; all that is fixed is modelled from there on");
-  if (options_.has_local_contact) side_->pause();
+  // By the clock physics that stands still for so long is a fault; paused, the loop knows.
+  const bool pauses = options_.has_local_contact || side_->isByClock();
+  if (pauses) side_->pause();
   placed_.widen(step);
-  if (!options_.has_local_contact) return;
-  if (is_holding_) takeLocally(scene_.parts[part]);
+  if (!pauses) return;
+  if (options_.has_local_contact && is_holding_) takeLocally(scene_.parts[part]);
   side_->resume();
 }
 

@@ -12,8 +12,9 @@ namespace vps {
 
 namespace {
 
-constexpr double kDeviations = 4;    // of the hand's aim: 6 in 100,000 steps miss by more
-constexpr double kSpare_m = 0.5e-3;  // assumed: what the springs give and the path bends
+constexpr double kDeviations = 4;        // of the hand's aim: 6 in 100,000 steps miss by more
+constexpr double kPeakOverMean = 1.875;  // of a minimum-jerk reach
+constexpr double kSpare_m = 0.5e-3;      // assumed: what the springs give and the path bends
 /// One-sided queries take the smaller body's points. Within this ratio of sizes both are modelled, since the
 /// bridge's boxes lie along other axes than ours.
 constexpr double kClearlySmaller = 2;
@@ -21,7 +22,9 @@ constexpr double kClearlySmaller = 2;
 double margin_m(const Scene& scene, const Box& part) {
   const OperatorSettings& hand = scene.hand;
   const VoxMapSettings map = voxMapSettings(scene.fidelity);
-  return map.band_voxels * map.voxel_m + kSpare_m +
+  // What placed_parts.h asks for ahead of a part that moves as fast as a hand that reaches, at its fastest.
+  const double ahead_m = 2 * kPeakOverMean * hand.speed_m_s / scene.fidelity.physics_rate_hz;
+  return map.band_voxels * map.voxel_m + kSpare_m + ahead_m +
          kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
 }
 

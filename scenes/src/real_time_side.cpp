@@ -119,12 +119,13 @@ class RealTimeSide final : public HapticSide {
     order_.store(what, std::memory_order_release);
     while (order_.load(std::memory_order_acquire) != Order::None && loop_.isRunning())
       std::this_thread::sleep_for(kOrderWait);
+    if (!loop_.isRunning()) obey();  // it stopped meanwhile: nobody else would
   }
 
-  // The loop's thread.
+  // The loop's thread. A grasp that was asked for before comes first.
   void obey() {
     const Order what = order_.load(std::memory_order_acquire);
-    if (what == Order::None) return;
+    if (what == Order::None || (loop_.isRunning() && loop_.hasOpenRequests())) return;
     if (what == Order::Begin) hand_.begin();
     if (what == Order::GoBack) hand_.goBack(next_);
     phase_.store(hand_.phase());

@@ -56,6 +56,8 @@ class RealTimeLoop {
   /// The wrench is zero afterwards; what is held stays held, for the next start().
   void stop();
   [[nodiscard]] bool isRunning() const noexcept { return thread_.isRunning(); }
+  /// True while something that was asked for waits for its tick.
+  [[nodiscard]] bool hasOpenRequests() const noexcept { return asked_.load() != answered_.load(); }
 
   /// As HapticLoop's. False if there is no room for the request: the loop does not run, or is far behind.
   bool grasp(const Pose& X_WG) noexcept;

@@ -89,7 +89,7 @@ class Trade {
   void probe(const Scene& scene, TradeRow& row);
   /// Takes over what a row of the same models was measured to be. False: there is none.
   bool copyProbe(TradeRow& row) const;
-  void runProcedure(Scene& scene, TradeRow& row);
+  void runProcedure(const Scene& scene, TradeRow& row);
   /// Works out the truth where the scene's own run touched, and asks its models there.
   void beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row);
   void compareWithReference();
@@ -173,7 +173,7 @@ void Trade::probe(const Scene& scene, TradeRow& row) {
     plan_.ownProbeTook(std::chrono::duration<double>(Clock::now() - begun).count());
 }
 
-void Trade::runProcedure(Scene& scene, TradeRow& row) {
+void Trade::runProcedure(const Scene& scene, TradeRow& row) {
   const auto begun = Clock::now();
   const bool is_own = row.what.knob == TradeKnob::Own;
   std::atomic<bool> is_late = false;
@@ -185,7 +185,8 @@ void Trade::runProcedure(Scene& scene, TradeRow& row) {
     tell(row.what.name);
     if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
   };
-  const AssembleResult result = assemble(scene, options);
+  Scene used = scene;  // a run keeps only what its paths need of the models; the rows ask whole ones
+  const AssembleResult result = assemble(used, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
   if (is_late) {
     result_.left_out.push_back(row.what.name + ": its run was cut, for want of time");

@@ -44,11 +44,15 @@ LossyHand::LossyHand(const Scene& scene, const Line& line)
       limits_(arm_.limits()),
       ticks_per_step_(std::lround(scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz)) {}
 
-void LossyHand::begin(const OperatorTask& task, std::size_t step, double now_s) {
-  hand_->begin(task, step, now_s);
+void LossyHand::prepare(const OperatorTask& task, std::size_t step, double now_s) {
+  hand_->prepare(task, step, now_s);
   const Part& part = scene_.parts[scene_.steps[step].part].part;
-  body_ = makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3);
-  X_PG_ = task.X_PG;
+  next_ = {task.X_PG, makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3)};
+}
+
+void LossyHand::begin() {
+  hand_->begin();
+  held_ = next_;
   tick_ = 0;
   is_holding_ = is_new_ = true;
 }
@@ -59,18 +63,18 @@ void LossyHand::goBack(const SceneStep* next) {
 }
 
 double LossyHand::stored_J(const HeldPart& part, const HapticLoop& loop) const {
-  const Pose X_WB = part.X_WP * body_.X_PB;
+  const Pose X_WB = part.X_WP * held_.body.X_PB;
   const Vec3 v = part.V_WP.v + part.V_WP.w.cross(X_WB.p - part.X_WP.p),
              w_B = X_WB.R.transpose() * part.V_WP.w;
-  const Pose X_WG = part.X_WP * X_PG_, X_hand = loop.toGrasp(atTheMotors());
+  const Pose X_WG = part.X_WP * held_.X_PG, X_hand = loop.toGrasp(atTheMotors());
   const CouplingGains& gains = loop.settings().gains;
   // Beyond its limit a spring's force is constant.
   const auto spring = [](double k, double stretch, double most) {
     const double elastic = std::min(stretch, most / k);
     return 0.5 * k * elastic * elastic + most * (stretch - elastic);
   };
-  return 0.5 * body_.mass_kg * v.squaredNorm() + 0.5 * w_B.cwiseAbs2().dot(body_.inertia_kg_m2) -
-         body_.mass_kg * scene_.gravity_W.dot(X_WB.p) + arm_.structure_J() +
+  return 0.5 * held_.body.mass_kg * v.squaredNorm() + 0.5 * w_B.cwiseAbs2().dot(held_.body.inertia_kg_m2) -
+         held_.body.mass_kg * scene_.gravity_W.dot(X_WB.p) + arm_.structure_J() +
          spring(gains.k_N_per_m, (X_hand.p - X_WG.p).norm(), gains.max_force_N) +
          spring(gains.k_Nm_per_rad, rotationVector(X_hand.R * X_WG.R.transpose()).norm(),
                 gains.max_torque_Nm);

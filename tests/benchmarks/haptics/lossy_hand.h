@@ -55,7 +55,8 @@ class LossyHand final : public Hand {
   LossyHand(const Scene& scene, const Line& line);
 
   Device& device() override { return device_; }
-  void begin(const OperatorTask& task, std::size_t step, double now_s) override;
+  void prepare(const OperatorTask& task, std::size_t step, double now_s) override;
+  void begin() override;
   void goBack(const SceneStep* next) override;
   void requireReachable(const SceneStep& step) const override { hand_->requireReachable(step); }
   void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override;
@@ -75,8 +76,12 @@ class LossyHand final : public Hand {
   LossyDevice device_;
   DeviceLimits limits_;
   TrueLedger ledger_;
-  Pose X_PG_;
-  BodyFrame body_;
+  /// What is held, and what is to be held next.
+  struct Held {
+    Pose X_PG;
+    BodyFrame body;
+  };
+  Held held_, next_;
   long ticks_per_step_, tick_ = 0;
   bool is_holding_ = false, is_new_ = false;
   double work_J_ = 0, dissipated_J_ = 0, start_J_ = 0;
