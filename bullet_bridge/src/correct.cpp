@@ -127,7 +127,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
                     ? is_facing
                     : own.isFirstAlong(foot.normal) || (is_facing && !own.is_answered);
   if (exact.meets && !is_edge_on_edge) {
-    const bool is_flush = !foot.is_edge && cos_facing > kCosEdge;
+    const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;
     exact.is_smooth = is_flush && !own.is_edge;
     exact.n = own.is_edge || is_flush ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);

@@ -10,8 +10,7 @@ namespace vps {
 
 namespace {
 
-constexpr double kGain_m = 1e-7;    // below it a look at the surfaces is not worth its time
-constexpr double kCosFlush = 0.94;  // 20 degrees, as in correct.cpp: faces that touch flush
+constexpr double kGain_m = 1e-7;  // below it a look at the surfaces is not worth its time
 
 /// A point of a face, as the curved surface that the facets stand for.
 struct FacePoint {

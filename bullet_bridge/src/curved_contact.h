@@ -6,6 +6,9 @@
 
 namespace vps {
 
+/// Faces whose normals are within 20 degrees of opposite touch flush.
+inline constexpr double kCosFlush = 0.94;
+
 /// Moves a face's point along its part's surface to where the gap to the other's curved surface is least, if
 /// that is within the shell's spacing of it: p_W, distance and normal become those there, on the exact
 /// surfaces. A ball of 5 mm with points 0.5 mm apart lies 12 um deeper between them, and the normals of

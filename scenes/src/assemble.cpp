@@ -3,7 +3,6 @@
 #include "vps_scenes/assemble.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <future>
@@ -22,6 +21,7 @@
 #include "vps_device/gains.h"
 #include "vps_device/periodic_thread.h"
 #include "vps_scenes/contact_episodes.h"
+#include "wall_clock.h"
 
 namespace vps {
 
@@ -29,10 +29,6 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
-
-double wallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 int ticksPerStep(const Scene& scene) {
   const double ratio = scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz;

@@ -2,11 +2,11 @@
 #include "vps_scenes/explain.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "scene_models.h"
 #include "simulation.h"
+#include "wall_clock.h"
 
 namespace vps {
 
@@ -76,10 +76,9 @@ void cookSteps(const Scene& scene, const Plan& plan, const ModelOptions& options
 ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options) {
   ExplainedPlan explained;
   explained.plan = makePlan(scene, purpose, options.models_everything);
-  const auto begun = std::chrono::steady_clock::now();
+  const double begun_s = wallSeconds();
   const std::vector<BuildTimes> times = buildModels(scene, explained.plan, options);
-  explained.cost.build_wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  explained.cost.build_wall_s = wallSeconds() - begun_s;
   explained.cost.parts = costOf(scene, explained.plan, times);
   explained.cost.most = modelledCost(scene);
   cookSteps(scene, explained.plan, options, explained.cost);

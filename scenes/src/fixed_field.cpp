@@ -2,10 +2,10 @@
 #include "fixed_field.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "scene_models.h"
 #include "vps/crop.h"
+#include "wall_clock.h"
 
 namespace vps {
 
@@ -68,7 +68,7 @@ std::size_t CookedField::memoryBytes(const std::vector<std::shared_ptr<const Vox
 }
 
 CookedField cookField(const FieldOrder& order) {
-  const auto begun = std::chrono::steady_clock::now();
+  const double begun_s = wallSeconds();
   CookedField field;
   field.region_W = order.region_W;
   VpsModels models;
@@ -80,7 +80,7 @@ CookedField cookField(const FieldOrder& order) {
     models.surfaces.push_back({part.surface, part.placed.X_WP});
   }
   field.shape = std::make_unique<VpsShape>(std::move(models));
-  field.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  field.wall_s = wallSeconds() - begun_s;
   return field;
 }
 

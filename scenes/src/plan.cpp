@@ -51,9 +51,13 @@ class Planner {
   }
 
   Plan everything() {
-    plan_.models_everything = true;
-    for (PlannedPart& part : plan_.parts) part = {true, true, {}, {}, "everything is modelled"};
-    planSteps(false);
+    planEverything();
+    return std::move(plan_);
+  }
+
+  Plan sharing() {
+    planEverything();
+    shareEqual();
     return std::move(plan_);
   }
 
@@ -66,6 +70,12 @@ class Planner {
 
  private:
   [[nodiscard]] bool isAssembly() const { return plan_.purpose == PlanFor::Assemble; }
+
+  void planEverything() {
+    plan_.models_everything = true;
+    for (PlannedPart& part : plan_.parts) part = {true, true, {}, {}, "everything is modelled"};
+    planSteps(false);
+  }
 
   void planSteps(bool is_spared) {
     if (!isAssembly()) return planSimulation();
@@ -183,6 +193,10 @@ class Planner {
 };
 
 }  // namespace
+
+Plan makeSharingPlan(const Scene& scene) {
+  return Planner(scene, PlanFor::Assemble).sharing();
+}
 
 Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything) {
   Planner planner(scene, purpose);

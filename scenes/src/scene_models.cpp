@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_models.h"
 
-#include <chrono>
 #include <set>
 
 #include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
+#include "wall_clock.h"
 
 namespace vps {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begun) {
-  return std::chrono::duration<double>(Clock::now() - begun).count();
-}
 
 /// Builds a part's map, or takes it from the cache.
 std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings& settings,
@@ -70,15 +64,15 @@ BuildTimes buildPart(ScenePart& scene_part, const PlannedPart& planned, const Fi
                      const ModelOptions& options) {
   Part& part = scene_part.part;
   BuildTimes times;
-  auto begun = Clock::now();
+  double begun_s = wallSeconds();
   if (planned.has_map && !part.map) part.map = mapOf(scene_part, voxMapSettings(fidelity), options);
-  times.map_wall_s = secondsSince(begun);
-  begun = Clock::now();
+  times.map_wall_s = wallSeconds() - begun_s;
+  begun_s = wallSeconds();
   if (planned.has_shell && !part.shell)
     part.shell =
         std::make_shared<PointShell>(buildPointShell(part.mesh, pointShellSettings(fidelity), part.name));
   crop(scene_part, planned.kept_P);
-  times.shell_wall_s = secondsSince(begun);
+  times.shell_wall_s = wallSeconds() - begun_s;
   return times;
 }
 
@@ -106,12 +100,7 @@ std::vector<BuildTimes> buildModels(Scene& scene, const Plan& plan, const ModelO
 }
 
 void buildModels(Scene& scene, const ModelOptions& options) {
-  Plan plan = makePlan(scene, PlanFor::Assemble, true);
-  for (std::size_t i = 0; i < scene.parts.size(); ++i)
-    for (std::size_t j = 0; j < i && !plan.parts[i].same_as; ++j)
-      if (!plan.parts[j].same_as && isEqualGeometry(scene.parts[i].part.mesh, scene.parts[j].part.mesh))
-        plan.parts[i].same_as = j;
-  buildModels(scene, plan, options);
+  buildModels(scene, makeSharingPlan(scene), options);
 }
 
 void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options) {

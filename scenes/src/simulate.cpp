@@ -8,6 +8,7 @@
 #include "simulation.h"
 #include "tick_times.h"
 #include "vps/load_error.h"
+#include "wall_clock.h"
 
 namespace vps {
 
@@ -29,7 +30,7 @@ void cookFixed(const Scene& scene, const Plan& plan, Simulation& simulation) {
 SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
-  const auto begun = std::chrono::steady_clock::now();
+  const double begun_s = wallSeconds();
   const Plan plan = makePlan(scene, PlanFor::Simulate, options.models_everything);
   buildModels(scene, plan, options);
   Simulation simulation(scene, plan);
@@ -41,7 +42,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     moving.push_back(i);
   }
   SimulateResult result;
-  result.build_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  result.build_wall_s = wallSeconds() - begun_s;
 
   const double dt_s = 1 / scene.fidelity.physics_rate_hz;
   TickClock all(dt_s), touching(dt_s);

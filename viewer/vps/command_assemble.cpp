@@ -38,15 +38,12 @@ int runAssemble(const AssembleArguments& given) {
   Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.record});
 
   AssembleOptions options;
-  options.progress = bar.progress();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  options.cache = cache ? &*cache : nullptr;
-  options.warn = warn;
+  fill(options, bar, cache, given.models_everything);
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
   options.record = given.record;
   options.is_real_time = given.is_real_time;
-  options.models_everything = given.models_everything;
   options.has_local_contact = given.has_local_contact;
   const AssembleResult result = assemble(scene, options);
   throwIfStopped();

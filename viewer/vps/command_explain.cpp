@@ -86,11 +86,8 @@ int runExplain(const ExplainArguments& given) {
   ProgressBar bar;
   const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
   ModelOptions options;
-  options.progress = bar.progress();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  options.cache = cache ? &*cache : nullptr;
-  options.warn = warn;
-  options.models_everything = given.models_everything;
+  fill(options, bar, cache, given.models_everything);
   const PlanFor purpose =
       given.is_for_simulate || scene.steps.empty() ? PlanFor::Simulate : PlanFor::Assemble;
   ExplainAnswer answer = {scene, explain(scene, purpose, options), {}};
@@ -106,8 +103,8 @@ int runExplain(const ExplainArguments& given) {
   const Fidelity& fidelity = scene.fidelity;
   std::printf("%s: voxels of %s mm, points every %s mm, %s\n\n%s\n%s\n", scene.name.c_str(),
               fixed(1e3 * fidelity.voxel_m, 3).c_str(), fixed(1e3 * fidelity.spacing_m, 3).c_str(),
-              fidelity.sides == Sides::Both ? "both sides" : "one side",
-              tableOfParts(scene, answer.chosen).c_str(), tableOfSteps(scene, answer.chosen).c_str());
+              inWords(fidelity.sides), tableOfParts(scene, answer.chosen).c_str(),
+              tableOfSteps(scene, answer.chosen).c_str());
   std::fputs(totalOf("in all                   ", answer.chosen.cost).c_str(), stdout);
   if (answer.everything)
     std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);

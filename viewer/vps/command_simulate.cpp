@@ -46,11 +46,8 @@ int runSimulate(const SimulateArguments& given) {
 
   std::string rows;
   SimulateOptions options;
-  options.progress = bar.progress();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  options.cache = cache ? &*cache : nullptr;
-  options.warn = warn;
-  options.models_everything = given.models_everything;
+  fill(options, bar, cache, given.models_everything);
   if (!given.trace.empty())
     options.trace = [&rows](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
       if (rows.empty()) rows = traceHead(bodies);

@@ -10,9 +10,12 @@
 
 #include "vps/fidelity.h"
 #include "vps/voxmap_cache.h"
+#include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 
 namespace vps {
+
+class ProgressBar;
 
 /// Exit status of the program.
 inline constexpr int kGood = 0;      ///< done, and the answer is good
@@ -122,6 +125,11 @@ int runDevice(const DeviceArguments& given);
 
 /// The cache in a folder, telling of its troubles on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
+
+/// What every command tells of models while they are built, where it keeps them, and what it is asked to
+/// build. Bar and cache outlive the options.
+void fill(ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+          bool models_everything);
 
 /// The views that --view knows.
 std::vector<std::string> viewNames();

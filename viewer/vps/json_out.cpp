@@ -328,7 +328,7 @@ std::string toJson(const ExplainAnswer& answer) {
                {"models_everything", plan.models_everything},
                {"voxel_m", scene.fidelity.voxel_m},
                {"point_spacing_m", scene.fidelity.spacing_m},
-               {"sides", scene.fidelity.sides == Sides::Both ? "both" : "one"},
+               {"sides", toText(scene.fidelity.sides)},
                {"parts", parts},
                {"steps", steps},
                {"modelled", modelled(answer.chosen.cost.most)}};

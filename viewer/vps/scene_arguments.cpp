@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "commands.h"
 #include "output.h"
+#include "progress_bar.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
@@ -32,6 +33,14 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
 std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   if (folder.empty()) return std::nullopt;
   return VoxMapCache(folder, warn);
+}
+
+void fill(ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+          bool models_everything) {
+  options.progress = bar.progress();
+  options.cache = cache ? &*cache : nullptr;
+  options.warn = warn;
+  options.models_everything = models_everything;
 }
 
 Scene sceneFrom(const std::string& file, const FidelityArguments& given,

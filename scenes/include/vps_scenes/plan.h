@@ -47,5 +47,7 @@ struct Plan {
 /// a run whose part comes near its border models the rest then (assemble.h).
 /// @param models_everything  no sparing: a map and a shell for each part, none shared, nothing left out
 Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything = false);
+/// Everything to assemble with, but equal geometry once: models that any question can be put to.
+Plan makeSharingPlan(const Scene& scene);
 
 }  // namespace vps

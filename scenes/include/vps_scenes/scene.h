@@ -66,6 +66,10 @@ enum class ContactKind {
 inline const char* toText(Sides sides) {
   return sides == Sides::One ? "one" : "both";
 }
+/// As people are told.
+inline const char* inWords(Sides sides) {
+  return sides == Sides::One ? "one side" : "both sides";
+}
 inline const char* toText(Gradient gradient) {
   return gradient == Gradient::Continuous ? "continuous" : "trilinear";
 }

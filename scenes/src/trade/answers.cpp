@@ -29,8 +29,7 @@ bool isUsable(const TradeRow& row) {
 std::string named(const TradeRow& row) {
   const Fidelity& f = row.what.fidelity;
   return "'" + row.what.name + "' (voxel " + number("%.4g mm", 1e3 * f.voxel_m) + ", spacing " +
-         number("%.4g mm", 1e3 * f.spacing_m) + (f.sides == Sides::Both ? ", both sides" : ", one side") +
-         ")";
+         number("%.4g mm", 1e3 * f.spacing_m) + ", " + inWords(f.sides) + ")";
 }
 
 std::string errorWords(const TradeRow& row) {

@@ -198,7 +198,7 @@ std::string describe(const FidelityChoice& choice) {
   std::snprintf(
       text, sizeof text,
       "voxel %.3g mm, spacing %.3g mm, %s: %zu points, %.1f MB, a step of %.0f us by the cost model",
-      1e3 * f.voxel_m, 1e3 * f.spacing_m, f.sides == Sides::Both ? "both sides" : "one side", choice.points,
+      1e3 * f.voxel_m, 1e3 * f.spacing_m, inWords(f.sides), choice.points,
       1e-6 * static_cast<double>(choice.bytes), choice.step_us);
   std::string words = text;
   if (choice.error_m > 0) {

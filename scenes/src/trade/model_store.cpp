@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade/model_store.h"
 
-#include <chrono>
-
 #include "scene_models.h"
+#include "wall_clock.h"
 
 namespace vps {
 
@@ -14,9 +13,9 @@ double ModelStore::fill(Scene& scene, const ModelOptions& options) {
     scene.parts[i].part.map = maps_[{i, voxel_m}];
     scene.parts[i].part.shell = shells_[{i, spacing_m}];
   }
-  const auto begun = std::chrono::steady_clock::now();
+  const double begun_s = wallSeconds();
   buildModels(scene, options);
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  const double wall_s = wallSeconds() - begun_s;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     maps_[{i, voxel_m}] = scene.parts[i].part.map;
     shells_[{i, spacing_m}] = scene.parts[i].part.shell;
