@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "vps/leading_points.h"
 #include "vps/pose.h"
 #include "vps/query.h"
 #include "vps_bullet/install.h"
@@ -67,13 +70,29 @@ struct SideView {
   std::uint8_t side = 0;
 };
 
-/// Points of `side` near the other VpsShape's map (of `other`, at its X_WM).
+/// What a pair keeps of one side's shell against the other's map.
+struct SideMemory {
+  QueryMemory query;                     ///< for cutoffs that stay the same
+  std::optional<LeadingPoints> leading;  ///< of a shell with more points than mayAllBeNear()
+};
+
+/// So many near points of a side or fewer are all looked at.
+std::size_t mayAllBeNear(const VpsBulletSettings& settings);
+
+/// What a step asks of that side's points.
+struct SideAsk {
+  SideMemory* memory = nullptr;  ///< null: all near points, and nothing remembered
+  Twist step_W;                  ///< how the side's body moves against the other, about W's origin [rad, m]
+  std::span<const std::uint32_t> always;  ///< ids, ascending: of last step's contacts
+};
+
+/// Points of `side` near the other VpsShape's map (of `other`, at its X_WM). With a memory and far more of
+/// them than the solver is given, those that lead: what thinOut() would leave, not the same to the point.
 /// @param cutoff_m   distance to look at, below the map's band
-/// @param memory     of this side's shell and that map, for cutoffs that stay the same
 /// Appends to out. Returns how many did not fit into settings.candidate_limit.
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, std::vector<Candidate>& out,
-                           std::size_t& points_tested, QueryMemory* memory = nullptr);
+                           const VpsBulletSettings& settings, const SideAsk& ask, std::vector<Candidate>& out,
+                           std::size_t& points_tested);
 
 /// The same against one of Bullet's primitives at X_WS.
 std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,

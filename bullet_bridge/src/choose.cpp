@@ -24,6 +24,31 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * sight_m(pair)) : cutoff_m;
 }
 
+SideMemory& memoryOf(const PairView& pair, int i, VpsPairState& state) {
+  std::optional<SideMemory>& own = state.memory[i];
+  if (own) return *own;
+  const PointShell& shell = *pair.vps[i]->models().shell;
+  const VoxMap& map = *pair.vps[1 - i]->models().map;
+  own.emplace(SideMemory{QueryMemory(map, shell), {}});
+  // Each spring counts; of rigid contact's points one or two of 64 do, eight by eight: more tiles than
+  // contacts.
+  constexpr double kTile = 12;  // of the spacing, corner to corner
+  const VpsBulletSettings& settings = state.context->settings;
+  if (settings.mode == ContactMode::Constraint && shell.size() > mayAllBeNear(settings) &&
+      shell.spacing_m > 0)
+    own->leading.emplace(shell, kTile * shell.spacing_m);
+  return *own;
+}
+
+SideAsk askOf(const PairView& pair, int i, VpsPairState& state) {
+  std::vector<std::uint32_t>& always = state.always[i];
+  always.clear();
+  for (const Candidate& c : state.selection.chosen)  // ascending
+    if (c.side == i && !c.isCrossing()) always.push_back(c.id);
+  const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
+  return {&memoryOf(pair, i, state), {way_s * state.motion.V.w, way_s * state.motion.V.v}, always};
+}
+
 // In penalty mode the points of faces press along their own normals.
 void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
                        std::vector<Candidate>& candidates) {
@@ -43,10 +68,9 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
       left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
                                        cutoff_m, context.settings, out, tested);
     else if (pair.hasMap(j)) {
-      const VoxMap& map = *pair.vps[j]->models().map;
-      QueryMemory* memory = state ? &state->memoryOf(i, map, *pair.vps[i]->models().shell) : nullptr;
-      const double wide_m = memory ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
-      left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, out, tested, memory);
+      const double wide_m = state ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
+      const SideAsk ask = state ? askOf(pair, i, *state) : SideAsk{};
+      left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, ask, out, tested);
     } else {
       left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }

@@ -93,6 +93,12 @@ void settleOnRound(const SideView& side, const SideView& other, const btCollisio
   out.resize(kept);
 }
 
+// The same motion about the origin of M, in M.
+Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
+  const Vec3 p_WM = -(X_MW.R.transpose() * X_MW.p);
+  return {X_MW.R * V_W.w, X_MW.R * (V_W.v + V_W.w.cross(p_WM))};
+}
+
 /// Points of `side` (in its models' frame M) seen from the surfaces of `other` (in its N).
 class SurfaceView {
  public:
@@ -194,9 +200,14 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   return c.distance_m <= slack_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
 }
 
+std::size_t mayAllBeNear(const VpsBulletSettings& settings) {
+  constexpr std::size_t kPointsAContact = 64;  // a tile's, see memoryOf() in choose.cpp
+  return kPointsAContact * static_cast<std::size_t>(settings.contact_limit);
+}
+
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, std::vector<Candidate>& out,
-                           std::size_t& points_tested, QueryMemory* memory) {
+                           const VpsBulletSettings& settings, const SideAsk& ask, std::vector<Candidate>& out,
+                           std::size_t& points_tested) {
   const VpsModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
   // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
@@ -205,8 +216,12 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   QueryOptions options;
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
-  const Pose X_MP = other.X_WM.inverse() * side.X_WM;
-  const QueryResult result = queryContacts(*theirs.map, shell, X_MP, options, near, memory);
+  const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
+  QueryMemory* memory = ask.memory ? &ask.memory->query : nullptr;
+  const LeadingPoints::Ask leaders{options, aboutMap(ask.step_W, X_MW), ask.always, mayAllBeNear(settings)};
+  const QueryResult result = ask.memory && ask.memory->leading
+                                 ? ask.memory->leading->find(*theirs.map, X_MP, leaders, near, memory)
+                                 : queryContacts(*theirs.map, shell, X_MP, options, near, memory);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   // The buffer's capacity depends on what other pairs needed; the limit must not.

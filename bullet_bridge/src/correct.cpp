@@ -71,7 +71,10 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
   Vec3 smooth = Vec3::Zero();  ///< the normal of the curved surface that the mesh stands for
   bool is_edge = false;
-  bool is_sheet = false;  ///< whose edges may be wound either way: crossings do not cover them
+  bool is_sheet = false;                ///< whose edges may be wound either way: crossings do not cover them
+  const VpsSurface* surface = nullptr;  ///< null: a primitive
+  Mat3 R_WP = Mat3::Identity();         ///< of the surface's part
+  std::uint32_t triangle = 0;
 };
 
 struct Exact {
@@ -81,6 +84,7 @@ struct Exact {
   Vec3 n = Vec3::Zero();
   bool is_edge_on_edge = false;
   bool is_smooth = false;  ///< two faces that touch flush
+  FacePoint face;          ///< then: the other's
 };
 
 Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
@@ -89,8 +93,15 @@ Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, do
   const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
   if (!closest.found) return {};
   const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
-  Foot foot{true, X_WP.R * (p - closest.q), X_WP.R * closest.normal,
-            X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q), is_edge};
+  Foot foot{true,
+            X_WP.R * (p - closest.q),
+            X_WP.R * closest.normal,
+            X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q),
+            is_edge,
+            false,
+            &surface,
+            X_WP.R,
+            closest.triangle};
   if (surface.sheet) {
     const SheetFoot seen = surface.sheet->seenFrom(p, X_WP.R.transpose() * own.inward_W, closest);
     foot.normal = X_WP.R * seen.normal;
@@ -131,6 +142,8 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
     exact.is_smooth = is_flush && !own.is_edge;
     exact.n = own.is_edge || is_flush ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);
+    if (exact.is_smooth)
+      exact.face = {own.p_W - foot.from_q, foot.smooth, foot.surface, foot.R_WP, foot.triangle};
     return exact;
   }
   const double sign = foot.from_q.dot(foot.normal) < 0 ? -1 : 1;
@@ -201,7 +214,8 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
       exact = whereItGoes(exact, corrector, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
-    if (exact.meets && exact.is_smooth && !is_primitive) moveToNearest(c, side, other, motion.slack_m);
+    if (exact.meets && exact.is_smooth && !is_primitive)
+      moveToNearest(c, side, other, exact.face, motion.slack_m);
   }
 }
 

@@ -12,18 +12,6 @@ namespace {
 
 constexpr double kGain_m = 1e-7;  // below it a look at the surfaces is not worth its time
 
-/// A point of a face, as the curved surface that the facets stand for.
-struct FacePoint {
-  Vec3 q_W, outward_W;
-  const VpsSurface* surface = nullptr;
-  Mat3 R_WP;
-  std::uint32_t triangle = 0;
-
-  [[nodiscard]] Mat3 curvature_W() const {
-    return R_WP * surface->distance->smoothCurvature(triangle) * R_WP.transpose();
-  }
-};
-
 // The face nearest to p; none where an edge is nearer, or an open surface.
 std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, double max_m) {
   std::optional<FacePoint> nearest;
@@ -42,6 +30,14 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
   const Vec3 face = nearest->surface->distance->featureNormal(nearest->triangle, 0);
   if (nearest->surface->sheet || face.dot(best.normal) < kCosFlush) return {};
   return nearest;
+}
+
+// The shell's point on its own face.
+FacePoint ownFace(const Candidate& c, const SideView& side) {
+  const VpsShape::PointFace face = side.shape->faceAt(c.id);
+  const VpsSurface& surface = side.shape->models().surfaces[face.surface];
+  return {c.p_W, -(side.X_WM.R * side.shape->smoothInward(c.id)), &surface, side.X_WM.R * surface.X_MP.R,
+          face.triangle};
 }
 
 /// Two orthonormal directions across n.
@@ -70,17 +66,12 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
 
 }  // namespace
 
-bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, double most_gain_m) {
+bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& foot,
+                   double most_gain_m) {
   const double reach_m = side.shape->models().shell->spacing_m;
-  const double sign = side.side == 0 ? 1 : -1;
-  const Vec3 n_W = sign * c.n_W;
-  const Vec3 slope = side.X_WM.R * side.shape->smoothInward(c.id) - n_W;
-  if (!(slope.norm() * reach_m > kGain_m)) return false;
-  constexpr double kOn_m = 1e-6;  // shell points are on the surface, to rounding
-  std::optional<FacePoint> own = nearestFace(side, c.p_W, kOn_m);
-  std::optional<FacePoint> their = nearestFace(other, c.p_W, 1.01 * std::abs(c.distance_m) + kOn_m);
-  // Of several parts the nearest surface need not be the one that the point meets.
-  if (!own || !their || !(their->outward_W.dot(n_W) > kCosFlush)) return false;
+  std::optional<FacePoint> own = ownFace(c, side), their = foot;
+  if (own->surface->sheet || their->surface->sheet) return false;
+  if (!((own->outward_W + their->outward_W).norm() * reach_m > kGain_m)) return false;
   constexpr int kSteps = 5;        // most need one or two
   constexpr double kThere = 5e-3;  // of the reach: leans by less than a thousandth
   for (int i = 0; i < kSteps; ++i) {
@@ -97,7 +88,7 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, do
   const double gap_m = (own->q_W - their->q_W).dot(their->outward_W);
   if (c.distance_m - gap_m > most_gain_m) return false;
   c.p_W = own->q_W;
-  c.n_W = sign * their->outward_W;
+  c.n_W = (side.side == 0 ? 1 : -1) * their->outward_W;
   // A corner between facets is nearer than the facets' middles, whatever the curved surface says.
   c.distance_m = std::min(c.distance_m, gap_m);
   return true;

@@ -37,12 +37,9 @@ struct VpsPairState {
   bool has_met = false;                  ///< contacts were looked for before
   PenaltyPair penalty;                   ///< in penalty mode
   bool is_registered = false;            ///< penalty is known to the solver
-  std::optional<QueryMemory> memory[2];  ///< of side 0's points in side 1's map, and the reverse
-  QueryMemory& memoryOf(int side, const VoxMap& map, const PointShell& shell) {
-    std::optional<QueryMemory>& own = memory[side];
-    return own ? *own : own.emplace(map, shell);
-  }
-  unsigned revision[2] = {0, 0};  ///< of the shapes that writer's and selection's ids belong to
+  std::optional<SideMemory> memory[2];   ///< of side 0's points in side 1's map, and the reverse
+  std::vector<std::uint32_t> always[2];  ///< ids of the points last chosen, for the query
+  unsigned revision[2] = {0, 0};         ///< of the shapes that writer's and selection's ids belong to
 };
 
 }  // namespace vps

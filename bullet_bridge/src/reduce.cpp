@@ -51,15 +51,15 @@ std::uint64_t cellOf(const Candidate& c, const Vec3& origin, double cell_m) {
          (c.isCrossing() ? 2U : 0U) | c.side;
 }
 
-// Marks the most urgent candidate of each cell. A small open-addressed table, cell -> its best so far: one
-// pass, where sorting 5000 candidates took five times as long. A full table drops nobody: what finds no room
-// is kept.
-void markBest(const std::vector<Candidate>& candidates, const Vec3& origin, double cell_m, Measure measure,
+// Marks the most urgent candidates of each cell, now and then. A small open-addressed table, cell -> its best
+// so far: one pass, where sorting 5000 candidates took five times as long. A full table drops nobody: what
+// finds no room is kept.
+void markBest(const std::vector<Candidate>& candidates, const Vec3& origin, double cell_m,
               std::vector<std::uint8_t>& keep) {
   constexpr std::size_t kSlots = 4096, kProbes = 16;
   struct Slot {
     std::uint64_t cell = kEmpty;
-    std::uint32_t best = 0;
+    std::uint32_t now = 0, then = 0;
   };
   thread_local std::vector<Slot> slots;
   slots.assign(kSlots, Slot{});
@@ -72,12 +72,59 @@ void markBest(const std::vector<Candidate>& candidates, const Vec3& origin, doub
       at = (at + 1) % kSlots;
     if (c.was_contact || probe == kProbes) keep[i] = 1;
     if (probe == kProbes) continue;
-    if (slots[at].cell == kEmpty || isMoreUrgent(c, candidates[slots[at].best], measure))
-      slots[at] = {cell, i};
+    Slot& slot = slots[at];
+    if (slot.cell == kEmpty) slot = {cell, i, i};
+    if (isMoreUrgent(c, candidates[slot.now], Measure::Now)) slot.now = i;
+    if (isMoreUrgent(c, candidates[slot.then], Measure::Then)) slot.then = i;
   }
   for (const Slot& slot : slots)
-    if (slot.cell != kEmpty) keep[slot.best] = 1;
+    if (slot.cell != kEmpty) keep[slot.now] = keep[slot.then] = 1;
 }
+
+// Candidates as chooseSpread() weighs them: side by side, so that a look at all of them is quick.
+struct Spread {
+  Eigen::Matrix<double, 6, Eigen::Dynamic> place;  // position in units of length, and normal
+  std::vector<double> nearest2;                    // squared distance to the nearest chosen one; chosen: -1
+  std::vector<double> urgency;                     // -1 to 1, in slacks
+
+  void take(const std::vector<Candidate>& candidates, double length_m, double slack_m) {
+    const auto count = static_cast<Eigen::Index>(candidates.size());
+    if (place.cols() < count) place.resize(6, count);
+    nearest2.assign(candidates.size(), std::numeric_limits<double>::infinity());
+    urgency.clear();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Candidate& c = candidates[static_cast<std::size_t>(i)];
+      place.col(i) << c.p_W / length_m, c.n_W;
+      urgency.push_back(std::clamp(vps::urgency(c) / slack_m, -1.0, 1.0));
+    }
+  }
+
+  // Takes i out. The others come no farther from those chosen.
+  void choose(std::size_t i) {
+    const Eigen::Matrix<double, 6, 1> chosen = place.col(static_cast<Eigen::Index>(i));
+    nearest2[i] = -1;
+    for (std::size_t k = 0; k < nearest2.size(); ++k)
+      nearest2[k] = std::min(nearest2[k], (place.col(static_cast<Eigen::Index>(k)) - chosen).squaredNorm());
+  }
+
+  // Extent, weighed against the gap: a contact a slack away is worth as much less as a body's length of
+  // spread.
+  [[nodiscard]] std::size_t best() const {
+    std::size_t best = nearest2.size();
+    double best_worth = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < nearest2.size(); ++i) {
+      if (nearest2[i] < 0) continue;
+      const double wanted = best_worth + urgency[i];  // a root costs more than to see that it is not needed
+      if (wanted > 0 && nearest2[i] < (1 - 1e-12) * wanted * wanted) continue;
+      const double worth = std::sqrt(nearest2[i]) - urgency[i];
+      if (worth > best_worth) {
+        best_worth = worth;
+        best = i;
+      }
+    }
+    return best;
+  }
+};
 
 }  // namespace
 
@@ -90,8 +137,7 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m) {
 
   thread_local std::vector<std::uint8_t> keep;
   keep.assign(candidates.size(), 0);
-  for (const Measure measure : {Measure::Now, Measure::Then})
-    markBest(candidates, origin, cell_m, measure, keep);
+  markBest(candidates, origin, cell_m, keep);
   thread_local std::vector<Candidate> kept;
   kept.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i)
@@ -102,19 +148,13 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m) {
 void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double slack_m) {
   const std::size_t count = candidates.size();
   if (count > limit) {
-    thread_local std::vector<double> nearest2;  // squared distance to the nearest chosen one
-    nearest2.assign(count, std::numeric_limits<double>::infinity());
+    thread_local Spread spread;
+    spread.take(candidates, length_m, slack_m);
     thread_local std::vector<Candidate> chosen;
     chosen.clear();
     const auto choose = [&](std::size_t i) {
       chosen.push_back(candidates[i]);
-      nearest2[i] = -1;
-      for (std::size_t k = 0; k < count; ++k) {
-        if (nearest2[k] < 0) continue;
-        const double d2 = (candidates[k].p_W - candidates[i].p_W).squaredNorm() / (length_m * length_m) +
-                          (candidates[k].n_W - candidates[i].n_W).squaredNorm();
-        nearest2[k] = std::min(nearest2[k], d2);
-      }
+      spread.choose(i);
     };
     // Those that carried load last step: dropping one is a jolt. At most half of the room, so that new ones
     // get in.
@@ -125,23 +165,9 @@ void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double 
       std::size_t first = 0;
       for (std::size_t i = 1; i < count; ++i)
         if (isMoreUrgent(candidates[i], candidates[first], measure)) first = i;
-      if (nearest2[first] >= 0) choose(first);
+      if (spread.nearest2[first] >= 0) choose(first);
     }
-    // Extent, weighed against the gap: a contact a slack away is worth as much less as a body's length of
-    // spread.
-    while (chosen.size() < limit) {
-      std::size_t best = count;
-      double best_worth = -std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < count; ++i) {
-        if (nearest2[i] < 0) continue;
-        const double worth = std::sqrt(nearest2[i]) - std::clamp(urgency(candidates[i]) / slack_m, -1.0, 1.0);
-        if (worth > best_worth) {
-          best_worth = worth;
-          best = i;
-        }
-      }
-      choose(best);
-    }
+    while (chosen.size() < limit) choose(spread.best());
     candidates.swap(chosen);
   }
   std::sort(candidates.begin(), candidates.end(),

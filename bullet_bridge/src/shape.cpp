@@ -49,6 +49,7 @@ Box boxOf(const PointShell& shell) {
 struct PointNormals {
   std::vector<std::uint8_t> is_edge;  // by point
   std::vector<Vec3> smooth_inward;
+  std::vector<VpsShape::PointFace> faces;
 };
 
 constexpr double kOnSurface_m = 1e-6;
@@ -57,9 +58,12 @@ constexpr double kOnSurface_m = 1e-6;
 PointNormals findNormals(const VpsModels& models) {
   constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
   if (!models.shell || models.surfaces.empty()) return {};
-  PointNormals normals{std::vector<std::uint8_t>(models.shell->size(), 1), models.shell->inward};
-  for (std::size_t i = 0; i < models.shell->size(); ++i)
-    for (const VpsSurface& surface : models.surfaces) {
+  const std::size_t count = models.shell->size();
+  PointNormals normals{std::vector<std::uint8_t>(count, 1), models.shell->inward,
+                       std::vector<VpsShape::PointFace>(count)};
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::uint32_t s = 0; s < models.surfaces.size(); ++s) {
+      const VpsSurface& surface = models.surfaces[s];
       const Pose X_PM = surface.X_MP.inverse();
       const MeshDistance::Closest closest =
           surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
@@ -69,6 +73,7 @@ PointNormals findNormals(const VpsModels& models) {
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
           -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
+      normals.faces[i] = {s, closest.triangle};
     }
   return normals;
 }
@@ -214,6 +219,7 @@ void VpsShape::use(VpsModels models, const Pose& X_SM) {
   PointNormals normals = findNormals(models_);
   is_edge_point_ = std::move(normals.is_edge);
   smooth_inward_ = std::move(normals.smooth_inward);
+  face_at_ = std::move(normals.faces);
   edges_ = edgesOf(models_.surfaces);
   edges_at_.clear();
   first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "mesh_edges.h"
 #include "triangle_distance.h"
@@ -13,7 +15,6 @@
 namespace vps {
 namespace {
 
-constexpr std::uint32_t kLeafTriangles = 4;
 /// Twice the area over the longest edge's square, below which corners are collinear but for rounding.
 constexpr double kLeastSlimness = 1e-10;
 /// Faces this far apart are facets of one curved surface: 20 degrees, as PointShellSettings::edge_angle_rad.
@@ -23,12 +24,8 @@ constexpr double kCosSmooth = 0.94;
 constexpr std::size_t kMostFaces = 64;
 /// How near is touching, in sizes of the mesh: above the height of what is thin.
 constexpr double kTouch = 1e-9;
-/// Halving by count makes the depth log2(2^32 / kLeafTriangles) at most; one waiting child a level.
+/// Quartering by count makes the depth log4(2^31) at most; three waiting children a level.
 constexpr int kStack = 64;
-
-double boxDistance2(const Vec3& p, const Vec3& min, const Vec3& max) {
-  return (min - p).cwiseMax(p - max).cwiseMax(0.0).squaredNorm();
-}
 
 /// Unit v, or zero where v is too short to have a direction.
 Vec3 unitOrZero(const Vec3& v) {
@@ -127,44 +124,102 @@ void MeshDistance::computeSmoothCorners() {
   }
 }
 
+namespace {
+
+using Range = std::span<std::uint32_t>;
+
+/// Halves a range of triangles at the median of the boxes' longest side.
+std::pair<Range, Range> halved(Range range, const std::vector<Box>& boxes) {
+  if (range.size() < 2) return {range, {}};
+  Box centers;
+  for (const std::uint32_t i : range) centers.add(boxes[i].center());
+  int axis = 0;
+  centers.size().maxCoeff(&axis);
+  const std::size_t half = range.size() / 2;
+  const auto at = [&](std::uint32_t i) { return boxes[i].min[axis] + boxes[i].max[axis]; };
+  std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {  // a strict order: the same tree everywhere
+                     return at(a) != at(b) ? at(a) < at(b) : a < b;
+                   });
+  return {range.first(half), range.subspan(half)};
+}
+
+}  // namespace
+
 void MeshDistance::buildTree() {
   const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-  std::vector<Box> boxes(count);
-  for (std::uint32_t i = 0; i < count; ++i)
-    for (const std::uint32_t v : mesh_.triangles[i]) boxes[i].add(mesh_.vertices[v]);
-  order_.resize(count);
-  std::iota(order_.begin(), order_.end(), 0u);
   if (count == 0) return;
-
-  // Each node is first a leaf over its range, then split at the median of its longest side until small
-  // enough.
-  nodes_.reserve(2 * (count / 2 + 1));
-  nodes_.push_back({Vec3::Zero(), Vec3::Zero(), 0, count});
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::uint32_t first = nodes_[n].first, size = nodes_[n].count;
-    Box box, centers;
-    for (std::uint32_t i = first; i < first + size; ++i) {
-      box.add(boxes[order_[i]].min);
-      box.add(boxes[order_[i]].max);
-      centers.add(boxes[order_[i]].center());
+  std::vector<Box> boxes(count);
+  Box all;
+  for (std::uint32_t i = 0; i < count; ++i)
+    for (const std::uint32_t v : mesh_.triangles[i]) {
+      boxes[i].add(mesh_.vertices[v]);
+      all.add(mesh_.vertices[v]);
     }
-    nodes_[n].min = box.min;
-    nodes_[n].max = box.max;
-    if (size <= kLeafTriangles) continue;
-    int axis = 0;
-    centers.size().maxCoeff(&axis);
-    const std::uint32_t half = size / 2;
-    const auto range = order_.begin() + first;
-    std::nth_element(range, range + half, range + size, [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = boxes[a].min[axis] + boxes[a].max[axis],
-                   at_b = boxes[b].min[axis] + boxes[b].max[axis];
-      return at_a != at_b ? at_a < at_b : a < b;  // a strict order, so that the tree is the same everywhere
-    });
-    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].count = 0;
-    nodes_.push_back({Vec3::Zero(), Vec3::Zero(), first, half});
-    nodes_.push_back({Vec3::Zero(), Vec3::Zero(), first + half, size - half});
+  center_ = all.center();
+  // Boxes and points are rounded to floats about the centre: a point no farther off than the mesh's size by
+  // 2^-24 of that, a corner by half as much.
+  constexpr double kRounding = 2.5e-7;
+  const double margin_m = kRounding * 0.5 * all.size().norm();
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+
+  struct Open {
+    std::uint32_t node;
+    Range range;
+  };
+  std::vector<Open> open{{0, order}};
+  nodes_.reserve(count / 2 + 1);
+  nodes_.emplace_back();
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    const auto [low, high] = halved(next.range, boxes);
+    const auto [a, b] = halved(low, boxes);
+    const auto [c, d] = halved(high, boxes);
+    int lane = 0;
+    for (const Range& part : {a, b, c, d}) {
+      if (part.empty()) continue;
+      Box box;
+      for (const std::uint32_t i : part) {
+        box.add(boxes[i].min);
+        box.add(boxes[i].max);
+      }
+      std::uint32_t child = kTriangle | part.front();
+      if (part.size() > 1) {
+        child = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.emplace_back();
+        open.push_back({child, part});
+      }
+      nodes_[next.node].set(lane++, (box.min - center_).array() - margin_m,
+                            (box.max - center_).array() + margin_m, child);
+    }
   }
+}
+
+MeshDistance::Node::Node() {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    min[k] = Eigen::Array4f::Constant(kFar);
+    max[k] = Eigen::Array4f::Constant(-kFar);
+  }
+}
+
+void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to) {
+  for (int k = 0; k < 3; ++k) {
+    min[k][lane] = static_cast<float>(min_m[k]);
+    max[k][lane] = static_cast<float>(max_m[k]);
+  }
+  child[lane] = to;
+}
+
+/// Squared distances from a point to the four boxes, never too great.
+Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
+  // What is far off the mesh, rounded to floats, is off by a share of the distance.
+  constexpr float kRounding = 1 - 2e-6f;
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+  for (int k = 0; k < 3; ++k) sum += (min[k] - p[k]).max(p[k] - max[k]).max(0.0f).square();
+  return kRounding * sum;
 }
 
 /// Visits triangles near first and calls onNearer(triangle, point) for each that is nearer than all before
@@ -175,33 +230,37 @@ double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visi
   double best2 = max_m * max_m;
   if (nodes_.empty()) return best2;
   struct Waiting {
-    std::uint32_t node;
-    double distance2;
+    std::uint32_t child;
+    float distance2;
   };
-  const auto waitingAt = [&](std::uint32_t node) {
-    return Waiting{node, box_weight * boxDistance2(p, nodes_[node].min, nodes_[node].max)};
-  };
+  const Eigen::Vector3f from_center = (p - center_).cast<float>();
   Waiting stack[kStack];
   int waiting = 0;
-  stack[waiting++] = waitingAt(0);
+  stack[waiting++] = {0, 0};
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
-    if (next.distance2 >= best2) continue;
-    const Node& node = nodes_[next.node];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& t = mesh_.triangles[order_[i]];
+    if (box_weight * static_cast<double>(next.distance2) >= best2) continue;
+    if ((next.child & kTriangle) != 0) {
+      const std::uint32_t triangle = next.child & ~kTriangle;
+      const auto& t = mesh_.triangles[triangle];
       const TrianglePoint at =
           closestOnTriangleInline(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
       const double distance2 = (p - at.q).squaredNorm();
       if (distance2 >= best2) continue;
       best2 = distance2;
-      onNearer(order_[i], at);
+      onNearer(triangle, at);
+      continue;
     }
-    if (node.count > 0) continue;
-    Waiting near = waitingAt(node.first), far = waitingAt(node.first + 1);
-    if (far.distance2 < near.distance2) std::swap(near, far);
-    if (far.distance2 < best2) stack[waiting++] = far;
-    if (near.distance2 < best2) stack[waiting++] = near;
+    const Node& node = nodes_[next.child];
+    const Eigen::Array4f distance2 = node.distance2(from_center);
+    const int first = waiting;
+    for (int lane = 0; lane < 4; ++lane) {
+      const Waiting child{node.child[lane], distance2[lane]};
+      if (!(box_weight * static_cast<double>(child.distance2) < best2)) continue;
+      int at = waiting++;  // the nearest ends on top
+      for (; at > first && stack[at - 1].distance2 < child.distance2; --at) stack[at] = stack[at - 1];
+      stack[at] = child;
+    }
   }
   return best2;
 }
@@ -245,25 +304,28 @@ bool MeshDistance::isBesideThin(std::uint32_t triangle, int feature) const noexc
 /// of the directions around.
 Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
   Vec3 sum = Vec3::Zero();
+  const Eigen::Vector3f from_center = (q - center_).cast<float>();
   std::uint32_t stack[kStack];
   int waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0) {
-    const Node& node = nodes_[stack[--waiting]];
-    if (boxDistance2(q, node.min, node.max) > touch_m_ * touch_m_) continue;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& t = mesh_.triangles[order_[i]];
-      const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-      if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_) continue;
-      double angle_rad = std::numbers::pi;
-      for (int k = 0; k < 3; ++k)
-        if ((corner[k] - q).norm() <= touch_m_)
-          angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
-      sum += angle_rad * face_normals_[order_[i]];
+    const std::uint32_t next = stack[--waiting];
+    if ((next & kTriangle) == 0) {
+      const Node& node = nodes_[next];
+      const Eigen::Array4f distance2 = node.distance2(from_center);
+      for (int lane = 0; lane < 4; ++lane)
+        if (static_cast<double>(distance2[lane]) <= touch_m_ * touch_m_) stack[waiting++] = node.child[lane];
+      continue;
     }
-    if (node.count > 0) continue;
-    stack[waiting++] = node.first;
-    stack[waiting++] = node.first + 1;
+    const std::uint32_t triangle = next & ~kTriangle;
+    const auto& t = mesh_.triangles[triangle];
+    const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+    if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_) continue;
+    double angle_rad = std::numbers::pi;
+    for (int k = 0; k < 3; ++k)
+      if ((corner[k] - q).norm() <= touch_m_)
+        angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+    sum += angle_rad * face_normals_[triangle];
   }
   return unitOrZero(sum);
 }

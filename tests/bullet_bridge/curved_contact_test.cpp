@@ -30,10 +30,20 @@ SideView viewOf(const Built& part, const Pose& X_WP, int side) {
   return {part.shape.get(), X_WP, static_cast<std::uint8_t>(side)};
 }
 
+struct Meeting {
+  Candidate point;
+  FacePoint foot;
+
+  bool move(const SideView (&sides)[2]) {
+    return moveToNearest(point, sides[point.side], sides[1 - point.side], foot, kMostGain_m);
+  }
+};
+
 // A point of a side's shell as correct() leaves one that meets a face flush.
-std::optional<Candidate> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
+std::optional<Meeting> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
   const VpsModels& models = side.shape->models();
-  const MeshDistance& theirs = *other.shape->models().surfaces[0].distance;
+  const VpsSurface& surface = other.shape->models().surfaces[0];
+  const MeshDistance& theirs = *surface.distance;
   const Vec3 p_W = side.X_WM * models.shell->points[id];
   const MeshDistance::Closest closest = theirs.closest(other.X_WM.inverse() * p_W, 0.1e-3);
   if (!closest.found) return {};
@@ -45,7 +55,7 @@ std::optional<Candidate> corrected(const SideView& side, const SideView& other, 
   c.p_W = p_W;
   c.n_W = (side.side == 0 ? 1 : -1) * n_W;
   c.distance_m = n_W.dot(p_W - other.X_WM * closest.q);
-  return c;
+  return Meeting{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
 /// Where two faces are nearest, by a formula.
@@ -68,9 +78,10 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
     for (std::uint32_t id = 0; id < side.shape->models().shell->size(); ++id) {
       const Vec3 p_W = side.X_WM * side.shape->models().shell->points[id];
       if ((p_W - truth.p_W).norm() > kSpacing_m || side.shape->isEdgePoint(id)) continue;
-      std::optional<Candidate> c = corrected(side, sides[1 - side.side], id);
-      if (!c) continue;
-      const bool has_moved = moveToNearest(*c, side, sides[1 - side.side], kMostGain_m);
+      std::optional<Meeting> meeting = corrected(side, sides[1 - side.side], id);
+      if (!meeting) continue;
+      const bool has_moved = meeting->move(sides);
+      const Candidate* c = &meeting->point;
       found.least_gap_m = std::min(found.least_gap_m, c->distance_m);
       if (!has_moved) continue;
       ++found.moved;
@@ -180,10 +191,10 @@ TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
   const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};
   int met = 0;
   for (std::uint32_t id = 0; id < peg.shape->models().shell->size(); ++id) {
-    std::optional<Candidate> c = corrected(sides[0], sides[1], id);
-    if (!c || peg.shape->isEdgePoint(id)) continue;
+    std::optional<Meeting> meeting = corrected(sides[0], sides[1], id);
+    if (!meeting || peg.shape->isEdgePoint(id)) continue;
     ++met;
-    EXPECT_FALSE(moveToNearest(*c, sides[0], sides[1], kMostGain_m)) << id;
+    EXPECT_FALSE(meeting->move(sides)) << id;
   }
   EXPECT_GT(met, 100);
 }

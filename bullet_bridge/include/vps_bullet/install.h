@@ -38,9 +38,10 @@ struct VpsBulletSettings {
 struct VpsBulletStats {
   std::size_t pair_updates = 0;  ///< pairs whose points were queried
   std::size_t points_tested = 0;
-  std::size_t candidates = 0;  ///< points and crossings that could touch within the step
-  std::size_t contacts = 0;    ///< of them given to the solver
-  std::size_t left_out = 0;    ///< candidates beyond candidate_limit: raise it
+  /// Points and crossings that could touch within the step; of very many points on a map those that lead.
+  std::size_t candidates = 0;
+  std::size_t contacts = 0;  ///< of them given to the solver
+  std::size_t left_out = 0;  ///< candidates beyond candidate_limit: raise it
   /// Pairs that were inside each other when they first met, deeper than their motion explains; they are moved
   /// apart at 0.05 m/s. The first is named on stderr.
   std::size_t overlapping_starts = 0;

@@ -87,6 +87,13 @@ class VpsShape : public btConcaveShape {
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
+  /// The triangle that a shell point on a face lies on.
+  struct PointFace {
+    std::uint32_t surface = 0;  ///< index of VpsModels::surfaces
+    std::uint32_t triangle = 0;
+  };
+  /// Of a point that isEdgePoint() denies, where there are surfaces.
+  [[nodiscard]] PointFace faceAt(std::uint32_t id) const { return face_at_[id]; }
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
   /// The sharp edges that a shell point stands on, as indices of edges().segments(): one, more at corners and
@@ -131,6 +138,7 @@ class VpsShape : public btConcaveShape {
   unsigned revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
+  std::vector<PointFace> face_at_;  // by point
   EdgeSet edges_;
   std::vector<std::uint32_t> edges_at_, first_edge_;  // edges_at_[first_edge_[id]] ... are those of a point
   std::unique_ptr<const TriangleTree> triangles_;

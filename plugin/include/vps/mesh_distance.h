@@ -64,14 +64,19 @@ class MeshDistance {
   template <typename Visit>
   double search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept;
 
+  /// Four boxes side by side, in floats about the mesh's centre, a hair too large; lanes not in use are
+  /// infinitely far.
   struct Node {
-    Vec3 min, max;
-    std::uint32_t first = 0;  ///< first triangle in order_, or index of the left child
-    std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node (children first, first + 1)
+    Node();
+    void set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to);
+    [[nodiscard]] Eigen::Array4f distance2(const Eigen::Vector3f& p) const;
+    Eigen::Array4f min[3], max[3];
+    std::uint32_t child[4] = {0, 0, 0, 0};  ///< a node, or a triangle and kTriangle
   };
+  static constexpr std::uint32_t kTriangle = 1U << 31;
   Mesh mesh_;
+  Vec3 center_ = Vec3::Zero();
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_;
   std::vector<Vec3> face_normals_;
   std::vector<std::array<Vec3, 3>> edge_normals_;
   std::vector<Vec3> vertex_normals_;
