@@ -214,7 +214,7 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
 }
 
 /// Squared distances from a point to the four boxes, never too great.
-Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
+[[gnu::always_inline]] inline Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
   // What is far off the mesh, rounded to floats, is off by a share of the distance.
   constexpr float kRounding = 1 - 2e-6f;
   Eigen::Array4f sum = Eigen::Array4f::Zero();
