@@ -143,6 +143,7 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
   report_.V_WG = proxy.V_W;
+  report_.clutch_ratio = clutch_.ratio();
   report_.F_hand_W = rotated(settings_.map.X_WD.R, report_.F_hand_D);
   ++ticks_;
   ++counts_[std::min(static_cast<std::size_t>(report_.status), kStatusCount - 1)];

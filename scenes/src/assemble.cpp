@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "box_motion.h"
+#include "clutch_work.h"
 #include "fit_record.h"
 #include "haptic_side.h"
 #include "placed_parts.h"
@@ -107,6 +108,7 @@ class Procedure {
     Pose X_PG;
     Pose X_WP_target;
     Box box_P;
+    Vec3 weight_W = Vec3::Zero();
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
@@ -183,8 +185,6 @@ class Procedure {
 
 AssembleResult Procedure::run() {
   const double begun_s = wallSeconds();
-  for (const SceneStep& step : scene_.steps)
-    side_->requireReachable(step);  // refuses before an hour is spent
   result_.completed = true;
   for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
     runStep(i);
@@ -254,11 +254,15 @@ void Procedure::take(const SceneStep& step) {
   }
   simulation_.addBody(step.part, step.X_WP_start);
   roles_[step.part] = BodyRole::InHand;
-  held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target,
-           bounds(scene_part.part.mesh), 0};
+  held_ = {step.part,
+           Pose::translation(simulation_.centreOfMass(step.part)),
+           step.X_WP_target,
+           bounds(scene_part.part.mesh),
+           simulation_.mass(step.part) * scene_.gravity_W,
+           0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
   simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
-  side_->grasp(step.X_WP_start * held_.X_PG);
+  side_->handOver(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
 }
@@ -289,7 +293,7 @@ void Procedure::letGo() {
 }
 
 bool Procedure::advance() {
-  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part)})) {
+  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part), held_.weight_W})) {
     is_over_ = true;
     log_ = nullptr;  // what follows is no part of the run
     return false;
@@ -370,7 +374,7 @@ OperatorTask Procedure::taskOf(const SceneStep& step) const {
   task.tolerance_m = step.tolerance_m;
   task.tolerance_rad = step.tolerance_rad;
   task.timeout_s = step.timeout_s;
-  task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
+  task.weight_W = held_.weight_W;
   return task;
 }
 
@@ -414,10 +418,19 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   part.is_coupled = true;
   part.time_s = time_s_;
   port_.part.write(part);
+  side_->resume();
+  const auto go_on = [&](int phase) {
+    if (isStopped() || !advance()) return false;
+    record(phase);
+    return true;
+  };
+  const auto reaching = [&] { return go_on(0); };
+  const auto pressing = [&] { return go_on(2); };
+  const ClutchWork clutch(*side_, dt_s_);
+  if (!clutch.takeHold(reaching)) return;
   side_->begin(taskOf(step), index, time_s_);
   told_phase_.reset();
   tellPhase();
-  side_->resume();
   const auto is_busy = [&] {
     const OperatorPhase phase = side_->phase();
     return phase != OperatorPhase::Done && phase != OperatorPhase::Failed;
@@ -429,7 +442,12 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
            : phase == OperatorPhase::Insert                              ? 1
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
+    if (phase != OperatorPhase::Regrasp) continue;
+    ++result.regrasps;
+    if (!clutch.regrasp(reaching)) return;
+    tellPhase();
   }
+  clutch.comeFree(pressing);
 }
 
 void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) const {
@@ -516,7 +534,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
-  side_->goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
+  side_->goBack(next);
   // At least until the hand is back.
   side_->resume();
   const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));

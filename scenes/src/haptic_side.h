@@ -24,15 +24,19 @@ class HapticSide {
   virtual void resume() = 0;
   [[nodiscard]] virtual const LoopSettings& settings() const = 0;
 
-  /// Throws as Hand::requireReachable().
-  virtual void requireReachable(const SceneStep& step) const = 0;
-  /// The part whose grasp frame is at X_WG now. No force flows before the port says that it is coupled.
-  virtual void grasp(const Pose& X_WG) = 0;
+  /// The part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before the port
+  /// says that it is coupled.
+  virtual void handOver(const Pose& X_WG) = 0;
+  /// Begin to; last().clutch_ratio says how far it is.
+  virtual void openClutch() = 0;
+  virtual void closeClutch() = 0;
   /// The hand begins a step; when this returns, phase() is that of the step.
   virtual void begin(const OperatorTask& task, std::size_t step, double now_s) = 0;
   virtual void letGo() = 0;
-  /// The empty hand, as Hand::goBack().
-  virtual void goBack(const SceneStep* next) = 0;
+  /// The free hand, as Hand's; when one returns, the hand has begun.
+  virtual void goBack(std::size_t next) = 0;
+  virtual void recentre() = 0;
+  virtual void goOn() = 0;
 
   /// Until the next physics step is due: lockstep does that step's ticks, real time waits. Afterwards the
   /// port has the proxy to step with. False, and nothing done, where the hand cannot go on.

@@ -21,14 +21,17 @@ class LockstepSide final : public HapticSide {
   [[nodiscard]] bool isByClock() const override { return false; }
   std::uint64_t missed() override { return 0; }
 
-  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
-  void grasp(const Pose& X_WG) override { loop_.grasp(X_WG); }
+  void handOver(const Pose& X_WG) override { loop_.handOver(X_WG); }
+  void openClutch() override { loop_.disengage(); }
+  void closeClutch() override { loop_.engage(); }
   void begin(const OperatorTask& task, std::size_t step, double now_s) override {
     hand_.prepare(task, step, now_s);
     hand_.begin();
   }
   void letGo() override { loop_.release(); }
-  void goBack(const SceneStep* next) override { hand_.goBack(next); }
+  void goBack(std::size_t next) override { hand_.goBack(next); }
+  void recentre() override { hand_.recentre(); }
+  void goOn() override { hand_.goOn(); }
 
   bool advance(const HeldPart& part) override {
     if (!hand_.canGoOn(ticks_per_step_)) return false;

@@ -65,19 +65,27 @@ class RealTimeSide final : public HapticSide {
   [[nodiscard]] bool isByClock() const override { return true; }
   std::uint64_t missed() override { return loop_.statistics().summary().missed; }
 
-  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
-  void grasp(const Pose& X_WG) override {
+  void handOver(const Pose& X_WG) override {
     if (loop_.isRunning())
-      loop_.grasp(X_WG);
+      loop_.handOver(X_WG);
     else
-      loop_.loop().grasp(X_WG);
+      loop_.loop().handOver(X_WG);
+  }
+  void openClutch() override {
+    if (loop_.isRunning())
+      loop_.disengage();
+    else
+      loop_.loop().disengage();
+  }
+  void closeClutch() override {
+    if (loop_.isRunning())
+      loop_.engage();
+    else
+      loop_.loop().engage();
   }
   void begin(const OperatorTask& task, std::size_t step, double now_s) override {
     hand_.prepare(task, step, now_s);
-    if (loop_.isRunning())
-      order(Order::Begin);
-    else
-      hand_.begin();
+    order(Order::Begin);
   }
   void letGo() override {
     if (loop_.isRunning())
@@ -85,13 +93,12 @@ class RealTimeSide final : public HapticSide {
     else
       loop_.loop().release();
   }
-  void goBack(const SceneStep* next) override {
+  void goBack(std::size_t next) override {
     next_ = next;
-    if (loop_.isRunning())
-      order(Order::GoBack);
-    else
-      hand_.goBack(next_);
+    order(Order::GoBack);
   }
+  void recentre() override { order(Order::Recentre); }
+  void goOn() override { order(Order::GoOn); }
 
   bool advance(const HeldPart& part) override {
     part_.write(part);
@@ -112,7 +119,7 @@ class RealTimeSide final : public HapticSide {
 
  private:
   /// What the hand is told while the loop runs; the loop's thread does it.
-  enum class Order { None, Begin, GoBack };
+  enum class Order { None, Begin, GoBack, Recentre, GoOn };
 
   /// Waits for the tick that does it.
   void order(Order what) {
@@ -128,6 +135,8 @@ class RealTimeSide final : public HapticSide {
     if (what == Order::None || (loop_.isRunning() && loop_.hasOpenRequests())) return;
     if (what == Order::Begin) hand_.begin();
     if (what == Order::GoBack) hand_.goBack(next_);
+    if (what == Order::Recentre) hand_.recentre();
+    if (what == Order::GoOn) hand_.goOn();
     phase_.store(hand_.phase());
     order_.store(Order::None, std::memory_order_release);
   }
@@ -170,7 +179,7 @@ class RealTimeSide final : public HapticSide {
   TripleBuffer<HeldPart> part_;
   std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
   std::atomic<Order> order_{Order::None};
-  const SceneStep* next_ = nullptr;  ///< of Order::GoBack
+  std::size_t next_ = 0;  ///< of Order::GoBack
   RealTimeResult result_;
   RealTimeLoop loop_;
   Metronome metronome_;

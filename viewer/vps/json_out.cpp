@@ -83,6 +83,7 @@ Json step(const StepResult& step) {
           {"peak_torque_Nm", step.peak_torque_Nm},
           {"impacts", step.impacts},
           {"slides", step.slides},
+          {"regrasps", step.regrasps},
           {"final_error_m", step.final_error_m},
           {"final_error_rad", step.final_error_rad},
           {"rest_drift_m", step.rest_drift_m},

@@ -88,8 +88,9 @@ struct TickReport {
   Status status = Status::Ok;
   Pose X_WG;  ///< proxy
   Twist V_WG;
-  Wrench F_hand_W;  ///< on the hand, after safety, in W about the handle's origin
-  Wrench F_hand_D;  ///< the same as written to the device
+  Wrench F_hand_W;          ///< on the hand, after safety, in W about the handle's origin
+  Wrench F_hand_D;          ///< the same as written to the device
+  double clutch_ratio = 1;  ///< of the clutch after the tick: 0 open, 1 closed
 };
 
 /// Owned by the haptic thread (or the lockstep driver). tick() never throws, allocates, locks or waits.
