@@ -76,6 +76,7 @@ void RealTimeLoop::beat(const Beat& beat) noexcept {
   tellMisses(beat);
   tellRefusals();
   answerRequests();
+  if (settings_.before) settings_.before(loop_, beat.periods);
   const double dt_s = loop_.settings().period_s * static_cast<double>(beat.periods);
   device_.takeSpent_ns();
   loop_.tick(dt_s);

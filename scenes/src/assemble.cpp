@@ -93,10 +93,7 @@ class Procedure {
     const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
     LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
-    Device& device = log != nullptr ? tapped_ : hand.device();
-    side_ = options.is_real_time
-                ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
-                : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
+    side_ = sideFor(scene, hand, loop_settings, tell);
     mountFixed();
   }
 
@@ -112,6 +109,8 @@ class Procedure {
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
+  std::unique_ptr<HapticSide> sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+                                      const TellFault& tell);
   void mountFixed();
   void runStep(std::size_t index);
   void work(StepResult& result, const SceneStep& step, std::size_t index);
@@ -211,6 +210,17 @@ AssembleResult Procedure::run() {
   return std::move(result_);
 }
 
+std::unique_ptr<HapticSide> Procedure::sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+                                               const TellFault& tell) {
+  if (options_.is_real_time) return realTimeSide(hand, port_, settings, dt_s_, tell, log_);
+  Device& device = log_ != nullptr ? tapped_ : hand.device();
+  if (std::vector<Meeting> meetings = hand.meetings(); !meetings.empty() && log_ != nullptr) {
+    settings.physics_limit_s = physicsLimit_s(dt_s_);
+    return replayedSide(hand, std::move(meetings), device, port_, settings, tell, *log_);
+  }
+  return lockstepSide(hand, device, port_, settings, ticksPerStep(scene), tell);
+}
+
 void Procedure::mountFixed() {
   for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
     if (!scene_.parts[i].is_fixed) continue;
@@ -301,7 +311,7 @@ bool Procedure::advance() {
   X_WP_before_ = poses_[held_.part];
   if (!is_settling_) keepCovered();
   physics_clock_.start();
-  const CouplingState& proxy = port_.proxy.read();
+  const CouplingState& proxy = side_->proxy();
   simulation_.setProxy(proxy);
   simulation_.step(dt_s_);
   physics_clock_.stop();
@@ -311,11 +321,11 @@ bool Procedure::advance() {
   CouplingState part = simulation_.graspState();
   part.is_coupled =
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
-  port_.part.write(part);
+  std::optional<double> stored_J;
   if (is_holding_)
-    side_->noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-                          springEnergy(gains_, proxy, part),
-                      0);
+    stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
+               springEnergy(gains_, proxy, part);
+  side_->publish(part, stored_J);
   return true;
 }
 
@@ -417,7 +427,7 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   CouplingState part = simulation_.graspState();
   part.is_coupled = true;
   part.time_s = time_s_;
-  port_.part.write(part);
+  side_->publish(part, {});
   side_->resume();
   const auto go_on = [&](int phase) {
     if (isStopped() || !advance()) return false;
@@ -504,7 +514,7 @@ void Procedure::settle(StepResult& result, std::size_t index) {
   placed_.add(part, X_WP);
   std::future<CookedField> field = cookBeside(index + 1);
   const std::uint64_t missed_before = side_->missed();
-  if (side_->isByClock()) goOnUntil([&] { return isReady(verdict) && isReady(field); });
+  if (side_->isByClock()) goOnUntil([&] { return side_->hasSettled(isReady(verdict) && isReady(field)); });
   result.missed_while_cooking = side_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
@@ -617,11 +627,10 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   if (scene.steps.empty())
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
-  if ((options.is_real_time || options.has_local_contact) && !options.record.empty())
-    throw LoadError(
-        options.record, "",
-        "a run in real time or with local contact cannot be replayed bit for bit; record it without "
-        "--real-time and --local-contact");
+  if (options.has_local_contact && !options.record.empty())
+    throw LoadError(options.record, "",
+                    "a run with local contact cannot be replayed bit for bit; record it without "
+                    "--local-contact");
   const std::unique_ptr<Hand> hand = simulatedHand(scene);
   const LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);

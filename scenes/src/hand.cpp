@@ -164,6 +164,12 @@ class RecordedHand final : public Hand {
   [[nodiscard]] OperatorPhase phase() const override {
     return static_cast<OperatorPhase>(recording_.phase().value_or(0));
   }
+  [[nodiscard]] std::vector<Meeting> meetings() const override {
+    std::vector<Meeting> all;
+    for (const LogEntry& entry : recording_.run().entries)
+      if (const auto* meeting = std::get_if<Meeting>(&entry)) all.push_back(*meeting);
+    return all;
+  }
   [[nodiscard]] bool canGoOn(int ticks) const override {
     return recording_.left() >= static_cast<std::size_t>(ticks);
   }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
@@ -40,6 +41,8 @@ class Hand {
   /// One tick of the hand, after the loop's own.
   virtual void step(const HeldPart& part, const HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual OperatorPhase phase() const = 0;
+  /// Of a run by the clock that is done again; empty: of none.
+  [[nodiscard]] virtual std::vector<Meeting> meetings() const { return {}; }
   /// Has it so many ticks left?
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };

@@ -10,6 +10,7 @@ class LockstepSide final : public HapticSide {
   LockstepSide(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
                int ticks_per_step, const TellFault& tell)
       : hand_(hand),
+        port_(port),
         loop_(device, port, settings),
         ticks_per_step_(ticks_per_step),
         tell_(tell),
@@ -44,7 +45,11 @@ class LockstepSide final : public HapticSide {
     }
     return true;
   }
-  void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
+  const CouplingState& proxy() override { return port_.proxy.read(); }
+  void publish(const CouplingState& part, std::optional<double> stored_J) override {
+    port_.part.write(part);
+    if (stored_J) loop_.noteStored(*stored_J, 0);
+  }
   OperatorPhase phase() override { return hand_.phase(); }
   const TickReport& last() override { return loop_.last(); }
   HandLedger ledger() override { return loop_.ledger(); }
@@ -60,6 +65,7 @@ class LockstepSide final : public HapticSide {
   }
 
   Hand& hand_;
+  CouplingPort& port_;
   HapticLoop loop_;
   int ticks_per_step_;
   TellFault tell_;

@@ -138,10 +138,16 @@ std::string toJson(const std::string& scene, double seconds, const SimulateResul
                       {"rotation_xyzw", list(body.X_WP.quaternion())},
                       {"velocity_m_s", list(body.V_WP_W.v)},
                       {"angular_velocity_rad_s", list(body.V_WP_W.w)}});
-  return text({{"wall",
-                {{"build_s", result.build_wall_s},
-                 {"step_us", shortTimes(result.step)},
-                 {"contact_step_us", shortTimes(result.contact_step)}}},
+  Json wall = {{"build_s", result.build_wall_s},
+               {"step_us", shortTimes(result.step)},
+               {"contact_step_us", shortTimes(result.contact_step)}};
+  if (const auto& kept = result.real_time)
+    wall["physics"] = {{"missed_periods", kept->missed},
+                       {"run_s", kept->run_wall_s},
+                       {"has_priority", kept->has_priority},
+                       {"has_locked_memory", kept->has_locked_memory},
+                       {"warnings", kept->warnings}};
+  return text({{"wall", wall},
                {"scene", scene},
                {"seconds", seconds},
                {"steps", result.step.count},

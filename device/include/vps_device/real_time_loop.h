@@ -37,6 +37,9 @@ struct RealTimeSettings {
                                    ///< 100 Hz physics, and sooner than a person notices a part that hangs
   double stale_s = 2e-3;           ///< ticks with an older snapshot are counted
   RealTimeClock* clock = nullptr;  ///< null: the system's
+  /// Called before each tick, by the loop's thread: the last moment to tell the loop something. periods: as
+  /// the clock counts them since the last tick. Must not allocate, lock, throw or wait.
+  std::function<void(HapticLoop& loop, std::int64_t periods)> before;
   /// Called after each tick, by the loop's thread, with what has passed since the last: a simulated device's
   /// own motion. As the tick, it must not allocate, lock, throw or wait.
   std::function<void(HapticLoop& loop, double dt_s)> beside;
