@@ -199,7 +199,7 @@ AssembleResult Procedure::run() {
   result_.real_time = side_->realTime();
   result_.physics = physics_clock_.summary();
   const HandLedger ledger = side_->ledger();
-  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
+  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.unseen_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = placed_.modelled();
   result_.widened = placed_.widened();

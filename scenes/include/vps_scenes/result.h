@@ -74,7 +74,8 @@ struct TraceRow {
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;  ///< DESIGN.md section 7
+  double injected_J = 0;  ///< DESIGN.md section 7, by what the encoders show
+  double unseen_J = 0;    ///< what they may have kept from it at the most (HandLedger)
 };
 
 struct ModelledCost {
