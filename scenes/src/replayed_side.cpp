@@ -39,7 +39,7 @@ class ReplayedSide final : public ClockedSide {
     while (next_ < meetings_.size() && !goTo(MeetingKind::Step)) ++next_;  // beyond a departure
     if (!isAt(MeetingKind::Step)) return false;
     note(MeetingKind::Step);
-    look(LoopView::of(loop_, hand_.phase()));
+    look(ticked_);
     return true;
   }
   bool hasSettled(bool) override {
@@ -86,6 +86,7 @@ class ReplayedSide final : public ClockedSide {
     clock_.start();
     loop_.tick(met.periods * settings_.period_s);
     clock_.stop();
+    ticked_ = LoopView::of(loop_, hand_.phase());
   }
 
   /// What the recording has next, as this run knows it.
@@ -97,6 +98,7 @@ class ReplayedSide final : public ClockedSide {
 
   CouplingPort& port_;
   HapticLoop loop_;
+  LoopView ticked_;  ///< what a tick leaves is what physics sees, whatever is asked of the loop since
   Device& device_;
   std::vector<Meeting> meetings_;
   std::size_t next_ = 0;
