@@ -41,6 +41,15 @@ int ticksPerStep(const Scene& scene) {
   return ticks;
 }
 
+/// A grip that loosens, with the same limits.
+CouplingGains faded(CouplingGains gains, double share) {
+  gains.k_N_per_m *= share;
+  gains.b_Ns_per_m *= share;
+  gains.k_Nm_per_rad *= share;
+  gains.b_Nms_per_rad *= share;
+  return gains;
+}
+
 /// The energy of the coupling's springs, up to their limits (beyond one the spring's force is constant).
 double springEnergy(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
   const auto stored = [](double k, double stretch, double limit) {
@@ -163,6 +172,7 @@ class Procedure {
   PlacedParts placed_;
   double dt_s_;
   CouplingGains gains_;
+  double grip_ = 1;    ///< share of the gains that holds the part in hand
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock physics_clock_;
@@ -272,6 +282,7 @@ void Procedure::take(const SceneStep& step) {
            0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
   simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
+  grip_ = 1;
   side_->handOver(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
@@ -324,7 +335,7 @@ bool Procedure::advance() {
   std::optional<double> stored_J;
   if (is_holding_)
     stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-               springEnergy(gains_, proxy, part);
+               springEnergy(faded(gains_, grip_), proxy, part);
   side_->publish(part, stored_J);
   return true;
 }
@@ -457,7 +468,12 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
     if (!clutch.regrasp(reaching)) return;
     tellPhase();
   }
-  clutch.comeFree(pressing);
+  if (!clutch.comeFree(pressing)) return;
+  clutch.setDown([&](double share) {
+    grip_ = share;
+    simulation_.setGains(faded(gains_, grip_));
+    return pressing();
+  });
 }
 
 void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) const {

@@ -38,6 +38,13 @@ bool ClutchWork::comeFree(const std::function<bool()>& go_on) const {
   return waitForClutch(0, go_on);
 }
 
+bool ClutchWork::setDown(const std::function<bool(double)>& go_on) const {
+  const double steps = std::ceil(side_.settings().clutch_s / physics_s_);
+  for (double left = steps - 1; left >= 0; --left)
+    if (!go_on(left / steps)) return false;
+  return true;
+}
+
 bool ClutchWork::regrasp(const std::function<bool()>& go_on) const {
   if (!comeFree(go_on)) return false;
   side_.recentre();

@@ -19,6 +19,10 @@ class ClutchWork {
   bool takeHold(const std::function<bool()>& go_on) const;
   /// Until it has none of it.
   bool comeFree(const std::function<bool()>& go_on) const;
+  /// The proxy's grip on the part fades, over as long as the clutch takes: what the spring holds is given up
+  /// bit by bit, and the part comes to rest on what it stands on before it is let go.
+  /// @param go_on  gets the share of the grip that is left, down to 0
+  bool setDown(const std::function<bool(double share)>& go_on) const;
   /// Lets go, goes back to where the next stroke starts, takes hold again and goes on.
   bool regrasp(const std::function<bool()>& go_on) const;
 
