@@ -385,9 +385,8 @@ TEST_F(Program, NothingIsRecordedOverAFileThatIsNoRecording) {
                 "letter.txt: is there and is no recording");
   expectRefused("assemble steps.toml --record steps.toml --out out", "steps.toml: is read by this command");
   expectRefused("assemble steps.toml --record no/run.mcap --out out", "no/run.mcap: cannot be written");
-  for (const char* option : {"--real-time", "--local-contact"})
-    expectRefused(std::string("assemble steps.toml --record run.mcap --out out ") + option,
-                  "run.mcap: a run in real time or with local contact cannot be replayed");
+  expectRefused("assemble steps.toml --record run.mcap --out out --local-contact",
+                "run.mcap: a run with local contact cannot be replayed");
   EXPECT_EQ(slurp(folder_ / "letter.txt"), "dear reader");
   EXPECT_EQ(slurp(folder_ / "steps.toml"), kScene + step);
 }
