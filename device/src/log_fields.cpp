@@ -170,8 +170,10 @@ LogEntry blank(std::size_t kind) {
       return WrittenWrench{};
     case 2:
       return RunEvent{};
-    default:
+    case 3:
       return RunTrace{};
+    default:
+      return Meeting{};
   }
 }
 

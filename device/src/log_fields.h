@@ -57,16 +57,31 @@ void fields(Entry& e, Visit&& visit) {
   visit("phase", e.phase);
 }
 
+template <typename Entry, typename Visit>
+requires std::is_same_v<std::remove_const_t<Entry>, Meeting>
+void fields(Entry& e, Visit&& visit) {
+  auto& [time_s, tick, periods, snapshot, kind] = e;
+  visit("time_s", time_s);
+  visit("tick", tick);
+  visit("periods", periods);
+  visit("snapshot", snapshot);
+  visit("kind", kind);
+}
+
 /// Topics and types by LogEntry::index().
 inline constexpr std::size_t kKinds = std::variant_size_v<LogEntry>;
-inline constexpr const char* kTopics[kKinds] = {"/device/read", "/device/write", "/run/event", "/run/trace"};
+inline constexpr const char* kTopics[kKinds] = {"/device/read", "/device/write", "/run/event", "/run/trace",
+                                                "/run/meeting"};
 inline constexpr const char* kTypes[kKinds] = {"vps_msgs/msg/DeviceSample", "vps_msgs/msg/HandWrench",
-                                               "vps_msgs/msg/RunEvent", "vps_msgs/msg/RunTrace"};
+                                               "vps_msgs/msg/RunEvent", "vps_msgs/msg/RunTrace",
+                                               "vps_msgs/msg/Meeting"};
 inline constexpr const char* kAbout[kKinds] = {
     "# The handle H in the device's base D; v and w of H's origin. status 0: use it.",
     "# On the hand about H's origin, in D, as it went to the device.",
     "# kind: 0 takes a part, 1 another phase, 2 lets go, 3 a note. phase: of the hand.",
-    "# Part P and proxy in the world W. phase: 0 reach, 1 insert, 2 press, 3 rest."};
+    "# Part P and proxy in the world W. phase: 0 reach, 1 insert, 2 press, 3 rest.",
+    "# Loop and physics by the clock. kind: 0 a tick with that snapshot, 1 a step with that tick's proxy, "
+    "..."};
 
 /// An entry of a kind, with its defaults.
 LogEntry blank(std::size_t kind);

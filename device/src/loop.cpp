@@ -143,6 +143,7 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
   report_.V_WG = proxy.V_W;
+  report_.clutch_ratio = clutch_.ratio();
   report_.F_hand_W = rotated(settings_.map.X_WD.R, report_.F_hand_D);
   ++ticks_;
   ++counts_[std::min(static_cast<std::size_t>(report_.status), kStatusCount - 1)];
@@ -198,6 +199,7 @@ void HapticLoop::account(const DeviceSample& sample, const Twist& step) noexcept
   has_before_ = true;
   if (!had_before) return;
   const Wrench F_acting_D = actingWrench();
+  accountUnseen(F_acting_D);
   const double work_J = power(F_acting_D, step);
   (work_J > 0 ? ledger_.to_hand_J : ledger_.from_hand_J) += std::abs(work_J);
 
@@ -209,6 +211,15 @@ void HapticLoop::account(const DeviceSample& sample, const Twist& step) noexcept
 
   // Scene joules: scene wrench times scene displacement.
   net_scene_J_ += power(settings_.map.toScene(F_acting_D), settings_.map.toScene(step));
+}
+
+void HapticLoop::accountUnseen(const Wrench& F_D) noexcept {
+  force_way_N_ += (F_D.f - F_accounted_D_.f).norm();
+  torque_way_Nm_ += (F_D.tau - F_accounted_D_.tau).norm();
+  F_accounted_D_ = F_D;
+  const double line_J = limits_.resolution_m * (force_way_N_ + F_D.f.norm()),
+               turn_J = limits_.resolution_rad * (torque_way_Nm_ + F_D.tau.norm());
+  ledger_.unseen_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
 }
 
 void HapticLoop::noteStored(double stored_J, double actuator_J) noexcept {

@@ -46,6 +46,8 @@ const char* toText(OperatorPhase phase) noexcept {
       return "done";
     case OperatorPhase::Failed:
       return "failed";
+    case OperatorPhase::Regrasp:
+      return "regrasp";
   }
   return "unknown";
 }
@@ -98,14 +100,21 @@ HandForce VirtualOperator::step(const OperatorView& view, double dt_s) noexcept 
     V_eq_ = {};
     seen_now_ = {view.time_s, view.X_WP, view.V_WP};
     if (phase_ == OperatorPhase::Reach) {
-      startSegment(X_eq_, path_[1], 1, view.time_s);
-      if (path_.size() == 2) enter(OperatorPhase::Insert, view.time_s);
+      startSegment(X_eq_, path_[next_], 1, view.time_s);
+      if (next_ + 1 == path_.size()) enter(OperatorPhase::Insert, view.time_s);
     }
   }
   look(view);
   decide(view, dt_s);
   follow(limited(wanted(view.time_s), view.X_WG_hand), dt_s);
   return impedance();
+}
+
+void VirtualOperator::goOn() noexcept {
+  if (phase_ != OperatorPhase::Regrasp) return;
+  fix_m_ = fix_rad_ = Vec3::Zero();  // it starts from where the hand is
+  has_view_ = false;
+  phase_ = OperatorPhase::Reach;
 }
 
 // --- Plan
@@ -241,6 +250,12 @@ void VirtualOperator::reach(double now_s) noexcept {
   if (now_s < end_s) return;
   const bool has_arrived = (seenGrasp().p - segment_.X_to.p).norm() < kArrived_m;
   if (!has_arrived && now_s < end_s + kArrivalWait_s) return;
+  const auto& regrasps = task_.regrasps;
+  if (std::find(regrasps.begin(), regrasps.end(), next_ - 1) != regrasps.end()) {
+    X_hold_ = wanted(now_s);
+    ++next_;
+    return enter(OperatorPhase::Regrasp, now_s);
+  }
   if (++next_ + 1 == path_.size()) return enter(OperatorPhase::Insert, now_s);
   startSegment(segment_.X_to, path_[next_], 1, now_s);
 }

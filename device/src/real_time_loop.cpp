@@ -76,6 +76,7 @@ void RealTimeLoop::beat(const Beat& beat) noexcept {
   tellMisses(beat);
   tellRefusals();
   answerRequests();
+  if (settings_.before) settings_.before(loop_, beat.periods);
   const double dt_s = loop_.settings().period_s * static_cast<double>(beat.periods);
   device_.takeSpent_ns();
   loop_.tick(dt_s);
@@ -116,6 +117,23 @@ void RealTimeLoop::tellRefusals() noexcept {
   tell(lacks_locking_, DeviceEventKind::NotLocked);
 }
 
+void RealTimeLoop::answer(const Request& request) noexcept {
+  switch (request.kind) {
+    case Request::Grasp:
+      return loop_.grasp(request.X_WG);
+    case Request::HandOver:
+      return loop_.handOver(request.X_WG);
+    case Request::Disengage:
+      return loop_.disengage();
+    case Request::Engage:
+      return loop_.engage();
+    case Request::Release:
+      return loop_.release();
+    case Request::Rearm:
+      return loop_.rearm();
+  }
+}
+
 bool RealTimeLoop::ask(const Request& request) noexcept {
   const std::size_t asked = asked_.load(std::memory_order_relaxed);
   if (asked - answered_.load(std::memory_order_acquire) == kRequests) return false;
@@ -127,6 +145,15 @@ bool RealTimeLoop::ask(const Request& request) noexcept {
 bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
   return ask({Request::Grasp, X_WG});
 }
+bool RealTimeLoop::handOver(const Pose& X_WG) noexcept {
+  return ask({Request::HandOver, X_WG});
+}
+bool RealTimeLoop::disengage() noexcept {
+  return ask({Request::Disengage, {}});
+}
+bool RealTimeLoop::engage() noexcept {
+  return ask({Request::Engage, {}});
+}
 bool RealTimeLoop::release() noexcept {
   return ask({Request::Release, {}});
 }
@@ -137,12 +164,7 @@ bool RealTimeLoop::rearm() noexcept {
 void RealTimeLoop::answerRequests() noexcept {
   const std::size_t asked = asked_.load(std::memory_order_acquire);
   std::size_t answered = answered_.load(std::memory_order_relaxed);
-  for (; answered != asked; ++answered) {
-    const Request& request = requests_[answered % kRequests];
-    if (request.kind == Request::Grasp) loop_.grasp(request.X_WG);
-    if (request.kind == Request::Release) loop_.release();
-    if (request.kind == Request::Rearm) loop_.rearm();
-  }
+  for (; answered != asked; ++answered) answer(requests_[answered % kRequests]);
   answered_.store(answered, std::memory_order_release);
   const Energies& energies = energies_.read();
   if (energies.is_told) loop_.noteStored(energies.stored_J, energies.actuator_J);

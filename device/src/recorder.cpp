@@ -16,11 +16,11 @@
 #include <stdexcept>
 #include <thread>
 
-#include "entry_ring.h"
 #include "log_fields.h"
 #include "recording_format.h"
 #include "vps/load_error.h"
 #include "vps_device/bytes.h"
+#include "vps_device/entry_ring.h"
 
 namespace vps {
 
@@ -246,6 +246,11 @@ Recorder::~Recorder() {
 void Recorder::add(const LogEntry& entry) noexcept {
   Work& w = *work_;
   if (!w.ring.push(w.number++, entry)) w.dropped.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Recorder::lose(std::uint64_t count) noexcept {
+  work_->number += static_cast<std::uint32_t>(count);
+  work_->dropped.fetch_add(count, std::memory_order_relaxed);
 }
 
 void Recorder::waitForRoom() const {

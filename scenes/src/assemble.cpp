@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "box_motion.h"
+#include "clutch_work.h"
 #include "fit_record.h"
 #include "haptic_side.h"
 #include "placed_parts.h"
@@ -38,6 +39,15 @@ int ticksPerStep(const Scene& scene) {
                     "the haptic rate is not a whole multiple of the physics rate; choose, say, 1000 Hz "
                     "for both");
   return ticks;
+}
+
+/// A grip that loosens, with the same limits.
+CouplingGains faded(CouplingGains gains, double share) {
+  gains.k_N_per_m *= share;
+  gains.b_Ns_per_m *= share;
+  gains.k_Nm_per_rad *= share;
+  gains.b_Nms_per_rad *= share;
+  return gains;
 }
 
 /// The energy of the coupling's springs, up to their limits (beyond one the spring's force is constant).
@@ -92,10 +102,7 @@ class Procedure {
     const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
     LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
-    Device& device = log != nullptr ? tapped_ : hand.device();
-    side_ = options.is_real_time
-                ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
-                : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
+    side_ = sideFor(scene, hand, loop_settings, tell);
     mountFixed();
   }
 
@@ -107,9 +114,12 @@ class Procedure {
     Pose X_PG;
     Pose X_WP_target;
     Box box_P;
+    Vec3 weight_W = Vec3::Zero();
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
+  std::unique_ptr<HapticSide> sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+                                      const TellFault& tell);
   void mountFixed();
   void runStep(std::size_t index);
   void work(StepResult& result, const SceneStep& step, std::size_t index);
@@ -162,6 +172,7 @@ class Procedure {
   PlacedParts placed_;
   double dt_s_;
   CouplingGains gains_;
+  double grip_ = 1;    ///< share of the gains that holds the part in hand
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock physics_clock_;
@@ -183,8 +194,6 @@ class Procedure {
 
 AssembleResult Procedure::run() {
   const double begun_s = wallSeconds();
-  for (const SceneStep& step : scene_.steps)
-    side_->requireReachable(step);  // refuses before an hour is spent
   result_.completed = true;
   for (std::size_t i = 0; i < scene_.steps.size() && !isStopped(); ++i) {
     runStep(i);
@@ -200,7 +209,7 @@ AssembleResult Procedure::run() {
   result_.real_time = side_->realTime();
   result_.physics = physics_clock_.summary();
   const HandLedger ledger = side_->ledger();
-  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
+  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.unseen_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = placed_.modelled();
   result_.widened = placed_.widened();
@@ -209,6 +218,17 @@ AssembleResult Procedure::run() {
   result_.simulated_s = time_s_;
   result_.run_wall_s = wallSeconds() - begun_s;
   return std::move(result_);
+}
+
+std::unique_ptr<HapticSide> Procedure::sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+                                               const TellFault& tell) {
+  if (options_.is_real_time) return realTimeSide(hand, port_, settings, dt_s_, tell, log_);
+  Device& device = log_ != nullptr ? tapped_ : hand.device();
+  if (std::vector<Meeting> meetings = hand.meetings(); !meetings.empty() && log_ != nullptr) {
+    settings.physics_limit_s = physicsLimit_s(dt_s_);
+    return replayedSide(hand, std::move(meetings), device, port_, settings, tell, *log_);
+  }
+  return lockstepSide(hand, device, port_, settings, ticksPerStep(scene), tell);
 }
 
 void Procedure::mountFixed() {
@@ -254,11 +274,16 @@ void Procedure::take(const SceneStep& step) {
   }
   simulation_.addBody(step.part, step.X_WP_start);
   roles_[step.part] = BodyRole::InHand;
-  held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target,
-           bounds(scene_part.part.mesh), 0};
+  held_ = {step.part,
+           Pose::translation(simulation_.centreOfMass(step.part)),
+           step.X_WP_target,
+           bounds(scene_part.part.mesh),
+           simulation_.mass(step.part) * scene_.gravity_W,
+           0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
   simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
-  side_->grasp(step.X_WP_start * held_.X_PG);
+  grip_ = 1;
+  side_->handOver(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
 }
@@ -289,7 +314,7 @@ void Procedure::letGo() {
 }
 
 bool Procedure::advance() {
-  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part)})) {
+  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part), held_.weight_W})) {
     is_over_ = true;
     log_ = nullptr;  // what follows is no part of the run
     return false;
@@ -297,7 +322,7 @@ bool Procedure::advance() {
   X_WP_before_ = poses_[held_.part];
   if (!is_settling_) keepCovered();
   physics_clock_.start();
-  const CouplingState& proxy = port_.proxy.read();
+  const CouplingState& proxy = side_->proxy();
   simulation_.setProxy(proxy);
   simulation_.step(dt_s_);
   physics_clock_.stop();
@@ -307,11 +332,11 @@ bool Procedure::advance() {
   CouplingState part = simulation_.graspState();
   part.is_coupled =
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
-  port_.part.write(part);
+  std::optional<double> stored_J;
   if (is_holding_)
-    side_->noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-                          springEnergy(gains_, proxy, part),
-                      0);
+    stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
+               springEnergy(faded(gains_, grip_), proxy, part);
+  side_->publish(part, stored_J);
   return true;
 }
 
@@ -370,7 +395,7 @@ OperatorTask Procedure::taskOf(const SceneStep& step) const {
   task.tolerance_m = step.tolerance_m;
   task.tolerance_rad = step.tolerance_rad;
   task.timeout_s = step.timeout_s;
-  task.weight_W = simulation_.mass(step.part) * scene_.gravity_W;
+  task.weight_W = held_.weight_W;
   return task;
 }
 
@@ -413,11 +438,20 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   CouplingState part = simulation_.graspState();
   part.is_coupled = true;
   part.time_s = time_s_;
-  port_.part.write(part);
+  side_->publish(part, {});
+  side_->resume();
+  const auto go_on = [&](int phase) {
+    if (isStopped() || !advance()) return false;
+    record(phase);
+    return true;
+  };
+  const auto reaching = [&] { return go_on(0); };
+  const auto pressing = [&] { return go_on(2); };
+  const ClutchWork clutch(*side_, dt_s_);
+  if (!clutch.takeHold(reaching)) return;
   side_->begin(taskOf(step), index, time_s_);
   told_phase_.reset();
   tellPhase();
-  side_->resume();
   const auto is_busy = [&] {
     const OperatorPhase phase = side_->phase();
     return phase != OperatorPhase::Done && phase != OperatorPhase::Failed;
@@ -429,7 +463,17 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
            : phase == OperatorPhase::Insert                              ? 1
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
+    if (phase != OperatorPhase::Regrasp) continue;
+    ++result.regrasps;
+    if (!clutch.regrasp(reaching)) return;
+    tellPhase();
   }
+  if (!clutch.comeFree(pressing)) return;
+  clutch.setDown([&](double share) {
+    grip_ = share;
+    simulation_.setGains(faded(gains_, grip_));
+    return pressing();
+  });
 }
 
 void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) const {
@@ -486,7 +530,7 @@ void Procedure::settle(StepResult& result, std::size_t index) {
   placed_.add(part, X_WP);
   std::future<CookedField> field = cookBeside(index + 1);
   const std::uint64_t missed_before = side_->missed();
-  if (side_->isByClock()) goOnUntil([&] { return isReady(verdict) && isReady(field); });
+  if (side_->isByClock()) goOnUntil([&] { return side_->hasSettled(isReady(verdict) && isReady(field)); });
   result.missed_while_cooking = side_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
@@ -516,7 +560,7 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
-  side_->goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
+  side_->goBack(next);
   // At least until the hand is back.
   side_->resume();
   const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
@@ -599,11 +643,10 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   if (scene.steps.empty())
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
-  if ((options.is_real_time || options.has_local_contact) && !options.record.empty())
-    throw LoadError(
-        options.record, "",
-        "a run in real time or with local contact cannot be replayed bit for bit; record it without "
-        "--real-time and --local-contact");
+  if (options.has_local_contact && !options.record.empty())
+    throw LoadError(options.record, "",
+                    "a run with local contact cannot be replayed bit for bit; record it without "
+                    "--local-contact");
   const std::unique_ptr<Hand> hand = simulatedHand(scene);
   const LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);

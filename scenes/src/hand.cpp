@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "hand.h"
 
-#include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "strokes.h"
 #include "vps/load_error.h"
 #include "vps_device/simulated_dual_arm.h"
 
@@ -33,49 +34,80 @@ SimulatedDualArmSettings plantSettings(const Scene& scene) {
                     "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
   SimulatedDualArmSettings settings;
   settings.arms = armsOf(scene);
-  settings.X_DH_start = handleStart(scene, scene.steps.front(), settings.arms.workspace_m);
   settings.has_quantised_encoders = scene.device.has_quantised_encoders;
   settings.rate_hz = scene.fidelity.haptic_rate_hz;
   return settings;
 }
 
+std::vector<Strokes> allStrokes(const Scene& scene, const Vec3& workspace_m) {
+  std::vector<Strokes> all;
+  for (const SceneStep& step : scene.steps) all.push_back(strokesOf(scene, step, workspace_m));
+  return all;
+}
+
+SimulatedDualArmSettings startingAt(SimulatedDualArmSettings settings, const std::vector<Strokes>& strokes) {
+  settings.X_DH_start = strokes.front().X_DH_start.front();
+  return settings;
+}
+
 class SimulatedHand final : public Hand {
  public:
-  explicit SimulatedHand(const Scene& scene) : scene_(scene), plant_(plantSettings(scene)) {}
+  explicit SimulatedHand(const Scene& scene)
+      : scene_(scene),
+        settings_(plantSettings(scene)),
+        strokes_(allStrokes(scene, settings_.arms.workspace_m)),
+        plant_(startingAt(settings_, strokes_)) {
+    X_DH_from_ = X_DH_back_ = plant_.truePose();
+  }
 
   Device& device() override { return plant_; }
 
   void prepare(const OperatorTask& task, std::size_t step, double now_s) override {
     next_ = VirtualOperator(habitsOf(scene_.hand, step));
-    next_.begin(task, now_s);
+    OperatorTask reachable = task;
+    reachable.way_points = strokes_[step].way_points;
+    reachable.regrasps = strokes_[step].regrasps;
+    next_.begin(reachable, now_s);
     next_s_ = now_s;
+    next_step_ = step;
   }
 
   void begin() override {
     std::swap(operator_, next_);  // moves; what was before is freed by the next prepare()
     time_s_ = next_s_;
-    is_going_back_ = false;
+    step_ = next_step_;
+    stroke_ = 0;
+    is_at_work_ = true;
   }
 
-  void requireReachable(const SceneStep& step) const override { handleStart(scene_, step, workspace_m()); }
-
-  void goBack(const SceneStep* next) override {
-    X_DH_back_ = next != nullptr ? handleStart(scene_, *next, workspace_m()) : Pose{};
-    X_DH_from_ = plant_.truePose();
-    turn_rad_ = rotationVector(X_DH_back_.R * X_DH_from_.R.transpose());
-    time_s_ = 0;
-    is_going_back_ = true;
+  void goBack(std::size_t next) override {
+    goTo(next < strokes_.size() ? strokes_[next].X_DH_start.front() : Pose{});
+  }
+  void recentre() override {
+    const std::vector<Pose>& starts = strokes_[step_].X_DH_start;
+    if (stroke_ + 1 < starts.size()) ++stroke_;
+    goTo(starts[stroke_]);
+  }
+  void goOn() override {
+    operator_.goOn();
+    is_at_work_ = true;
   }
 
   void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override {
-    plant_.step(dt_s, is_going_back_ ? returning(dt_s) : atWork(part, loop, dt_s));
+    plant_.step(dt_s, is_at_work_ ? atWork(part, loop, dt_s) : returning(part, loop, dt_s));
   }
 
   [[nodiscard]] OperatorPhase phase() const override { return operator_.phase(); }
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
-  [[nodiscard]] const Vec3& workspace_m() const { return plant_.plant().settings().arms.workspace_m; }
+  void goTo(const Pose& X_DH) {
+    X_DH_back_ = X_DH;
+    X_DH_from_ = plant_.truePose();
+    turn_rad_ = rotationVector(X_DH_back_.R * X_DH_from_.R.transpose());
+    back_s_ = 0;
+    is_at_work_ = false;
+  }
 
   HandForce atWork(const HeldPart& part, const HapticLoop& loop, double dt_s) {
     OperatorView view;
@@ -86,24 +118,34 @@ class SimulatedHand final : public Hand {
     view.V_WP = part.V_WP;
     view.F_hand_W = loop.last().F_hand_W;
     time_s_ += dt_s;
-    return loop.toDevice(operator_.step(view, dt_s));
+    HandForce hand = operator_.step(view, dt_s);
+    hand.F = hand.F * loop.clutch().ratio();  // it carries what it feels
+    return loop.toDevice(hand);
   }
 
-  HandForce returning(double dt_s) {
+  /// On its way back, or there; where it has a part in hand it carries what the clutch lets it feel.
+  HandForce returning(const HeldPart& part, const HapticLoop& loop, double dt_s) {
     time_s_ += dt_s;
-    const double share = minimumJerk(time_s_ / kHandReturn_s);
+    back_s_ += dt_s;
+    const double share = minimumJerk(back_s_ / kHandReturn_s);
     HandForce hand = evenHand(habitsOf(scene_.hand, 0));
     hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad_) * X_DH_from_.R),
                      X_DH_from_.p + share * (X_DH_back_.p - X_DH_from_.p));
+    if (loop.isHolding())
+      hand.F = loop.settings().map.toDevice(Wrench{Vec3::Zero(), -part.weight_W}) * loop.clutch().ratio();
     return hand;
   }
 
   const Scene& scene_;
+  SimulatedDualArmSettings settings_;
+  std::vector<Strokes> strokes_;  ///< of each step
   SimulatedDualArm plant_;
   VirtualOperator operator_, next_;
   double next_s_ = 0;
-  double time_s_ = 0;  ///< of the run while at work, else since it let go
-  bool is_going_back_ = false;
+  std::size_t next_step_ = 0, step_ = 0, stroke_ = 0;
+  double time_s_ = 0;              ///< of the run
+  double back_s_ = kHandReturn_s;  ///< since it went back
+  bool is_at_work_ = false;
   Pose X_DH_from_, X_DH_back_;
   Vec3 turn_rad_ = Vec3::Zero();
 };
@@ -115,11 +157,18 @@ class RecordedHand final : public Hand {
   Device& device() override { return recording_; }
   void prepare(const OperatorTask&, std::size_t, double) override {}
   void begin() override {}
-  void requireReachable(const SceneStep&) const override {}
-  void goBack(const SceneStep*) override {}
+  void goBack(std::size_t) override {}
+  void recentre() override {}
+  void goOn() override {}
   void step(const HeldPart&, const HapticLoop&, double) override {}
   [[nodiscard]] OperatorPhase phase() const override {
     return static_cast<OperatorPhase>(recording_.phase().value_or(0));
+  }
+  [[nodiscard]] std::vector<Meeting> meetings() const override {
+    std::vector<Meeting> all;
+    for (const LogEntry& entry : recording_.run().entries)
+      if (const auto* meeting = std::get_if<Meeting>(&entry)) all.push_back(*meeting);
+    return all;
   }
   [[nodiscard]] bool canGoOn(int ticks) const override {
     return recording_.left() >= static_cast<std::size_t>(ticks);
@@ -130,25 +179,6 @@ class RecordedHand final : public Hand {
 };
 
 }  // namespace
-
-Pose handleStart(const Scene& scene, const SceneStep& step, const Vec3& room_m) {
-  Box path;
-  path.add(Vec3::Zero());
-  for (const Pose& X_WP : step.way_points) path.add(X_WP.p - step.X_WP_start.p);
-  path.add(step.X_WP_target.p - step.X_WP_start.p);
-  const Vec3 needed_m = path.size() / scene.device.scale;
-  if ((needed_m.array() > room_m.array()).any()) {
-    char words[160];
-    std::snprintf(
-        words, sizeof words,
-        "its path is longer than the device's workspace of %.0f x %.0f x %.0f mm; start nearer, or set "
-        "[device] scale above %f",
-        1e3 * room_m.x(), 1e3 * room_m.y(), 1e3 * room_m.z(),
-        scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff());
-    throw LoadError(scene.file, scene.parts[step.part].part.name, words);
-  }
-  return Pose::translation(-path.center() / scene.device.scale);
-}
 
 std::unique_ptr<Hand> simulatedHand(const Scene& scene) {
   return std::make_unique<SimulatedHand>(scene);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
@@ -17,6 +18,7 @@ namespace vps {
 struct HeldPart {
   Pose X_WP;
   Twist V_WP;
+  Vec3 weight_W = Vec3::Zero();  ///< [N]
 };
 
 /// Device and hand together. A run asks it for nothing else.
@@ -28,28 +30,30 @@ class Hand {
   virtual void prepare(const OperatorTask& task, std::size_t step, double now_s) = 0;
   /// Starts what was prepared. As step(), never allocates.
   virtual void begin() = 0;
-  /// Empty, goes back to where the coming step starts, in kHandReturn_s; null: to the middle. Never allocates
-  /// for a step that can be reached.
-  virtual void goBack(const SceneStep* next) = 0;
-  /// Throws LoadError for a step that the device cannot reach.
-  virtual void requireReachable(const SceneStep& step) const = 0;
+  /// Empty, goes back to where that step starts, in kHandReturn_s; beyond the last: to the middle. Never
+  /// allocates.
+  virtual void goBack(std::size_t next) = 0;
+  /// In OperatorPhase::Regrasp: goes, with the clutch open, to where the next stroke starts, in
+  /// kHandReturn_s, and stays until goOn(). Neither allocates.
+  virtual void recentre() = 0;
+  /// Has the part again, where it was: goes on.
+  virtual void goOn() = 0;
   /// One tick of the hand, after the loop's own.
   virtual void step(const HeldPart& part, const HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual OperatorPhase phase() const = 0;
+  /// Of a run by the clock that is done again; empty: of none.
+  [[nodiscard]] virtual std::vector<Meeting> meetings() const { return {}; }
   /// Has it so many ticks left?
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };
 
 inline constexpr double kHandReturn_s = 1.5;  ///< the hand's way back to the next part
 
-/// The simulated dual arm and the virtual operator. Throws LoadError for a scene they cannot serve.
+/// The simulated dual arm and the virtual operator. Throws LoadError for a scene they cannot serve: a device
+/// of another kind, a way that the device cannot reach.
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);
 
 /// A recording, of whatever device and hand; it outlives the hand.
 std::unique_ptr<Hand> recordedHand(Recording& recording);
-
-/// Where the handle starts so that a step's path lies around the middle of a workspace of this size. Throws
-/// LoadError for a path that is longer than the workspace.
-Pose handleStart(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
 
 }  // namespace vps

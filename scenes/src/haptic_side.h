@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hand.h"
 #include "vps_device/loop.h"
+#include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
 namespace vps {
@@ -24,21 +26,30 @@ class HapticSide {
   virtual void resume() = 0;
   [[nodiscard]] virtual const LoopSettings& settings() const = 0;
 
-  /// Throws as Hand::requireReachable().
-  virtual void requireReachable(const SceneStep& step) const = 0;
-  /// The part whose grasp frame is at X_WG now. No force flows before the port says that it is coupled.
-  virtual void grasp(const Pose& X_WG) = 0;
+  /// The part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before the port
+  /// says that it is coupled.
+  virtual void handOver(const Pose& X_WG) = 0;
+  /// Begin to; last().clutch_ratio says how far it is.
+  virtual void openClutch() = 0;
+  virtual void closeClutch() = 0;
   /// The hand begins a step; when this returns, phase() is that of the step.
   virtual void begin(const OperatorTask& task, std::size_t step, double now_s) = 0;
   virtual void letGo() = 0;
-  /// The empty hand, as Hand::goBack().
-  virtual void goBack(const SceneStep* next) = 0;
+  /// The free hand, as Hand's; when one returns, the hand has begun.
+  virtual void goBack(std::size_t next) = 0;
+  virtual void recentre() = 0;
+  virtual void goOn() = 0;
 
-  /// Until the next physics step is due: lockstep does that step's ticks, real time waits. Afterwards the
-  /// port has the proxy to step with. False, and nothing done, where the hand cannot go on.
+  /// Until the next physics step is due: lockstep does that step's ticks, real time waits. False, and nothing
+  /// done, where the hand cannot go on.
   /// @param part  in hand, as it is now
   [[nodiscard]] virtual bool advance(const HeldPart& part) = 0;
-  virtual void noteStored(double stored_J, double actuator_J) = 0;
+  /// The proxy that advance() left, to step with.
+  virtual const CouplingState& proxy() = 0;
+  /// The part after that step, and, while it is held, the energy stored in the scene.
+  virtual void publish(const CouplingState& part, std::optional<double> stored_J) = 0;
+  /// Whether what is done beside the run is ready: as the caller says, or as it was in a run done again.
+  virtual bool hasSettled(bool is_ready) { return is_ready; }
 
   [[nodiscard]] virtual OperatorPhase phase() = 0;
   /// As of the last tick.
@@ -61,7 +72,17 @@ std::unique_ptr<HapticSide> lockstepSide(Hand& hand, Device& device, CouplingPor
                                          const LoopSettings& settings, int ticks_per_step,
                                          const TellFault& tell);
 /// @param physics_s  period of physics
+/// @param log        may be null; told by the physics thread what a replay needs
 std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
-                                         double physics_s, const TellFault& tell);
+                                         double physics_s, const TellFault& tell, RunLog* log);
+/// A run of realTimeSide's again, in simulated time.
+/// @param meetings  as recorded
+/// @param device    the recording, tapped
+/// @param settings  as the loop's then, with physicsLimit_s()
+std::unique_ptr<HapticSide> replayedSide(Hand& hand, std::vector<Meeting> meetings, Device& device,
+                                         CouplingPort& port, const LoopSettings& settings,
+                                         const TellFault& tell, RunLog& log);
+/// How old a snapshot may be, by the clock.
+double physicsLimit_s(double physics_s);
 
 }  // namespace vps

@@ -10,6 +10,7 @@ class LockstepSide final : public HapticSide {
   LockstepSide(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
                int ticks_per_step, const TellFault& tell)
       : hand_(hand),
+        port_(port),
         loop_(device, port, settings),
         ticks_per_step_(ticks_per_step),
         tell_(tell),
@@ -21,14 +22,17 @@ class LockstepSide final : public HapticSide {
   [[nodiscard]] bool isByClock() const override { return false; }
   std::uint64_t missed() override { return 0; }
 
-  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
-  void grasp(const Pose& X_WG) override { loop_.grasp(X_WG); }
+  void handOver(const Pose& X_WG) override { loop_.handOver(X_WG); }
+  void openClutch() override { loop_.disengage(); }
+  void closeClutch() override { loop_.engage(); }
   void begin(const OperatorTask& task, std::size_t step, double now_s) override {
     hand_.prepare(task, step, now_s);
     hand_.begin();
   }
   void letGo() override { loop_.release(); }
-  void goBack(const SceneStep* next) override { hand_.goBack(next); }
+  void goBack(std::size_t next) override { hand_.goBack(next); }
+  void recentre() override { hand_.recentre(); }
+  void goOn() override { hand_.goOn(); }
 
   bool advance(const HeldPart& part) override {
     if (!hand_.canGoOn(ticks_per_step_)) return false;
@@ -41,7 +45,11 @@ class LockstepSide final : public HapticSide {
     }
     return true;
   }
-  void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
+  const CouplingState& proxy() override { return port_.proxy.read(); }
+  void publish(const CouplingState& part, std::optional<double> stored_J) override {
+    port_.part.write(part);
+    if (stored_J) loop_.noteStored(*stored_J, 0);
+  }
   OperatorPhase phase() override { return hand_.phase(); }
   const TickReport& last() override { return loop_.last(); }
   HandLedger ledger() override { return loop_.ledger(); }
@@ -57,6 +65,7 @@ class LockstepSide final : public HapticSide {
   }
 
   Hand& hand_;
+  CouplingPort& port_;
   HapticLoop loop_;
   int ticks_per_step_;
   TellFault tell_;

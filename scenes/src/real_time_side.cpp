@@ -5,13 +5,14 @@
 #include <cmath>
 #include <thread>
 
-#include "haptic_side.h"
+#include "clocked_side.h"
+#include "haptic_log.h"
+#include "physics_clock.h"
 #include "vps_device/real_time_loop.h"
 
 namespace vps {
 namespace {
 
-constexpr int kPhysicsPriority = 70;  // assumed: below the haptic loop's 80
 constexpr double kCatchUp =
     20;  // periods that a simulated device makes up for; beyond that its time stands still
 
@@ -31,105 +32,97 @@ TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
           0};
 }
 
-class RealTimeSide final : public HapticSide {
+class RealTimeSide final : public ClockedSide {
  public:
-  RealTimeSide(Hand& hand, CouplingPort& port, LoopSettings settings, double physics_s, const TellFault& tell)
-      : hand_(hand),
-        settings_(settings),
+  RealTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings, double physics_s,
+               const TellFault& tell, RunLog* log)
+      : ClockedSide(hand, settings, tell),
+        port_(port),
         physics_s_(physics_s),
-        tell_(tell),
-        loop_(hand.device(), port, told(settings), realTimeSettings()),
-        metronome_(std::llround(1e9 * physics_s), monotonicClock()) {}
-  ~RealTimeSide() override { pause(); }
+        haptic_log_(log),
+        tapped_(hand.device(), haptic_log_),
+        loop_(tapped_, port, told(settings), realTimeSettings()),
+        clock_(physics_s) {}
+  ~RealTimeSide() override { loop_.stop(); }
 
   void pause() override {
-    loop_.stop();
-    leaveRealTime();
+    if (loop_.isRunning()) {
+      loop_.stop();
+      meet(loop_.loop(), MeetingKind::Paused);
+      haptic_log_.passThrough(MeetingKind::Paused);
+      look(LoopView::of(loop_.loop(), hand_.phase()));
+    }
+    clock_.stop();
   }
   void resume() override {
-    if (loop_.isRunning()) {
-      if (loop_.latest().safety.fault != SafetyFault::None) loop_.rearm();
-      return;
-    }
-    if (loop_.loop().safety().fault != SafetyFault::None) loop_.loop().rearm();
+    rearmIfFaulted();
+    if (loop_.isRunning()) return;
     phase_.store(hand_.phase());
     const RealTimeReport report = loop_.start();
     result_.has_priority = report.has_priority;
     result_.has_locked_memory = report.has_locked_memory;
     result_.warnings = report.warnings;
-    const RealTimeReport physics = askForRealTime(kPhysicsPriority, false);
-    result_.has_priority = result_.has_priority && physics.has_priority;
-    metronome_.start();
+    result_.has_priority = clock_.start(false).has_priority && result_.has_priority;
   }
-  [[nodiscard]] const LoopSettings& settings() const override { return settings_; }
-  [[nodiscard]] bool isByClock() const override { return true; }
   std::uint64_t missed() override { return loop_.statistics().summary().missed; }
-
-  void requireReachable(const SceneStep& step) const override { hand_.requireReachable(step); }
-  void grasp(const Pose& X_WG) override {
-    if (loop_.isRunning())
-      loop_.grasp(X_WG);
-    else
-      loop_.loop().grasp(X_WG);
-  }
-  void begin(const OperatorTask& task, std::size_t step, double now_s) override {
-    hand_.prepare(task, step, now_s);
-    if (loop_.isRunning())
-      order(Order::Begin);
-    else
-      hand_.begin();
-  }
-  void letGo() override {
-    if (loop_.isRunning())
-      loop_.release();
-    else
-      loop_.loop().release();
-  }
-  void goBack(const SceneStep* next) override {
-    next_ = next;
-    if (loop_.isRunning())
-      order(Order::GoBack);
-    else
-      hand_.goBack(next_);
-  }
 
   bool advance(const HeldPart& part) override {
     part_.write(part);
-    const Beat beat = metronome_.wait();
-    result_.physics_missed += static_cast<std::uint64_t>(beat.periods - 1);
-    tellEvents();
+    clock_.wait();
+    countFaults();
+    const LoopView& view = views_.read();
+    if (view.tick > ordered_tick_) known_phase_ = view.phase;  // else it is of before the order
+    haptic_log_.passUpTo(view.tick);
+    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, MeetingKind::Step});
+    look(view);
     return true;
   }
-  void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
-  OperatorPhase phase() override { return loop_.isRunning() ? phase_.load() : hand_.phase(); }
-  const TickReport& last() override { return loop_.latest().report; }
-  HandLedger ledger() override { return loop_.latest().ledger; }
+  bool hasSettled(bool is_ready) override {
+    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, MeetingKind::Settled});
+    return is_ready;
+  }
+  OperatorPhase phase() override { return known_phase_; }
   TickTimes times() override {
     const TickStatistics::Summary all = loop_.statistics().summary();
     return timesOf(all.tick, all.missed);
   }
   std::optional<RealTimeResult> realTime() override;
 
- private:
-  /// What the hand is told while the loop runs; the loop's thread does it.
-  enum class Order { None, Begin, GoBack };
-
-  /// Waits for the tick that does it.
-  void order(Order what) {
+ protected:
+  void order(MeetingKind what) override {
     order_.store(what, std::memory_order_release);
-    while (order_.load(std::memory_order_acquire) != Order::None && loop_.isRunning())
+    while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
       std::this_thread::sleep_for(kOrderWait);
-    if (!loop_.isRunning()) obey();  // it stopped meanwhile: nobody else would
+    if (!loop_.isRunning()) obeyOrder(loop_.loop());  // nobody else would
+    known_phase_ = phase_.load();
+    haptic_log_.passThrough(what);
   }
+  void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
 
-  // The loop's thread. A grasp that was asked for before comes first.
-  void obey() {
-    const Order what = order_.load(std::memory_order_acquire);
-    if (what == Order::None || (loop_.isRunning() && loop_.hasOpenRequests())) return;
-    if (what == Order::Begin) hand_.begin();
-    if (what == Order::GoBack) hand_.goBack(next_);
+ private:
+  static constexpr MeetingKind kNoOrder = MeetingKind::Tick;
+
+  // The loop's thread from here on, while it runs.
+  void meet(const HapticLoop& loop, MeetingKind kind, std::int64_t periods = 1, std::int32_t snapshot = 0) {
+    haptic_log_.add(Meeting{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
+                            static_cast<std::int32_t>(periods), snapshot, kind});
+  }
+  void obeyOrder(HapticLoop& loop) {
+    const MeetingKind what = order_.load(std::memory_order_acquire);
+    if (what == kNoOrder) return;
+    obey(loop, what);
+    meet(loop, what);
     phase_.store(hand_.phase());
-    order_.store(Order::None, std::memory_order_release);
+    ordered_tick_ = static_cast<std::int32_t>(loop.ticks());
+    order_.store(kNoOrder, std::memory_order_release);
+  }
+  void beforeTick(HapticLoop& loop, std::int64_t periods) {
+    obeyOrder(loop);
+    const PhysicsSnapshot& snapshot = snapshots_.read();
+    show(loop, port_, snapshot);
+    const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
+    haptic_log_.add(Meeting{loop.last().time_s, tick, static_cast<std::int32_t>(periods), snapshot.number,
+                            MeetingKind::Tick});
   }
 
   LoopSettings told(LoopSettings settings) {
@@ -139,47 +132,49 @@ class RealTimeSide final : public HapticSide {
   RealTimeSettings realTimeSettings() {
     RealTimeSettings settings;
     settings.stale_s = 2 * physics_s_;
-    settings.physics_limit_s = std::max(settings.physics_limit_s, 10 * physics_s_);
+    settings.physics_limit_s = physicsLimit_s(physics_s_);
+    settings.before = [this](HapticLoop& loop, std::int64_t periods) { beforeTick(loop, periods); };
     settings.beside = [this](HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
     return settings;
   }
 
-  // The loop's thread: the simulated device and hand go on as far as time did, in steps they are made for.
+  // The simulated device and hand go on as far as time did, in steps they are made for.
   void moveHand(HapticLoop& loop, double dt_s) {
-    obey();
     const HeldPart& part = part_.read();
     const double period_s = loop.settings().period_s;
     const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
     for (int i = 0; i < steps; ++i) hand_.step(part, loop, period_s);
     phase_.store(hand_.phase());
+    views_.write(LoopView::of(loop, hand_.phase()));
   }
 
-  void tellEvents() {
-    for (DeviceEvent event; events_.pop(event);) {
-      if (severityOf(event.kind) != Severity::Fault) continue;
-      ++result_.faults;
-      tell_(toText(event.kind));
-    }
+  // The physics thread.
+  void countFaults() {
+    for (DeviceEvent event; events_.pop(event);) result_.faults += severityOf(event.kind) == Severity::Fault;
   }
 
-  Hand& hand_;
-  LoopSettings settings_;
+  CouplingPort& port_;
   double physics_s_;
-  TellFault tell_;
   DeviceEventQueue events_;
+  HapticLog haptic_log_;
+  TappedDevice tapped_;
   TripleBuffer<HeldPart> part_;
+  TripleBuffer<PhysicsSnapshot> snapshots_;
+  TripleBuffer<LoopView> views_;
   std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
-  std::atomic<Order> order_{Order::None};
-  const SceneStep* next_ = nullptr;  ///< of Order::GoBack
+  OperatorPhase known_phase_ = OperatorPhase::Idle;  ///< as of the last look or order
+  std::atomic<MeetingKind> order_{kNoOrder};
+  std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
   RealTimeResult result_;
   RealTimeLoop loop_;
-  Metronome metronome_;
+  PhysicsClock clock_;
 };
 
 std::optional<RealTimeResult> RealTimeSide::realTime() {
-  tellEvents();
+  countFaults();
   const TickStatistics::Summary all = loop_.statistics().summary();
   RealTimeResult result = result_;
+  result.physics_missed = clock_.missed();
   result.late = timesOf(all.late, 0);
   result.response = timesOf(all.response, 0);
   for (int i = 0; i < kTickCauses; ++i)
@@ -194,9 +189,13 @@ std::optional<RealTimeResult> RealTimeSide::realTime() {
 
 }  // namespace
 
+double physicsLimit_s(double physics_s) {
+  return std::max(RealTimeSettings{}.physics_limit_s, 10 * physics_s);
+}
+
 std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
-                                         double physics_s, const TellFault& tell) {
-  return std::make_unique<RealTimeSide>(hand, port, settings, physics_s, tell);
+                                         double physics_s, const TellFault& tell, RunLog* log) {
+  return std::make_unique<RealTimeSide>(hand, port, settings, physics_s, tell, log);
 }
 
 }  // namespace vps

@@ -9,6 +9,8 @@ namespace vps {
 
 namespace {
 
+constexpr std::size_t kRingEntries = 1 << 15;  // assumed: 8 s of a run by the clock at 1 kHz
+
 std::string exact(double x) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
@@ -24,6 +26,7 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"scene", scene.name},
       {"scene_hash", contentHash(scene_bytes)},
       {"seed", std::to_string(scene.hand.seed)},
+      {"real_time", options.is_real_time ? "1" : "0"},
       {"keeps_going", options.keep_going ? "1" : "0"},
       {"models_everything", options.models_everything ? "1" : "0"},
       {"fidelity.voxel_m", exact(f.voxel_m)},
@@ -65,7 +68,9 @@ RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGai
 
 RunRecord::RunRecord(const std::string& file, const Scene& scene, const Device& device,
                      const CouplingGains& gains, const AssembleOptions& options)
-    : recorder_(file, headOf(scene, device, gains, options)), warn_(options.warn) {}
+    : recorder_(file, headOf(scene, device, gains, options), kRingEntries),
+      warn_(options.warn),
+      waits_(!options.is_real_time) {}
 
 RunRecord::~RunRecord() {
   if (is_finished_ || !has_read_ || !warn_) return;
@@ -74,7 +79,7 @@ RunRecord::~RunRecord() {
 
 void RunRecord::add(const LogEntry& entry) noexcept {
   has_read_ = has_read_ || std::holds_alternative<DeviceSample>(entry);
-  recorder_.waitForRoom();
+  if (waits_) recorder_.waitForRoom();
   recorder_.add(entry);
 }
 

@@ -15,7 +15,8 @@ namespace vps {
 /// The names of a recording's attachments.
 inline constexpr const char* kSceneAttachment = "scene.vps";
 
-/// For lockstep: where the recorder's ring is full, the run waits, since simulated time can.
+/// In simulated time a run waits where the recorder's ring is full. By the clock it does not: the recording
+/// then says that it ends there.
 class RunRecord final : public RunLog {
  public:
   /// The head says which program, scene, seeds, fidelity and choices. The scene in it wishes for the gains
@@ -26,12 +27,13 @@ class RunRecord final : public RunLog {
   ~RunRecord() override;
 
   void add(const LogEntry& entry) noexcept override;
+  void lose(std::uint64_t count) noexcept override { recorder_.lose(count); }
   void finish();
 
  private:
   Recorder recorder_;
   std::function<void(const std::string&)> warn_;
-  bool has_read_ = false, is_finished_ = false;
+  bool waits_, has_read_ = false, is_finished_ = false;
 };
 
 /// "0.1.0, GCC 12.2.0, double": what a recording was made with, and what this program is.

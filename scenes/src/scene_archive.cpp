@@ -6,6 +6,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,8 +20,8 @@ namespace vps {
 
 namespace {
 
-constexpr std::string_view kMagic = "vps-scene-2\n";
-constexpr std::string_view kMagicBefore = "vps-scene-1\n";  // without Scene::contact
+// What came with each: the scene; Scene::contact; DeviceSettings::has_ratchet.
+constexpr std::array<std::string_view, 3> kMagics = {"vps-scene-1\n", "vps-scene-2\n", "vps-scene-3\n"};
 
 class Writer {
  public:
@@ -165,7 +167,7 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<DeviceSettings> T>
 void fields(Archive& archive, T& x) {
-  auto& [kind, data, scale, is_quantised] = x;
+  auto& [kind, data, scale, is_quantised, has_ratchet] = x;  // the last: since vps-scene-3
   archive(kind, data, scale, is_quantised);
 }
 template <typename Archive, Either<OperatorSettings> T>
@@ -222,21 +224,23 @@ std::string sceneToBytes(const Scene& scene) {
   plain.file = lastPiece(scene.file);
   for (ScenePart& part : plain.parts) part.file = lastPiece(part.file);
   plain.device.data = lastPiece(scene.device.data);
-  std::string out(kMagic);
+  std::string out(kMagics.back());
   Writer writer(out);
   fields(writer, std::as_const(plain));
-  writer(plain.contact);
+  writer(plain.contact, plain.device.has_ratchet);
   return out;
 }
 
 Scene sceneFromBytes(std::string_view bytes, const std::string& file) {
   Scene scene;
-  const bool has_contact = bytes.starts_with(kMagic);
-  if (!has_contact && !bytes.starts_with(kMagicBefore))
+  const auto* const form = std::find_if(kMagics.begin(), kMagics.end(),
+                                        [&](std::string_view magic) { return bytes.starts_with(magic); });
+  if (form == kMagics.end())
     throw LoadError(file, "", "holds a scene in a form that this version does not know");
-  Reader reader(bytes.substr(kMagic.size()));
+  Reader reader(bytes.substr(form->size()));
   fields(reader, scene);
-  if (has_contact) reader(scene.contact);
+  if (form > kMagics.data()) reader(scene.contact);
+  if (form > kMagics.data() + 1) reader(scene.device.has_ratchet);
   if (!reader.isAllRead()) throw LoadError(file, "", "holds a scene that is not whole");
   if (const char* what = impossible(scene))
     throw LoadError(file, "", std::string("holds a scene with ") + what);

@@ -307,11 +307,13 @@ class SceneReader {
   void readDevice() {
     const toml::table* table = top_.table("device");
     if (!table) return;
-    const SceneKeys keys(*table, context_, "[device]", {"kind", "parameters", "scale", "quantised_encoders"});
+    const SceneKeys keys(*table, context_, "[device]",
+                         {"kind", "parameters", "scale", "quantised_encoders", "ratchet"});
     keys.text("kind", scene_.device.kind);
     if (std::string file; keys.text("parameters", file)) readDeviceFile(keys, file);
     keys.number("scale", scene_.device.scale, kPositive);
     keys.flag("quantised_encoders", scene_.device.has_quantised_encoders);
+    keys.flag("ratchet", scene_.device.has_ratchet);
   }
 
   /// Read when it is used; looked at here, so that what is wrong with it is said with line and key.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "physics_clock.h"
 #include "scene_models.h"
 #include "simulation.h"
 #include "tick_times.h"
@@ -24,6 +25,31 @@ void cookFixed(const Scene& scene, const Plan& plan, Simulation& simulation) {
       simulation.setField(cookField(simulation.orderField(fixed, step)), fixed.front().part);
   }
 }
+
+/// Waits for each step where the run goes by the clock.
+class ByTheClock {
+ public:
+  ByTheClock(double period_s, bool is_wanted) : clock_(period_s), begun_s_(wallSeconds()) {
+    if (!is_wanted) return;
+    const RealTimeReport report = clock_.start(true);
+    kept_ = {0, report.has_priority, report.has_locked_memory, report.warnings, 0};
+  }
+  void wait() noexcept {
+    if (kept_) clock_.wait();
+  }
+  std::optional<SimulateResult::Kept> finish() {
+    if (!kept_) return {};
+    clock_.stop();
+    kept_->missed = clock_.missed();
+    kept_->run_wall_s = wallSeconds() - begun_s_;
+    return kept_;
+  }
+
+ private:
+  PhysicsClock clock_;
+  double begun_s_;
+  std::optional<SimulateResult::Kept> kept_;
+};
 
 }  // namespace
 
@@ -53,7 +79,9 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     return bodies;
   };
   const auto steps = static_cast<long>(std::lround(seconds / dt_s));
-  for (long i = 0; i < steps; ++i) {
+  ByTheClock by_the_clock(dt_s, options.is_real_time);
+  for (long i = 0; i < steps && !(options.stop != nullptr && options.stop->load()); ++i) {
+    by_the_clock.wait();
     const auto step_begun = std::chrono::steady_clock::now();
     simulation.step(dt_s);
     const double us =
@@ -66,6 +94,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     if (options.progress)
       options.progress("simulating", static_cast<double>(i + 1) / static_cast<double>(steps));
   }
+  result.real_time = by_the_clock.finish();
   result.bodies = states();
   result.kinetic_energy_J = simulation.kineticEnergy();
   result.step = all.summary();

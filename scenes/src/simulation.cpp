@@ -197,6 +197,10 @@ void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& 
   w.X_PG = X_PG;
 }
 
+void Simulation::setGains(const CouplingGains& gains) {
+  if (world_->coupling) world_->coupling->setGains(gains);
+}
+
 void Simulation::release() {
   world_->letGo();
 }

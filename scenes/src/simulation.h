@@ -51,6 +51,8 @@ class Simulation {
 
   /// Couples the proxy to the part at grasp frame G; one part at a time.
   void grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains);
+  /// Of the grasp, from the next step on.
+  void setGains(const CouplingGains& gains);
   void release();
   /// Where the proxy will be at the end of the coming step.
   void setProxy(const CouplingState& proxy);

@@ -173,6 +173,31 @@ TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
   EXPECT_NEAR(loop.ledger().injected_J, 2 * hold_J, 1e-9);
 }
 
+TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
+  const double step_m = 0.1e-3;  // readings are off by half of it at the most
+  for (const double rate_rad_s : {1.0, 7.0, 40.0}) {
+    Puppet device;
+    device.known.resolution_m = 0.5 * step_m;
+    CouplingPort port;
+    HapticLoop loop(device, port, quick());
+    loop.grasp(Pose{});
+    port.part.write(partAt(Pose{}));
+    double true_J = 0, x_before_m = 0, greatest_J = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double x_m = 2e-3 * std::sin(rate_rad_s * i * 1e-3);
+      true_J += device.written.f.x() * (x_m - x_before_m);  // written acts until the next
+      x_before_m = x_m;
+      device.sample.X_DH.p.x() = step_m * std::round(x_m / step_m);
+      loop.tick();
+      const HandLedger& ledger = loop.ledger();
+      const double hidden_J = std::abs(true_J - (ledger.to_hand_J - ledger.from_hand_J));
+      ASSERT_LE(hidden_J, ledger.unseen_J + 1e-12) << i;
+      greatest_J = std::max(greatest_J, hidden_J);
+    }
+    EXPECT_GT(greatest_J, 1e-6);  // there is something to hide
+  }
+}
+
 // Leads the handle to x_m in one tick, with so much stored in the scene.
 void lead(HapticLoop& loop, Puppet& device, double x_m, double stored_J) {
   device.sample.X_DH.p.x() = x_m;

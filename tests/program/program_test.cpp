@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -54,6 +55,22 @@ TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("snapshot scene.toml -o a.png --view north", "--view");
   expectRefused("snapshot scene.toml --compare gone.png", "gone.png");
   expectRefused("query plate.stl", "see vps query --help");
+}
+
+TEST_F(Program, SimulatingByTheClockTakesThatLongAndGivesTheSameBodies) {
+  ASSERT_EQ(run("simulate scene.toml --seconds 0.5 --json steps.json").status, 0);
+  const auto begun = std::chrono::steady_clock::now();
+  const Ran ran = run("simulate scene.toml --seconds 0.5 --real-time --json clock.json");
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_GE(took.count(), 0.5);
+  EXPECT_NE(ran.out.find("by the clock: "), std::string::npos) << ran.out;
+  json steps = json::parse(slurp(folder_ / "steps.json")), clock = json::parse(slurp(folder_ / "clock.json"));
+  EXPECT_TRUE(clock["wall"]["physics"].contains("missed_periods"));
+  EXPECT_FALSE(steps["wall"].contains("physics"));
+  steps.erase("wall");
+  clock.erase("wall");
+  EXPECT_EQ(steps, clock);
 }
 
 TEST_F(Program, TradePicksAFidelityToPasteOrSaysThatNoneWillDo) {
@@ -368,9 +385,8 @@ TEST_F(Program, NothingIsRecordedOverAFileThatIsNoRecording) {
                 "letter.txt: is there and is no recording");
   expectRefused("assemble steps.toml --record steps.toml --out out", "steps.toml: is read by this command");
   expectRefused("assemble steps.toml --record no/run.mcap --out out", "no/run.mcap: cannot be written");
-  for (const char* option : {"--real-time", "--local-contact"})
-    expectRefused(std::string("assemble steps.toml --record run.mcap --out out ") + option,
-                  "run.mcap: a run in real time or with local contact cannot be replayed");
+  expectRefused("assemble steps.toml --record run.mcap --out out --local-contact",
+                "run.mcap: a run with local contact cannot be replayed");
   EXPECT_EQ(slurp(folder_ / "letter.txt"), "dear reader");
   EXPECT_EQ(slurp(folder_ / "steps.toml"), kScene + step);
 }

@@ -183,8 +183,9 @@ TEST_F(Scenario, APartThatDriftsIsNoSuccess) {
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
 }
 
-TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefused) {
-  writePegScene("", "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n");
+TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefusedWithoutARatchet) {
+  writePegScene(
+      "", "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n[device]\nratchet = false\n");
   expectRefused("assemble scene.toml --out out", "longer than the device's workspace");
 }
 

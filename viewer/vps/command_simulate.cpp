@@ -48,6 +48,8 @@ int runSimulate(const SimulateArguments& given) {
   SimulateOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   fill(options, bar, cache, given.models_everything);
+  options.is_real_time = given.is_real_time;
+  options.stop = &stopRequested();
   if (!given.trace.empty())
     options.trace = [&rows](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
       if (rows.empty()) rows = traceHead(bodies);
@@ -68,6 +70,12 @@ int runSimulate(const SimulateArguments& given) {
   std::printf("deepest %s um, kinetic energy %.3g J; a step took %s us (median), %s us (longest)\n",
               fixed(result.max_penetration_m * 1e6, 2).c_str(), result.kinetic_energy_J,
               fixed(result.step.p50_us, 0).c_str(), fixed(result.step.max_us, 0).c_str());
+  if (!result.real_time) return kGood;
+  for (const std::string& words : result.real_time->warnings) warn(words);
+  std::printf("by the clock: %s s for %s s; %llu of %llu periods missed\n",
+              fixed(result.real_time->run_wall_s, 2).c_str(), fixed(given.seconds, 2).c_str(),
+              static_cast<unsigned long long>(result.real_time->missed),
+              static_cast<unsigned long long>(result.step.count + result.real_time->missed));
   return kGood;
 }
 

@@ -58,6 +58,7 @@ int runReplay(const ReplayArguments& given);
 struct SimulateArguments {
   std::string scene;
   std::string cache;  ///< as in AssembleArguments
+  bool is_real_time = false;
   double seconds = 1;
   std::string trace, json;
   FidelityArguments fidelity;

@@ -83,6 +83,7 @@ Json step(const StepResult& step) {
           {"peak_torque_Nm", step.peak_torque_Nm},
           {"impacts", step.impacts},
           {"slides", step.slides},
+          {"regrasps", step.regrasps},
           {"final_error_m", step.final_error_m},
           {"final_error_rad", step.final_error_rad},
           {"rest_drift_m", step.rest_drift_m},
@@ -120,7 +121,8 @@ std::string toJson(const AssembleResult& result) {
                {"energy",
                 {{"to_hand_J", result.energy.to_hand_J},
                  {"from_hand_J", result.energy.from_hand_J},
-                 {"injected_J", result.energy.injected_J}}},
+                 {"injected_J", result.energy.injected_J},
+                 {"unseen_J", result.energy.unseen_J}}},
                {"local_contact",
                 {{"held_ticks", result.local_contact.held},
                  {"jump_J", result.local_contact.jump_J},
@@ -137,10 +139,16 @@ std::string toJson(const std::string& scene, double seconds, const SimulateResul
                       {"rotation_xyzw", list(body.X_WP.quaternion())},
                       {"velocity_m_s", list(body.V_WP_W.v)},
                       {"angular_velocity_rad_s", list(body.V_WP_W.w)}});
-  return text({{"wall",
-                {{"build_s", result.build_wall_s},
-                 {"step_us", shortTimes(result.step)},
-                 {"contact_step_us", shortTimes(result.contact_step)}}},
+  Json wall = {{"build_s", result.build_wall_s},
+               {"step_us", shortTimes(result.step)},
+               {"contact_step_us", shortTimes(result.contact_step)}};
+  if (const auto& kept = result.real_time)
+    wall["physics"] = {{"missed_periods", kept->missed},
+                       {"run_s", kept->run_wall_s},
+                       {"has_priority", kept->has_priority},
+                       {"has_locked_memory", kept->has_locked_memory},
+                       {"warnings", kept->warnings}};
+  return text({{"wall", wall},
                {"scene", scene},
                {"seconds", seconds},
                {"steps", result.step.count},

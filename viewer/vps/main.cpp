@@ -163,6 +163,8 @@ class CommandLine {
     command->add_option("--seconds", simulate_.seconds, "simulated time")
         ->capture_default_str()
         ->type_name("S");
+    command->add_flag("--real-time", simulate_.is_real_time,
+                      "by the clock: each step when it is due; misses are counted");
     command->add_option("--trace", simulate_.trace, "one CSV row per step")->type_name("FILE");
     addEverything(command, simulate_.models_everything);
     addFidelity(command, simulate_.fidelity);

@@ -58,6 +58,10 @@ struct HandLedger {
   double balance_J = 0;     ///< when stored energy was last noted, in scene joules; 0 the first time
   double least_J = 0;       ///< the least balance so far
   double injected_J = 0;    ///< greatest rise of the balance above its least value before
+  /// What the encoders may have kept from injected_J, at the most, in scene joules: with a reading off by e,
+  /// the sum of F . change of e is, summed by parts, at most the greatest e times (the way that F has gone,
+  /// up and down, + F now). Of DeviceLimits::resolution alone, and wide: as if each error were the worst.
+  double unseen_J = 0;
 
   /// What it has risen by now.
   [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
@@ -88,8 +92,9 @@ struct TickReport {
   Status status = Status::Ok;
   Pose X_WG;  ///< proxy
   Twist V_WG;
-  Wrench F_hand_W;  ///< on the hand, after safety, in W about the handle's origin
-  Wrench F_hand_D;  ///< the same as written to the device
+  Wrench F_hand_W;          ///< on the hand, after safety, in W about the handle's origin
+  Wrench F_hand_D;          ///< the same as written to the device
+  double clutch_ratio = 1;  ///< of the clutch after the tick: 0 open, 1 closed
 };
 
 /// Owned by the haptic thread (or the lockstep driver). tick() never throws, allocates, locks or waits.
@@ -154,6 +159,7 @@ class HapticLoop {
   [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
   void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
   void account(const DeviceSample& sample, const Twist& step_D) noexcept;
+  void accountUnseen(const Wrench& F_acting_D) noexcept;
   [[nodiscard]] Wrench actingWrench() const noexcept;
   void watchPhysics(double dt_s) noexcept;
   void tellFault() noexcept;
@@ -176,6 +182,8 @@ class HapticLoop {
   bool has_before_ = false;
   std::array<Wrench, kMostDelay + 2> F_written_D_{};  ///< newest first
   double delay_ticks_ = 0;                            ///< the device's own
+  Wrench F_accounted_D_;                              ///< by the last account()
+  double force_way_N_ = 0, torque_way_Nm_ = 0;        ///< sums of its changes
   double net_scene_J_ = 0, balance_start_J_ = 0;      // scene joules
   bool has_stored_ = false;
   double snapshot_age_s_ = 0, snapshot_time_s_ = 0;

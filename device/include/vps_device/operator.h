@@ -60,6 +60,8 @@ HandForce evenHand(const OperatorHabits& habits) noexcept;
 struct OperatorTask {
   Pose X_WP_start;
   std::vector<Pose> way_points;  ///< X_WP; the last is where insertion begins (the start, if there are none)
+  /// Way points (their indices) at which the device is at its border: the hand stops there and takes anew.
+  std::vector<std::size_t> regrasps;
   Pose X_WP_target;
   Pose X_PG;
   double tolerance_m = 0.1e-3;  ///< part's origin against the target
@@ -80,7 +82,8 @@ struct OperatorView {
   Wrench F_hand_W;  ///< felt: wrench of the device on the hand
 };
 
-enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed };
+/// Regrasp: at a way point of OperatorTask::regrasps, holding still until goOn().
+enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 const char* toText(OperatorPhase phase) noexcept;
 
 /// Minimum jerk from 0 to 1 over s in [0, 1]: 10 s^3 - 15 s^4 + 6 s^5, clamped outside. Source: [Flash and
@@ -100,6 +103,10 @@ class VirtualOperator {
   /// One instant of the hand, at G in W, dt_s after the last. Never throws or allocates. A view that is not
   /// finite gives the last answer without feed-forward.
   HandForce step(const OperatorView& view, double dt_s) noexcept;
+
+  /// From Regrasp, with the hand elsewhere and the part where it was: to the next way point. Never throws or
+  /// allocates.
+  void goOn() noexcept;
 
   [[nodiscard]] OperatorPhase phase() const noexcept { return phase_; }
   [[nodiscard]] int retries() const noexcept { return retries_; }

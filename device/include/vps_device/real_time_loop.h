@@ -37,12 +37,15 @@ struct RealTimeSettings {
                                    ///< 100 Hz physics, and sooner than a person notices a part that hangs
   double stale_s = 2e-3;           ///< ticks with an older snapshot are counted
   RealTimeClock* clock = nullptr;  ///< null: the system's
+  /// Called before each tick, by the loop's thread: the last moment to tell the loop something. periods: as
+  /// the clock counts them since the last tick. Must not allocate, lock, throw or wait.
+  std::function<void(HapticLoop& loop, std::int64_t periods)> before;
   /// Called after each tick, by the loop's thread, with what has passed since the last: a simulated device's
   /// own motion. As the tick, it must not allocate, lock, throw or wait.
   std::function<void(HapticLoop& loop, double dt_s)> beside;
 };
 
-/// Owns the loop. The one that commands it (grasp, release, rearm, noteStored) is one thread; requests are
+/// Owns the loop. The one that commands it (grasp to rearm, noteStored) is one thread; requests are
 /// done at the start of the next tick. Statistics are read by any thread, latest() by one.
 class RealTimeLoop {
  public:
@@ -61,6 +64,9 @@ class RealTimeLoop {
 
   /// As HapticLoop's. False if there is no room for the request: the loop does not run, or is far behind.
   bool grasp(const Pose& X_WG) noexcept;
+  bool handOver(const Pose& X_WG) noexcept;
+  bool disengage() noexcept;
+  bool engage() noexcept;
   bool release() noexcept;
   bool rearm() noexcept;
   void noteStored(double stored_J, double actuator_J) noexcept {
@@ -84,7 +90,7 @@ class RealTimeLoop {
 
  private:
   struct Request {
-    enum Kind : std::uint8_t { Grasp, Release, Rearm } kind = Release;
+    enum Kind : std::uint8_t { Grasp, HandOver, Disengage, Engage, Release, Rearm } kind = Release;
     Pose X_WG;
   };
   struct Energies {
@@ -92,6 +98,7 @@ class RealTimeLoop {
     bool is_told = false;
   };
   bool ask(const Request& request) noexcept;
+  void answer(const Request& request) noexcept;
   void answerRequests() noexcept;
   void tellMisses(const Beat& beat) noexcept;
   void tellRefusals() noexcept;

@@ -37,6 +37,10 @@ class Recorder final : public RunLog {
   /// Never waits: a full ring drops the entry and counts it.
   void add(const LogEntry& entry) noexcept override;
 
+  /// Counts entries that were lost before they came here: the recording says that it ends there. By the
+  /// thread that adds.
+  void lose(std::uint64_t count) noexcept;
+
   /// For lockstep, where nobody is late: returns once half of the ring is free. Never on a haptic path.
   void waitForRoom() const;
 

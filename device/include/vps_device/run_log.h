@@ -49,7 +49,32 @@ struct RunTrace {
   std::uint8_t phase = 0;  ///< 0 reach, 1 insert, 2 press, 3 rest
 };
 
-using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace>;
+/// Where loop and physics meet in a run by the clock: what each knew of the other. In lockstep there is none.
+enum class MeetingKind : std::uint8_t {
+  Tick,     ///< the loop ticks, with that snapshot of physics
+  Step,     ///< physics steps, with the proxy of that tick
+  Settled,  ///< what was done beside the run is ready
+  Paused,   ///< the loop has stopped
+  Begin,    ///< physics asked for it, and the loop's thread did it
+  GoBack,   ///< from here on as Begin
+  Recentre,
+  GoOn,
+  HandOver,
+  OpenClutch,
+  CloseClutch,
+  LetGo,
+  Rearm,
+};
+
+struct Meeting {
+  double time_s = 0;          ///< of the loop's last sample
+  std::int32_t tick = 0;      ///< ticks so far, this one too
+  std::int32_t periods = 1;   ///< of the loop since its last tick
+  std::int32_t snapshot = 0;  ///< how many physics had published
+  MeetingKind kind = MeetingKind::Tick;
+};
+
+using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, Meeting>;
 
 double timeOf(const LogEntry& entry) noexcept;
 
@@ -59,6 +84,8 @@ class RunLog {
  public:
   virtual ~RunLog() = default;
   virtual void add(const LogEntry& entry) noexcept = 0;
+  /// So many entries were lost before they came here.
+  virtual void lose(std::uint64_t) noexcept {}
 
  protected:
   RunLog() = default;

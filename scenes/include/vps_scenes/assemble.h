@@ -22,7 +22,7 @@ struct AssembleOptions : ModelOptions {
   std::string record;
   /// The haptic loop on a thread of its own, by the system's clock, and physics beside it by the same, from
   /// the first step to the last: a step is judged and the next one's field cooked on other threads meanwhile.
-  /// Not repeatable, so not with `record`.
+  /// Not repeatable; recorded it is, since a recording holds what the two knew of each other.
   bool is_real_time = false;
   /// Between physics steps the haptic loop works out the part's motion by itself
   /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`. In real time the loop

@@ -35,6 +35,7 @@ struct StepResult {
   double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
+  int regrasps = 0;  ///< times the hand let go on the way and took the part anew, for a device too small
   double final_error_m = 0, final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
   double rest_s = 0;
@@ -73,7 +74,8 @@ struct TraceRow {
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;  ///< DESIGN.md section 7
+  double injected_J = 0;  ///< DESIGN.md section 7, by what the encoders show
+  double unseen_J = 0;    ///< what they may have kept from it at the most (HandLedger)
 };
 
 struct ModelledCost {

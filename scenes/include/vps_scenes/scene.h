@@ -49,6 +49,8 @@ struct DeviceSettings {
   std::string data;               ///< parameter file; empty: the built-in dual arm
   double scale = 1;               ///< scene metres per device metre
   bool has_quantised_encoders = true;
+  /// Where a way is longer than the workspace: lets go of the part by the clutch, goes back, takes it anew.
+  bool has_ratchet = true;
 };
 
 /// What the scene asks of the coupling; the rest follows from the device's numbers and rates (deriveGains).

@@ -2,7 +2,9 @@
 // The scene's bodies under gravity, no hand.
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,9 @@ struct BodyState {
 };
 
 struct SimulateOptions : ModelOptions {
+  /// By the system's clock: a step begins when it is due. Steps are the same, and so is what comes of them.
+  bool is_real_time = false;
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end early
   /// Called after every step; empty: no trace.
   std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
 };
@@ -30,6 +35,14 @@ struct SimulateResult {
   TickTimes step, contact_step;  ///< all steps; those with contact
   ModelledCost modelled;
   double build_wall_s = 0;
+  /// By the clock: what the system refused, and periods that passed without a step of their own.
+  struct Kept {
+    std::uint64_t missed = 0;
+    bool has_priority = false, has_locked_memory = false;
+    std::vector<std::string> warnings;
+    double run_wall_s = 0;
+  };
+  std::optional<Kept> real_time;
 };
 
 /// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.

@@ -57,7 +57,7 @@ void LossyHand::begin() {
   is_holding_ = is_new_ = true;
 }
 
-void LossyHand::goBack(const SceneStep* next) {
+void LossyHand::goBack(std::size_t next) {
   hand_->goBack(next);
   is_holding_ = false;  // what the springs hold then goes to nobody
 }

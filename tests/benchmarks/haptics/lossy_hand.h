@@ -57,8 +57,9 @@ class LossyHand final : public Hand {
   Device& device() override { return device_; }
   void prepare(const OperatorTask& task, std::size_t step, double now_s) override;
   void begin() override;
-  void goBack(const SceneStep* next) override;
-  void requireReachable(const SceneStep& step) const override { hand_->requireReachable(step); }
+  void goBack(std::size_t next) override;
+  void recentre() override { hand_->recentre(); }
+  void goOn() override { hand_->goOn(); }
   void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override;
   [[nodiscard]] OperatorPhase phase() const override { return hand_->phase(); }
   [[nodiscard]] bool canGoOn(int ticks) const override { return hand_->canGoOn(ticks); }

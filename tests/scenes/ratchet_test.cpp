@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A way longer than the device's workspace, in strokes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "strokes.h"
+#include "support/temporary_folder.h"
+#include "vps/load_error.h"
+#include "vps_device/random.h"
+#include "vps_scenes/assemble.h"
+#include "vps_scenes/replay.h"
+
+namespace vps {
+namespace {
+
+const Vec3 kRoom_m(0.4, 0.6, 0.4);  // the dual arm's
+
+/// A pin that is set down on a plate, from a metre away: the workspace is 0.4 m wide.
+Scene farPin() {
+  Scene scene;
+  scene.file = "scene.toml";
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].is_fixed = true;
+  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.steps.resize(1);
+  SceneStep& step = scene.steps[0];
+  step.part = 1;
+  step.X_WP_target = Pose::translation({0, 0, 2e-3});
+  step.way_points = {Pose::translation({0, 0, 2.2e-3})};
+  step.X_WP_start = Pose::translation({1, 0, 50e-3});
+  step.timeout_s = 60;
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.1;
+  scene.hand.aim_error_m = 0.05e-3;
+  scene.hand.speed_m_s = 0.3;
+  return scene;
+}
+
+/// Every stroke from where the handle starts it, as the part goes: within the room, and end to end.
+void expectWithinRoom(const Scene& scene, const SceneStep& step, const Strokes& strokes) {
+  ASSERT_EQ(strokes.X_DH_start.size(), strokes.regrasps.size() + 1);
+  const Vec3 p_PG = massProperties(scene.parts[step.part].part.mesh).com;
+  std::vector<Pose> way = {step.X_WP_start};
+  way.insert(way.end(), strokes.way_points.begin(), strokes.way_points.end());
+  way.push_back(step.X_WP_target);
+  std::size_t stroke = 0;
+  Vec3 p_DH = strokes.X_DH_start[0].p;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (i > 0) p_DH += (way[i] * p_PG - way[i - 1] * p_PG) / scene.device.scale;
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(p_DH[axis]), kRoom_m[axis] / 2 + 1e-12) << i;
+    if (stroke < strokes.regrasps.size() && i == strokes.regrasps[stroke] + 1)
+      p_DH = strokes.X_DH_start[++stroke].p;
+  }
+  EXPECT_EQ(stroke, strokes.regrasps.size());
+}
+
+TEST(Strokes, AWayThatFitsIsOneStrokeAroundTheMiddle) {
+  Scene scene = farPin();
+  scene.steps[0].X_WP_start = Pose::translation({0.3, 0, 50e-3});
+  const Strokes strokes = strokesOf(scene, scene.steps[0], kRoom_m);
+  EXPECT_TRUE(strokes.regrasps.empty());
+  ASSERT_EQ(strokes.way_points.size(), 1u);
+  ASSERT_EQ(strokes.X_DH_start.size(), 1u);
+  EXPECT_NEAR(strokes.X_DH_start[0].p.x(), 0.15, 1e-12);
+}
+
+TEST(Strokes, AStraightMetreTakesThreeOfThirtySixCentimetres) {
+  // 0.4 m less 20 mm on each side; the last is the longest, so that the first has what is left over: 0.28 m.
+  const Scene scene = farPin();
+  const Strokes strokes = strokesOf(scene, scene.steps[0], kRoom_m);
+  ASSERT_EQ(strokes.regrasps, (std::vector<std::size_t>{0, 1}));
+  EXPECT_NEAR(strokes.way_points[0].p.x(), 0.72, 1e-9);
+  EXPECT_NEAR(strokes.way_points[1].p.x(), 0.36, 1e-9);
+  EXPECT_EQ(strokes.way_points[2].p, scene.steps[0].way_points[0].p);
+  expectWithinRoom(scene, scene.steps[0], strokes);
+}
+
+TEST(Strokes, AnyWayStaysWithinTheRoomAtAnyScale) {
+  Random random(5);
+  for (int i = 0; i < 200; ++i) {
+    Scene scene = farPin();
+    SceneStep& step = scene.steps[0];
+    scene.device.scale = 0.5 + 2 * random.uniform();
+    step.way_points.clear();
+    for (int n = i % 5; n > 0; --n) step.way_points.push_back(Pose::translation(random.normal3()));
+    step.X_WP_start = Pose(rotationFromVector(random.normal3()), 2 * random.normal3());
+    expectWithinRoom(scene, step, strokesOf(scene, step, kRoom_m));
+  }
+}
+
+TEST(Ratchet, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
+  Scene scene = farPin();
+  const AssembleResult result = assemble(scene);
+  ASSERT_EQ(result.steps.size(), 1u);
+  const StepResult& step = result.steps[0];
+  EXPECT_TRUE(step.completed) << step.why_not;
+  EXPECT_EQ(step.regrasps, 2);
+  EXPECT_LE(result.energy.injected_J, 1e-3);
+  // While the hand goes back the proxy stands, and the part hangs on it by its own weight: it rests.
+  int still = 0;
+  for (std::size_t i = 1; i < result.trace.size(); ++i)
+    still += result.trace[i].X_W_Proxy.p == result.trace[i - 1].X_W_Proxy.p &&
+             result.trace[i].X_W_Proxy.p.x() > 0.1;
+  EXPECT_GE(still, 2 * 250);  // two returns of 1.5 s at 250 Hz, less what the part takes to come to rest
+}
+
+TEST(Ratchet, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
+  Scene scene = farPin();
+  scene.device.has_ratchet = false;
+  try {
+    assemble(scene);
+    FAIL();
+  } catch (const LoadError& error) {
+    const std::string words = error.what();
+    EXPECT_NE(words.find("longer than the device's workspace of 400 x 600 x 400 mm"), std::string::npos)
+        << words;
+    EXPECT_NE(words.find("ratchet = true"), std::string::npos) << words;
+  }
+}
+
+TEST(Ratchet, ARunWithARatchetReplaysBitForBit) {
+  const test::TemporaryFolder folder;
+  AssembleOptions options;
+  options.record = folder.path() / "run.mcap";
+  Scene scene = farPin();
+  const AssembleResult result = assemble(scene, options);
+  const RecordedRun run = loadRecording(options.record);
+  const ReplayResult replayed = replay(run);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.equal, run.entries.size());
+  EXPECT_EQ(replayed.result.steps.at(0).regrasps, 2);
+  EXPECT_EQ(replayed.result.steps[0].final_error_m, result.steps[0].final_error_m);
+}
+
+}  // namespace
+}  // namespace vps

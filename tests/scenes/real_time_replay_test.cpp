@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs by the clock, recorded and done again in simulated time.
+#include <gtest/gtest.h>
+
+#include "haptic_log.h"
+#include "support/no_alloc.h"
+#include "support/temporary_folder.h"
+#include "vps_scenes/assemble.h"
+#include "vps_scenes/replay.h"
+
+namespace vps {
+namespace {
+
+/// Two pins that are set down side by side on a plate: a change of parts, and a field that is cooked while
+/// the loop runs.
+Scene twoPins() {
+  Scene scene;
+  scene.file = "scene.toml";
+  scene.parts.resize(3);
+  scene.parts[0].part = {"plate", makeBox({20e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].is_fixed = true;
+  scene.steps.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    scene.parts[i + 1].part = {
+        i == 0 ? "left" : "right", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+    const double x_m = i == 0 ? -5e-3 : 5e-3;
+    scene.steps[i].part = i + 1;
+    scene.steps[i].X_WP_target = Pose::translation({x_m, 0, 2e-3});
+    scene.steps[i].X_WP_start = Pose::translation({x_m, 0, 2.2e-3});
+  }
+  scene.fidelity.haptic_rate_hz = 500;
+  scene.fidelity.physics_rate_hz = 200;  // no multiple: the two threads meet as they come
+  scene.release_s = 0.1;
+  scene.hand.aim_error_m = 0.05e-3;
+  return scene;
+}
+
+struct Recorded {
+  AssembleResult result;
+  RecordedRun run;
+};
+
+/// Once for all tests: it takes as long as it takes.
+const Recorded& recordedByTheClock() {
+  static const Recorded recorded = [] {
+    const test::TemporaryFolder folder;
+    AssembleOptions options;
+    options.record = folder.path() / "run.mcap";
+    options.is_real_time = true;
+    Scene scene = twoPins();
+    Recorded made;
+    made.result = assemble(scene, options);
+    made.run = loadRecording(options.record);
+    return made;
+  }();
+  return recorded;
+}
+
+std::size_t meetings(const RecordedRun& run, MeetingKind kind) {
+  std::size_t count = 0;
+  for (const LogEntry& entry : run.entries) {
+    const auto* met = std::get_if<Meeting>(&entry);
+    count += met != nullptr && met->kind == kind;
+  }
+  return count;
+}
+
+TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
+  const Recorded& recorded = recordedByTheClock();
+  EXPECT_EQ(recorded.run.damage, "");
+  const ReplayResult replayed = replay(recorded.run);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.equal, recorded.run.entries.size());
+  const AssembleResult &a = recorded.result, &b = replayed.result;
+  EXPECT_EQ(a.completed, b.completed);
+  EXPECT_EQ(a.haptic.count, b.haptic.count);
+  EXPECT_EQ(a.physics.count, b.physics.count);
+  EXPECT_EQ(a.energy.to_hand_J, b.energy.to_hand_J);
+  EXPECT_EQ(a.energy.injected_J, b.energy.injected_J);
+  ASSERT_EQ(a.steps.size(), b.steps.size());
+  for (std::size_t i = 0; i < a.steps.size(); ++i) {
+    EXPECT_EQ(a.steps[i].why_not, b.steps[i].why_not);
+    EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
+    EXPECT_EQ(a.steps[i].max_penetration_m, b.steps[i].max_penetration_m);
+    EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);
+  }
+  ASSERT_EQ(a.trace.size(), b.trace.size());
+  for (std::size_t i = 0; i < a.trace.size(); ++i) ASSERT_EQ(a.trace[i].X_WP.p, b.trace[i].X_WP.p) << i;
+}
+
+TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndOrder) {
+  const Recorded& recorded = recordedByTheClock();
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::Tick), recorded.result.haptic.count);
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::Step), recorded.result.physics.count);
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::HandOver), 2u);
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::LetGo), 2u);
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::Settled), 2u);
+  EXPECT_EQ(meetings(recorded.run, MeetingKind::Paused), 1u);
+}
+
+TEST(RealTimeReplay, ACutRecordingRunsUpToTheCutWhereverItIs) {
+  for (const double share : {0.1, 0.33331, 0.5, 0.77777}) {
+    RecordedRun cut = recordedByTheClock().run;
+    for (int more = 0; more < 5; ++more) {  // amid a tick, too
+      RecordedRun some = cut;
+      some.entries.resize(static_cast<std::size_t>(share * static_cast<double>(cut.entries.size())) +
+                          static_cast<std::size_t>(more));
+      some.damage = "ends in the middle of a record";
+      const ReplayResult replayed = replay(some);
+      EXPECT_EQ(replayed.departure, "") << share << " " << more;
+      EXPECT_GE(replayed.equal + 3, some.entries.size());  // but for a tick that was cut
+    }
+  }
+}
+
+TEST(RealTimeReplay, TicksThatSeeOlderPhysicsDepartAndSayWhen) {
+  RecordedRun run = recordedByTheClock().run;
+  std::int32_t snapshot = 0;
+  for (LogEntry& entry : run.entries) {
+    auto* met = std::get_if<Meeting>(&entry);
+    if (met == nullptr || met->kind != MeetingKind::Tick || met->tick < 150 || met->tick >= 200) continue;
+    if (met->tick == 150) snapshot = met->snapshot;
+    met->snapshot = snapshot;  // a tenth of a second of physics unseen, while the hand moves the part
+  }
+  const ReplayResult replayed = replay(run);
+  EXPECT_NE(replayed.departure.find("/device/write: force_n"), std::string::npos) << replayed.departure;
+}
+
+/// What came, and what was said to be lost.
+class Kept final : public RunLog {
+ public:
+  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
+  void lose(std::uint64_t count) noexcept override { lost += count; }
+  std::vector<LogEntry> entries;
+  std::uint64_t lost = 0;
+};
+
+TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
+  Kept kept;
+  HapticLog log(&kept);
+  constexpr int kAdded = 3 * (1 << 15) / 2;
+  {
+    const vps_test::NoAllocScope guard;
+    for (int i = 0; i < kAdded; ++i) log.add(Meeting{0, i, 1, 0, MeetingKind::Tick});
+  }
+  log.passUpTo(kAdded);
+  EXPECT_EQ(kept.entries.size(), std::size_t{1} << 15);
+  EXPECT_EQ(kept.lost, 0u);  // known with the next that comes
+  log.add(Meeting{0, kAdded, 1, 0, MeetingKind::Tick});
+  log.passUpTo(kAdded);
+  EXPECT_EQ(kept.lost, static_cast<std::uint64_t>(kAdded - (1 << 15)));
+}
+
+TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
+  Kept kept;
+  HapticLog log(&kept);
+  for (int tick = 1; tick <= 3; ++tick) {
+    log.add(Meeting{0, tick, 1, 0, MeetingKind::Tick});
+    log.add(DeviceSample{});
+    log.add(WrittenWrench{});
+  }
+  log.passUpTo(2);
+  EXPECT_EQ(kept.entries.size(), 6u);
+  log.passUpTo(2);
+  EXPECT_EQ(kept.entries.size(), 6u);
+  log.passUpTo(3);
+  EXPECT_EQ(kept.entries.size(), 9u);
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The two threads of a run by the clock, without a scene: a handle that swings, a part that follows it.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <optional>
+
+#include "haptic_side.h"
+#include "vps_device/recording.h"
+
+namespace vps {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+/// Swings by itself; the loop's thread has it to itself.
+class Swing final : public Device {
+ public:
+  DeviceSample read() noexcept override { return sample; }
+  void write(const Wrench& F) noexcept override { written = F; }
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "swing"; }
+  DeviceSample sample;
+  Wrench written;
+};
+
+class SwingingHand final : public Hand {
+ public:
+  Device& device() override { return swing_; }
+  void prepare(const OperatorTask&, std::size_t step, double) override { next_ = static_cast<double>(step); }
+  void begin() override { speed_ = next_; }
+  void goBack(std::size_t) override { speed_ = 0; }
+  void recentre() override { speed_ = -1; }
+  void goOn() override { speed_ = 1; }
+  void step(const HeldPart&, const HapticLoop&, double dt_s) override {
+    DeviceSample& sample = swing_.sample;
+    sample.time_s += dt_s;
+    sample.V_DH.v = Vec3(0.02 * speed_ * std::cos(10 * sample.time_s), 0, 0);
+    sample.X_DH.p += dt_s * sample.V_DH.v;
+  }
+  [[nodiscard]] OperatorPhase phase() const override {
+    return speed_ == 0 ? OperatorPhase::Done : OperatorPhase::Reach;
+  }
+  [[nodiscard]] bool canGoOn(int) const override { return true; }
+
+ private:
+  Swing swing_;
+  double speed_ = 0, next_ = 0;
+};
+
+/// Gives the samples of a log again.
+class Again final : public Hand, public Device {
+ public:
+  explicit Again(const std::vector<LogEntry>& entries) {
+    for (const LogEntry& entry : entries)
+      if (const auto* sample = std::get_if<DeviceSample>(&entry)) samples_.push_back(*sample);
+  }
+  Device& device() override { return *this; }
+  DeviceSample read() noexcept override { return samples_[next_++]; }
+  void write(const Wrench&) noexcept override {}
+  [[nodiscard]] DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "again"; }
+  void prepare(const OperatorTask&, std::size_t, double) override {}
+  void begin() override {}
+  void goBack(std::size_t) override {}
+  void recentre() override {}
+  void goOn() override {}
+  void step(const HeldPart&, const HapticLoop&, double) override {}
+  [[nodiscard]] OperatorPhase phase() const override { return OperatorPhase::Reach; }
+  [[nodiscard]] bool canGoOn(int ticks) const override {
+    return next_ + static_cast<std::size_t>(ticks) <= samples_.size();
+  }
+
+ private:
+  std::vector<DeviceSample> samples_;
+  std::size_t next_ = 0;
+};
+
+class Kept final : public RunLog {
+ public:
+  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
+  void lose(std::uint64_t count) noexcept override { lost += count; }
+  std::vector<LogEntry> entries;
+  std::uint64_t lost = 0;
+};
+
+LoopSettings settings() {
+  LoopSettings s;
+  s.period_s = kPeriod_s;
+  s.extrapolates_part = true;
+  s.physics_limit_s = physicsLimit_s(kPeriod_s);
+  return s;
+}
+
+/// A run: hand-over, work, a new grasp on the way, let go, and back; every request that there is.
+/// @return the proxies that physics saw
+std::vector<Vec3> drive(HapticSide& side, int steps) {
+  std::vector<Vec3> seen;
+  std::optional<double> stored_J;
+  CouplingState part;
+  part.is_coupled = true;
+  const auto go = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      if (!side.advance({part.X_W, part.V_W, Vec3::Zero()})) return;
+      const CouplingState& proxy = side.proxy();
+      seen.push_back(proxy.X_W.p);
+      part.X_W.p += 0.1 * (proxy.X_W.p - part.X_W.p);  // lags behind
+      part.time_s = proxy.time_s;
+      stored_J = 1e-3 * part.X_W.p.norm();
+      side.publish(part, stored_J);
+    }
+  };
+  for (int round = 0; round < 3; ++round) {
+    side.handOver(part.X_W);
+    side.publish(part, {});
+    side.resume();
+    go(steps);
+    side.begin(OperatorTask{}, 1, 0);
+    go(steps);
+    side.openClutch();
+    go(steps);
+    side.recentre();
+    go(steps);
+    side.closeClutch();
+    go(steps);
+    side.goOn();
+    go(steps);
+    side.letGo();
+    side.goBack(0);
+    go(steps);
+    if (round == 1) side.pause();
+    EXPECT_TRUE(side.hasSettled(true));
+  }
+  side.pause();
+  return seen;
+}
+
+TEST(RealTimeSide, WhatTwoThreadsDidIsDoneAgainByOne) {
+  Kept log;
+  CouplingPort port, port_again;
+  SwingingHand hand;
+  const TellFault tell = [](const std::string&) {};  // a starved machine may well stall physics
+  const auto side = realTimeSide(hand, port, settings(), 0.7e-3, tell, &log);
+  const std::vector<Vec3> seen = drive(*side, 60);
+  EXPECT_EQ(log.lost, 0u);
+  EXPECT_EQ(seen.size(), 3u * 7 * 60);
+
+  RecordedRun run;
+  run.entries = log.entries;
+  std::vector<Meeting> meetings;
+  for (const LogEntry& entry : run.entries)
+    if (const auto* met = std::get_if<Meeting>(&entry)) meetings.push_back(*met);
+  ReplayCheck check(run);
+  Again recorded(run.entries);
+  TappedDevice tapped(recorded, check);
+  const auto replay = replayedSide(recorded, meetings, tapped, port_again, settings(), tell, check);
+  EXPECT_EQ(drive(*replay, 60), seen);
+  EXPECT_EQ(check.departure(), "");
+  EXPECT_EQ(check.left(), 0u);
+  EXPECT_EQ(side->ledger().to_hand_J, replay->ledger().to_hand_J);
+  EXPECT_EQ(side->ledger().injected_J, replay->ledger().injected_J);
+  EXPECT_GT(side->ledger().from_hand_J, 0);
+}
+
+}  // namespace
+}  // namespace vps
