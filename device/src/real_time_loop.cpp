@@ -125,13 +125,16 @@ bool RealTimeLoop::ask(const Request& request) noexcept {
 }
 
 bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
-  return ask({Request::Grasp, X_WG});
+  return ask({Request::Grasp, X_WG, {}});
 }
 bool RealTimeLoop::release() noexcept {
-  return ask({Request::Release, {}});
+  return ask({Request::Release, {}, {}});
 }
 bool RealTimeLoop::rearm() noexcept {
-  return ask({Request::Rearm, {}});
+  return ask({Request::Rearm, {}, {}});
+}
+bool RealTimeLoop::setGains(const CouplingGains& gains) noexcept {
+  return ask({Request::Gains, {}, gains});
 }
 
 void RealTimeLoop::answerRequests() noexcept {
@@ -142,6 +145,7 @@ void RealTimeLoop::answerRequests() noexcept {
     if (request.kind == Request::Grasp) loop_.grasp(request.X_WG);
     if (request.kind == Request::Release) loop_.release();
     if (request.kind == Request::Rearm) loop_.rearm();
+    if (request.kind == Request::Gains) loop_.setGains(request.gains);
   }
   answered_.store(answered, std::memory_order_release);
   const Energies& energies = energies_.read();
