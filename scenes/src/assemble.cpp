@@ -11,6 +11,7 @@
 #include "box_motion.h"
 #include "fit_record.h"
 #include "haptic_side.h"
+#include "pace_keeper.h"
 #include "placed_parts.h"
 #include "procedure.h"
 #include "run_record.h"
@@ -70,6 +71,19 @@ RunTrace logged(const TraceRow& row) {
   return trace;
 }
 
+Twist scaled(const Twist& V, double by) {
+  return {by * V.w, by * V.v};
+}
+
+/// What a device is passive with in a scene, at a physics rate.
+CouplingGains gainsFor(const Scene& scene, const DeviceLimits& limits, double physics_rate_hz) {
+  CouplingTiming timing;
+  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  timing.physics_rate_hz = physics_rate_hz;
+  timing.scale = scene.device.scale;
+  return deriveGains(limits, timing);
+}
+
 /// One run of a procedure. Lives as long as the run.
 class Procedure {
  public:
@@ -83,7 +97,6 @@ class Procedure {
         tapped_(hand.device(), log != nullptr ? *log : deaf_),
         placed_(scene, plan_, simulation_, options),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
-        gains_(settings.gains),
         trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
         physics_clock_(dt_s_),
         poses_(scene.parts.size()),
@@ -96,6 +109,10 @@ class Procedure {
     side_ = options.is_real_time
                 ? realTimeSide(hand, port_, loop_settings, dt_s_, tell)
                 : lockstepSide(hand, device, port_, loop_settings, ticksPerStep(scene), tell);
+    pace_.emplace(scene_, plan_, simulation_, placed_, *side_,
+                  [limits = hand.device().limits(), &scene](double rate_hz) {
+                    return gainsFor(scene, limits, rate_hz);
+                  });
     mountFixed();
   }
 
@@ -133,6 +150,9 @@ class Procedure {
   /// Models the rest of what is fixed, if the part in hand comes near the border of its region.
   void keepCovered();
 
+  /// Gives up what must be to hold the rate, or takes it back.
+  void keepPace();
+
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
   void record(int phase);
@@ -160,8 +180,8 @@ class Procedure {
   LocalContact local_;
   std::unique_ptr<HapticSide> side_;
   PlacedParts placed_;
+  std::optional<PaceKeeper> pace_;  ///< of side_
   double dt_s_;
-  CouplingGains gains_;
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
   TickClock physics_clock_;
@@ -198,6 +218,7 @@ AssembleResult Procedure::run() {
   result_.finished = snapshot();
   result_.haptic = side_->times();
   result_.real_time = side_->realTime();
+  if (result_.real_time) result_.real_time->paces = pace_->changes();
   result_.physics = physics_clock_.summary();
   const HandLedger ledger = side_->ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J};
@@ -236,7 +257,9 @@ void Procedure::keepCovered() {
   // By the clock physics that stands still for so long is a fault; paused, the loop knows.
   const bool pauses = options_.has_local_contact || side_->isByClock();
   if (pauses) side_->pause();
+  pace_->beforeNewModels(time_s_);
   placed_.widen(step);
+  pace_->afterNewModels(time_s_, part);
   if (!pauses) return;
   if (options_.has_local_contact && is_holding_) takeLocally(scene_.parts[part]);
   side_->resume();
@@ -257,7 +280,7 @@ void Procedure::take(const SceneStep& step) {
   held_ = {step.part, Pose::translation(simulation_.centreOfMass(step.part)), step.X_WP_target,
            bounds(scene_part.part.mesh), 0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
-  simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
+  simulation_.grasp(step.part, held_.X_PG, pace_->gains());
   side_->grasp(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
@@ -296,23 +319,37 @@ bool Procedure::advance() {
   }
   X_WP_before_ = poses_[held_.part];
   if (!is_settling_) keepCovered();
+  keepPace();
   physics_clock_.start();
-  const CouplingState& proxy = port_.proxy.read();
+  CouplingState proxy = port_.proxy.read();
+  proxy.V_W = scaled(proxy.V_W, pace_->slower());
   simulation_.setProxy(proxy);
   simulation_.step(dt_s_);
   physics_clock_.stop();
   time_s_ += dt_s_;
+  if (options_.after_step) options_.after_step(time_s_);
 
   poses_[held_.part] = simulation_.pose(held_.part);
   CouplingState part = simulation_.graspState();
   part.is_coupled =
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
+  part.V_W = scaled(part.V_W, 1 / pace_->slower());
   port_.part.write(part);
   if (is_holding_)
     side_->noteStored(stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-                          springEnergy(gains_, proxy, part),
+                          springEnergy(pace_->gains(), proxy, part),
                       0);
   return true;
+}
+
+void Procedure::keepPace() {
+  // Cooking and judging slow a run down that nothing given up would quicken.
+  if (!options_.degrades || !side_->isByClock() || is_settling_) return;
+  const std::size_t told = pace_->changes().size();
+  pace_->keep(side_->busy_s(), time_s_, held_.part, is_holding_);
+  dt_s_ = pace_->dt_s();
+  for (std::size_t i = told; i < pace_->changes().size(); ++i)
+    tellEvent(RunEventKind::Note, "pace: " + pace_->changes()[i].is);
 }
 
 void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
@@ -480,6 +517,8 @@ void Procedure::goOnUntil(const std::function<bool()>& is_done) {
 
 void Procedure::settle(StepResult& result, std::size_t index) {
   const std::size_t part = held_.part;
+  if (side_->isByClock()) goOnUntil([this] { return pace_->isReady(); });
+  pace_->finish(time_s_);  // of the part that goes now
   std::future<FitVerdict> verdict = judgeBeside();
   // So that the next step has what it is mounted on.
   const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
@@ -519,9 +558,10 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   side_->goBack(next < scene_.steps.size() ? &scene_.steps[next] : nullptr);
   // At least until the hand is back.
   side_->resume();
-  const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
-  result.rest_s = static_cast<double>(steps) * dt_s_;
-  for (long i = 0; i < steps && !isStopped() && advance(); ++i) {
+  const double first_dt_s = dt_s_;
+  const double steps = std::round(std::max(scene_.release_s, kHandReturn_s) / dt_s_);
+  result.rest_s = steps * dt_s_;
+  for (double left = steps; left > 0 && !isStopped() && advance(); left -= dt_s_ / first_dt_s) {
     record(3);
     result.rest_drift_m =
         std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
@@ -558,11 +598,7 @@ void Procedure::tell(std::size_t index, double share) const {
 LoopSettings loopSettings(const Scene& scene, const Device& device) {
   const DeviceLimits limits = device.limits();
   LoopSettings settings;
-  CouplingTiming timing;
-  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
-  timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
-  timing.scale = scene.device.scale;
-  settings.gains = deriveGains(limits, timing);
+  settings.gains = gainsFor(scene, limits, scene.fidelity.physics_rate_hz);
   const CouplingWishes& wishes = scene.coupling;
   settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
   settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);

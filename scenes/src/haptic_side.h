@@ -38,6 +38,11 @@ class HapticSide {
   /// port has the proxy to step with. False, and nothing done, where the hand cannot go on.
   /// @param part  in hand, as it is now
   [[nodiscard]] virtual bool advance(const HeldPart& part) = 0;
+  /// What the caller did between the last two of these; 0 in lockstep.
+  [[nodiscard]] virtual double busy_s() const { return 0; }
+  /// From the next advance() on, where it goes by the clock: steps of step_s of simulated time, one each
+  /// period_s of the clock's, and other gains. settings() stays what was asked.
+  virtual void setPace(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
   virtual void noteStored(double stored_J, double actuator_J) = 0;
 
   [[nodiscard]] virtual OperatorPhase phase() = 0;

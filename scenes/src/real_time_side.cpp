@@ -37,6 +37,7 @@ class RealTimeSide final : public HapticSide {
       : hand_(hand),
         settings_(settings),
         physics_s_(physics_s),
+        step_s_(physics_s),
         tell_(tell),
         loop_(hand.device(), port, told(settings), realTimeSettings()),
         metronome_(std::llround(1e9 * physics_s), monotonicClock()) {}
@@ -60,6 +61,7 @@ class RealTimeSide final : public HapticSide {
     const RealTimeReport physics = askForRealTime(kPhysicsPriority, false);
     result_.has_priority = result_.has_priority && physics.has_priority;
     metronome_.start();
+    woke_ns_ = 0;
   }
   [[nodiscard]] const LoopSettings& settings() const override { return settings_; }
   [[nodiscard]] bool isByClock() const override { return true; }
@@ -95,10 +97,25 @@ class RealTimeSide final : public HapticSide {
 
   bool advance(const HeldPart& part) override {
     part_.write(part);
+    const std::int64_t asked_ns = monotonicClock().now_ns();
+    busy_s_ = woke_ns_ > 0 ? 1e-9 * static_cast<double>(asked_ns - woke_ns_) : 0;
     const Beat beat = metronome_.wait();
-    result_.physics_missed += static_cast<std::uint64_t>(beat.periods - 1);
+    woke_ns_ = beat.woke_ns;
+    const double passed_s = 1e-9 * static_cast<double>(beat.periods * metronome_.period_ns());
+    result_.physics_missed += static_cast<std::uint64_t>(std::llround(passed_s / physics_s_)) - 1;
+    result_.behind_s += passed_s - step_s_;
     tellEvents();
     return true;
+  }
+  [[nodiscard]] double busy_s() const override { return busy_s_; }
+  void setPace(double step_s, double period_s, const CouplingGains& gains) override {
+    step_s_ = step_s;
+    metronome_ = Metronome(std::llround(1e9 * period_s), monotonicClock());
+    metronome_.start();
+    if (loop_.isRunning())
+      loop_.setGains(gains);
+    else
+      loop_.loop().setGains(gains);
   }
   void noteStored(double stored_J, double actuator_J) override { loop_.noteStored(stored_J, actuator_J); }
   OperatorPhase phase() override { return loop_.isRunning() ? phase_.load() : hand_.phase(); }
@@ -164,7 +181,10 @@ class RealTimeSide final : public HapticSide {
 
   Hand& hand_;
   LoopSettings settings_;
-  double physics_s_;
+  double physics_s_;          ///< as asked
+  double step_s_;             ///< of simulated time, now
+  double busy_s_ = 0;         ///< of the physics thread, between the last two waits
+  std::int64_t woke_ns_ = 0;  ///< from the last; 0: not yet
   TellFault tell_;
   DeviceEventQueue events_;
   TripleBuffer<HeldPart> part_;
