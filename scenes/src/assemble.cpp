@@ -7,6 +7,7 @@
 #include <functional>
 #include <future>
 #include <optional>
+#include <thread>
 
 #include "box_motion.h"
 #include "fit_record.h"
@@ -30,6 +31,8 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
+
+constexpr std::chrono::milliseconds kLook{20};  // assumed: no wait that a person notices
 
 int ticksPerStep(const Scene& scene) {
   const double ratio = scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz;
@@ -495,13 +498,14 @@ std::future<FitVerdict> Procedure::judgeBeside() {
     if (scene_.fidelity.sides == Sides::One)
       for (FitSample& sample : samples_)
         sample.depth_m = std::max(sample.depth_m, placed_.fit().fieldDepth_m(body, sample.X_WP));
-    return judge(placed_.fit(), body, samples_, options_.judge_stride);
+    return judge(placed_.fit(), body, samples_, options_.judge_stride, options_.stop);
   });
 }
 
 std::future<CookedField> Procedure::cookBeside(std::size_t step) {
   auto order = placed_.orderFor(step);
   if (!order) return {};
+  order->stop = options_.stop;
   return std::async(std::launch::async, [order = std::move(*order)] {
     leaveRealTime();
     return cookField(order);
@@ -510,7 +514,7 @@ std::future<CookedField> Procedure::cookBeside(std::size_t step) {
 
 void Procedure::goOnUntil(const std::function<bool()>& is_done) {
   is_settling_ = true;
-  while (!is_done() && advance()) {
+  while (!is_done() && !isStopped() && advance()) {
   }
   is_settling_ = false;
 }
@@ -526,12 +530,18 @@ void Procedure::settle(StepResult& result, std::size_t index) {
   std::future<CookedField> field = cookBeside(index + 1);
   const std::uint64_t missed_before = side_->missed();
   if (side_->isByClock()) goOnUntil([&] { return isReady(verdict) && isReady(field); });
+  while (!isReady(verdict) || !isReady(field)) {
+    std::this_thread::sleep_for(kLook);
+    tell(index, 0.95);  // who listens may stop the run
+  }
   result.missed_while_cooking = side_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
   poses_[part] = X_WP;
   mount(part);
-  if (field.valid()) swapIn(field.get(), result);
+  if (!field.valid()) return;
+  CookedField cooked = field.get();
+  if (cooked.shape) swapIn(std::move(cooked), result);
 }
 
 void Procedure::swapIn(CookedField field, StepResult& result) {
