@@ -193,8 +193,9 @@ TradeRow judged(double step_us, double error_m, std::size_t bytes) {
 }
 
 TEST(Trade, TheFrontHoldsWhatNothingBeats) {
-  std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 5e-6, 20),
-                                judged(300, 1e-6, 5), judged(50, 9e-6, 99)};
+  // The third is beaten by the second alone, in one thing alone; so is the last but one by the fourth.
+  std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 2e-6, 20),
+                                judged(300, 1e-6, 5),  judged(300, 1e-6, 6),  judged(50, 9e-6, 99)};
   rows.back().run.completed = false;  // quick, and did not get there
   markFront(rows);
   EXPECT_TRUE(rows[0].is_on_front);
@@ -202,6 +203,7 @@ TEST(Trade, TheFrontHoldsWhatNothingBeats) {
   EXPECT_FALSE(rows[2].is_on_front);
   EXPECT_TRUE(rows[3].is_on_front);
   EXPECT_FALSE(rows[4].is_on_front);
+  EXPECT_FALSE(rows[5].is_on_front);
 }
 
 TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
