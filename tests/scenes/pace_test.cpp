@@ -109,7 +109,8 @@ TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
   EXPECT_EQ(paces.back().to, 0) << paces.back().is;
   EXPECT_EQ(paces.back().cost, "nothing is given up any more");
   EXPECT_EQ(paces.back().k_N_per_m, paces.front().k_N_per_m) << "the coupling is as stiff as before";
-  EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].why_not << result.steps[0].final_error_m << "or nothing could have come back in the hand";
+  EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].why_not << result.steps[0].final_error_m
+                                           << "or nothing could have come back in the hand";
   const double released_s = result.steps[0].start_s + result.steps[0].duration_s;
   for (const PaceChange& change : paces) {
     if (change.to < change.from && change.from > 2) {
