@@ -40,7 +40,12 @@ Pose Grasp::toHandle(const Pose& X_WG) const noexcept {
 
 HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings)
     : device_(&device), port_(&port), settings_(settings), limits_(device.limits()), guard_(settings.safety) {
-  const CouplingGains& gains = settings_.gains;
+  delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMostDelay));
+  setGains(settings_.gains);
+}
+
+void HapticLoop::setGains(const CouplingGains& gains) noexcept {
+  settings_.gains = gains;
   const double turn = settings_.map.force_scale,
                line = turn * settings_.map.scale;  // scene stiffness at the device
   const double half_s = 0.5 * settings_.period_s;
@@ -48,7 +53,6 @@ HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& s
       std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
-  delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMostDelay));
   if (!areUsable(gains)) refuse(SafetyFault::BadGains);
 }
 

@@ -131,6 +131,8 @@ void RealTimeLoop::answer(const Request& request) noexcept {
       return loop_.release();
     case Request::Rearm:
       return loop_.rearm();
+    case Request::Gains:
+      return loop_.setGains(request.gains);
   }
 }
 
@@ -143,22 +145,25 @@ bool RealTimeLoop::ask(const Request& request) noexcept {
 }
 
 bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
-  return ask({Request::Grasp, X_WG});
+  return ask({Request::Grasp, X_WG, {}});
 }
 bool RealTimeLoop::handOver(const Pose& X_WG) noexcept {
-  return ask({Request::HandOver, X_WG});
+  return ask({Request::HandOver, X_WG, {}});
 }
 bool RealTimeLoop::disengage() noexcept {
-  return ask({Request::Disengage, {}});
+  return ask({Request::Disengage, {}, {}});
 }
 bool RealTimeLoop::engage() noexcept {
-  return ask({Request::Engage, {}});
+  return ask({Request::Engage, {}, {}});
 }
 bool RealTimeLoop::release() noexcept {
-  return ask({Request::Release, {}});
+  return ask({Request::Release, {}, {}});
 }
 bool RealTimeLoop::rearm() noexcept {
-  return ask({Request::Rearm, {}});
+  return ask({Request::Rearm, {}, {}});
+}
+bool RealTimeLoop::setGains(const CouplingGains& gains) noexcept {
+  return ask({Request::Gains, {}, gains});
 }
 
 void RealTimeLoop::answerRequests() noexcept {

@@ -25,6 +25,7 @@
 #include "map_limits.h"
 #include "splat.h"
 #include "vps/load_error.h"
+#include "vps/map_estimate.h"
 #include "vps/mesh_repair.h"
 #include "winding_signs.h"
 
@@ -373,6 +374,14 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   constexpr double kOnTheWay = 15;  // bytes a cell, assumed: what is made beside the directory and dropped
   return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kOnTheWay;
 }
+
+}  // namespace
+
+double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
+  return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
+}
+
+namespace {
 
 /// The box's surface, twice: a region may hold folds of the part's.
 double areaWithin(const FineRegions& regions, double area_m2) {

@@ -7,11 +7,13 @@
 #include <functional>
 #include <future>
 #include <optional>
+#include <thread>
 
 #include "box_motion.h"
 #include "clutch_work.h"
 #include "fit_record.h"
 #include "haptic_side.h"
+#include "pace_keeper.h"
 #include "placed_parts.h"
 #include "procedure.h"
 #include "run_record.h"
@@ -30,6 +32,8 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 constexpr double kStartOverlap_m = 10e-6;  ///< deeper at the start is refused
+
+constexpr std::chrono::milliseconds kLook{20};  // assumed: no wait that a person notices
 
 int ticksPerStep(const Scene& scene) {
   const double ratio = scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz;
@@ -80,6 +84,19 @@ RunTrace logged(const TraceRow& row) {
   return trace;
 }
 
+Twist scaled(const Twist& V, double by) {
+  return {by * V.w, by * V.v};
+}
+
+/// What a device is passive with in a scene, at a physics rate.
+CouplingGains gainsFor(const Scene& scene, const DeviceLimits& limits, double physics_rate_hz) {
+  CouplingTiming timing;
+  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  timing.physics_rate_hz = physics_rate_hz;
+  timing.scale = scene.device.scale;
+  return deriveGains(limits, timing);
+}
+
 /// One run of a procedure. Lives as long as the run.
 class Procedure {
  public:
@@ -93,7 +110,6 @@ class Procedure {
         tapped_(hand.device(), log != nullptr ? *log : deaf_),
         placed_(scene, plan_, simulation_, options),
         dt_s_(1 / scene.fidelity.physics_rate_hz),
-        gains_(settings.gains),
         trace_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))),
         physics_clock_(dt_s_),
         poses_(scene.parts.size()),
@@ -103,6 +119,10 @@ class Procedure {
     LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
     side_ = sideFor(scene, hand, loop_settings, tell);
+    pace_.emplace(scene_, plan_, simulation_, placed_, *side_,
+                  [limits = hand.device().limits(), &scene](double rate_hz) {
+                    return gainsFor(scene, limits, rate_hz);
+                  });
     mountFixed();
   }
 
@@ -143,6 +163,9 @@ class Procedure {
   /// Models the rest of what is fixed, if the part in hand comes near the border of its region.
   void keepCovered();
 
+  /// Gives up what must be to hold the rate, or takes it back.
+  void keepPace();
+
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
   void record(int phase);
@@ -170,8 +193,8 @@ class Procedure {
   LocalContact local_;
   std::unique_ptr<HapticSide> side_;
   PlacedParts placed_;
+  std::optional<PaceKeeper> pace_;  ///< of side_
   double dt_s_;
-  CouplingGains gains_;
   double grip_ = 1;    ///< share of the gains that holds the part in hand
   long trace_stride_;  ///< physics steps from one logged row to the next
   double time_s_ = 0;
@@ -207,6 +230,7 @@ AssembleResult Procedure::run() {
   result_.finished = snapshot();
   result_.haptic = side_->times();
   result_.real_time = side_->realTime();
+  if (result_.real_time) result_.real_time->paces = pace_->changes();
   result_.physics = physics_clock_.summary();
   const HandLedger ledger = side_->ledger();
   result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.unseen_J};
@@ -256,7 +280,9 @@ void Procedure::keepCovered() {
   // By the clock physics that stands still for so long is a fault; paused, the loop knows.
   const bool pauses = options_.has_local_contact || side_->isByClock();
   if (pauses) side_->pause();
+  pace_->beforeNewModels(time_s_);
   placed_.widen(step);
+  pace_->afterNewModels(time_s_, part);
   if (!pauses) return;
   if (options_.has_local_contact && is_holding_) takeLocally(scene_.parts[part]);
   side_->resume();
@@ -281,7 +307,7 @@ void Procedure::take(const SceneStep& step) {
            simulation_.mass(step.part) * scene_.gravity_W,
            0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
-  simulation_.grasp(step.part, held_.X_PG, side_->settings().gains);
+  simulation_.grasp(step.part, held_.X_PG, pace_->gains());
   grip_ = 1;
   side_->handOver(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
@@ -321,23 +347,36 @@ bool Procedure::advance() {
   }
   X_WP_before_ = poses_[held_.part];
   if (!is_settling_) keepCovered();
+  keepPace();
   physics_clock_.start();
-  const CouplingState& proxy = side_->proxy();
+  CouplingState proxy = side_->proxy();
+  proxy.V_W = scaled(proxy.V_W, pace_->slower());
   simulation_.setProxy(proxy);
   simulation_.step(dt_s_);
   physics_clock_.stop();
   time_s_ += dt_s_;
+  if (options_.after_step) options_.after_step(time_s_);
 
   poses_[held_.part] = simulation_.pose(held_.part);
   CouplingState part = simulation_.graspState();
   part.is_coupled =
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
+  part.V_W = scaled(part.V_W, 1 / pace_->slower());
   std::optional<double> stored_J;
   if (is_holding_)
     stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-               springEnergy(faded(gains_, grip_), proxy, part);
+               springEnergy(faded(pace_->gains(), grip_), proxy, part);
   side_->publish(part, stored_J);
   return true;
+}
+
+void Procedure::keepPace() {
+  // Cooking and judging slow a run down that nothing given up would quicken. A recording does not hold what
+  // is given up.
+  if (!options_.degrades || !side_->isByClock() || is_settling_ || log_ != nullptr) return;
+  pace_->keep(side_->busy_s(), time_s_, held_.part, is_holding_);
+  dt_s_ = pace_->dt_s();
+  if (grip_ < 1) simulation_.setGains(faded(pace_->gains(), grip_));  // other gains may have come
 }
 
 void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
@@ -471,7 +510,7 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   if (!clutch.comeFree(pressing)) return;
   clutch.setDown([&](double share) {
     grip_ = share;
-    simulation_.setGains(faded(gains_, grip_));
+    simulation_.setGains(faded(pace_->gains(), grip_));
     return pressing();
   });
 }
@@ -502,13 +541,14 @@ std::future<FitVerdict> Procedure::judgeBeside() {
     if (scene_.fidelity.sides == Sides::One)
       for (FitSample& sample : samples_)
         sample.depth_m = std::max(sample.depth_m, placed_.fit().fieldDepth_m(body, sample.X_WP));
-    return judge(placed_.fit(), body, samples_, options_.judge_stride);
+    return judge(placed_.fit(), body, samples_, options_.judge_stride, options_.stop);
   });
 }
 
 std::future<CookedField> Procedure::cookBeside(std::size_t step) {
   auto order = placed_.orderFor(step);
   if (!order) return {};
+  order->stop = options_.stop;
   return std::async(std::launch::async, [order = std::move(*order)] {
     leaveRealTime();
     return cookField(order);
@@ -517,13 +557,15 @@ std::future<CookedField> Procedure::cookBeside(std::size_t step) {
 
 void Procedure::goOnUntil(const std::function<bool()>& is_done) {
   is_settling_ = true;
-  while (!is_done() && advance()) {
+  while (!is_done() && !isStopped() && advance()) {
   }
   is_settling_ = false;
 }
 
 void Procedure::settle(StepResult& result, std::size_t index) {
   const std::size_t part = held_.part;
+  if (side_->isByClock()) goOnUntil([this] { return pace_->isReady(); });
+  pace_->finish(time_s_);  // of the part that goes now
   std::future<FitVerdict> verdict = judgeBeside();
   // So that the next step has what it is mounted on.
   const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
@@ -531,12 +573,18 @@ void Procedure::settle(StepResult& result, std::size_t index) {
   std::future<CookedField> field = cookBeside(index + 1);
   const std::uint64_t missed_before = side_->missed();
   if (side_->isByClock()) goOnUntil([&] { return side_->hasSettled(isReady(verdict) && isReady(field)); });
+  while (!isReady(verdict) || !isReady(field)) {
+    std::this_thread::sleep_for(kLook);
+    tell(index, 0.95);  // who listens may stop the run
+  }
   result.missed_while_cooking = side_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
   poses_[part] = X_WP;
   mount(part);
-  if (field.valid()) swapIn(field.get(), result);
+  if (!field.valid()) return;
+  CookedField cooked = field.get();
+  if (cooked.shape) swapIn(std::move(cooked), result);
 }
 
 void Procedure::swapIn(CookedField field, StepResult& result) {
@@ -563,9 +611,10 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   side_->goBack(next);
   // At least until the hand is back.
   side_->resume();
-  const auto steps = static_cast<long>(std::lround(std::max(scene_.release_s, kHandReturn_s) / dt_s_));
-  result.rest_s = static_cast<double>(steps) * dt_s_;
-  for (long i = 0; i < steps && !isStopped() && advance(); ++i) {
+  const double first_dt_s = dt_s_;
+  const double steps = std::round(std::max(scene_.release_s, kHandReturn_s) / dt_s_);
+  result.rest_s = steps * dt_s_;
+  for (double left = steps; left > 0 && !isStopped() && advance(); left -= dt_s_ / first_dt_s) {
     record(3);
     result.rest_drift_m =
         std::max(result.rest_drift_m, greatestDisplacement(box, X_WP_released, poses_[step.part]));
@@ -602,11 +651,7 @@ void Procedure::tell(std::size_t index, double share) const {
 LoopSettings loopSettings(const Scene& scene, const Device& device) {
   const DeviceLimits limits = device.limits();
   LoopSettings settings;
-  CouplingTiming timing;
-  timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
-  timing.physics_rate_hz = scene.fidelity.physics_rate_hz;
-  timing.scale = scene.device.scale;
-  settings.gains = deriveGains(limits, timing);
+  settings.gains = gainsFor(scene, limits, scene.fidelity.physics_rate_hz);
   const CouplingWishes& wishes = scene.coupling;
   settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
   settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);

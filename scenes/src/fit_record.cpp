@@ -16,7 +16,7 @@ constexpr std::size_t kSuspects = 50;
 }  // namespace
 
 FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
-                 std::size_t stride) {
+                 std::size_t stride, const std::atomic<bool>* stop) {
   std::set<std::size_t> judged;
   for (std::size_t i = 0; i < samples.size(); i += stride) judged.insert(i);
 
@@ -35,6 +35,7 @@ FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<F
   const Box box = bounds(moving.distance->mesh());
   const Pose* last = nullptr;
   for (const std::size_t i : judged) {
+    if (stop != nullptr && stop->load()) break;
     const FitSample& sample = samples[i];
     if (last && greatestDisplacement(box, *last, sample.X_WP) < ExactFit::kCertain_m) continue;
     last = &sample.X_WP;

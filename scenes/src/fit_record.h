@@ -2,6 +2,7 @@
 // The poses a part went through, and how deep it was by exact distance.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "exact_fit.h"
@@ -24,7 +25,8 @@ struct FitVerdict {
 /// Judges every `stride`-th pose, the last, and, whatever the stride, the kSuspects poses whose contacts were
 /// deepest. A pose within ExactFit::kCertain_m of the last one judged (greatest motion of any point) is that
 /// one.
+/// @param stop  ends it early when set, with what was found by then; may be null
 FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
-                 std::size_t stride);
+                 std::size_t stride, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace vps

@@ -25,9 +25,13 @@ std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& 
   return std::make_shared<VoxMap>(croppedVoxMap(map, kept_W));
 }
 
+bool isStopped(const FieldOrder& order) {
+  return order.stop != nullptr && order.stop->load();
+}
+
 std::shared_ptr<const VoxMap> mapOf(const FieldOrder& order) {
   std::shared_ptr<const VoxMap> map = order.below;
-  for (std::size_t i = map ? order.below_count : 0; i < order.parts.size(); ++i) {
+  for (std::size_t i = map ? order.below_count : 0; i < order.parts.size() && !isStopped(order); ++i) {
     const FieldPart& part = order.parts[i];
     map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, PlacedMesh{part.mesh, part.placed.X_WP}))
               : firstMap(part, order);
@@ -73,6 +77,7 @@ CookedField cookField(const FieldOrder& order) {
   field.region_W = order.region_W;
   VpsModels models;
   models.map = mapOf(order);
+  if (isStopped(order)) return field;
   if (order.has_shell) models.shell = shellOf(order);
   if (order.has_mesh) models.mesh = meshOf(order);
   for (const FieldPart& part : order.parts) {

@@ -3,6 +3,7 @@
 // thread, so that a run need not stand still for it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -39,6 +40,7 @@ struct FieldOrder {
   bool has_mesh = false;     ///< triangles too, for rays: nothing in a run asks for them
   bool builds_anew = false;  ///< nothing of the parts' own maps is used
   Fidelity fidelity;
+  const std::atomic<bool>* stop = nullptr;  ///< ends it between two parts when set; may be null
 };
 
 struct CookedField {
@@ -53,7 +55,7 @@ struct CookedField {
 
 /// From the parts' own meshes, never from a field already merged but `below`, to which they are added. O(the
 /// surface of what is new) and O(points in the region). Same input, same bits. Throws LoadError as
-/// cookVoxMap().
+/// cookVoxMap(). Stopped, it may come without a shape.
 CookedField cookField(const FieldOrder& order);
 
 }  // namespace vps

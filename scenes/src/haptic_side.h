@@ -50,6 +50,11 @@ class HapticSide {
   virtual void publish(const CouplingState& part, std::optional<double> stored_J) = 0;
   /// Whether what is done beside the run is ready: as the caller says, or as it was in a run done again.
   virtual bool hasSettled(bool is_ready) { return is_ready; }
+  /// What the caller did between the last two of these; 0 in lockstep.
+  [[nodiscard]] virtual double busy_s() const { return 0; }
+  /// From the next advance() on, where it goes by the clock: steps of step_s of simulated time, one each
+  /// period_s of the clock's, and other gains. settings() stays what was asked.
+  virtual void setPace(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
   [[nodiscard]] virtual OperatorPhase phase() = 0;
   /// As of the last tick.

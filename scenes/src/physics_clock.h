@@ -20,13 +20,23 @@ class PhysicsClock {
   Beat wait() noexcept;
   /// Gives the priority back.
   void stop() noexcept;
+  /// From the next wait() on: steps of step_s of simulated time, one each period_s of the clock's.
+  void setPace(double step_s, double period_s);
 
-  /// Periods without a step of their own.
+  /// Periods, of those first asked for, without a step of their own.
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
+  /// By how much simulated time is behind the clock's.
+  [[nodiscard]] double behind_s() const noexcept { return behind_s_; }
+  /// What the caller did between the last two waits.
+  [[nodiscard]] double busy_s() const noexcept { return busy_s_; }
 
  private:
   Metronome metronome_;
+  double period_s_;  ///< as first asked for
+  double step_s_;
   std::uint64_t missed_ = 0;
+  double behind_s_ = 0, busy_s_ = 0;
+  std::int64_t woke_ns_ = 0;  ///< from the last wait; 0: not yet
 };
 
 }  // namespace vps

@@ -43,7 +43,7 @@ class RealTimeSide final : public ClockedSide {
         tapped_(hand.device(), haptic_log_),
         loop_(tapped_, port, told(settings), realTimeSettings()),
         clock_(physics_s) {}
-  ~RealTimeSide() override { loop_.stop(); }
+  ~RealTimeSide() override { pause(); }
 
   void pause() override {
     if (loop_.isRunning()) {
@@ -82,6 +82,14 @@ class RealTimeSide final : public ClockedSide {
     return is_ready;
   }
   OperatorPhase phase() override { return known_phase_; }
+  [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
+  void setPace(double step_s, double period_s, const CouplingGains& gains) override {
+    clock_.setPace(step_s, period_s);
+    if (loop_.isRunning())
+      loop_.setGains(gains);
+    else
+      loop_.loop().setGains(gains);
+  }
   TickTimes times() override {
     const TickStatistics::Summary all = loop_.statistics().summary();
     return timesOf(all.tick, all.missed);
@@ -175,6 +183,7 @@ std::optional<RealTimeResult> RealTimeSide::realTime() {
   const TickStatistics::Summary all = loop_.statistics().summary();
   RealTimeResult result = result_;
   result.physics_missed = clock_.missed();
+  result.behind_s = clock_.behind_s();
   result.late = timesOf(all.late, 0);
   result.response = timesOf(all.response, 0);
   for (int i = 0; i < kTickCauses; ++i)

@@ -60,13 +60,16 @@ struct Simulation::World {
 
   std::map<std::size_t, VpsModels> models;  // by part; the exact surface is built once
   std::map<std::size_t, DynamicBody> bodies;
+  std::shared_ptr<const ShellSet> shells;  // in place of the parts' own; null: none
+  double dt_s;                             // of the last step
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
   std::unique_ptr<VpsCoupling> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
 
-  World(const Scene& s, const Plan& p) : scene(s), plan(p), solver(solverSettings(s.fidelity)) {
+  World(const Scene& s, const Plan& p)
+      : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
     installVps(dispatcher, bulletSettings(scene));
     tuneWorld(world, scene.fidelity.solver_iterations);
     world.setGravity(toBt(scene.gravity_W));
@@ -83,6 +86,11 @@ struct Simulation::World {
     const auto found = models.find(own);
     return found != models.end() ? found->second
                                  : models.emplace(own, makeModels(scene.parts[own].part)).first->second;
+  }
+
+  /// The points that a part goes by now.
+  [[nodiscard]] std::shared_ptr<const PointShell> shellOf(std::size_t part) const {
+    return shells && (*shells)[part] ? (*shells)[part] : scene.parts[part].part.shell;
   }
 
   void letGo() {
@@ -128,7 +136,7 @@ FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const Pla
   order.fidelity = w.scene.fidelity;
   for (const FixedPart& placed : parts) {
     const Part& part = w.scene.parts[placed.part].part;
-    order.parts.push_back({placed, &part.mesh, part.map, part.shell,
+    order.parts.push_back({placed, &part.mesh, part.map, w.shellOf(placed.part),
                            w.modelsOf(placed.part).surfaces.front().distance,
                            w.plan.parts[placed.part].kept_P});
   }
@@ -151,6 +159,40 @@ void Simulation::setField(CookedField field, std::size_t material) {
   w.world.addRigidBody(w.fixed_body.get());
 }
 
+PointsOrder Simulation::orderPoints(std::size_t part) {
+  World& w = *world_;
+  PointsOrder order;
+  if (hasFixed()) {
+    PlannedStep as_it_is;
+    as_it_is.region_W = w.field.region_W;
+    order.field_before = w.field.shape->models().shell;
+    as_it_is.has_shell = order.field_before != nullptr;
+    order.field = orderField(w.field.parts, as_it_is);
+    for (FieldPart& fixed : order.field.parts) fixed.shell = w.scene.parts[fixed.placed.part].part.shell;
+  }
+  const DynamicBody& body = w.bodies.at(part);
+  order.part = part;
+  order.models = w.modelsOf(part);
+  order.part_before = body.shape->models().shell;
+  order.X_SM = body.shape->X_SM();
+  order.X_WP = pose(part);
+  order.sides = w.scene.fidelity.sides;
+  return order;
+}
+
+void Simulation::setPoints(OtherPoints points) {
+  World& w = *world_;
+  w.shells = std::move(points.shells);
+  const auto found = w.bodies.find(points.part);
+  if (found == w.bodies.end() || !points.shape) return;
+  DynamicBody& body = found->second;
+  // Out and in again, so that no pair goes on with points that are gone.
+  w.world.removeRigidBody(body.body.get());
+  std::swap(body.shape, points.shape);
+  body.body->setCollisionShape(body.shape.get());
+  w.world.addRigidBody(body.body.get());
+}
+
 const CookedField& Simulation::field() const {
   return world_->field;
 }
@@ -171,7 +213,9 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
         "its volume is not positive, so it has no mass: the mesh is open or inside out; mend it, or mark the "
         "part as fixed");
   added.frame = makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
-  added.shape = std::make_unique<VpsShape>(w.modelsOf(part), added.frame.X_PB.inverse());
+  VpsModels models = w.modelsOf(part);
+  models.shell = w.shellOf(part);
+  added.shape = std::make_unique<VpsShape>(std::move(models), added.frame.X_PB.inverse());
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), toBt(added.frame.inertia_kg_m2)));
@@ -197,12 +241,12 @@ void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& 
   w.X_PG = X_PG;
 }
 
-void Simulation::setGains(const CouplingGains& gains) {
-  if (world_->coupling) world_->coupling->setGains(gains);
-}
-
 void Simulation::release() {
   world_->letGo();
+}
+
+void Simulation::setGains(const CouplingGains& gains) {
+  if (world_->coupling) world_->coupling->setGains(gains);
 }
 
 void Simulation::setProxy(const CouplingState& proxy) {
@@ -214,6 +258,7 @@ CouplingState Simulation::graspState() const {
 }
 
 void Simulation::step(double dt_s) {
+  world_->dt_s = dt_s;
   // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
   world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
   for (const auto& [part, b] : world_->bodies)
@@ -295,11 +340,10 @@ void forEachContact(btCollisionDispatcher& dispatcher, const Visit& visit) {
 
 TouchState Simulation::touch() const {
   TouchState state;
-  const double dt_s = 1 / world_->scene.fidelity.physics_rate_hz;
   forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
     state.depth_m = std::max(state.depth_m, -static_cast<double>(point.getDistance()));
     if (point.getAppliedImpulse() > 0) ++state.contacts;
-    state.force_N += static_cast<double>(point.getAppliedImpulse()) / dt_s;
+    state.force_N += static_cast<double>(point.getAppliedImpulse()) / world_->dt_s;
   });
   return state;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fixed_field.h"
+#include "other_points.h"
 #include "vps/coupling_law.h"
 #include "vps/mesh_distance.h"
 #include "vps_scenes/plan.h"
@@ -43,6 +44,12 @@ class Simulation {
   /// In place; without parts where nothing is fixed.
   [[nodiscard]] const CookedField& field() const;
   [[nodiscard]] bool hasFixed() const;
+
+  /// What makeOtherPoints() needs to make this body and the field in place again, on any thread.
+  [[nodiscard]] PointsOrder orderPoints(std::size_t part);
+  /// Puts them in place between two steps, all else as it is. Bodies and fields that come later take the same
+  /// points. The field goes to setField(). Without a shape: only what comes later. O(1) but for freeing.
+  void setPoints(OtherPoints points);
 
   /// Adds a part as a dynamic body at rest. Sleeping off, no damping. Throws LoadError where its mass makes
   /// no sense.

@@ -84,6 +84,25 @@ TEST(RealTimeLoop, EachBeatIsATickAndTheForceIsTheCouplings) {
   EXPECT_EQ(rig.loop.statistics().summary().missed, 0u);
 }
 
+// 2 mm at 1000 N/m, then at 250; no stiffness that nobody could hold.
+TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
+  Rig rig;
+  rig.run(100);
+  CouplingGains gains = plainSettings(rig.events).gains;
+  gains.k_N_per_m = 250;
+  {
+    vps_test::NoAllocScope guard;
+    EXPECT_TRUE(rig.loop.setGains(gains));
+    rig.run(1);
+  }
+  EXPECT_NEAR(rig.device.F_written_D.f.x(), -0.5, 1e-12);
+  gains.k_N_per_m = 1e9;
+  rig.loop.setGains(gains);
+  rig.run(1);
+  EXPECT_EQ(rig.force_N(), 0);
+  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::BadGains);
+}
+
 TEST(RealTimeLoop, PhysicsThatStallsForASecondGivesNoForceUntilRearmed) {
   Rig rig;
   rig.run(100);

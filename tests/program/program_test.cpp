@@ -81,7 +81,8 @@ TEST_F(Program, TradePicksAFidelityToPasteOrSaysThatNoneWillDo) {
   write("picked.toml", std::string(kScene) + picked.out);
   EXPECT_EQ(run("simulate picked.toml --seconds 0.01").status, 0);
 
-  ASSERT_EQ(run("trade scene.toml --tolerance 20um --json picked.json").status, 0);
+  const Ran said = run("trade scene.toml --tolerance 20um --json picked.json");
+  ASSERT_EQ(said.status, 0) << said.out << said.err;
   const json chosen = json::parse(slurp(folder_ / "picked.json"));
   EXPECT_TRUE(chosen["is_met"]);
   EXPECT_LE(chosen["error_m"], 20e-6);

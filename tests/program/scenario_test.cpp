@@ -74,6 +74,10 @@ TEST_F(Scenario, InRealTimeThePegGoesInAndTheReportSaysHowTimeWasKept) {
             0.9 * data["wall"]["run_s"].get<double>());
   EXPECT_EQ(data["wall"]["missed_while_cooking"].size(), data["steps"].size());
   EXPECT_NEAR(static_cast<double>(periods), static_cast<double>(steps), 0.05 * static_cast<double>(steps));
+  for (const json& change : data["wall"]["physics"]["paces"])  // a busy machine may ask for some
+    for (const char* key : {"time_s", "from", "to", "is_done", "why", "cost", "unseen_bound_m", "misread_m"})
+      EXPECT_TRUE(change.contains(key)) << key;
+  EXPECT_NE(ran.out.find("s behind the clock"), std::string::npos) << ran.out;
   long by_cause = 0;
   for (const json& missed : haptic["missed_by"]) by_cause += missed.get<long>();
   EXPECT_EQ(by_cause, haptic["missed"].get<long>());

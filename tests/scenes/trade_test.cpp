@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <new>
 #include <random>
 
 #include "scene_archive.h"
@@ -15,6 +18,7 @@
 #include "trade/front.h"
 #include "trade/probe.h"
 #include "vps/load_error.h"
+#include "vps/map_estimate.h"
 #include "vps/mesh_distance.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/trade.h"
@@ -111,6 +115,56 @@ TEST(Trade, TheSceneAsItIsIsRunAndTheRestIsMeasuredOrSaidToBeLeftOut) {
   EXPECT_EQ(result.fixed.size(), 2u);
 }
 
+/// Progress that does something when a row is spoken of again: first it is announced, then its run tells.
+Progress inRow(const std::string& name, const std::function<void()>& act) {
+  return [name, act, told = 0](std::string_view doing, double) mutable {
+    if (doing == name && ++told == 2) act();
+  };
+}
+
+TEST(Trade, ARowThatFailsIsLeftOutWithTheReasonAndTheOthersAreMeasured) {
+  const std::function<void()> failures[] = {[] { throw LoadError("", "ball", "is too fine to be modelled"); },
+                                            [] { throw std::bad_alloc(); }};
+  const char* const reasons[] = {"all coarser: part 'ball': is too fine", "all coarser: took more memory"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    TradeOptions options;
+    options.seconds = 20;
+    std::atomic<bool> stop = false;
+    const Progress fail = inRow("all coarser", failures[i]), end = inRow("voxel x2", [&] { stop = true; });
+    options.stop = &stop;
+    options.progress = [&](std::string_view doing, double share) {
+      fail(doing, share);
+      end(doing, share);
+    };
+    const TradeResult result = trade(ballOnPlate(), options);
+    ASSERT_FALSE(result.left_out.empty());
+    EXPECT_EQ(result.left_out[0].find(reasons[i]), 0u) << result.left_out[0];
+    const auto after = std::find_if(result.rows.begin(), result.rows.end(),
+                                    [](const TradeRow& row) { return row.what.name == "spacing x2"; });
+    ASSERT_NE(after, result.rows.end());
+    EXPECT_TRUE(after->has_run);
+    const auto failed = std::find_if(result.rows.begin(), result.rows.end(),
+                                     [](const TradeRow& row) { return row.what.name == "all coarser"; });
+    ASSERT_NE(failed, result.rows.end()) << "its models were measured before it failed";
+    EXPECT_TRUE(failed->has_probe);
+    EXPECT_FALSE(failed->has_run);
+  }
+}
+
+TEST(Trade, StoppedItKeepsWhatWasMeasuredAndSaysSo) {
+  TradeOptions options;
+  std::atomic<bool> stop = false;
+  options.stop = &stop;
+  options.progress = inRow("all coarser", [&] { stop = true; });
+  const TradeResult result = trade(ballOnPlate(), options);
+  ASSERT_EQ(result.rows.size(), 2u);
+  EXPECT_TRUE(result.rows[0].has_run);
+  EXPECT_FALSE(result.rows[1].has_run);
+  ASSERT_EQ(result.left_out.size(), 2u);
+  EXPECT_EQ(result.left_out[0], "all coarser: its run was stopped");
+  EXPECT_EQ(result.left_out[1].find("stopped"), 0u);
+}
+
 TEST(Trade, AnExcerptHoldsItsStepAndWhatIsInPlaceByThen) {
   Scene scene = ballOnPlate();
   scene.parts.push_back(scene.parts[1]);
@@ -139,8 +193,9 @@ TradeRow judged(double step_us, double error_m, std::size_t bytes) {
 }
 
 TEST(Trade, TheFrontHoldsWhatNothingBeats) {
-  std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 5e-6, 20),
-                                judged(300, 1e-6, 5), judged(50, 9e-6, 99)};
+  // The third is beaten by the second alone, in one thing alone; so is the last but one by the fourth.
+  std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 2e-6, 20),
+                                judged(300, 1e-6, 5),  judged(300, 1e-6, 6),  judged(50, 9e-6, 99)};
   rows.back().run.completed = false;  // quick, and did not get there
   markFront(rows);
   EXPECT_TRUE(rows[0].is_on_front);
@@ -148,6 +203,7 @@ TEST(Trade, TheFrontHoldsWhatNothingBeats) {
   EXPECT_FALSE(rows[2].is_on_front);
   EXPECT_TRUE(rows[3].is_on_front);
   EXPECT_FALSE(rows[4].is_on_front);
+  EXPECT_FALSE(rows[5].is_on_front);
 }
 
 TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
@@ -254,6 +310,42 @@ TEST(FidelityChoice, SaysWhichWishNobodyCanMeet) {
   wish = {};
   wish.tolerance_m = 1e-12;
   EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
+}
+
+// Halved until they are 15 um, the ball's map and the plate's would take 256 MB and more.
+TEST(FidelityChoice, NoMapIsBuiltThatWouldNotFitInMemory) {
+  Scene scene = ballOnPlate();
+  FidelityWish wish;
+  wish.tolerance_m = 0.01e-6;  // so that the search goes on to the finest
+  wish.machine_bytes = 40e6;
+  const FidelityChoice none = chooseFidelity(scene, wish);
+  EXPECT_FALSE(none.is_met);
+  EXPECT_NE(none.why_not.find("half of this machine's memory"), std::string::npos) << none.why_not;
+  wish.machine_bytes = 0;
+  wish.memory_bytes = 2e6;
+  const FidelityChoice small = chooseFidelity(scene, wish);
+  EXPECT_FALSE(small.is_met);
+  EXPECT_NE(small.why_not.find("only 2 MB are allowed"), std::string::npos) << small.why_not;
+  // Nothing to find, and the scene's own maps are too much.
+  wish = {};
+  wish.budget_hz = 1;
+  wish.machine_bytes = 1e4;
+  EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
+  EXPECT_FALSE(scene.parts[0].part.map) << "it was built all the same";
+}
+
+// Flat, round, thin, and of many small faces.
+TEST(FidelityChoice, WhatMapsAreExpectedToTakeIsNoLessThanTheyDoAndNoMoreThanStated) {
+  const Mesh meshes[] = {makeBox({12e-3, 12e-3, 3e-3}), makeSphere(3e-3, 5), makeBox({30e-3, 30e-3, 0.3e-3}),
+                         makeCylinder(4e-3, 15e-3, 64)};
+  for (const Mesh& mesh : meshes)
+    for (const double voxel_m : {0.25e-3, 0.125e-3, 0.0625e-3}) {
+      VoxMapSettings settings;
+      settings.voxel_m = voxel_m;
+      const double kept = static_cast<double>(buildVoxMap(mesh, settings).memoryBytes());
+      EXPECT_GE(expectedMapBytes(mesh, settings), 0.9 * kept) << voxel_m;
+      EXPECT_LE(expectedMapBytes(mesh, settings), 2.5 * kept) << voxel_m;
+    }
 }
 
 TEST(FidelityChoice, ASceneFileThatSaysAutoIsTheSameEachTimeAndGoesIntoTheRecording) {

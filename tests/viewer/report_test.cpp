@@ -172,5 +172,26 @@ TEST(Plot, NothingToPlotIsSaidNotDrawn) {
   EXPECT_FALSE(plotSeries({}, freshFolder("empty") + "/series"));
 }
 
+TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
+  const std::string folder = freshFolder("paces");
+  AssembleResult result = smallResult();
+  const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};
+  ASSERT_TRUE(fs::create_directories(folder));
+  writeReport(smallScene(), result, folder, options);
+  EXPECT_EQ(textOf(folder + "/report.html").find("hold the rate"), std::string::npos) << "no clock, no rate";
+  result.real_time.emplace();
+  writeReport(smallScene(), result, folder, options);
+  EXPECT_NE(textOf(folder + "/report.html").find("nothing was given up"), std::string::npos);
+  PaceChange change;
+  change.is = "points every 1 mm";
+  change.why = "34 % of <0.25 s> had no step";
+  change.cost = "no touch is deeper unseen than 1 mm";
+  result.real_time->paces = {change};
+  writeReport(smallScene(), result, folder, options);
+  const std::string page = textOf(folder + "/report.html");
+  for (const char* words : {"points every 1 mm", "34 % of &lt;0.25 s&gt;", "deeper unseen than 1 mm"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
 }  // namespace
 }  // namespace vps

@@ -15,6 +15,15 @@ namespace vps {
 
 namespace {
 
+/// What was given up to hold the rate, a line each.
+std::string describePaces(const std::vector<PaceChange>& paces) {
+  std::string lines;
+  for (const PaceChange& change : paces)
+    lines += "pace: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
+             change.is + ", since " + change.why + "; " + inWords(change) + "\n";
+  return lines;
+}
+
 /// How well time was kept, in two lines.
 std::string describe(const AssembleResult& result) {
   const RealTimeResult& kept = *result.real_time;
@@ -25,7 +34,8 @@ std::string describe(const AssembleResult& result) {
          std::to_string(result.haptic.missed) + " periods missed; due to written " + us(kept.worst_us) +
          " at worst, by " + kept.worst_cause + "\nphysics: " + std::to_string(result.physics.count) +
          " steps at " + fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
-         std::to_string(kept.physics_missed) + " periods missed\n";
+         std::to_string(kept.physics_missed) + " periods missed, " + fixed(kept.behind_s, 2) +
+         " s behind the clock\n" + describePaces(kept.paces);
 }
 
 }  // namespace
@@ -44,6 +54,7 @@ int runAssemble(const AssembleArguments& given) {
   options.stop = &stopRequested();
   options.record = given.record;
   options.is_real_time = given.is_real_time;
+  options.degrades = given.degrades;
   options.has_local_contact = given.has_local_contact;
   const AssembleResult result = assemble(scene, options);
   throwIfStopped();

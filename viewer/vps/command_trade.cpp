@@ -96,14 +96,18 @@ int runTrade(const TradeArguments& given) {
   const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
   if (wish) return pick(scene, *wish, json, bar);
   TradeOptions options;
-  options.progress = bar.progress();
+  // Without throwing when it is stopped: what was finished is kept.
+  options.progress = [show = bar.progress()](std::string_view doing, double share) {
+    if (!stopRequested()) show(doing, share);
+  };
   options.warn = warn;
   options.is_thorough = given.is_thorough;
   options.stop = &stopRequested();
   // Reading the scene counts, and plots come after.
   options.seconds = kSeconds - std::chrono::duration<double>(Clock::now() - begun).count();
   const TradeResult result = trade(scene, options);
-  throwIfStopped();
+  const bool is_stopped = stopRequested();
+  if (result.rows.empty()) throwIfStopped();
 
   PlotOutcome plot{true, {}};
   if (out) {
@@ -117,7 +121,10 @@ int runTrade(const TradeArguments& given) {
   bar.clear();
   print(result);
   if (!plot) warn("no plot: " + plot.why_not);
-  return kGood;
+  if (!is_stopped) return kGood;
+  say("stopped; what was measured by then is above" +
+      std::string(out || !given.csv.empty() || !given.json.empty() ? ", and saved" : ""));
+  return kCouldNot;
 }
 
 }  // namespace vps

@@ -42,6 +42,7 @@ struct AssembleArguments {
   bool stops_at_failure = false;
   bool is_real_time = false;
   bool has_local_contact = false;
+  bool degrades = true;  ///< in real time
   bool models_everything = false;
 };
 int runAssemble(const AssembleArguments& given);

@@ -44,6 +44,20 @@ Json loopWall(const TickTimes& times) {
   return {{"missed", times.missed}, {"tick_us", percentiles(times)}};
 }
 
+Json pace(const PaceChange& change) {
+  return {{"time_s", change.time_s},
+          {"from", {{"level", change.from}, {"words", change.was}}},
+          {"to", {{"level", change.to}, {"words", change.is}}},
+          {"is_done", change.is_done},
+          {"why", change.why},
+          {"lost_share", change.lost_share},
+          {"cost", change.cost},
+          {"unseen_bound_m", change.unseen_bound_m},
+          {"misread_m", change.misread_m ? Json(*change.misread_m) : Json(nullptr)},
+          {"k_N_per_m", change.k_N_per_m},
+          {"build_s", change.build_wall_s}};
+}
+
 /// How well a run in real time kept its time, into the haptic and the physics loop's object.
 void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
   haptic["missed_by"] = Json::object();
@@ -57,6 +71,9 @@ void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
   haptic["has_locked_memory"] = kept.has_locked_memory;
   haptic["warnings"] = kept.warnings;
   physics["missed_periods"] = kept.physics_missed;
+  physics["behind_s"] = kept.behind_s;
+  physics["paces"] = Json::array();
+  for (const PaceChange& change : kept.paces) physics["paces"].push_back(pace(change));
 }
 
 Json modelled(const ModelledCost& cost) {

@@ -129,6 +129,10 @@ class CommandLine {
                       "the haptic loop moves the part by itself between physics steps; for slow physics");
     command->add_flag("--real-time", assemble_.is_real_time,
                       "by the clock, haptic loop and physics each on a thread of its own; not repeatable");
+    command->add_flag(
+        "!--no-degrade", assemble_.degrades,
+        "with --real-time: a run that cannot hold its rate goes on as it is, and counts what it "
+        "missed");
     command
         ->add_option("--record", assemble_.record,
                      "record the run there (MCAP), scene and meshes included, for vps replay")

@@ -129,6 +129,11 @@ class HapticLoop {
   /// that no pause ever lets the force leap.
   const TickReport& tick(double dt_s) noexcept;
 
+  /// Other gains from the next tick on, as where physics changes its rate. Softer ones take energy out of the
+  /// springs, stiffer ones put some in: let those wait until nothing is held. Gains that are not usable are a
+  /// fault, as in the constructor.
+  void setGains(const CouplingGains& gains) noexcept;
+
   /// Latches a fault that a driver has found; recovery is rearm().
   void refuse(SafetyFault fault) noexcept;
 

@@ -69,6 +69,7 @@ class RealTimeLoop {
   bool engage() noexcept;
   bool release() noexcept;
   bool rearm() noexcept;
+  bool setGains(const CouplingGains& gains) noexcept;
   void noteStored(double stored_J, double actuator_J) noexcept {
     energies_.write({stored_J, actuator_J, true});
   }
@@ -90,8 +91,9 @@ class RealTimeLoop {
 
  private:
   struct Request {
-    enum Kind : std::uint8_t { Grasp, HandOver, Disengage, Engage, Release, Rearm } kind = Release;
+    enum Kind : std::uint8_t { Grasp, HandOver, Disengage, Engage, Release, Rearm, Gains } kind = Release;
     Pose X_WG;
+    CouplingGains gains{};
   };
   struct Energies {
     double stored_J = 0, actuator_J = 0;

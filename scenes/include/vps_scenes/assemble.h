@@ -24,6 +24,11 @@ struct AssembleOptions : ModelOptions {
   /// the first step to the last: a step is judged and the next one's field cooked on other threads meanwhile.
   /// Not repeatable; recorded it is, since a recording holds what the two knew of each other.
   bool is_real_time = false;
+  /// In real time a run that cannot hold its physics rate gives up what pace.h says, in its order, and takes
+  /// it back when it can. False: it only counts what it missed. Lockstep never gives up anything.
+  bool degrades = true;
+  /// What else the physics thread does after each step; a run's own time_s. Null: nothing.
+  std::function<void(double time_s)> after_step;
   /// Between physics steps the haptic loop works out the part's motion by itself
   /// (vps_device/local_contact.h). For physics slower than the loop. Not with `record`. In real time the loop
   /// stops where a part is taken and let go.

@@ -17,6 +17,9 @@ struct FidelityWish {
   std::optional<double> budget_hz;    ///< physics steps a second
   std::optional<double> tolerance_m;  ///< greatest error of depth at 95 of 100 points of every surface
   std::optional<double> memory_bytes;
+  /// What building may take without being wished for; 0: half of what this machine has. Changes no choice:
+  /// beyond it there is none.
+  double machine_bytes = 0;
 };
 
 /// Cost of a physics step [us] by the points that may be near contact in it: of the part in hand, and of as

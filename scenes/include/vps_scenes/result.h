@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vps/wrench.h"
+#include "vps_scenes/pace.h"
 #include "vps_scenes/snapshot.h"
 
 namespace vps {
@@ -96,8 +97,10 @@ struct RealTimeResult {
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;
-  std::uint64_t physics_missed = 0;  ///< physics periods without a step of their own
-  std::uint64_t faults = 0;          ///< of safety
+  std::uint64_t physics_missed = 0;  ///< physics periods, as asked, without a step of their own
+  double behind_s = 0;  ///< by how much less simulated time went by than the clock's while physics ran
+  std::vector<PaceChange> paces;  ///< what was given up to hold the rate, and taken back, in order
+  std::uint64_t faults = 0;       ///< of safety
 };
 
 struct AssembleResult {

@@ -99,16 +99,20 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
   return all;
 }
 
-TradeTry tradeReference(const Scene& scene) {
-  return changed(scene, "reference", TradeKnob::Reference, [](TradeTry& t) {
-    scaleLengths(t.fidelity, 0.5);
-    t.fidelity.sides = Sides::Both;
-    t.fidelity.contact_limit *= 4;
-    t.fidelity.solver_iterations *= 4;
-    t.fidelity.haptic_rate_hz *= 2;
-    t.fidelity.physics_rate_hz *= 2;
-    t.contact = ContactKind::Rigid;
-  });
+std::vector<TradeTry> tradeReferences(const Scene& scene) {
+  const auto reference = [&](const char* name, double lengths, double rates) {
+    return changed(scene, name, TradeKnob::Reference, [&](TradeTry& t) {
+      scaleLengths(t.fidelity, lengths);
+      t.fidelity.sides = Sides::Both;
+      t.fidelity.contact_limit *= 4;
+      t.fidelity.solver_iterations *= 4;
+      t.fidelity.haptic_rate_hz *= rates;
+      t.fidelity.physics_rate_hz *= rates;
+      t.contact = ContactKind::Rigid;
+    });
+  };
+  return {reference("reference", 0.5, 2), reference("reference, rates as they are", 0.5, 1),
+          reference("reference, 0.7 of the lengths, rates as they are", 0.7, 1)};
 }
 
 TradeTry tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows) {

@@ -12,8 +12,9 @@ namespace vps {
 /// finer.
 std::vector<TradeTry> tradeDesign(const Scene& scene);
 
-/// What the other rows are compared with: half the lengths, twice the rates, four times the solver.
-TradeTry tradeReference(const Scene& scene);
+/// What the other rows are compared with, the best first: half the lengths, twice the rates, four times the
+/// solver; then, for want of time, the scene's own rates; then 0.7 of the lengths.
+std::vector<TradeTry> tradeReferences(const Scene& scene);
 
 /// Each knob where it is cheapest without an error that is more than a tenth above the scene's own; empty
 /// name where that is the scene's own.

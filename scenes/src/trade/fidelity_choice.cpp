@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <vector>
 
+#include "machine_memory.h"
 #include "scene_models.h"
 #include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
+#include "vps/map_estimate.h"
 #include "vps/mesh_distance.h"
 #include "vps_scenes/scene.h"
 
@@ -22,6 +24,10 @@ constexpr std::size_t kSamples = 2000;         ///< a part
 constexpr double kShare = 0.95;
 constexpr double kMargin = 0.8;      ///< of the tolerance: other samples than these must keep it too
 constexpr double kFewestPoints = 4;  ///< spacing by that at first, at most
+
+constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points, and for other programs
+constexpr double kExpectedOverKept =
+    2.5;  ///< of expectedMapBytes() by what a map keeps, measured: tests hold it
 
 /// Points on and just off a part's surface, with their exact distances.
 struct Check {
@@ -63,7 +69,7 @@ class Chooser {
   }
 
   FidelityChoice run() {
-    if (wish_.tolerance_m && !findVoxel()) return choice_;
+    if (wish_.tolerance_m ? !findVoxel() : !hasRoomForMaps(choice_.fidelity.voxel_m)) return choice_;
     count();
     while (!isAffordable() && coarsen()) count();
     finish();
@@ -79,6 +85,8 @@ class Chooser {
   }
   [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
 
+  /// Looks at maps of a size before they are built, and says so in why_not where they cannot be had.
+  bool hasRoomForMaps(double voxel_m);
   bool findVoxel();
   [[nodiscard]] double worstError(double voxel_m, double enough_m);
   void count();
@@ -105,11 +113,38 @@ double Chooser::worstError(double voxel_m, double enough_m) {
   return worst_m;
 }
 
+bool Chooser::hasRoomForMaps(double voxel_m) {
+  VoxMapSettings settings;
+  settings.voxel_m = voxel_m;
+  double bytes = 0;
+  for (const ScenePart& part : scene_.parts) bytes += expectedMapBytes(part.part.mesh, settings);
+  const double machine_bytes =
+      wish_.machine_bytes > 0 ? wish_.machine_bytes : kMachineShare * machineMemoryBytes();
+  // Expected is up to kExpectedOverKept times what is kept: a wish is refused only where no map can meet it.
+  // Without a tolerance larger voxels may.
+  const bool fits_wish =
+      !wish_.memory_bytes || !wish_.tolerance_m || bytes <= kExpectedOverKept * *wish_.memory_bytes;
+  const bool fits_machine = machine_bytes == 0 || 2 * bytes <= machine_bytes;  // in the parts, and cooked
+  if (fits_wish && fits_machine) return true;
+  char words[250];
+  std::snprintf(
+      words, sizeof words,
+      "voxels of %.3g um were next, whose maps would take some %.3g MB, and %s %.3g MB are %s; ask for "
+      "more tolerance, or %s",
+      1e6 * voxel_m, 1e-6 * bytes, fits_wish ? "twice that must fit:" : "only",
+      1e-6 * (fits_wish ? machine_bytes : *wish_.memory_bytes),
+      fits_wish ? "half of this machine's memory" : "allowed",
+      fits_wish ? "use a larger machine" : "for more memory");
+  choice_.why_not = words;
+  return false;
+}
+
 bool Chooser::findVoxel() {
   for (const ScenePart& part : scene_.parts)
     checks_.push_back(makeCheck(part.part.mesh, std::min(*wish_.tolerance_m, 50e-6)));
   for (double voxel_m = kCoarsest_m; voxel_m >= kFinest_m; voxel_m *= kStep) {
     if (progress_) progress_("looking for a voxel size", 0.5);
+    if (!hasRoomForMaps(voxel_m)) return false;
     choice_.error_m = worstError(voxel_m, kMargin * *wish_.tolerance_m);
     if (choice_.error_m > kMargin * *wish_.tolerance_m) continue;
     choice_.fidelity.voxel_m = voxel_m;

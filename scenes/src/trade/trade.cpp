@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <optional>
 
 #include "scene_models.h"
@@ -57,6 +58,9 @@ void note(const AssembleResult& result, TradeRow& row) {
   row.run.bytes = result.modelled.bytes;
 }
 
+/// Leaves a row as far as it came.
+struct TradeStopped {};
+
 /// One measurement of a scene's trade.
 class Trade {
  public:
@@ -86,6 +90,17 @@ class Trade {
   }
 
   void measure(const TradeTry& what);
+  /// The finest that there is time for.
+  void measureReference();
+  /// All but the scene's own may fail: the trade goes on without what the row still lacks.
+  void fillOrLeaveOut(TradeRow& row);
+  void fill(TradeRow& row);
+  /// For work that asks for progress: ends it when the trade is stopped.
+  [[nodiscard]] Progress untilStopped() const {
+    return [this](std::string_view, double) {
+      if (isStopped()) throw TradeStopped();
+    };
+  }
   void probe(const Scene& scene, TradeRow& row);
   /// Takes over what a row of the same models was measured to be. False: there is none.
   bool copyProbe(TradeRow& row) const;
@@ -104,16 +119,18 @@ class Trade {
 };
 
 TradeResult Trade::run() {
-  std::vector<TradeTry> design = tradeDesign(scene_);
+  const std::vector<TradeTry> design = tradeDesign(scene_);
   planned_ = design.size() + 2;
   measure(design.front());
-  // Early, while there is time for it: all else is compared with it.
-  const TradeTry reference = tradeReference(scene_);
-  design.insert(design.begin() + 2, reference);
-  for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) measure(design[i]);
+  for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) {
+    measure(design[i]);
+    // Early, while there is time for it: all else is compared with it.
+    if (i == 1) measureReference();
+  }
   const TradeTry suggestion = tradeSuggestion(scene_, result_.rows);
   plan_.goLast();
   if (!suggestion.name.empty() && !isStopped()) measure(suggestion);
+  if (isStopped()) result_.left_out.emplace_back("stopped: what is not listed was not measured");
   compareWithReference();
   markFront(result_.rows);
   return std::move(result_);
@@ -129,11 +146,48 @@ void Trade::measure(const TradeTry& what) {
   tell(what.name);
   TradeRow row;
   row.what = what;
+  fillOrLeaveOut(row);
+  if (row.bytes > 0) result_.rows.push_back(std::move(row));
+}
+
+void Trade::measureReference() {
+  for (const TradeTry& reference : tradeReferences(scene_)) {
+    if (isStopped()) return;
+    if (!plan_.hasTimeForModels(reference)) continue;
+    measure(reference);
+    if (result_.rows.back().what.name == reference.name && result_.rows.back().has_run) return;
+  }
+  if (!isStopped())
+    result_.left_out.emplace_back(
+        "reference: not even the coarsest fits in the time, so runs are compared with none");
+}
+
+void Trade::fillOrLeaveOut(TradeRow& row) {
+  const bool is_own = row.what.knob == TradeKnob::Own;
+  const auto leaveOut = [&](const std::string& why) {
+    result_.left_out.push_back(row.what.name + ": " + why);
+  };
+  try {
+    fill(row);
+  } catch (const TradeStopped&) {
+    leaveOut("stopped");
+  } catch (const std::bad_alloc&) {
+    if (is_own) throw;
+    leaveOut("took more memory than there is");
+  } catch (const LoadError& error) {
+    if (is_own) throw;
+    leaveOut(error.what());
+  }
+}
+
+void Trade::fill(TradeRow& row) {
+  const TradeTry& what = row.what;
+  const bool is_own = what.knob == TradeKnob::Own;
   Scene scene = scene_;
   scene.fidelity = what.fidelity;
   scene.contact = what.contact;
   ModelOptions quiet = options_;
-  quiet.progress = {};
+  quiet.progress = untilStopped();
   if (!is_own) quiet.warn = nullptr;  // a mesh that is not closed is told once
   row.models_wall_s = store_.fill(scene, quiet);
   const ModelledCost cost = modelledCost(scene);
@@ -145,7 +199,6 @@ void Trade::measure(const TradeTry& what) {
     runProcedure(scene, row);
   else
     result_.left_out.push_back(what.name + ": its models were measured, the procedure was not run");
-  result_.rows.push_back(std::move(row));
 }
 
 bool Trade::copyProbe(TradeRow& row) const {
@@ -189,7 +242,8 @@ void Trade::runProcedure(const Scene& scene, TradeRow& row) {
   const AssembleResult result = assemble(used, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
   if (is_late) {
-    result_.left_out.push_back(row.what.name + ": its run was cut, for want of time");
+    result_.left_out.push_back(
+        row.what.name + (isStopped() ? ": its run was stopped" : ": its run was cut, for want of time"));
     return;
   }
   plan_.runTook(row.what, row.run.wall_s);
@@ -205,7 +259,7 @@ void Trade::beginProbe(const Scene& scene, const AssembleResult& result, TradeRo
         "errors of the models: nothing touched in the run, so there is no pose to ask at");
     return;
   }
-  probe_.emplace(scene, poses, Progress{});
+  probe_.emplace(scene, poses, untilStopped());
   result_.poses = probe_->poses();
   result_.poses_inside = probe_->posesInside();
   result_.reference_spacing_m = probe_->spacing_m();

@@ -119,6 +119,24 @@ std::string stepSection(std::size_t i, const StepResult& step, const StepPicture
   return out;
 }
 
+/// What a run by the clock gave up to hold its rate.
+std::string paces(const AssembleResult& result) {
+  if (!result.real_time) return "";
+  const std::vector<PaceChange>& changes = result.real_time->paces;
+  const std::string behind = format(result.real_time->behind_s, "%.2f") +
+                             " s of the clock's time had no step of "
+                             "physics";
+  if (changes.empty()) return "<p>" + behind + "; nothing was given up to hold the rate.</p>\n";
+  std::vector<std::vector<Cell>> rows;
+  for (const PaceChange& change : changes)
+    rows.push_back({{format(change.time_s, "%.2f"), "n"},
+                    {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
+                    {escapeHtml(change.why), ""},
+                    {escapeHtml(inWords(change)), ""}});
+  return "<p>" + behind + ". This is what was given up to hold the rate, and taken back:</p>\n" +
+         html::table({"at [s]", "from then on", "why", "what it costs"}, rows);
+}
+
 std::string performance(const AssembleResult& result) {
   const auto row = [](const char* name, double rate_hz, const TickTimes& t) -> std::vector<Cell> {
     return {{name, ""},
@@ -142,7 +160,7 @@ std::string performance(const AssembleResult& result) {
                       row("physics", result.physics_rate_hz, result.physics)}) +
          "<p>Models were built in " + format(result.build_wall_s, "%.2f") + " s, fixed parts cooked in " +
          format(cook_s, "%.2f") + " s; the run of " + format(result.simulated_s, "%.2f") + " s took " +
-         format(result.run_wall_s, "%.2f") + " s.</p>\n</div>\n";
+         format(result.run_wall_s, "%.2f") + " s.</p>\n" + paces(result) + "</div>\n";
 }
 
 std::string method(const Scene& scene, const AssembleResult& result) {

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A run by the clock with physics that is made too slow for it. Loads are several times what a step of such a
+// scene takes on any machine, and periods long: a busy machine may add to them, but not take away.
+#include "vps_scenes/pace.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "vps_scenes/assemble.h"
+#include "wall_clock.h"
+
+namespace vps {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+/// A pin that is set down on a plate, and another beside it. Physics at 250 Hz.
+Scene twoPins() {
+  Scene scene;
+  scene.file = scene.name = "pins";
+  const auto add = [&](const std::string& name, const Vec3& size_m, const Vec3& p_WP, bool is_fixed) {
+    ScenePart& part = scene.parts.emplace_back();
+    part.part.name = name;
+    part.part.mesh = makeBox(size_m);
+    part.X_WP = Pose::translation(p_WP);
+    part.is_fixed = is_fixed;
+  };
+  add("plate", {40 * kMm, 40 * kMm, 2 * kMm}, Vec3::Zero(), true);
+  add("pin", {4 * kMm, 4 * kMm, 4 * kMm}, {0, 0, 3 * kMm}, false);
+  add("twin", {4 * kMm, 4 * kMm, 4 * kMm}, {12 * kMm, 0, 3 * kMm}, false);
+  for (const std::size_t i : {1u, 2u}) {
+    SceneStep& step = scene.steps.emplace_back();
+    step.part = i;
+    step.X_WP_target = scene.parts[i].X_WP;
+    step.X_WP_start = Pose::translation(scene.parts[i].X_WP.p + Vec3(0, 0, 20 * kMm));
+    step.tolerance_m = 1 * kMm;  // what is tested is the pace, not the hand
+  }
+  scene.fidelity.haptic_rate_hz = 500;
+  scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.5;
+  return scene;
+}
+
+void burn(double seconds) {
+  for (const double until_s = wallSeconds() + seconds; wallSeconds() < until_s;) {
+  }
+}
+
+/// By the clock, with physics steps that take load_s(time_s) more, until so much simulated time has passed.
+AssembleResult run(Scene scene, double until_s, const std::function<double(double)>& load_s,
+                   bool degrades = true) {
+  std::atomic<bool> stop = false;
+  AssembleOptions options;
+  options.is_real_time = true;
+  options.degrades = degrades;
+  options.stop = &stop;
+  options.after_step = [&](double time_s) {
+    burn(load_s(time_s));
+    stop = time_s > until_s;
+  };
+  return assemble(scene, options);
+}
+
+void expectInOrder(const std::vector<PaceChange>& paces) {
+  int level = 0;
+  for (const PaceChange& change : paces) {
+    EXPECT_EQ(change.from, level);
+    EXPECT_TRUE(change.is_done) << change.why;
+    EXPECT_LE(std::abs(change.to - change.from), 1) << change.is;  // 0: the same, of models made anew
+    EXPECT_FALSE(change.why.empty() || change.cost.empty());
+    level = change.to;
+  }
+}
+
+// 10 ms of load in a period of 4: too much for 4 and 8, not for 16.
+TEST(Pace, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
+  const AssembleResult result = run(twoPins(), 2, [](double) { return 10e-3; });
+  const std::vector<PaceChange>& paces = result.real_time->paces;
+  ASSERT_GE(paces.size(), 4u);
+  expectInOrder(paces);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(paces[i].to, static_cast<int>(i + 1)) << paces[i].is;
+  EXPECT_EQ(paces[0].is, "points every 1 mm, physics at 250 Hz, time at the clock's");
+  EXPECT_EQ(paces[3].is, "points every 2 mm, physics at 62.5 Hz, time at the clock's");
+  EXPECT_GT(paces[0].lost_share, 0.5) << "10 ms begin three periods of 4 ms, of which two are lost";
+  EXPECT_EQ(paces[1].unseen_bound_m, 2e-3);
+  EXPECT_LT(paces[3].k_N_per_m, paces[2].k_N_per_m)
+      << "a coupling that is passive at the lower rate is softer";
+  EXPECT_EQ(paces.back().to, 4) << paces.back().is;
+  EXPECT_GT(result.real_time->behind_s, 0.5) << "a second went by before that";
+  EXPECT_EQ(result.real_time->faults, 0u);
+}
+
+// The load is gone after half a second. The hand takes longer than the 2 s after which a rate could come
+// back, and it comes back only when the pin is let go; 9 s of rest have room for four waits of 2 s.
+TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
+  Scene scene = twoPins();
+  scene.steps.resize(1);
+  scene.release_s = 9;
+  scene.steps[0].X_WP_start.p.z() += 40 * kMm;
+  scene.steps[0].timeout_s = 60;
+  scene.hand.speed_m_s = 0.02;
+  const AssembleResult result = run(scene, 60, [](double time_s) { return time_s < 0.5 ? 10e-3 : 0; });
+  const std::vector<PaceChange>& paces = result.real_time->paces;
+  expectInOrder(paces);
+  ASSERT_FALSE(paces.empty());
+  EXPECT_EQ(paces.back().to, 0) << paces.back().is;
+  EXPECT_EQ(paces.back().cost, "nothing is given up any more");
+  EXPECT_EQ(paces.back().k_N_per_m, paces.front().k_N_per_m) << "the coupling is as stiff as before";
+  EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].why_not << result.steps[0].final_error_m
+                                           << "or nothing could have come back in the hand";
+  const double released_s = result.steps[0].start_s + result.steps[0].duration_s;
+  for (const PaceChange& change : paces) {
+    if (change.to < change.from && change.from > 2) {
+      EXPECT_GE(change.time_s, released_s) << "a coupling got stiffer in the hand";
+    }
+  }
+}
+
+TEST(Pace, SwitchedOffItOnlyCounts) {
+  const AssembleResult result = run(
+      twoPins(), 0.5, [](double) { return 10e-3; }, false);
+  EXPECT_TRUE(result.real_time->paces.empty());
+  EXPECT_GT(result.real_time->physics_missed, result.physics.count) << "two of three periods";
+}
+
+// Points go with the inverse square of their spacing, a period with the divisors.
+TEST(Pace, PointsAreGivenUpBeforeRateAndRateBeforeTimeEachForLess) {
+  const std::vector<double> expected = {4, 4, 2, 2, 2, 2};
+  for (std::size_t level = 1; level < kPaces.size(); ++level) {
+    EXPECT_EQ(dearerBefore(level), expected[level - 1]) << level;
+    const Pace &now = kPaces[level], &before = kPaces[level - 1];
+    if (now.rate_divisor > before.rate_divisor) {
+      EXPECT_EQ(now.coarser, 4) << level;
+    }
+    if (now.slower > before.slower) {
+      EXPECT_EQ(now.rate_divisor, 4) << level;
+    }
+  }
+}
+
+TEST(Pace, LockstepNeverGivesUpAnything) {
+  Scene scene = twoPins();
+  AssembleOptions options;
+  options.after_step = [](double time_s) { burn(time_s < 0.5 ? 5e-3 : 0); };
+  const AssembleResult slow = assemble(scene, options);
+  Scene again = twoPins();
+  const AssembleResult quick = assemble(again);
+  EXPECT_FALSE(slow.real_time);
+  ASSERT_EQ(slow.trace.size(), quick.trace.size());
+  for (std::size_t i = 0; i < slow.trace.size(); ++i) {
+    ASSERT_EQ(slow.trace[i].X_WP.p, quick.trace[i].X_WP.p) << i;
+    ASSERT_EQ(slow.trace[i].F_hand_W.f, quick.trace[i].F_hand_W.f) << i;
+  }
+}
+
+}  // namespace
+}  // namespace vps

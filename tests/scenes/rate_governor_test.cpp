@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rate_governor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace vps {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+/// Six levels below the one asked for, each half as dear as the one above.
+RateGovernor halving() {
+  return RateGovernor(std::vector<double>(6, 2.0));
+}
+
+/// A load that costs load(t) periods a step at level 0, and half as much with each level.
+struct Course {
+  std::vector<int> levels;  ///< after each change
+  std::vector<double> times_s;
+};
+Course follow(RateGovernor& governor, double seconds, const std::function<double(double)>& load,
+              bool may_rise = true) {
+  Course course;
+  for (double time_s = 0; time_s < seconds;) {
+    const int before = governor.level();
+    const double busy_s = load(time_s) * kPeriod_s * std::pow(0.5, before);
+    time_s += kPeriod_s * std::max(1.0, std::ceil(busy_s / kPeriod_s));
+    if (governor.add(busy_s, kPeriod_s, may_rise) == before) continue;
+    course.levels.push_back(governor.level());
+    course.times_s.push_back(time_s);
+  }
+  return course;
+}
+
+TEST(RateGovernor, ALoadThatFitsChangesNothing) {
+  RateGovernor governor = halving();
+  EXPECT_TRUE(follow(governor, 20, [](double) { return 0.99; }).levels.empty());
+  EXPECT_EQ(governor.last().lost_s, 0);
+}
+
+TEST(RateGovernor, OneLateStepAWindowIsNoReasonHoweverLate) {
+  RateGovernor governor = halving();
+  int step = 0;
+  const Course course = follow(governor, 20, [&](double) { return ++step % 200 == 0 ? 500.0 : 0.1; });
+  EXPECT_TRUE(course.levels.empty());
+  EXPECT_GT(governor.last().lostShare(), 0.5) << "or this load says nothing";
+  EXPECT_FALSE(governor.isOverloaded());
+}
+
+// Of 100 steps one may take two periods with 1 % lost; of 10, 9 % are.
+TEST(RateGovernor, LateStepsCountByTheTimeTheyLose) {
+  for (const int every : {100, 10}) {
+    RateGovernor governor = halving();
+    int step = 0;
+    (void)follow(governor, 0.6, [&](double) { return ++step % every == 0 ? 1.5 : 0.1; });
+    EXPECT_EQ(governor.level(), every == 10 ? 1 : 0) << every;
+  }
+}
+
+// 5 periods are 2.5, 1.25, 0.625 at levels 1, 2, 3. A window is 0.25 s, and its last step may end up to 5 ms
+// later.
+TEST(RateGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
+  RateGovernor governor = halving();
+  const Course course = follow(governor, 20, [](double) { return 5.0; });
+  EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3}));
+  for (std::size_t i = 0; i < course.times_s.size(); ++i)
+    EXPECT_NEAR(course.times_s[i], 0.25 * static_cast<double>(i + 1), 5e-3 * static_cast<double>(i + 1));
+  EXPECT_EQ(governor.last().lost_s, 0);
+  EXPECT_NEAR(governor.last().busy_s, 5e-3 / 8, 1e-12);
+}
+
+TEST(RateGovernor, WhatNoLevelCanCarryEndsAtTheLastAndIsSaid) {
+  RateGovernor governor = halving();
+  const Course course = follow(governor, 20, [](double) { return 1000.0; });
+  EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 4, 5, 6}));
+  EXPECT_TRUE(governor.isOverloaded());
+}
+
+// A level is taken back after 8 windows of 0.25 s in which the level above would have done.
+TEST(RateGovernor, WhenTheLoadIsGoneItTakesBackLevelByLevelInTwoSecondsEach) {
+  RateGovernor governor = halving();
+  const Course course = follow(governor, 20, [](double time_s) { return time_s < 1 ? 5.0 : 0.1; });
+  EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 2, 1, 0}));
+  for (std::size_t i = 4; i < course.times_s.size(); ++i)
+    EXPECT_NEAR(course.times_s[i] - course.times_s[i - 1], 2, 0.01);
+}
+
+TEST(RateGovernor, StallsDoNotKeepItFromTakingBack) {
+  RateGovernor governor = halving();
+  int step = 0;
+  const Course course = follow(governor, 8, [&](double time_s) {
+    return time_s < 0.3 ? 1.5 : ++step % 100 == 0 ? 40.0 : 0.1;
+  });
+  EXPECT_EQ(course.levels, (std::vector<int>{1, 0}));
+}
+
+// At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so it must not try.
+TEST(RateGovernor, ItDoesNotTakeBackWhatWouldNotFit) {
+  RateGovernor governor = halving();
+  EXPECT_EQ(follow(governor, 60, [](double) { return 1.1; }).levels, (std::vector<int>{1}));
+}
+
+// Two seconds of load, three without, for ten minutes: 120 times. Each relapse doubles the wait: 2, 4, 8, 16,
+// 32, 64 s; with pauses of 3 s only the first wait of 2 s can ever be met.
+TEST(RateGovernor, ALoadThatComesAndGoesDoesNotMakeItFlap) {
+  RateGovernor governor = halving();
+  const Course course =
+      follow(governor, 600, [](double time_s) { return std::fmod(time_s, 5) < 2 ? 1.5 : 0.1; });
+  EXPECT_EQ(course.levels, (std::vector<int>{1, 0, 1}));
+}
+
+TEST(RateGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
+  RateGovernor governor = halving();
+  (void)follow(governor, 0.3, [](double) { return 1.5; });
+  ASSERT_EQ(governor.level(), 1);
+  EXPECT_TRUE(follow(
+                  governor, 30, [](double) { return 0.1; }, false)
+                  .levels.empty());
+  const Course course = follow(governor, 1, [](double) { return 0.1; });
+  ASSERT_EQ(course.levels, (std::vector<int>{0}));
+  EXPECT_LE(course.times_s[0], 0.25 + 1e-9) << "at the end of the first window";
+}
+
+TEST(RateGovernor, TimesThatAreNoNumbersAreNoLoad) {
+  RateGovernor governor = halving();
+  for (const double busy_s : {std::numeric_limits<double>::quiet_NaN(), -1.0})
+    for (int i = 0; i < 2000; ++i) ASSERT_EQ(governor.add(busy_s, kPeriod_s), 0);
+  for (int i = 0; i < 4; ++i)  // four leaps of the clock: fewer than five late steps a window
+    EXPECT_EQ(governor.add(std::numeric_limits<double>::infinity(), kPeriod_s), 0);
+  EXPECT_TRUE(std::isfinite(governor.last().elapsed_s));
+}
+
+}  // namespace
+}  // namespace vps
