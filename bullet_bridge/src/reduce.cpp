@@ -81,48 +81,61 @@ void markBest(const std::vector<Candidate>& candidates, const Vec3& origin, doub
     if (slot.cell != kEmpty) keep[slot.now] = keep[slot.then] = 1;
 }
 
-// Candidates as chooseSpread() weighs them: side by side, so that a look at all of them is quick.
+// Candidates as chooseSpread() weighs them: side by side and in floats, so that a look at all of them is
+// quick.
 struct Spread {
-  Eigen::Matrix<double, 6, Eigen::Dynamic> place;  // position in units of length, and normal
-  std::vector<double> nearest2;                    // squared distance to the nearest chosen one; chosen: -1
-  std::vector<double> urgency;                     // -1 to 1, in slacks
+  Eigen::Array<float, Eigen::Dynamic, 6> place;  // by candidate: position in units of length, and normal
+  Eigen::ArrayXf nearest2;                       // squared distance to the nearest chosen one; chosen: -1
+  Eigen::ArrayXf urgency;                        // -1 to 1, in slacks
+  Eigen::Index size = 0;                         // of them in use
 
   void take(const std::vector<Candidate>& candidates, double length_m, double slack_m) {
     const auto count = static_cast<Eigen::Index>(candidates.size());
-    if (place.cols() < count) place.resize(6, count);
-    nearest2.assign(candidates.size(), std::numeric_limits<double>::infinity());
-    urgency.clear();
+    if (place.rows() < count) place.resize(count, 6);
+    if (urgency.size() < count) urgency.resize(count);
+    if (nearest2.size() < count) nearest2.resize(count);
+    nearest2.head(count).setConstant(std::numeric_limits<float>::infinity());
+    size = count;
+    // About the first: far from the world's origin floats would not tell places apart.
+    const Vec3 origin = candidates.front().p_W;
     for (Eigen::Index i = 0; i < count; ++i) {
       const Candidate& c = candidates[static_cast<std::size_t>(i)];
-      place.col(i) << c.p_W / length_m, c.n_W;
-      urgency.push_back(std::clamp(vps::urgency(c) / slack_m, -1.0, 1.0));
+      const Vec3 p = (c.p_W - origin) / length_m;
+      for (int k = 0; k < 3; ++k) {
+        place(i, k) = static_cast<float>(p[k]);
+        place(i, 3 + k) = static_cast<float>(c.n_W[k]);
+      }
+      urgency[i] = static_cast<float>(std::clamp(vps::urgency(c) / slack_m, -1.0, 1.0));
     }
   }
 
   // Takes i out. The others come no farther from those chosen.
   void choose(std::size_t i) {
-    const Eigen::Matrix<double, 6, 1> chosen = place.col(static_cast<Eigen::Index>(i));
-    nearest2[i] = -1;
-    for (std::size_t k = 0; k < nearest2.size(); ++k)
-      nearest2[k] = std::min(nearest2[k], (place.col(static_cast<Eigen::Index>(k)) - chosen).squaredNorm());
+    const auto at = static_cast<Eigen::Index>(i);
+    nearest2[at] = -1;
+    const Eigen::Array<float, 1, 6> chosen = place.row(at);
+    const auto off2 = [&](int k) { return (place.col(k).head(size) - chosen[k]).square(); };
+    nearest2.head(size) = nearest2.head(size).min(off2(0) + off2(1) + off2(2) + off2(3) + off2(4) + off2(5));
   }
+
+  [[nodiscard]] bool isChosen(std::size_t i) const { return nearest2[static_cast<Eigen::Index>(i)] < 0; }
 
   // Extent, weighed against the gap: a contact a slack away is worth as much less as a body's length of
   // spread.
   [[nodiscard]] std::size_t best() const {
-    std::size_t best = nearest2.size();
-    double best_worth = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < nearest2.size(); ++i) {
+    Eigen::Index best = size;
+    float best_worth = -std::numeric_limits<float>::infinity();
+    for (Eigen::Index i = 0; i < size; ++i) {
       if (nearest2[i] < 0) continue;
-      const double wanted = best_worth + urgency[i];  // a root costs more than to see that it is not needed
-      if (wanted > 0 && nearest2[i] < (1 - 1e-12) * wanted * wanted) continue;
-      const double worth = std::sqrt(nearest2[i]) - urgency[i];
+      const float wanted = best_worth + urgency[i];  // a root costs more than to see that it is not needed
+      if (wanted > 0 && nearest2[i] < (1 - 1e-6f) * wanted * wanted) continue;
+      const float worth = std::sqrt(nearest2[i]) - urgency[i];
       if (worth > best_worth) {
         best_worth = worth;
         best = i;
       }
     }
-    return best;
+    return static_cast<std::size_t>(best);
   }
 };
 
@@ -165,7 +178,7 @@ void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double 
       std::size_t first = 0;
       for (std::size_t i = 1; i < count; ++i)
         if (isMoreUrgent(candidates[i], candidates[first], measure)) first = i;
-      if (spread.nearest2[first] >= 0) choose(first);
+      if (!spread.isChosen(first)) choose(first);
     }
     while (chosen.size() < limit) choose(spread.best());
     candidates.swap(chosen);
