@@ -25,6 +25,7 @@ void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
     state.selection.is_valid = false;
+    state.selection.chosen.clear();
     state.penalty.points.clear();
     for (auto& memory : state.memory) memory.reset();
     state.writer->forget();

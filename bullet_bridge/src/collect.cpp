@@ -201,7 +201,7 @@ bool RelativeMotion::canTouch(Candidate& c) const {
 }
 
 std::size_t mayAllBeNear(const VpsBulletSettings& settings) {
-  constexpr std::size_t kPointsAContact = 64;  // a tile's, see memoryOf() in choose.cpp
+  constexpr std::size_t kPointsAContact = 64;  // a tile's, see tileSize_m() in choose.cpp
   return kPointsAContact * static_cast<std::size_t>(settings.contact_limit);
 }
 

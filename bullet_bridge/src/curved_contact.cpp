@@ -68,6 +68,7 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
 
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& foot,
                    double most_gain_m) {
+  if (side.shape->models().surfaces.empty()) return false;  // then nothing is known of its faces
   const double reach_m = side.shape->models().shell->spacing_m;
   std::optional<FacePoint> own = ownFace(c, side), their = foot;
   if (own->surface->sheet || their->surface->sheet) return false;

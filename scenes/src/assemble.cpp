@@ -119,7 +119,11 @@ class Procedure {
     LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
     side_ = sideFor(scene, hand, loop_settings, tell);
-    pace_.emplace(scene_, plan_, simulation_, placed_, *side_,
+    PaceLimits limits_of_pace;
+    limits_of_pace.stop = options.stop;
+    // What the loop foretells by itself moves as the clock does.
+    limits_of_pace.may_slow = !options.has_local_contact;
+    pace_.emplace(scene_, plan_, simulation_, placed_, *side_, limits_of_pace,
                   [limits = hand.device().limits(), &scene](double rate_hz) {
                     return gainsFor(scene, limits, rate_hz);
                   });
@@ -486,7 +490,7 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   };
   const auto reaching = [&] { return go_on(0); };
   const auto pressing = [&] { return go_on(2); };
-  const ClutchWork clutch(*side_, dt_s_);
+  const ClutchWork clutch(*side_, [this] { return pace_->dt_s() * pace_->slower(); });
   if (!clutch.takeHold(reaching)) return;
   side_->begin(taskOf(step), index, time_s_);
   told_phase_.reset();

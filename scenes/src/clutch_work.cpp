@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "clutch_work.h"
 
-#include <cmath>
-
 #include "hand.h"
 
 namespace vps {
@@ -12,19 +10,25 @@ namespace {
 /// Where safety keeps the clutch from moving, go on as it is after so many times what it takes. assumed.
 constexpr double kPatience = 10;
 
-bool forSteps(double steps, const std::function<bool()>& go_on) {
-  for (double i = 0; i < steps; ++i)
-    if (!go_on()) return false;
-  return true;
-}
+/// What rounding leaves of a step when all are done.
+constexpr double kRounding = 1e-6;
 
 }  // namespace
 
+bool ClutchWork::goOnFor(double seconds, const std::function<bool()>& go_on) const {
+  for (double left_s = seconds, step_s = step_s_(); left_s > kRounding * step_s; step_s = step_s_()) {
+    if (!go_on()) return false;
+    left_s -= step_s;
+  }
+  return true;
+}
+
 // What was asked for shows in the report after a tick only: so at least as long as it takes.
 bool ClutchWork::waitForClutch(double ratio, const std::function<bool()>& go_on) const {
-  const double steps = std::ceil(side_.settings().clutch_s / physics_s_);
-  if (!forSteps(steps, go_on)) return false;
-  for (double i = steps; i < kPatience * steps && side_.last().clutch_ratio != ratio; ++i)
+  const double clutch_s = side_.settings().clutch_s;
+  if (!goOnFor(clutch_s, go_on)) return false;
+  for (double waited_s = clutch_s; waited_s < kPatience * clutch_s && side_.last().clutch_ratio != ratio;
+       waited_s += step_s_())
     if (!go_on()) return false;
   return true;
 }
@@ -39,16 +43,21 @@ bool ClutchWork::comeFree(const std::function<bool()>& go_on) const {
 }
 
 bool ClutchWork::setDown(const std::function<bool(double)>& go_on) const {
-  const double steps = std::ceil(side_.settings().clutch_s / physics_s_);
-  for (double left = steps - 1; left >= 0; --left)
-    if (!go_on(left / steps)) return false;
+  double left_s = side_.settings().clutch_s;
+  const auto fade = [&] {
+    const double step_s = step_s_();
+    left_s = left_s > (1 + kRounding) * step_s ? left_s - step_s : 0;
+    return go_on(left_s / side_.settings().clutch_s);
+  };
+  while (left_s > 0)
+    if (!fade()) return false;
   return true;
 }
 
 bool ClutchWork::regrasp(const std::function<bool()>& go_on) const {
   if (!comeFree(go_on)) return false;
   side_.recentre();
-  if (!forSteps(std::round(kHandReturn_s / physics_s_), go_on)) return false;
+  if (!goOnFor(kHandReturn_s, go_on)) return false;
   side_.closeClutch();
   if (!takeHold(go_on)) return false;
   side_.goOn();

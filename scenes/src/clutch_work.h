@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "haptic_side.h"
 
@@ -12,8 +13,9 @@ namespace vps {
 /// on; so are they then. The part stands meanwhile, held by the proxy.
 class ClutchWork {
  public:
-  /// side outlives it. @param physics_s  period of physics
-  ClutchWork(HapticSide& side, double physics_s) : side_(side), physics_s_(physics_s) {}
+  /// side outlives it.
+  /// @param step_s  what a step of physics takes of the hand's time, which is the clock's; asked before each
+  ClutchWork(HapticSide& side, std::function<double()> step_s) : side_(side), step_s_(std::move(step_s)) {}
 
   /// After handOver(): until the hand has all of the part.
   bool takeHold(const std::function<bool()>& go_on) const;
@@ -28,9 +30,10 @@ class ClutchWork {
 
  private:
   bool waitForClutch(double ratio, const std::function<bool()>& go_on) const;
+  bool goOnFor(double seconds, const std::function<bool()>& go_on) const;
 
   HapticSide& side_;
-  double physics_s_;
+  std::function<double()> step_s_;
 };
 
 }  // namespace vps

@@ -2,6 +2,7 @@
 #include "other_points.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "scene_models.h"
 #include "vps/crop.h"
@@ -39,11 +40,13 @@ std::optional<double> leastDistance(const Side& field, const Side& part, const P
 
 }  // namespace
 
-std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& plan, double by) {
+std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& plan, double by,
+                                              const std::atomic<bool>* stop) {
   PointShellSettings settings = pointShellSettings(scene.fidelity);
   settings.spacing_m *= by;
   auto shells = std::make_shared<ShellSet>(scene.parts.size());
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    if (stop != nullptr && stop->load()) throw std::runtime_error("the run was stopped");
     const auto same_as = plan.parts[i].same_as;
     if (same_as)
       (*shells)[i] = (*shells)[*same_as];
@@ -66,6 +69,7 @@ OtherPoints makeOtherPoints(PointsOrder order, std::shared_ptr<const ShellSet> s
   const auto before_m = leastDistance(field, part, order.X_WP, order.sides);
   if (!order.field.parts.empty()) {
     out.field = cookField(order.field);
+    if (!out.field->shape) throw std::runtime_error("the run was stopped");
     field.shell = out.field->shape->models().shell.get();
   }
   part.shell = order.models.shell.get();

@@ -3,6 +3,7 @@
 // thread.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,8 +18,9 @@ namespace vps {
 using ShellSet = std::vector<std::shared_ptr<const PointShell>>;
 
 /// For every part that has a shell, one at so many times the scene's spacing, cropped as the plan says. O(as
-/// building them). Throws as buildPointShell().
-std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& plan, double coarser);
+/// building them). Throws as buildPointShell(), and std::runtime_error once `stop` (may be null) is set.
+std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& plan, double coarser,
+                                              const std::atomic<bool>* stop);
 
 /// What is to be made again: a body, and the field in place where there is one.
 struct PointsOrder {
@@ -41,7 +43,8 @@ struct OtherPoints {
   std::optional<double> misread_m;
 };
 
-/// The maps stay those in place. Same input, same bits. Throws as cookField().
+/// The maps stay those in place. Same input, same bits. Throws as cookField(), and std::runtime_error
+/// where that was stopped.
 OtherPoints makeOtherPoints(PointsOrder order, std::shared_ptr<const ShellSet> shells);
 
 }  // namespace vps

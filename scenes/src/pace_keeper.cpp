@@ -12,9 +12,15 @@ namespace vps {
 
 namespace {
 
-std::vector<double> dearer() {
+std::vector<double> dearer(double physics_s, const PaceLimits& limits) {
+  constexpr double kLate = 1.5;  // of its period, a step that is none too late. assumed
   std::vector<double> all;
-  for (std::size_t level = 1; level < kPaces.size(); ++level) all.push_back(dearerBefore(level));
+  for (std::size_t level = 1; level < kPaces.size(); ++level) {
+    const Pace& pace = kPaces[level];
+    if (pace.slower > 1 && !limits.may_slow) break;
+    if (kLate * pace.periods() * physics_s > physicsLimit_s(physics_s)) break;
+    all.push_back(dearerBefore(level));
+  }
   return all;
 }
 
@@ -69,14 +75,15 @@ std::string costWords(const PaceChange& change, const CouplingGains& asked, cons
 }  // namespace
 
 PaceKeeper::PaceKeeper(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
-                       HapticSide& side, GainsAt gains_at)
+                       HapticSide& side, const PaceLimits& limits, GainsAt gains_at)
     : scene_(scene),
       plan_(plan),
       simulation_(simulation),
       placed_(placed),
       side_(side),
+      limits_(limits),
       gains_at_(std::move(gains_at)),
-      governor_(dearer()),
+      governor_(dearer(1 / scene.fidelity.physics_rate_hz, limits)),
       dt_s_(1 / scene.fidelity.physics_rate_hz),
       gains_(side.settings().gains) {}
 
@@ -116,15 +123,17 @@ PaceChange PaceKeeper::changeTo(int level, double time_s) const {
 void PaceKeeper::order(PaceChange change, std::size_t part) {
   const double coarser = paceOf(change.to).coarser;
   ordered_ = std::move(change);
-  under_way_ = std::async(std::launch::async, [this, coarser, known = shells_[coarser],
-                                               order = simulation_.orderPoints(part)]() mutable {
-    leaveRealTime();  // threads are born with their maker's priority
-    const double begun_s = wallSeconds();
-    if (coarser > 1 && !known) known = coarserShells(scene_, plan_, coarser);
-    Made made{makeOtherPoints(std::move(order), std::move(known)), 0};
-    made.wall_s = wallSeconds() - begun_s;
-    return made;
-  });
+  under_way_ =
+      std::async(std::launch::async, [this, coarser, known = shells_[coarser],
+                                      order = simulation_.orderPoints(part), stop = limits_.stop]() mutable {
+        leaveRealTime();  // threads are born with their maker's priority
+        const double begun_s = wallSeconds();
+        order.field.stop = stop;
+        if (coarser > 1 && !known) known = coarserShells(scene_, plan_, coarser, stop);
+        Made made{makeOtherPoints(std::move(order), std::move(known)), 0};
+        made.wall_s = wallSeconds() - begun_s;
+        return made;
+      });
 }
 
 bool PaceKeeper::isReady() const {
@@ -135,7 +144,7 @@ void PaceKeeper::finish(double time_s) {
   if (!under_way_.valid()) return;
   PaceChange& change = ordered_;
   change.time_s = time_s;
-  change.cost = costWords(change, gains_, paceOf(change.to), scene_.fidelity);
+  change.cost = costWords(change, side_.settings().gains, paceOf(change.to), scene_.fidelity);
   try {
     Made made = under_way_.get();
     change.build_wall_s = made.wall_s;
@@ -147,7 +156,11 @@ void PaceKeeper::finish(double time_s) {
     change.is_done = false;
     change.why += std::string("; but other points could not be made: ") + error.what();
   }
-  level_ = change.to;  // where it could not be done the next step down is still to come
+  // Where it could not be done downwards the next step is still to come; upwards it is tried again later.
+  if (!change.is_done && change.to < change.from)
+    governor_.stayAt(change.from);
+  else
+    level_ = change.to;
   changes_.push_back(std::move(change));
 }
 

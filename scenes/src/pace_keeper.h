@@ -3,6 +3,7 @@
 // back.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <future>
 #include <map>
@@ -15,10 +16,15 @@
 
 namespace vps {
 
+struct PaceLimits {
+  bool may_slow = true;                     ///< simulated time may go slower than the clock's
+  const std::atomic<bool>* stop = nullptr;  ///< may be null; ends the making of points early
+};
+
 /// Of the physics thread. Fewer or more points are made on a thread of its own, and put in place between two
 /// steps when they are ready; until then nothing further is decided. Rates change at once, downwards; upwards
 /// only while nothing is held, since a coupling that turns stiffer would push. A lower rate takes gains that
-/// are passive at it.
+/// are passive at it. No pace is taken at which physics would look stalled to the watchdog.
 class PaceKeeper {
  public:
   /// What gains a physics rate allows [Hz].
@@ -26,7 +32,7 @@ class PaceKeeper {
 
   /// All but gains_at outlive it.
   PaceKeeper(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
-             HapticSide& side, GainsAt gains_at);
+             HapticSide& side, const PaceLimits& limits, GainsAt gains_at);
 
   /// After a step by the clock.
   /// @param busy_s  what the physics thread did since the last
@@ -64,6 +70,7 @@ class PaceKeeper {
   Simulation& simulation_;
   PlacedParts& placed_;
   HapticSide& side_;
+  PaceLimits limits_;
   GainsAt gains_at_;
   RateGovernor governor_;
   double dt_s_;

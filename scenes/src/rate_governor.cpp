@@ -51,14 +51,23 @@ int RateGovernor::decide(bool may_rise) noexcept {
   now_ = {};
   calm_ = is_calm ? std::min(calm_ + 1, settings_.most_calm_windows) : 0;
   if (isOverloaded() && level_ < lastLevel()) {
-    if (has_risen_) wait_ = std::min(2 * wait_, settings_.most_calm_windows);
-    has_risen_ = false;
+    if (has_risen_) waitLonger();
     moveTo(level_ + 1);
   } else if (calm_ >= wait_ && may_rise) {
     has_risen_ = true;
     moveTo(level_ - 1);
   }
   return level_;
+}
+
+void RateGovernor::stayAt(int level) noexcept {
+  waitLonger();
+  moveTo(level);
+}
+
+void RateGovernor::waitLonger() noexcept {
+  wait_ = std::min(2 * wait_, settings_.most_calm_windows);
+  has_risen_ = false;
 }
 
 void RateGovernor::moveTo(int level) noexcept {

@@ -35,6 +35,8 @@ class RateGovernor {
   /// @param may_rise  false: the level above cannot be taken back now; it is once it can
   /// @return the level from now on, at most one from that before. O(1).
   int add(double busy_s, double period_s, bool may_rise = true) noexcept;
+  /// The last rise could not be done: it was level `level`, and waits longer before it tries again.
+  void stayAt(int level) noexcept;
   [[nodiscard]] int level() const noexcept { return level_; }
   [[nodiscard]] int lastLevel() const noexcept { return static_cast<int>(dearer_.size()); }
 
@@ -58,6 +60,7 @@ class RateGovernor {
   };
   int decide(bool may_rise) noexcept;
   void moveTo(int level) noexcept;
+  void waitLonger() noexcept;
 
   std::vector<double> dearer_;
   GovernorSettings settings_;

@@ -85,10 +85,8 @@ class RealTimeSide final : public ClockedSide {
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
   void setPace(double step_s, double period_s, const CouplingGains& gains) override {
     clock_.setPace(step_s, period_s);
-    if (loop_.isRunning())
-      loop_.setGains(gains);
-    else
-      loop_.loop().setGains(gains);
+    if (!loop_.isRunning()) return loop_.loop().setGains(gains);
+    while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kOrderWait);
   }
   TickTimes times() override {
     const TickStatistics::Summary all = loop_.statistics().summary();
@@ -102,7 +100,7 @@ class RealTimeSide final : public ClockedSide {
     while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
       std::this_thread::sleep_for(kOrderWait);
     if (!loop_.isRunning()) obeyOrder(loop_.loop());  // nobody else would
-    known_phase_ = phase_.load();
+    known_phase_ = ordered_phase_;
     haptic_log_.passThrough(what);
   }
   void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
@@ -120,7 +118,8 @@ class RealTimeSide final : public ClockedSide {
     if (what == kNoOrder) return;
     obey(loop, what);
     meet(loop, what);
-    phase_.store(hand_.phase());
+    ordered_phase_ = hand_.phase();
+    phase_.store(ordered_phase_);
     ordered_tick_ = static_cast<std::int32_t>(loop.ticks());
     order_.store(kNoOrder, std::memory_order_release);
   }
@@ -173,6 +172,7 @@ class RealTimeSide final : public ClockedSide {
   OperatorPhase known_phase_ = OperatorPhase::Idle;  ///< as of the last look or order
   std::atomic<MeetingKind> order_{kNoOrder};
   std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
+  OperatorPhase ordered_phase_ = OperatorPhase::Idle;  ///< after it, likewise
   RealTimeResult result_;
   RealTimeLoop loop_;
   PhysicsClock clock_;

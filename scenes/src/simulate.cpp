@@ -34,6 +34,11 @@ class ByTheClock {
     const RealTimeReport report = clock_.start(true);
     kept_ = {0, report.has_priority, report.has_locked_memory, report.warnings, 0};
   }
+  ~ByTheClock() {
+    if (kept_) clock_.stop();
+  }
+  ByTheClock(const ByTheClock&) = delete;
+  ByTheClock& operator=(const ByTheClock&) = delete;
   void wait() noexcept {
     if (kept_) clock_.wait();
   }

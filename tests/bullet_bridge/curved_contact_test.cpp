@@ -185,6 +185,21 @@ TEST(CurvedContact, ASmallBallLiesStill) {
   }
 }
 
+// Of a part without exact surfaces nobody knows on which face a point lies.
+TEST(CurvedContact, ABodyWithoutSurfacesRestsOnOneThatHasThem) {
+  const Built plate = test::build(makeBox(Vec3(0.03, 0.03, 0.01)), 7850, 0.25e-3, kSpacing_m);
+  Built bare = test::build(makeBox(Vec3::Constant(5e-3)), 7850, 0.25e-3, kSpacing_m);
+  VpsModels models = bare.shape->models();
+  models.surfaces.clear();
+  bare.shape->setModels(std::move(models));
+  test::World world;
+  world.add(plate, Pose(), true);
+  btRigidBody& body = world.add(bare, Pose::translation({0, 0, 7.5e-3}));
+  world.step(200);
+  // The plate's points see no face of it, its own those of the plate.
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 7.5e-3, 5e-6);
+}
+
 TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
   const Built bore = test::build(makeTube(10e-3, 4.01e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);
   const Built peg = test::build(makeCylinder(4e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);

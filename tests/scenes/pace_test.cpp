@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <string>
@@ -117,6 +118,19 @@ TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
       EXPECT_GE(change.time_s, released_s) << "a coupling got stiffer in the hand";
     }
   }
+}
+
+// At 100 Hz sixteen periods are longer than the watchdog waits for physics (0.1 s); four are not.
+TEST(Pace, NoPaceIsTakenAtWhichPhysicsWouldLookStalled) {
+  Scene scene = twoPins();
+  scene.fidelity.physics_rate_hz = 100;
+  const AssembleResult result = run(scene, 2.5, [](double) { return 50e-3; });
+  ASSERT_FALSE(result.real_time->paces.empty());
+  int most = 0;
+  for (const PaceChange& change : result.real_time->paces) most = std::max(most, change.to);
+  EXPECT_EQ(most, 4);
+  EXPECT_FALSE(result.real_time->paces.back().is_done) << "nothing is left to give up";
+  EXPECT_EQ(result.real_time->faults, 0u);
 }
 
 TEST(Pace, SwitchedOffItOnlyCounts) {

@@ -115,6 +115,20 @@ TEST(RateGovernor, ALoadThatComesAndGoesDoesNotMakeItFlap) {
   EXPECT_EQ(course.levels, (std::vector<int>{1, 0, 1}));
 }
 
+TEST(RateGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
+  RateGovernor governor = halving();
+  follow(governor, 1, [](double) { return 3.0; });
+  const int before = governor.level();
+  ASSERT_EQ(before, 2);
+  const double first_s = follow(governor, 2.5, [](double) { return 0.1; }).times_s.at(0);
+  EXPECT_EQ(governor.level(), 1);
+  governor.stayAt(before);
+  EXPECT_EQ(governor.level(), 2);
+  const Course again = follow(governor, 4.2, [](double) { return 0.1; });
+  ASSERT_EQ(again.levels, std::vector<int>{1});
+  EXPECT_NEAR(again.times_s[0], 4, 0.3) << "sixteen windows of a quarter of a second, after " << first_s;
+}
+
 TEST(RateGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
   RateGovernor governor = halving();
   (void)follow(governor, 0.3, [](double) { return 1.5; });

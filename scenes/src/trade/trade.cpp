@@ -174,7 +174,7 @@ void Trade::fillOrLeaveOut(TradeRow& row) {
   } catch (const std::bad_alloc&) {
     if (is_own) throw;
     leaveOut("took more memory than there is");
-  } catch (const LoadError& error) {
+  } catch (const std::exception& error) {
     if (is_own) throw;
     leaveOut(error.what());
   }
