@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "vps/leading_points.h"
 #include "vps/pose.h"
 #include "vps/query.h"
 #include "vps_bullet/install.h"
@@ -16,6 +14,8 @@
 class btCollisionShape;
 
 namespace vps {
+
+struct SideMemory;
 
 /// A point that can touch within the step: of a side's shell, or where an edge of body 0 crosses one of
 /// body 1.
@@ -69,15 +69,6 @@ struct SideView {
   Pose X_WM;                        ///< its models' frame
   std::uint8_t side = 0;
 };
-
-/// What a pair keeps of one side's shell against the other's map.
-struct SideMemory {
-  QueryMemory query;                     ///< for cutoffs that stay the same
-  std::optional<LeadingPoints> leading;  ///< of a shell with more points than mayAllBeNear()
-};
-
-/// So many near points of a side or fewer are all looked at.
-std::size_t mayAllBeNear(const VpsBulletSettings& settings);
 
 /// What a step asks of that side's points.
 struct SideAsk {

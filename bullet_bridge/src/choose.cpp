@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "primitive.h"
 
@@ -25,26 +24,11 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * sight_m(pair)) : cutoff_m;
 }
 
-// Of 64 points, eight by eight, so that what all near points are thinned out of has more tiles than contacts
-// are wanted; larger where a shell would have more than sixteen for each.
-double tileSize_m(const PointShell& shell, const VpsBulletSettings& settings) {
-  const double area_m2 = std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0);
-  constexpr double kSpacings = 12;  // corner to corner of eight by eight, and a little more
-  return std::max(kSpacings * shell.spacing_m, std::sqrt(2 * area_m2 / (16.0 * settings.contact_limit)));
-}
-
 SideMemory& memoryOf(const PairView& pair, int i, VpsPairState& state) {
   std::optional<SideMemory>& own = state.memory[i];
-  if (own) return *own;
-  const PointShell& shell = *pair.vps[i]->models().shell;
-  const VoxMap& map = *pair.vps[1 - i]->models().map;
-  own.emplace(SideMemory{QueryMemory(map, shell), {}});
-  // Each spring counts; of rigid contact's points few do.
-  const VpsBulletSettings& settings = state.context->settings;
-  if (settings.mode == ContactMode::Constraint && shell.size() > mayAllBeNear(settings) &&
-      shell.spacing_m > 0)
-    own->leading.emplace(shell, tileSize_m(shell, settings));
-  return *own;
+  return own ? *own
+             : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
+                           state.context->settings);
 }
 
 SideAsk askOf(const PairView& pair, int i, VpsPairState& state) {

@@ -6,6 +6,7 @@
 #include "partner.h"
 #include "primitive.h"
 #include "round_contact.h"
+#include "side_memory.h"
 
 namespace vps {
 
@@ -198,11 +199,6 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   // end. The couplings' pull is left out of it: on a part that is pressed home it is large, and contact holds
   // it.
   return c.distance_m <= slack_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
-}
-
-std::size_t mayAllBeNear(const VpsBulletSettings& settings) {
-  constexpr std::size_t kPointsAContact = 64;  // a tile's, see tileSize_m() in choose.cpp
-  return kPointsAContact * static_cast<std::size_t>(settings.contact_limit);
 }
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,

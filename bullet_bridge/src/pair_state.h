@@ -12,6 +12,7 @@
 #include "motion.h"
 #include "partner.h"
 #include "penalty_pair.h"
+#include "side_memory.h"
 
 namespace vps {
 

@@ -103,6 +103,30 @@ TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
   EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::BadGains);
 }
 
+// The part is held 2 mm off by the proxy, wherever the handle goes meanwhile; handed over, by nothing.
+TEST(RealTimeLoop, TheClutchOpensClosesAndHandsOverWhenAsked) {
+  Rig rig;
+  rig.run(100);
+  const int clutch_ticks = static_cast<int>(1e3 * LoopSettings{}.clutch_s) + 2;
+  const auto after = [&](bool (RealTimeLoop::*ask)() noexcept) {
+    vps_test::NoAllocScope guard;
+    EXPECT_TRUE((rig.loop.*ask)());
+    rig.run(clutch_ticks);
+    return rig.loop.latest().report.clutch_ratio;
+  };
+  EXPECT_EQ(after(&RealTimeLoop::disengage), 0);
+  EXPECT_EQ(rig.force_N(), 0);
+  rig.device.sample.X_DH.p = Vec3(2e-3, 5e-3, 0);
+  rig.run(10);
+  EXPECT_EQ(after(&RealTimeLoop::engage), 1);
+  EXPECT_NEAR(rig.device.F_written_D.f.x(), -2, 1e-12);
+  EXPECT_NEAR(rig.device.F_written_D.f.y(), 0, 1e-12);
+  EXPECT_TRUE(rig.loop.handOver(Pose{}));
+  rig.run(clutch_ticks);
+  EXPECT_EQ(rig.loop.latest().report.clutch_ratio, 1);
+  EXPECT_NEAR(rig.force_N(), 0, 1e-12);
+}
+
 TEST(RealTimeLoop, PhysicsThatStallsForASecondGivesNoForceUntilRearmed) {
   Rig rig;
   rig.run(100);

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "haptic_log.h"
+#include "support/kept_log.h"
 #include "support/no_alloc.h"
+#include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/replay.h"
@@ -35,20 +37,15 @@ Scene twoPins() {
   return scene;
 }
 
-struct Recorded {
-  AssembleResult result;
-  RecordedRun run;
-};
-
 /// Once for all tests: it takes as long as it takes.
-const Recorded& recordedByTheClock() {
-  static const Recorded recorded = [] {
+const test::Recorded& recordedByTheClock() {
+  static const test::Recorded recorded = [] {
     const test::TemporaryFolder folder;
     AssembleOptions options;
     options.record = folder.path() / "run.mcap";
     options.is_real_time = true;
     Scene scene = twoPins();
-    Recorded made;
+    test::Recorded made;
     made.result = assemble(scene, options);
     made.run = loadRecording(options.record);
     return made;
@@ -66,30 +63,16 @@ std::size_t meetings(const RecordedRun& run, MeetingKind kind) {
 }
 
 TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
-  const Recorded& recorded = recordedByTheClock();
+  const test::Recorded& recorded = recordedByTheClock();
   EXPECT_EQ(recorded.run.damage, "");
   const ReplayResult replayed = replay(recorded.run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, recorded.run.entries.size());
-  const AssembleResult &a = recorded.result, &b = replayed.result;
-  EXPECT_EQ(a.completed, b.completed);
-  EXPECT_EQ(a.haptic.count, b.haptic.count);
-  EXPECT_EQ(a.physics.count, b.physics.count);
-  EXPECT_EQ(a.energy.to_hand_J, b.energy.to_hand_J);
-  EXPECT_EQ(a.energy.injected_J, b.energy.injected_J);
-  ASSERT_EQ(a.steps.size(), b.steps.size());
-  for (std::size_t i = 0; i < a.steps.size(); ++i) {
-    EXPECT_EQ(a.steps[i].why_not, b.steps[i].why_not);
-    EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
-    EXPECT_EQ(a.steps[i].max_penetration_m, b.steps[i].max_penetration_m);
-    EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);
-  }
-  ASSERT_EQ(a.trace.size(), b.trace.size());
-  for (std::size_t i = 0; i < a.trace.size(); ++i) ASSERT_EQ(a.trace[i].X_WP.p, b.trace[i].X_WP.p) << i;
+  test::expectSame(recorded.result, replayed.result);
 }
 
 TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndOrder) {
-  const Recorded& recorded = recordedByTheClock();
+  const test::Recorded& recorded = recordedByTheClock();
   EXPECT_EQ(meetings(recorded.run, MeetingKind::Tick), recorded.result.haptic.count);
   EXPECT_EQ(meetings(recorded.run, MeetingKind::Step), recorded.result.physics.count);
   EXPECT_EQ(meetings(recorded.run, MeetingKind::HandOver), 2u);
@@ -126,17 +109,8 @@ TEST(RealTimeReplay, TicksThatSeeOlderPhysicsDepartAndSayWhen) {
   EXPECT_NE(replayed.departure.find("/device/write: force_n"), std::string::npos) << replayed.departure;
 }
 
-/// What came, and what was said to be lost.
-class Kept final : public RunLog {
- public:
-  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
-  void lose(std::uint64_t count) noexcept override { lost += count; }
-  std::vector<LogEntry> entries;
-  std::uint64_t lost = 0;
-};
-
 TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
-  Kept kept;
+  test::KeptLog kept;
   HapticLog log(&kept);
   constexpr int kAdded = 3 * (1 << 15) / 2;
   {
@@ -152,7 +126,7 @@ TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
 }
 
 TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
-  Kept kept;
+  test::KeptLog kept;
   HapticLog log(&kept);
   for (int tick = 1; tick <= 3; ++tick) {
     log.add(Meeting{0, tick, 1, 0, MeetingKind::Tick});

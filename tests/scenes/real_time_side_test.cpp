@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "haptic_side.h"
+#include "support/kept_log.h"
 #include "vps_device/recording.h"
 
 namespace vps {
@@ -77,14 +78,6 @@ class Again final : public Hand, public Device {
   std::size_t next_ = 0;
 };
 
-class Kept final : public RunLog {
- public:
-  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
-  void lose(std::uint64_t count) noexcept override { lost += count; }
-  std::vector<LogEntry> entries;
-  std::uint64_t lost = 0;
-};
-
 LoopSettings settings() {
   LoopSettings s;
   s.period_s = kPeriod_s;
@@ -137,7 +130,7 @@ std::vector<Vec3> drive(HapticSide& side, int steps) {
 }
 
 TEST(RealTimeSide, WhatTwoThreadsDidIsDoneAgainByOne) {
-  Kept log;
+  test::KeptLog log;
   CouplingPort port, port_again;
   SwingingHand hand;
   const TellFault tell = [](const std::string&) {};  // a starved machine may well stall physics

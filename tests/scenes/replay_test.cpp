@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "scene_archive.h"
+#include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
@@ -16,6 +17,8 @@ namespace vps {
 namespace {
 
 namespace fs = std::filesystem;
+using test::expectSame;
+using test::Recorded;
 
 const std::string kFixture = VPS_SOURCE_DIR "/tests/scenes/recorded/peg_in_hole.mcap";
 
@@ -40,11 +43,6 @@ Scene pinOnPlate() {
   return scene;
 }
 
-struct Recorded {
-  AssembleResult result;
-  RecordedRun run;
-};
-
 Recorded recordedPin() {
   const test::TemporaryFolder folder;
   AssembleOptions options;
@@ -54,30 +52,6 @@ Recorded recordedPin() {
   recorded.result = assemble(scene, options);
   recorded.run = loadRecording(options.record);
   return recorded;
-}
-
-void expectSame(const AssembleResult& a, const AssembleResult& b) {
-  EXPECT_EQ(a.completed, b.completed);
-  EXPECT_EQ(a.haptic.count, b.haptic.count);
-  EXPECT_EQ(a.simulated_s, b.simulated_s);
-  EXPECT_EQ(a.energy.to_hand_J, b.energy.to_hand_J);
-  EXPECT_EQ(a.energy.from_hand_J, b.energy.from_hand_J);
-  EXPECT_EQ(a.energy.injected_J, b.energy.injected_J);
-  ASSERT_EQ(a.steps.size(), b.steps.size());
-  for (std::size_t i = 0; i < a.steps.size(); ++i) {
-    EXPECT_EQ(a.steps[i].why_not, b.steps[i].why_not);
-    EXPECT_EQ(a.steps[i].max_penetration_m, b.steps[i].max_penetration_m);
-    EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
-    EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);
-    EXPECT_EQ(a.steps[i].rest_drift_m, b.steps[i].rest_drift_m);
-  }
-  ASSERT_EQ(a.trace.size(), b.trace.size());
-  for (std::size_t i = 0; i < a.trace.size(); ++i) {
-    ASSERT_EQ(a.trace[i].X_WP.p, b.trace[i].X_WP.p) << i;
-    ASSERT_EQ(a.trace[i].X_WP.R, b.trace[i].X_WP.R) << i;
-    ASSERT_EQ(a.trace[i].F_hand_W.f, b.trace[i].F_hand_W.f) << i;
-    ASSERT_EQ(a.trace[i].phase, b.trace[i].phase) << i;
-  }
 }
 
 // A run of this repository, as somebody would send it. Where a change to the engine is meant to change what

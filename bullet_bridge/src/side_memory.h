@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pair keeps of one side's shell against the other's map.
+#pragma once
+
+#include <optional>
+
+#include "vps/leading_points.h"
+#include "vps_bullet/install.h"
+
+namespace vps {
+
+struct SideMemory {
+  /// O(points). The shell must outlive it.
+  SideMemory(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings);
+
+  QueryMemory query;  ///< for cutoffs that stay the same
+  std::optional<LeadingPoints>
+      leading;  ///< of rigid contact, of a shell with more points than mayAllBeNear()
+};
+
+/// So many near points of a side or fewer are all looked at.
+std::size_t mayAllBeNear(const VpsBulletSettings& settings);
+
+}  // namespace vps

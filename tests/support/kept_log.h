@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A log that keeps what came, and counts what was said to be lost.
+#pragma once
+
+#include <vector>
+
+#include "vps_device/run_log.h"
+
+namespace vps::test {
+
+class KeptLog final : public RunLog {
+ public:
+  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
+  void lose(std::uint64_t count) noexcept override { lost += count; }
+  std::vector<LogEntry> entries;
+  std::uint64_t lost = 0;
+};
+
+}  // namespace vps::test
