@@ -21,7 +21,7 @@ forbid bullet_bridge : '#include *[<"](vps_device|vps_scenes|vps_viewer)/' "bull
 forbid device : '#include *[<"](vps_bullet|vps_scenes|vps_viewer)/' "device looks up or sideways" '^device/examples/'
 forbid scenes : '#include *[<"]vps_viewer/' "scenes looks up"
 forbid plugin device viewer : "$bullet" "Bullet outside of bullet_bridge" '^device/examples/'
-forbid scenes : "$bullet" "Bullet in scenes outside of the simulation" '^scenes/(src/simulation|dynamics/)'
+forbid scenes : "$bullet" "Bullet in scenes outside of the simulation" '^scenes/src/simulation/'
 forbid plugin bullet_bridge device scenes : "$gl" "OpenGL outside of viewer"
 forbid bullet_bridge device scenes viewer : '#include *[<"](openvdb|nanovdb)/' "OpenVDB outside of plugin"
 forbid bullet_bridge plugin scenes viewer : '#include *[<"](spnav|SDL)' "libspnav or SDL outside of device"

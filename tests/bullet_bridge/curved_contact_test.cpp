@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where curved faces are nearest, against balls and cylinders as formulas.
-#include "curved_contact.h"
+#include "narrowphase/curved_contact.h"
 
 #include <gtest/gtest.h>
 

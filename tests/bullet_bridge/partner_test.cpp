@@ -16,9 +16,9 @@
 #include <random>
 
 #include "bullet_bridge/world.h"
-#include "partner.h"
-#include "partner_mesh.h"
-#include "primitive.h"
+#include "native_shapes/native_shape_adapter.h"
+#include "native_shapes/native_shape_mesh.h"
+#include "native_shapes/primitive.h"
 #include "vps_bullet/dispatcher.h"
 
 namespace vps {

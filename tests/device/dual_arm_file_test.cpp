@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "dual_arm_toml.h"
+#include "dual_arm/dual_arm_toml.h"
 #include "vps/load_error.h"
 #include "vps_device/dual_arm.h"
 

@@ -12,7 +12,7 @@
 
 #include <sys/wait.h>
 
-#include "log_fields.h"
+#include "recording/log_fields.h"
 #include "support/no_alloc.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bytes as the scene that a recording holds.
-#include "scene_archive.h"
+#include "record/scene_archive.h"
 
 #include "fuzz.h"
 #include "vps/load_error.h"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "support/analytic.h"
-#include "voxmap_layout.h"
+#include "voxmap/voxmap_layout.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "cluster_depth.h"
-#include "cluster_samples.h"
+#include "query/cluster_depth.h"
+#include "query/cluster_samples.h"
 #include "support/analytic.h"
 #include "support/fit.h"
 #include "support/gear.h"

@@ -10,9 +10,9 @@
 #include <memory>
 #include <random>
 
-#include "leaf_walk.h"
-#include "read_kernel.h"
-#include "voxmap_layout.h"
+#include "query/leaf_walk.h"
+#include "voxmap/read_kernel.h"
+#include "voxmap/voxmap_layout.h"
 
 namespace vps {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of the voxeliser, each against exhaustive search; the whole is tested in voxmap_test.cpp.
-#include "splat.h"
+#include "voxelise/splat.h"
 
 #include <gtest/gtest.h>
 
 #include <cfloat>
 
-#include "center_bounds.h"
+#include "voxmap/center_bounds.h"
 #include "support/analytic.h"
 #include "vps/mesh_distance.h"
 

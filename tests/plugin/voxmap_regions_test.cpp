@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "read_kernel.h"
+#include "voxmap/read_kernel.h"
 #include "support/analytic.h"
 #include "support/no_alloc.h"
 #include "vps/budget_query.h"

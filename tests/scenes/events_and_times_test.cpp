@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tick_times.h"
+#include "core/tick_times.h"
 #include "vps_scenes/contact_episodes.h"
 
 namespace vps {

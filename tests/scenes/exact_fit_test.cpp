@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "exact_fit.h"
-#include "fit_record.h"
+#include "judge/overlap_judge.h"
+#include "judge/overlap_record.h"
 
 namespace vps {
 namespace {

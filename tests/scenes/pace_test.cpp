@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run by the clock with physics that is made too slow for it. Loads are several times what a step of such a
 // scene takes on any machine, and periods long: a busy machine may add to them, but not take away.
-#include "vps_scenes/pace.h"
+#include "vps_scenes/load_level.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "vps_scenes/assemble.h"
-#include "wall_clock.h"
+#include "core/wall_clock.h"
 
 namespace vps {
 namespace {

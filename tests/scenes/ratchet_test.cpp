@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "strokes.h"
+#include "haptics/path_segments.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_device/random.h"

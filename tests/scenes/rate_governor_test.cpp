@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rate_governor.h"
+#include "haptics/load_governor.h"
 
 #include <gtest/gtest.h>
 

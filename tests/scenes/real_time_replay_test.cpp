@@ -2,7 +2,7 @@
 // Runs by the clock, recorded and done again in simulated time.
 #include <gtest/gtest.h>
 
-#include "haptic_log.h"
+#include "haptics/haptic_log.h"
 #include "support/kept_log.h"
 #include "support/no_alloc.h"
 #include "support/recorded.h"

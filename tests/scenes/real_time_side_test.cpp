@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "haptic_side.h"
+#include "haptics/haptic_driver.h"
 #include "support/kept_log.h"
 #include "vps_device/recording.h"
 

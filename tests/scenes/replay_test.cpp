@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "scene_archive.h"
+#include "record/scene_archive.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"

@@ -9,8 +9,8 @@
 #include <new>
 #include <random>
 
-#include "scene_archive.h"
-#include "scene_models.h"
+#include "record/scene_archive.h"
+#include "models/scene_models.h"
 #include "support/stl_box.h"
 #include "support/temporary_folder.h"
 #include "trade/design.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vps/wrench.h"
-#include "vps_scenes/pace.h"
+#include "vps_scenes/load_level.h"
 #include "vps_scenes/snapshot.h"
 
 namespace vps {

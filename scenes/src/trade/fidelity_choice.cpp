@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "machine_memory.h"
-#include "scene_models.h"
+#include "core/machine_memory.h"
+#include "models/scene_models.h"
 #include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
 #include "vps/map_estimate.h"

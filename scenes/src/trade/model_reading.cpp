@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "tick_times.h"
+#include "core/tick_times.h"
 #include "trade/exact_touch.h"
 #include "vps/pair_query.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade/model_store.h"
 
-#include "scene_models.h"
-#include "wall_clock.h"
+#include "models/scene_models.h"
+#include "core/wall_clock.h"
 
 namespace vps {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "exact_fit.h"
+#include "judge/overlap_judge.h"
 #include "trade/surface_samples.h"
 #include "vps_scenes/trade.h"
 

@@ -7,7 +7,7 @@
 #include <new>
 #include <optional>
 
-#include "scene_models.h"
+#include "models/scene_models.h"
 #include "trade/design.h"
 #include "trade/excerpt.h"
 #include "trade/front.h"

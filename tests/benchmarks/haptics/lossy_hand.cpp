@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gravity.h"
+#include "dual_arm/gravity.h"
 #include "vps_device/dual_arm.h"
 #include "vps_device/dual_arm_structure.h"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <memory>
 
-#include "hand.h"
+#include "haptics/hand.h"
 #include "vps_bullet/shape.h"
 #include "vps_device/random.h"
 #include "vps_device/simulated_dual_arm.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lossy_hand.h"
-#include "procedure.h"
+#include "procedure/procedure.h"
 #include "rows.h"
 
 namespace vps::bench {

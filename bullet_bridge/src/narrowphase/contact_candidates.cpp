@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <span>
+
+#include "narrowphase/contact_candidate.h"
+#include "native_shapes/native_shape_adapter.h"
+#include "native_shapes/primitive.h"
+#include "narrowphase/round_contact.h"
+#include "narrowphase/query_state.h"
+
+namespace vps {
+
+namespace {
+
+std::size_t limitOf(const VpsBulletSettings& settings, const PointShell& shell) {
+  return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
+}
+
+// A spring per area must stay where its area is.
+bool movesToRounds(const VpsBulletSettings& settings) {
+  return settings.use_surfaces && settings.mode == ContactMode::Constraint;
+}
+
+// A shell's points against anything that has a distance: walks the shell's spheres.
+template <typename CanBeNear, typename At>
+std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cutoff_m,
+                              const VpsBulletSettings& settings, const CanBeNear& canBeNear, const At& at,
+                              std::vector<Candidate>& out, std::size_t& points_tested) {
+  const PointShell& shell = *side.shape->models().shell;
+  const double sign = side.side == 0 ? 1 : -1;
+  const std::size_t limit = limitOf(settings, shell);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < shell.nodes.size();) {
+    const ShellNode& node = shell.nodes[i];
+    if (!canBeNear(node)) {
+      i = node.skip;
+      continue;
+    }
+    ++i;
+    if (!node.is_leaf) continue;
+    points_tested += node.count;
+    for (std::uint32_t id = node.first; id < node.first + node.count; ++id) {
+      const SurfaceDistance surface = at(id);
+      if (surface.distance_m > cutoff_m) continue;
+      if (out.size() >= limit) {
+        ++left_out;
+        continue;
+      }
+      Candidate c;
+      c.p_W = side.X_WM * shell.points[id];
+      c.n_W = sign * (X_WS.R * surface.n);
+      c.distance_m = surface.distance_m;
+      c.area_m2 = shell.area_m2[id];
+      c.id = id;
+      c.side = side.side;
+      out.push_back(c);
+    }
+  }
+  return left_out;
+}
+
+// Points around the place where a ball touches a face all move there: the nearest of them speaks for it.
+// Those that neither touch nor move go.
+void settleOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
+                   double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
+  struct Moved {
+    std::size_t index;
+    double way_m;
+  };
+  thread_local std::vector<Moved> moved;
+  moved.clear();
+  std::size_t kept = first;
+  for (std::size_t i = first; i < out.size(); ++i) {
+    Candidate c = out[i];
+    const bool is_moved = touchRound(c, side, other, primitive);
+    if (c.distance_m > cutoff_m) continue;
+    if (is_moved) {
+      constexpr double kSame_m = 1e-6;
+      const double way_m = (c.p_W - out[i].p_W).norm();
+      const auto same = std::find_if(moved.begin(), moved.end(), [&](const Moved& m) {
+        return (out[m.index].p_W - c.p_W).squaredNorm() < kSame_m * kSame_m;
+      });
+      if (same != moved.end()) {
+        if (way_m < same->way_m) {
+          out[same->index] = c;
+          same->way_m = way_m;
+        }
+        continue;
+      }
+      moved.push_back({kept, way_m});
+    }
+    out[kept++] = c;
+  }
+  out.resize(kept);
+}
+
+// The same motion about the origin of M, in M.
+Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
+  const Vec3 p_WM = -(X_MW.R.transpose() * X_MW.p);
+  return {X_MW.R * V_W.w, X_MW.R * (V_W.v + V_W.w.cross(p_WM))};
+}
+
+/// Points of `side` (in its models' frame M) seen from the surfaces of `other` (in its N).
+class SurfaceView {
+ public:
+  SurfaceView(const SideView& side, const SideView& other)
+      : side_(side), surfaces_(other.shape->models().surfaces), X_NM_(other.X_WM.inverse() * side.X_WM) {}
+
+  /// A value that the distance of p is not below; max_m if it is farther, or deep behind a sheet.
+  [[nodiscard]] double leastDistance(const Vec3& p_M, double max_m) const {
+    double least_m = max_m;
+    for (const VpsSurface& surface : surfaces_) {
+      const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
+      // Of a solid all depths count: its sign is needed however far it is.
+      const double d = surface.sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
+      least_m = std::min(least_m, d);
+    }
+    return least_m;
+  }
+
+  /// Distance and normal in N of the nearest surface; kNever_m beyond cutoff_m.
+  [[nodiscard]] SurfaceDistance at(const Vec3& p_M, const Vec3& inward_M, double cutoff_m) const {
+    SurfaceDistance nearest{kNever_m, Vec3::Zero()};
+    for (const VpsSurface& surface : surfaces_) {
+      const SurfaceDistance d =
+          surface.sheet ? atSheet(surface, p_M, inward_M, cutoff_m) : atSolid(surface, p_M);
+      if (d.distance_m < nearest.distance_m) nearest = d;
+    }
+    return nearest;
+  }
+
+ private:
+  static constexpr double kNever_m = 1e30;
+
+  // How far behind a sheet a point may be and still count: as far as its part's field can tell where it is.
+  [[nodiscard]] double depthBehindSheets_m() const {
+    const VoxMap* map = side_.shape->models().map.get();
+    return map ? 2 * map->band_m() : 0.5 * side_.shape->models().shell->spacing_m;
+  }
+
+  [[nodiscard]] double sheetBound(const VpsSurface& surface, const Vec3& p, double max_m) const {
+    const double reach_m = max_m + depthBehindSheets_m();
+    const MeshDistance::Closest closest = surface.distance->closest(p, reach_m);
+    return closest.found ? closest.distance_m - depthBehindSheets_m() : max_m;
+  }
+
+  static SurfaceDistance make(const MeshDistance::Closest& closest, const Vec3& p, const Vec3& normal,
+                              const VpsSurface& surface) {
+    const double sign = normal.dot(p - closest.q) < 0 ? -1 : 1;
+    constexpr double kTouching_m = 1e-9;  // too short to be a direction
+    const Vec3 n =
+        closest.distance_m > kTouching_m ? Vec3(sign / closest.distance_m * (p - closest.q)) : normal;
+    return {sign * closest.distance_m, surface.X_MP.R * n};
+  }
+
+  [[nodiscard]] SurfaceDistance atSolid(const VpsSurface& surface, const Vec3& p_M) const {
+    const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
+    const MeshDistance::Closest closest = surface.distance->closest(p);
+    return make(closest, p, closest.normal, surface);
+  }
+
+  [[nodiscard]] SurfaceDistance atSheet(const VpsSurface& surface, const Vec3& p_M, const Vec3& inward_M,
+                                        double cutoff_m) const {
+    const SurfaceDistance never{kNever_m, Vec3::Zero()};
+    const Pose X_PM = surface.X_MP.inverse() * X_NM_;
+    const Vec3 p = X_PM * p_M, inward = X_PM.R * inward_M;
+    const MeshDistance::Closest closest =
+        surface.distance->closest(p, std::max(cutoff_m, depthBehindSheets_m()));
+    if (!closest.found) return never;
+    const SheetFoot foot = surface.sheet->seenFrom(p, inward, closest);
+    const Vec3 normal = foot.normal;
+    // Nearly edge-on the side is a matter of rounding; such points do not touch.
+    constexpr double kEdgeOn = 0.05;
+    if (inward.dot(normal) < kEdgeOn) return never;
+    const SurfaceDistance d = make(closest, p, normal, surface);
+    return d.distance_m < 0 && !hasEnteredBy(-d.distance_m, X_PM.inverse() * closest.q) ? never : d;
+  }
+
+  // A face that looks down at a sheet from a wall's thickness above has not gone through it from below: the
+  // sheet then is no nearer to it than to the wall's other face. The part's own field knows, but for half a
+  // voxel at its edges.
+  [[nodiscard]] bool hasEnteredBy(double depth_m, const Vec3& q_M) const {
+    const VoxMap* map = side_.shape->models().map.get();
+    return !map || 0.5 * map->voxel_m() - map->distance(q_M) >= 0.5 * depth_m;
+  }
+
+  const SideView& side_;
+  const std::vector<VpsSurface>& surfaces_;
+  Pose X_NM_;
+};
+
+}  // namespace
+
+bool RelativeMotion::canTouch(Candidate& c) const {
+  const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
+  c.predicted_m = c.distance_m - approach_m;
+  // Contact turns the free motion: a part that lands on one edge swings its other edge faster than it fell.
+  // So a share of the greatest speed counts in every direction. Half: assumed, it covers a rod struck at one
+  // end. The couplings' pull is left out of it: on a part that is pressed home it is large, and contact holds
+  // it.
+  return c.distance_m <= slack_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
+}
+
+std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
+                           const VpsBulletSettings& settings, const SideAsk& ask, std::vector<Candidate>& out,
+                           std::size_t& points_tested) {
+  const VpsModels& theirs = other.shape->models();
+  const PointShell& shell = *side.shape->models().shell;
+  // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
+  thread_local ContactSet near(0);
+  near.contacts.reserve(shell.size());
+  QueryOptions options;
+  options.cutoff_m = cutoff_m;
+  options.gradient = settings.gradient;
+  const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
+  QueryMemory* memory = ask.memory ? &ask.memory->query : nullptr;
+  const LeadingPoints::Ask leaders{options, aboutMap(ask.step_W, X_MW), ask.always, mayAllBeNear(settings)};
+  const QueryResult result = ask.memory && ask.memory->leading
+                                 ? ask.memory->leading->find(*theirs.map, X_MP, leaders, near, memory)
+                                 : queryContacts(*theirs.map, shell, X_MP, options, near, memory);
+  points_tested += result.points_tested;
+  const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
+  // The buffer's capacity depends on what other pairs needed; the limit must not.
+  const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
+  for (const Contact& contact : std::span(near.contacts).first(count)) {
+    Candidate c;
+    c.p_W = other.X_WM * contact.p_M;
+    c.n_W = sign * (other.X_WM.R * contact.n_M);
+    c.distance_m = contact.distance_m;
+    c.area_m2 = contact.area_m2;
+    c.id = contact.id;
+    c.owner = contact.owner;
+    c.side = side.side;
+    out.push_back(c);
+  }
+  return near.contacts.size() - count;
+}
+
+std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
+                                 double cutoff_m, const VpsBulletSettings& settings,
+                                 std::vector<Candidate>& out, std::size_t& points_tested) {
+  const btCollisionShape& exact = withoutStandIn(primitive);
+  const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
+  const Pose X_SM = X_WS.inverse() * side.X_WM;
+  const PointShell& shell = *side.shape->models().shell;
+  const double reach_m = movesToRounds(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
+  const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
+  const auto canBeNear = [&](const ShellNode& node) {
+    return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;
+  };
+  const std::size_t first = out.size();
+  const std::size_t left_out =
+      collectByDistance(side, X_WS, cutoff_m + reach_m, settings, canBeNear, at, out, points_tested);
+  if (reach_m > 0) settleOnRound(side, other, exact, cutoff_m, out, first);
+  return left_out;
+}
+
+std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
+                                const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                                std::size_t& points_tested) {
+  if (other.shape->models().surfaces.empty()) return 0;
+  const SurfaceView view(side, other);
+  const PointShell& shell = *side.shape->models().shell;
+  const auto at = [&](std::uint32_t id) { return view.at(shell.points[id], shell.inward[id], cutoff_m); };
+  const auto canBeNear = [&](const ShellNode& node) {
+    return view.leastDistance(node.center, node.radius_m + cutoff_m) - node.radius_m <= cutoff_m;
+  };
+  return collectByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
+}
+
+}  // namespace vps

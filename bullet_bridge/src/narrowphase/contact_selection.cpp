@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/contact_selection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "native_shapes/primitive.h"
+
+namespace vps {
+
+namespace {
+
+// The next of a row of lengths, each half as long again: a query's memory is for one cutoff.
+double roundedUp(double cutoff_m, double most_m) {
+  constexpr double kStep = 1.5, kUnit_m = 1e-6;
+  const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));
+  return std::min(kUnit_m * std::pow(kStep, steps), most_m);
+}
+
+// How deep edges may overlap and still push each other out, as a share of what the fields see. assumed:
+// deeper, points lie inside and do it.
+double edgeDepth_m(const PairView& pair, double cutoff_m) {
+  constexpr double kShare = 0.25;
+  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * sight_m(pair)) : cutoff_m;
+}
+
+SideMemory& memoryOf(const PairView& pair, int i, VpsPairState& state) {
+  std::optional<SideMemory>& own = state.memory[i];
+  return own ? *own
+             : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
+                           state.context->settings);
+}
+
+SideAsk askOf(const PairView& pair, int i, VpsPairState& state) {
+  std::vector<std::uint32_t>& always = state.always[i];
+  always.clear();
+  for (const Candidate& c : state.selection.chosen)  // ascending
+    if (c.side == i && !c.isCrossing()) always.push_back(c.id);
+  const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
+  return {&memoryOf(pair, i, state), {way_s * state.motion.V.w, way_s * state.motion.V.v}, always};
+}
+
+// In penalty mode the points of faces press along their own normals.
+void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
+                       std::vector<Candidate>& candidates) {
+  for (int i = 0; i < 2; ++i)
+    if (settings.mode == ContactMode::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+}
+
+}  // namespace
+
+void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
+             VpsPairState* state) {
+  std::size_t tested = 0, left_out = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (!asksPoints(pair, i, context.settings.sides)) continue;
+    const int j = 1 - i;
+    if (isPrimitive(*pair.wrapper[j]->getCollisionShape()))
+      left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
+                                       cutoff_m, context.settings, out, tested);
+    else if (pair.hasMap(j)) {
+      const double wide_m = state ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
+      const SideAsk ask = state ? askOf(pair, i, *state) : SideAsk{};
+      left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, ask, out, tested);
+    } else {
+      left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
+    }
+  }
+  // Springs stand for areas, and a crossing has none.
+  if (context.settings.mode == ContactMode::Constraint && context.settings.use_surfaces && pair.vps[0] &&
+      pair.vps[1])
+    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
+                                 context.settings, out);
+  context.points_tested += tested;
+  context.left_out += left_out;
+}
+
+void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
+                    std::vector<Candidate>& out) {
+  VpsContext& context = *state.context;
+  const double sight = sight_m(pair);
+  const double travel_m = motion.speed_m_s * motion.dt_s;
+  if (motion.slack_m + travel_m <= sight) {
+    collect(pair, motion.slack_m + travel_m, context, out, &state);
+    takeSpringNormals(pair, context.settings, out);
+    return;
+  }
+  const double stride_m = std::max(0.5 * (sight - motion.slack_m), 0.25 * sight);
+  constexpr double kMostStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
+  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStrides)));
+  PairView later = pair;
+  for (int k = 0; k < strides && out.empty(); ++k) {
+    const double t_s = motion.dt_s * k / strides;
+    if (k > 0) advance(later, pair, motion.dt_s, t_s);
+    collect(later, std::min(motion.slack_m + travel_m / strides, sight), context, out);
+    takeSpringNormals(later, context.settings, out);
+    // Keep what is met in this stride, as planes seen from where the bodies are now.
+    std::erase_if(out, [&](Candidate& c) {
+      const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
+      const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
+      if (c.distance_m - approach_m > motion.slack_m) return true;
+      c.distance_m -= c.n_W.dot(moved);
+      const Pose& X_then = later.X_WS[c.side];
+      c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
+      return false;
+    });
+  }
+}
+
+void correctAll(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+                std::vector<Candidate>& candidates) {
+  if (!settings.use_surfaces) return;
+  for (int i = 0; i < 2; ++i)
+    if (asksPoints(pair, i, settings.sides))
+      correct(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion,
+              asksPoints(pair, 1 - i, settings.sides));
+}
+
+void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates) {
+  std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
+}
+
+void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+            ManifoldWriter* writer, std::vector<Candidate>& candidates) {
+  dropUnreachable(motion, candidates);
+  if (writer) writer->recall(candidates);
+  const auto limit = static_cast<std::size_t>(settings.contact_limit);
+  const double radius_m = pair.radius_m();
+  // Four times the limit go to the exact surfaces: enough for some to prove out of reach, and no more than
+  // the step's time allows (about 0.5 us each).
+  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
+    thinOut(candidates, cell_m);
+  correctAll(pair, motion, settings, candidates);
+  dropUnreachable(motion, candidates);
+  chooseSpread(candidates, limit, radius_m, settings.slack_m);
+}
+
+void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
+                   Selection& selection) {
+  selection.chosen = chosen;
+  selection.is_valid = true;
+  selection.X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  selection.X_W0 = pair.X_WS[0];
+  selection.V = motion.V;
+  for (int i = 0; i < 2; ++i) selection.key[i] = pair.key(i);
+  selection.reach_m = motion.slack_m + motion.speed_m_s * motion.dt_s;
+}
+
+bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
+  if (!selection.is_valid) return false;
+  for (int i = 0; i < 2; ++i)
+    if (!(selection.key[i] == pair.key(i))) return false;
+  if (motion.slack_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
+  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
+  const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
+  const double turned_rad = (moved.R - Mat3::Identity()).norm();
+  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kStill_m;
+}
+
+double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
+  RelativeMotion change = motion;
+  change.V = {motion.V.w - selection.V.w, motion.V.v - selection.V.v};
+  return (change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m()) * motion.dt_s;
+}
+
+Carry carryOf(const Selection& selection, const PairView& pair) {
+  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  const Pose body0_W = pair.X_WS[0] * selection.X_W0.inverse();
+  const Pose body1_W = pair.X_WS[0] * X_01 * selection.X_01.inverse() * pair.X_WS[0].inverse();
+  return {body0_W, body1_W};
+}
+
+}  // namespace vps

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/curved_contact.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace vps {
+
+namespace {
+
+constexpr double kGain_m = 1e-7;  // below it a look at the surfaces is not worth its time
+
+// The face nearest to p; none where an edge is nearer, or an open surface.
+std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, double max_m) {
+  std::optional<FacePoint> nearest;
+  MeshDistance::Closest best;
+  best.distance_m = max_m;
+  for (const VpsSurface& surface : side.shape->models().surfaces) {
+    const Pose X_WP = side.X_WM * surface.X_MP;
+    const MeshDistance::Closest closest = surface.distance->closest(X_WP.inverse() * p_W, best.distance_m);
+    if (!closest.found) continue;
+    best = closest;
+    nearest =
+        FacePoint{X_WP * closest.q, X_WP.R * surface.distance->smoothNormal(closest.triangle, closest.q),
+                  &surface, X_WP.R, closest.triangle};
+  }
+  if (!nearest) return {};
+  const Vec3 face = nearest->surface->distance->featureNormal(nearest->triangle, 0);
+  if (nearest->surface->sheet || face.dot(best.normal) < kCosFlush) return {};
+  return nearest;
+}
+
+// The shell's point on its own face.
+FacePoint ownFace(const Candidate& c, const SideView& side) {
+  const VpsShape::PointFace face = side.shape->faceAt(c.id);
+  const VpsSurface& surface = side.shape->models().surfaces[face.surface];
+  return {c.p_W, -(side.X_WM.R * side.shape->smoothInward(c.id)), &surface, side.X_WM.R * surface.X_MP.R,
+          face.triangle};
+}
+
+/// Two orthonormal directions across n.
+Eigen::Matrix<double, 3, 2> across(const Vec3& n) {
+  Eigen::Matrix<double, 3, 2> T;
+  T.col(0) = n.unitOrthogonal();
+  T.col(1) = n.cross(T.col(0));
+  return T;
+}
+
+// The way along the tangent plane to where the gap's parabola is least, none where it is too flat to gain.
+Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
+  const Eigen::Matrix<double, 3, 2> T = across(their.outward_W);
+  const Eigen::Vector2d slope = T.transpose() * own.outward_W;
+  const Eigen::Matrix2d K = T.transpose() * (own.curvature_W() + their.curvature_W()) * T;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+  eigen.computeDirect(K);
+  const double least_per_m = 2 * kGain_m / (reach_m * reach_m);
+  Eigen::Vector2d way = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Vector2d along = eigen.eigenvectors().col(i);
+    if (const double k = eigen.eigenvalues()[i]; k > least_per_m) way -= slope.dot(along) / k * along;
+  }
+  return T * way;
+}
+
+}  // namespace
+
+bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& foot,
+                   double most_gain_m) {
+  if (side.shape->models().surfaces.empty()) return false;  // then nothing is known of its faces
+  const double reach_m = side.shape->models().shell->spacing_m;
+  std::optional<FacePoint> own = ownFace(c, side), their = foot;
+  if (own->surface->sheet || their->surface->sheet) return false;
+  if (!((own->outward_W + their->outward_W).norm() * reach_m > kGain_m)) return false;
+  constexpr int kSteps = 5;        // most need one or two
+  constexpr double kThere = 5e-3;  // of the reach: leans by less than a thousandth
+  for (int i = 0; i < kSteps; ++i) {
+    const Vec3 way = wayToLeast(*own, *their, reach_m);
+    if (way.norm() < kThere * reach_m) break;
+    // Farther than the reach another point of the shell is nearer, and finds the same place.
+    const Vec3 to_W = own->q_W + way;
+    if (i == kSteps - 1 || (to_W - c.p_W).norm() > reach_m) return false;
+    const double gap_m = std::abs((own->q_W - their->q_W).dot(their->outward_W));
+    own = nearestFace(side, to_W, way.norm());
+    if (own) their = nearestFace(other, own->q_W, gap_m + 2 * way.norm());
+    if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosFlush)) return false;
+  }
+  const double gap_m = (own->q_W - their->q_W).dot(their->outward_W);
+  if (c.distance_m - gap_m > most_gain_m) return false;
+  c.p_W = own->q_W;
+  c.n_W = (side.side == 0 ? 1 : -1) * their->outward_W;
+  // A corner between facets is nearer than the facets' middles, whatever the curved surface says.
+  c.distance_m = std::min(c.distance_m, gap_m);
+  return true;
+}
+
+}  // namespace vps

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/manifold_writer.h"
+
+#include <BulletCollision/BroadphaseCollision/btDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include <algorithm>
+
+#include "vps_bullet/convert.h"
+
+namespace vps {
+
+namespace {
+
+constexpr int kPerManifold = MANIFOLD_CACHE_SIZE;
+
+// Positions on both bodies: the shell's point on its own side, its foot on the other's surface.
+void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
+  on0 = c.side == 0 ? c.p_W : Vec3(c.p_W + c.distance_m * c.n_W);
+  on1 = c.side == 1 ? c.p_W : Vec3(c.p_W - c.distance_m * c.n_W);
+}
+
+// Of the shell's point on its own side, of an edge on both.
+int indexOn(const Candidate& c, int side) {
+  if (c.isCrossing() && side == 1) return static_cast<int>(c.crossed - 1);
+  return c.side == side ? static_cast<int>(c.id) : -1;
+}
+
+// Along the slip, so that the solver's friction pyramid is exact for a sliding part; for one at rest, along a
+// direction that depends on the normal alone, so that it does not turn with noise.
+void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& velocity) {
+  constexpr double kSlip_m_s =
+      1e-4;  // assumed: far above a resting part's jitter, far below motion one can see
+  const Vec3 slip = velocity - n * n.dot(velocity);
+  Vec3 t1;
+  if (slip.norm() > kSlip_m_s) {
+    t1 = slip.normalized();
+  } else {
+    int least = 0;
+    n.cwiseAbs().minCoeff(&least);
+    t1 = n.cross(Vec3(Vec3::Unit(least))).normalized();
+  }
+  point.m_lateralFrictionDir1 = toBt(t1);
+  point.m_lateralFrictionDir2 = toBt(Vec3(n.cross(t1)));
+  point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
+}
+
+// What btManifoldResult::addContactPoint would set from the bodies.
+void setMaterial(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
+  point.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
+  point.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
+  point.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
+  point.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
+  const int flags = a->getCollisionFlags() | b->getCollisionFlags();
+  if (flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) {
+    point.m_combinedContactDamping1 = btManifoldResult::calculateCombinedContactDamping(a, b);
+    point.m_combinedContactStiffness1 = btManifoldResult::calculateCombinedContactStiffness(a, b);
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  }
+  if (flags & btCollisionObject::CF_HAS_FRICTION_ANCHOR)
+    point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
+}
+
+btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* const (&bodies)[2],
+                          const RelativeMotion& motion) {
+  Vec3 on0, on1;
+  positions(c, on0, on1);
+  const btVector3 p0 = toBt(on0), p1 = toBt(on1);
+  btManifoldPoint point(bodies[0]->getCollisionObject()->getWorldTransform().invXform(p0),
+                        bodies[1]->getCollisionObject()->getWorldTransform().invXform(p1), toBt(c.n_W),
+                        toBt(c.distance_m));
+  point.m_positionWorldOnA = p0;
+  point.m_positionWorldOnB = p1;
+  point.m_index0 = indexOn(c, 0);
+  point.m_index1 = indexOn(c, 1);
+  point.m_partId0 = c.side == 1 ? c.owner : 0;
+  point.m_partId1 = c.side == 0 ? c.owner : 0;
+  setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
+  setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
+  return point;
+}
+
+// Impulses last step, in the new friction directions.
+void inherit(btManifoldPoint& point, const btManifoldPoint& old) {
+  point.m_appliedImpulse = old.m_appliedImpulse;
+  const btVector3 lateral = old.m_lateralFrictionDir1 * old.m_appliedImpulseLateral1 +
+                            old.m_lateralFrictionDir2 * old.m_appliedImpulseLateral2;
+  point.m_appliedImpulseLateral1 = lateral.dot(point.m_lateralFrictionDir1);
+  point.m_appliedImpulseLateral2 = lateral.dot(point.m_lateralFrictionDir2);
+  point.m_lifeTime = old.m_lifeTime + 1;
+  point.m_userPersistentData = old.m_userPersistentData;
+}
+
+}  // namespace
+
+std::uint64_t keyOf(const btManifoldPoint& point) {
+  Candidate c;
+  c.side = point.m_index0 >= 0 ? 0 : 1;
+  if (point.m_index0 >= 0 && point.m_index1 >= 0) c.crossed = static_cast<std::uint32_t>(point.m_index1) + 1;
+  c.id = static_cast<std::uint32_t>(c.side == 0 ? point.m_index0 : point.m_index1);
+  return c.key();
+}
+
+ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
+                               const btCollisionObject* object1)
+    : dispatcher_(dispatcher), objects_{object0, object1} {}
+
+ManifoldWriter::~ManifoldWriter() {
+  for (btPersistentManifold* manifold : manifolds_) dispatcher_.releaseManifold(manifold);
+}
+
+void ManifoldWriter::append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const {
+  for (btPersistentManifold* manifold : manifolds_) manifolds.push_back(manifold);
+}
+
+void ManifoldWriter::forget() {
+  // With the id of no point they match none, and the next write gives their user data back.
+  for (btPersistentManifold* manifold : manifolds_)
+    for (int i = 0; i < manifold->getNumContacts(); ++i) {
+      btManifoldPoint& point = manifold->getContactPoint(i);
+      point.m_index0 = point.m_index1 = -1;
+    }
+}
+
+void ManifoldWriter::harvest() {
+  old_.clear();
+  for (const btPersistentManifold* manifold : manifolds_)
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      old_.push_back({keyOf(manifold->getContactPoint(i)), manifold->getContactPoint(i)});
+  // They were written in this order, and are heavy to move.
+  const auto isBefore = [](const Old& a, const Old& b) { return a.key < b.key; };
+  if (!std::is_sorted(old_.begin(), old_.end(), isBefore)) std::sort(old_.begin(), old_.end(), isBefore);
+}
+
+void ManifoldWriter::recall(std::vector<Candidate>& candidates) {
+  harvest();
+  if (old_.empty()) return;
+  for (Candidate& c : candidates) {
+    const auto it = std::lower_bound(old_.begin(), old_.end(), c.key(),
+                                     [](const Old& old, std::uint64_t key) { return old.key < key; });
+    if (it == old_.end() || it->key != c.key()) continue;
+    c.was_contact = true;
+    c.impulse_Ns = it->point.m_appliedImpulse;
+  }
+}
+
+void ManifoldWriter::write(std::span<const Candidate> contacts,
+                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion) {
+  harvest();
+  const std::size_t manifold_count = (contacts.size() + kPerManifold - 1) / kPerManifold;
+  while (manifolds_.size() < manifold_count) {
+    btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
+    if (!manifold) break;  // the user forbade the pool to grow
+    manifolds_.push_back(manifold);
+  }
+  const bool had_contacts = !old_.empty();
+  std::vector<Old>::iterator old = old_.begin();
+  for (std::size_t m = 0; m < manifolds_.size(); ++m) {
+    btPersistentManifold& manifold = *manifolds_[m];
+    const std::size_t first = m * kPerManifold;
+    const int count = first < contacts.size()
+                          ? static_cast<int>(std::min<std::size_t>(kPerManifold, contacts.size() - first))
+                          : 0;
+    manifold.setNumContacts(count);
+    for (int i = 0; i < count; ++i) {
+      const Candidate& c = contacts[first + static_cast<std::size_t>(i)];
+      btManifoldPoint& point = manifold.getContactPoint(i);
+      point = makePoint(c, bodies, motion);
+      while (old != old_.end() && old->key < c.key()) ++old;  // both ascend by key
+      if (old != old_.end() && old->key == c.key()) {
+        inherit(point, old->point);
+        old->point.m_userPersistentData = nullptr;
+      }
+      const int flags = objects_[0]->getCollisionFlags() | objects_[1]->getCollisionFlags();
+      if (gContactAddedCallback && (flags & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK))
+        gContactAddedCallback(point, bodies[0], point.m_partId0, point.m_index0, bodies[1], point.m_partId1,
+                              point.m_index1);
+    }
+  }
+  for (Old& gone : old_)
+    if (gone.point.m_userPersistentData && gContactDestroyedCallback)
+      gContactDestroyedCallback(gone.point.m_userPersistentData);
+  if (had_contacts && contacts.empty() && gContactEndedCallback && !manifolds_.empty())
+    gContactEndedCallback(manifolds_.front());
+}
+
+void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
+                   btManifoldResult& result) {
+  // Bullet's query results ask the manifold for the order of the bodies, and a query has none of its own.
+  btPersistentManifold order(bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject(), 0,
+                             BT_LARGE_FLOAT, BT_LARGE_FLOAT);
+  btPersistentManifold* before = result.getPersistentManifold();
+  result.setPersistentManifold(&order);
+  for (const Candidate& c : contacts) {
+    Vec3 on0, on1;
+    positions(c, on0, on1);
+    result.setShapeIdentifiersA(c.side == 1 ? c.owner : 0, indexOn(c, 0));
+    result.setShapeIdentifiersB(c.side == 0 ? c.owner : 0, indexOn(c, 1));
+    result.addContactPoint(toBt(c.n_W), toBt(on1), toBt(c.distance_m));
+  }
+  result.setPersistentManifold(before);
+}
+
+}  // namespace vps

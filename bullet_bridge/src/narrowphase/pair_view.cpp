@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/pair_view.h"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+namespace vps {
+
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m) {
+  RelativeMotion motion;
+  motion.dt_s = dt_s;
+  motion.slack_m = slack_m;
+  if (!(dt_s > 0)) return motion;
+  const auto relative = [&](bool with_couplings) {
+    const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), dt_s, with_couplings);
+    const Twist V1 = predictedVelocity(*pair.wrapper[1]->getCollisionObject(), dt_s, with_couplings);
+    return Twist{V0.w - V1.w, V0.v - V1.v};
+  };
+  const auto greatestSpeed = [&](const Twist& V) {
+    return (V.v + V.w.cross(pair.center_W())).norm() + V.w.norm() * pair.radius_m();
+  };
+  motion.V = relative(true);
+  motion.speed_m_s = greatestSpeed(motion.V);
+  motion.own_speed_m_s = greatestSpeed(relative(false));
+  return motion;
+}
+
+double sight_m(const PairView& pair) {
+  double sight_m = 1e30;
+  for (const VpsShape* shape : pair.vps)
+    if (shape && shape->models().map) sight_m = std::min(sight_m, 0.95 * shape->models().map->band_m());
+  return sight_m;
+}
+
+bool asksPoints(const PairView& pair, int i, Sides sides) {
+  if (!pair.hasShell(i)) return false;
+  if (sides == Sides::Both || !pair.canLookBothWays()) return true;
+  const bool is_first = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm();
+  return i == (is_first ? 0 : 1);
+}
+
+int sideCount(const PairView& pair, Sides sides) {
+  return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
+}
+
+void advance(PairView& pair, const PairView& start, double dt_s, double t_s) {
+  for (int i = 0; i < 2; ++i) {
+    const Twist V = predictedVelocity(*pair.wrapper[i]->getCollisionObject(), dt_s);
+    const Mat3 R = rotationFromVector(V.w * t_s);
+    pair.X_WS[i] = Pose(Mat3(R * start.X_WS[i].R), R * start.X_WS[i].p + V.v * t_s);
+  }
+}
+
+void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
+  for (int i = 0; i < 2; ++i) {
+    const btCollisionObject& object = *pair.wrapper[i]->getCollisionObject();
+    const Twist V = predictedVelocity(object, 0, false);
+    const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
+    const Mat3 R = rotationFromVector(V.w * dt_s);
+    way[i] = Pose(R, center + (V.v + V.w.cross(center)) * dt_s - R * center);
+  }
+}
+
+}  // namespace vps

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two bodies that may touch, at one instant: their shapes, their poses, how they move against each other.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <algorithm>
+
+#include "narrowphase/contact_candidate.h"
+#include "narrowphase/motion.h"
+#include "native_shapes/native_shape_adapter.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/shape.h"
+
+namespace vps {
+
+/// Both bodies of a pair at one instant.
+struct PairView {
+  const btCollisionObjectWrapper* wrapper[2];
+  const VpsShape* vps[2];  // null: a primitive
+  Pose X_WS[2];
+
+  PairView(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
+      : wrapper{body0, body1} {
+    for (int i = 0; i < 2; ++i) {
+      vps[i] = dynamic_cast<const VpsShape*>(wrapper[i]->getCollisionShape());
+      X_WS[i] = fromBt(wrapper[i]->getWorldTransform());
+    }
+  }
+  [[nodiscard]] SideView side(int i) const {
+    return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
+  }
+  /// Changes when the size of a side does that is no VpsShape.
+  [[nodiscard]] ShapeKey key(int i) const {
+    return vps[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
+  }
+  [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
+  [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
+  [[nodiscard]] bool canLookBothWays() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
+  /// Half the diagonal of the smaller body.
+  [[nodiscard]] double radius_m() const {
+    double radius_m = 1e30;
+    for (const VpsShape* shape : vps)
+      if (shape) radius_m = std::min(radius_m, 0.5 * shape->bounds().size().norm());
+    return std::max(radius_m, 1e-6);
+  }
+  /// Centre of the smaller VpsShape, in W.
+  [[nodiscard]] Vec3 center_W() const {
+    const bool second =
+        !vps[0] || (vps[1] && vps[1]->bounds().size().norm() < vps[0]->bounds().size().norm());
+    const int i = second ? 1 : 0;
+    return X_WS[i] * vps[i]->bounds().center();
+  }
+};
+
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m);
+
+/// How far the fields can see [m]: the band bounds it.
+double sight_m(const PairView& pair);
+
+/// True if the points of side i are looked at. One-sided: only the smaller body's, since a larger one's may
+/// be too far apart to catch it.
+bool asksPoints(const PairView& pair, int i, Sides sides);
+
+/// How many sides' points answer for the same surface.
+int sideCount(const PairView& pair, Sides sides);
+
+/// Where both bodies are t_s into a step of dt_s, moving freely at the velocity of its end, as all that looks
+/// ahead takes it. (That of t_s is another: a stiff coupling pulls nearly as far in a part of the step.)
+void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
+
+/// Where the bodies go in the step if they keep their velocities: what takes each from its place to that one.
+void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
+
+}  // namespace vps

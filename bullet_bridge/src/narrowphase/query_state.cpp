@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/query_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vps {
+
+namespace {
+
+// Points of a tile, eight by eight: where more are near than mayAllBeNear(), tiles are more than the contacts
+// wanted. Larger tiles where a shell would have more than sixteen for each contact.
+constexpr std::size_t kTilePoints = 64;
+constexpr double kTileSpacings = 12;  // from corner to corner, and a little more
+constexpr double kMostTiles = 16;
+
+double tileSize_m(const PointShell& shell, const VpsBulletSettings& settings) {
+  const double area_m2 = std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0);
+  return std::max(kTileSpacings * shell.spacing_m,
+                  std::sqrt(2 * area_m2 / (kMostTiles * settings.contact_limit)));
+}
+
+}  // namespace
+
+SideMemory::SideMemory(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings)
+    : query(map, shell) {
+  // Each spring counts; of rigid contact's points few do.
+  if (settings.mode == ContactMode::Constraint && shell.size() > mayAllBeNear(settings) &&
+      shell.spacing_m > 0)
+    leading.emplace(shell, tileSize_m(shell, settings));
+}
+
+std::size_t mayAllBeNear(const VpsBulletSettings& settings) {
+  return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
+}
+
+}  // namespace vps

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "native_shapes/native_shape_adapter.h"
+
+#include <LinearMath/btTransform.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <numeric>
+
+#include "native_shapes/native_shape_mesh.h"
+#include "native_shapes/primitive.h"
+#include "vps_bullet/convert.h"
+
+namespace vps {
+
+namespace {
+
+/// Points in an order in which each sixteen in a row are near each other.
+void sortInSpace(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
+                 const std::vector<Vec3>& points) {
+  if (end - begin <= static_cast<std::size_t>(kLanes)) return;
+  Box box;
+  for (std::size_t i = begin; i < end; ++i) box.add(points[order[i]]);
+  int axis = 0;
+  box.size().maxCoeff(&axis);
+  const std::size_t leaves = (end - begin + kLanes - 1) / kLanes;
+  const std::size_t middle = begin + leaves / 2 * kLanes;
+  const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(k); };
+  std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+    return points[a][axis] != points[b][axis] ? points[a][axis] < points[b][axis] : a < b;
+  });
+  sortInSpace(order, begin, middle, points);
+  sortInSpace(order, middle, end, points);
+}
+
+// Only penalty contact asks for it: a corner has none, and would not press. Half a millimetre's square,
+// assumed: what a shell's point stands for.
+constexpr double kCornerArea_m2 = 0.25e-6;
+
+struct Corners {
+  std::vector<Vec3> points, inward;
+};
+
+// Each vertex that a triangle uses; of a sheet once for each side.
+Corners cornersOf(const MeshDistance& surface, bool is_sheet) {
+  const Mesh& mesh = surface.mesh();
+  std::vector<std::uint8_t> is_taken(mesh.vertices.size(), 0);
+  Corners corners;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      const Vec3 outward = surface.featureNormal(t, 4 + k);
+      if (is_taken[v] || outward.isZero(0)) continue;
+      is_taken[v] = 1;
+      corners.points.push_back(mesh.vertices[v]);
+      corners.inward.push_back(-outward);
+      if (!is_sheet) continue;
+      corners.points.push_back(mesh.vertices[v]);
+      corners.inward.push_back(outward);
+    }
+  return corners;
+}
+
+PointShell leafOf(const Corners& corners, const std::uint32_t* ids, std::size_t count) {
+  PointShell leaf;
+  Box box;
+  for (std::size_t i = 0; i < count; ++i) {
+    leaf.points.push_back(corners.points[ids[i]]);
+    leaf.inward.push_back(corners.inward[ids[i]]);
+    leaf.area_m2.push_back(kCornerArea_m2);
+    box.add(leaf.points.back());
+  }
+  ShellNode node;
+  node.center = box.center();
+  node.radius_m = 0.5 * box.size().norm() * (1 + 1e-12);
+  node.count = static_cast<std::uint32_t>(count);
+  node.skip = 1;
+  node.is_leaf = true;
+  leaf.nodes = {node};
+  return leaf;
+}
+
+PointShell shellOf(const Corners& corners) {
+  const std::size_t count = corners.points.size();
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  sortInSpace(order, 0, count, corners.points);
+  std::vector<PointShell> leaves;
+  for (std::size_t first = 0; first < count; first += kLanes)
+    leaves.push_back(leafOf(corners, &order[first], std::min<std::size_t>(kLanes, count - first)));
+  std::vector<const PointShell*> pointers;
+  for (const PointShell& leaf : leaves) pointers.push_back(&leaf);
+  return mergedShells(pointers, std::vector<Pose>(leaves.size()));
+}
+
+VpsModels modelsOf(const PartnerMesh& partner) {
+  VpsModels models;
+  const auto surface = std::make_shared<const MeshDistance>(partner.mesh);
+  models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, partner.is_sheet)));
+  models.surfaces = {
+      {surface, Pose(), partner.is_sheet ? std::make_shared<const SheetBorder>(partner.mesh) : nullptr}};
+  return models;
+}
+
+// FNV-1a, over the numbers as they lie in memory.
+std::uint64_t hashOf(const Mesh& mesh) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      for (int k = 0; k < 3; ++k) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &mesh.vertices[v][k], sizeof bits);
+        hash = (hash ^ bits) * 0x100000001b3ull;
+      }
+  return hash;
+}
+
+}  // namespace
+
+PartnerShape::PartnerShape(const btCollisionShape& shape)
+    : VpsShape(modelsOf(partnerMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
+
+const btCollisionShape* primitiveBehind(const btCollisionShape& shape) {
+  const auto* stand_in = dynamic_cast<const PartnerShape*>(&shape);
+  return stand_in ? stand_in->primitive() : nullptr;
+}
+
+const btCollisionShape& withoutStandIn(const btCollisionShape& shape) {
+  const btCollisionShape* primitive = primitiveBehind(shape);
+  return primitive ? *primitive : shape;
+}
+
+SheetBorder::SheetBorder(const Mesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, int> uses;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({t[k], t[(k + 1) % 3]});
+      ++uses[{low, high}];
+    }
+  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> at_vertex;
+  for (const auto& [edge, count] : uses)
+    if (count == 1)
+      for (const std::uint32_t v : edge) at_vertex[v].push_back(edge);
+  for (const auto& t : mesh.triangles) {
+    first_.push_back(static_cast<std::uint32_t>(edges_.size()));
+    for (const std::uint32_t v : t)
+      if (const auto it = at_vertex.find(v); it != at_vertex.end())
+        for (const auto& edge : it->second)
+          edges_.push_back({mesh.vertices[edge[0]], mesh.vertices[edge[1]]});
+  }
+  first_.push_back(static_cast<std::uint32_t>(edges_.size()));
+  touch_m_ = 1e-9 * (1 + bounds(mesh).size().norm());
+}
+
+bool SheetBorder::isOnBorder(std::uint32_t triangle, const Vec3& q) const {
+  for (std::uint32_t i = first_[triangle]; i < first_[triangle + 1]; ++i) {
+    const Vec3 along = edges_[i].b - edges_[i].a;
+    const double share = std::clamp((q - edges_[i].a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    if ((edges_[i].a + share * along - q).norm() <= touch_m_) return true;
+  }
+  return false;
+}
+
+SheetFoot SheetBorder::seenFrom(const Vec3& p, const Vec3& inward, const MeshDistance::Closest& foot) const {
+  const Vec3 n = inward.dot(foot.normal) < 0 ? Vec3(-foot.normal) : foot.normal;
+  const Vec3 from_q = p - foot.q;
+  const double beside_m = (from_q - from_q.dot(n) * n).norm();
+  if (!(beside_m > touch_m_) || !isOnBorder(foot.triangle, foot.q)) return {n, false};
+  return {(n + from_q / from_q.norm()).normalized(), true};
+}
+
+ShapeKey keyOf(const btCollisionShape& shape) {
+  ShapeKey key;
+  key.type = shape.getShapeType();
+  btVector3 low, high;
+  shape.getAabb(btTransform::getIdentity(), low, high);
+  const btVector3& scale = shape.getLocalScaling();
+  for (int k = 0; k < 3; ++k) {
+    key.numbers[k] = low[k];
+    key.numbers[3 + k] = high[k];
+    key.numbers[6 + k] = scale[k];
+  }
+  return key;
+}
+
+std::shared_ptr<const PartnerShape> PartnerCache::get(const btCollisionShape& shape) {
+  const std::lock_guard lock(mutex_);
+  const ShapeKey key = keyOf(shape);
+  const auto it = entries_.find(&shape);
+  const bool is_known = it != entries_.end() && it->second.key == key;
+  if (is_known && it->second.stand_in.use_count() > 1) return it->second.stand_in;
+  const std::uint64_t hash = hashOf(partnerMesh(shape).mesh);
+  if (is_known && it->second.hash == hash) return it->second.stand_in;
+  // Of shapes that are gone nobody tells us: what no pair uses goes when there is much of it.
+  constexpr std::size_t kMostKept = 64;
+  if (entries_.size() >= kMostKept)
+    std::erase_if(entries_, [](const auto& entry) { return entry.second.stand_in.use_count() == 1; });
+  const auto stand_in = std::make_shared<const PartnerShape>(shape);
+  entries_[&shape] = {key, hash, stand_in};
+  return stand_in;
+}
+
+}  // namespace vps

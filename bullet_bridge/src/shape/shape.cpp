@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_bullet/shape.h"
+
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "shape/scaled_models.h"
+#include "vps/load_error.h"
+#include "vps_bullet/convert.h"
+
+namespace vps {
+
+namespace {
+
+// What does no harm is said once and not obeyed.
+void sayOnce(std::atomic_flag& said, const char* words) {
+  if (!said.test_and_set()) std::fprintf(stderr, "vps: %s\n", words);
+}
+
+Mat3 inertiaAboutCom(const MassProperties& unit_density, double density) {
+  return unit_density.inertia_m5 * density;
+}
+
+// Parallel axes: inertia about O of a mass whose centre is at p from O.
+Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
+  return about_com + mass_kg * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
+}
+
+void requireModels(const VpsModels& models) {
+  if (!models.map && !models.shell && !models.mesh)
+    throw std::invalid_argument("VpsShape: it has no models; give it a map, a shell or a mesh (makeModels)");
+}
+
+Box boxOf(const PointShell& shell) {
+  Box box;
+  for (const Vec3& p : shell.points) box.add(p);
+  return box;
+}
+
+struct PointNormals {
+  std::vector<std::uint8_t> is_edge;  // by point
+  std::vector<Vec3> smooth_inward;
+  std::vector<VpsShape::PointFace> faces;
+};
+
+constexpr double kOnSurface_m = 1e-6;
+
+// A point on a face has that face's normal; one on an edge has the mean of several.
+PointNormals findNormals(const VpsModels& models) {
+  constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
+  if (!models.shell || models.surfaces.empty()) return {};
+  const std::size_t count = models.shell->size();
+  PointNormals normals{std::vector<std::uint8_t>(count, 1), models.shell->inward,
+                       std::vector<VpsShape::PointFace>(count)};
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::uint32_t s = 0; s < models.surfaces.size(); ++s) {
+      const VpsSurface& surface = models.surfaces[s];
+      const Pose X_PM = surface.X_MP.inverse();
+      const MeshDistance::Closest closest =
+          surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
+      if (!closest.found) continue;
+      const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
+      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) <= kCosFace) continue;
+      normals.is_edge[i] = 0;
+      normals.smooth_inward[i] =
+          -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
+      normals.faces[i] = {s, closest.triangle};
+    }
+  return normals;
+}
+
+EdgeSet edgesOf(const std::vector<VpsSurface>& surfaces) {
+  std::vector<EdgeSegment> segments;
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
+  return EdgeSet(std::move(segments));
+}
+
+}  // namespace
+
+BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
+  if (!(unit_density.volume_m3 > 0))
+    throw LoadError("", "", "its volume is not positive; the mesh is open or inside out");
+  if (!(density_kg_m3 > 0)) throw LoadError("", "", "its density is not positive");
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertiaAboutCom(unit_density, density_kg_m3));
+  BodyFrame frame;
+  frame.mass_kg = unit_density.volume_m3 * density_kg_m3;
+  frame.inertia_kg_m2 = eigen.eigenvalues().cwiseMax(0);
+  Mat3 axes = eigen.eigenvectors();
+  if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
+  frame.X_PB = Pose(axes, unit_density.com);
+  return frame;
+}
+
+VpsModels makeModels(const Part& part) {
+  VpsModels models;
+  models.map = part.map;
+  models.shell = part.shell;
+  if (!part.mesh.triangles.empty()) {
+    models.mesh = std::make_shared<const Mesh>(part.mesh);
+    models.surfaces = {{std::make_shared<const MeshDistance>(welded(part.mesh)), Pose()}};
+  }
+  return models;
+}
+
+/// Boxes over the mesh's triangles, in the shape's frame. Split at the median of the longest axis, four to a
+/// leaf.
+class VpsShape::TriangleTree {
+ public:
+  TriangleTree(const Mesh& mesh, const Pose& X_SM) : triangles_(mesh.triangles) {
+    vertices_.reserve(mesh.vertices.size());
+    for (const Vec3& p : mesh.vertices) vertices_.push_back(X_SM * p);
+    order_.resize(triangles_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    nodes_.reserve(triangles_.size());
+    if (!order_.empty()) build(0, order_.size());
+  }
+
+  void visit(const Box& box, btTriangleCallback& callback) const {
+    for (std::size_t i = 0; i < nodes_.size();) {
+      const Node& node = nodes_[i];
+      if (!overlap(node.box, box)) {
+        i = node.skip;
+        continue;
+      }
+      for (std::uint32_t k = node.first; k < node.first + node.count; ++k) report(order_[k], box, callback);
+      ++i;
+    }
+  }
+
+ private:
+  struct Node {
+    Box box;
+    std::uint32_t first = 0, count = 0;  // count 0: inner node
+    std::uint32_t skip = 0;              // next node in depth-first order when this one is left out
+  };
+
+  static bool overlap(const Box& a, const Box& b) {
+    return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
+  }
+
+  Box boxOf(std::uint32_t triangle) const {
+    Box box;
+    for (const std::uint32_t v : triangles_[triangle]) box.add(vertices_[v]);
+    return box;
+  }
+
+  void build(std::size_t begin, std::size_t end) {
+    const std::size_t index = nodes_.size();
+    nodes_.emplace_back();
+    Box box;
+    for (std::size_t k = begin; k < end; ++k) {
+      const Box b = boxOf(order_[k]);
+      box.add(b.min);
+      box.add(b.max);
+    }
+    nodes_[index].box = box;
+    if (end - begin <= 4) {
+      nodes_[index].first = static_cast<std::uint32_t>(begin);
+      nodes_[index].count = static_cast<std::uint32_t>(end - begin);
+    } else {
+      int axis = 0;
+      box.size().maxCoeff(&axis);
+      const std::size_t middle = begin + (end - begin) / 2;
+      const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+      std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+        const double ca = boxOf(a).center()[axis], cb = boxOf(b).center()[axis];
+        return ca != cb ? ca < cb : a < b;
+      });
+      build(begin, middle);
+      build(middle, end);
+    }
+    nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
+  }
+
+  void report(std::uint32_t triangle, const Box& box, btTriangleCallback& callback) const {
+    if (!overlap(boxOf(triangle), box)) return;
+    btVector3 corners[3];
+    for (std::size_t v = 0; v < 3; ++v) corners[v] = toBt(vertices_[triangles_[triangle][v]]);
+    callback.processTriangle(corners, 0, static_cast<int>(triangle));
+  }
+
+  std::vector<Vec3> vertices_;  // in S
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Node> nodes_;
+};
+
+VpsShape::VpsShape(VpsModels models, const Pose& X_SM) : X_SM_unscaled_(X_SM), scaling_(1, 1, 1) {
+  m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+  m_collisionMargin = 0;
+  if (!X_SM.isFinite()) throw std::invalid_argument("VpsShape: the models' pose X_SM is not finite");
+  setModels(std::move(models));
+}
+
+VpsShape::~VpsShape() = default;
+
+void VpsShape::setModels(VpsModels models) {
+  requireModels(models);
+  const double scale = scaling_.x();
+  VpsModels scaled = scale == 1 ? models : scaledModels(models, scale);
+  unscaled_ = std::move(models);
+  use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
+}
+
+void VpsShape::use(VpsModels models, const Pose& X_SM) {
+  models_ = std::move(models);
+  X_SM_ = X_SM;
+  ++revision_;
+  PointNormals normals = findNormals(models_);
+  is_edge_point_ = std::move(normals.is_edge);
+  smooth_inward_ = std::move(normals.smooth_inward);
+  face_at_ = std::move(normals.faces);
+  edges_ = edgesOf(models_.surfaces);
+  edges_at_.clear();
+  first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
+  for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
+    if (is_edge_point_[i] != 0)
+      edges_.forEachNear(models_.shell->points[i], kOnSurface_m,
+                         [this](std::uint32_t segment) { edges_at_.push_back(segment); });
+    first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
+  }
+  Box box_M;
+  const auto include = [&box_M](const Box& box) {
+    if (box.isEmpty()) return;
+    box_M.add(box.min);
+    box_M.add(box.max);
+  };
+  if (models_.map) include(models_.map->bounds());
+  if (models_.shell) include(boxOf(*models_.shell));
+  if (models_.mesh) include(vps::bounds(*models_.mesh));
+  bounds_S_ = Box();
+  if (box_M.isEmpty()) {
+    bounds_S_.add(X_SM_.p);
+  } else {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p_M(corner & 1 ? box_M.max.x() : box_M.min.x(), corner & 2 ? box_M.max.y() : box_M.min.y(),
+                     corner & 4 ? box_M.max.z() : box_M.min.z());
+      bounds_S_.add(X_SM_ * p_M);
+    }
+  }
+  triangles_ = models_.mesh ? std::make_unique<const TriangleTree>(*models_.mesh, X_SM_) : nullptr;
+}
+
+void VpsShape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
+  const Pose X = fromBt(X_WS);
+  const Vec3 center = X * bounds_S_.center();
+  const Vec3 half = X.R.cwiseAbs() * (0.5 * bounds_S_.size());
+  min = toBt(Vec3(center - half));
+  max = toBt(Vec3(center + half));
+}
+
+void VpsShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
+  if (!(mass >= 0) || !std::isfinite(mass))
+    throw std::invalid_argument("VpsShape: a mass of " + std::to_string(mass) +
+                                " kg; give a positive one, or 0 for a fixed body");
+  if (models_.mesh) {
+    const MassProperties unit = massProperties(*models_.mesh);
+    if (unit.volume_m3 > 0) {
+      const Mat3 about_com = inertiaAboutCom(unit, mass / unit.volume_m3);
+      const Mat3 about_So = shiftedInertia(X_SM_.R * about_com * X_SM_.R.transpose(), mass, X_SM_ * unit.com);
+      inertia = toBt(Vec3(about_So.diagonal()));
+      return;
+    }
+  }
+  const Vec3 s = bounds_S_.size().cwiseAbs2() * (mass / 12);  // a solid box
+  inertia = toBt(Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()));
+}
+
+void VpsShape::processAllTriangles(btTriangleCallback* callback, const btVector3& min,
+                                   const btVector3& max) const {
+  if (!triangles_) return;
+  Box box;
+  box.min = fromBt(min);
+  box.max = fromBt(max);
+  triangles_->visit(box, *callback);
+}
+
+void VpsShape::setLocalScaling(const btVector3& scaling) {
+  const double scale = scaling.x();
+  if (scaling.y() != scaling.x() || scaling.z() != scaling.x() || !(scale > 0) || !std::isfinite(scale)) {
+    std::ostringstream words;
+    words << "VpsShape: cannot be scaled by (" << scaling.x() << ", " << scaling.y() << ", " << scaling.z()
+          << "), only by one positive number on all axes; scale the mesh and build its models again";
+    throw std::invalid_argument(words.str());
+  }
+  if (scaling == scaling_) return;
+  VpsModels scaled = scale == 1 ? unscaled_ : scaledModels(unscaled_, scale);
+  scaling_ = scaling;
+  use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
+}
+
+void VpsShape::setMargin(btScalar margin) {
+  if (!(margin >= 0)) throw std::invalid_argument("VpsShape: a margin must not be negative; it is always 0");
+  static std::atomic_flag said;
+  if (margin != 0)
+    sayOnce(said, "VpsShape has no margin: its contact distance is that of the part's surface");
+}
+
+int VpsShape::calculateSerializeBufferSize() const {
+  throw std::invalid_argument(
+      "VpsShape cannot be written in Bullet's format, whose importer could not read it; save the part's "
+      "mesh, "
+      "map (saveVdb) and shell (savePly) instead");
+}
+
+}  // namespace vps

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/contact_sweeps.h"
+
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vps_bullet/convert.h"
+
+namespace vps {
+namespace {
+
+// Impulses are far from the ends of a double's range; std::hypot guards those and took a sixth of a heap's
+// time.
+double lengthOf(double x, double y) {
+  return std::sqrt(x * x + y * y);
+}
+
+}  // namespace
+
+double ContactSweeps::velocity(const ContactRow& row) const {
+  double v = row.fixed_velocity;
+  for (const ContactRow::Side& side : row.side)
+    if (side.body >= 0) v += side.J.dot(body(side).u);
+  return v;
+}
+
+void ContactSweeps::apply(const ContactRow& row, double impulse) {
+  for (const ContactRow::Side& side : row.side)
+    if (side.body >= 0) body(side).u += impulse * side.MinvJ;
+}
+
+ContactRow ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
+                                  const Vec3& d) const {
+  ContactRow row;
+  // Both at the middle of the gap: two forces in one line keep the angular momentum.
+  const btVector3 at = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * btScalar(0.5);
+  for (int i = 0; i < 2; ++i) {
+    const Vec3 r = fromBt(at - objects[i]->getWorldTransform().getOrigin());
+    const Vec3 direction = i == 0 ? d : Vec3(-d);
+    row.side[i].body = island_.indexOf(objects[i]);
+    row.side[i].J = stacked(r.cross(direction), direction);
+    if (row.side[i].body < 0) row.fixed_velocity += row.side[i].J.dot(Island::fixedVelocity(objects[i]));
+  }
+  return row;
+}
+
+void ContactSweeps::prepareRow(ContactRow& row) const {
+  row.W = 0;
+  for (ContactRow::Side& side : row.side) {
+    if (side.body < 0) continue;
+    side.MinvJ = body(side).held_inverse * side.J;
+    row.W += side.J.dot(side.MinvJ);
+  }
+}
+
+void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
+                        const btContactSolverInfo& info) {
+  const btCollisionObject* const objects[2] = {manifold.getBody0(), manifold.getBody1()};
+  RigidContact c;
+  c.point = &point;
+  for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
+  c.mu = point.m_combinedFriction;
+  c.gap_m = point.getDistance() + info.m_linearSlop;
+  const Vec3 n = fromBt(point.m_normalWorldOnB);
+  if (n.isZero(0)) return;  // a contact without a direction has nothing to act along
+  if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
+    btPlaneSpace1(point.m_normalWorldOnB, point.m_lateralFrictionDir1, point.m_lateralFrictionDir2);
+    point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
+  }
+  c.normal = makeRow(objects, point, n);
+  c.tangent[0] = makeRow(objects, point, fromBt(point.m_lateralFrictionDir1));
+  c.tangent[1] = makeRow(objects, point, fromBt(point.m_lateralFrictionDir2));
+  if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) return;
+
+  if (c.gap_m > 0) {
+    c.target_m_s = -c.gap_m / info.m_timeStep;
+  } else {
+    double approach_m_s = -c.normal.fixed_velocity;
+    for (const ContactRow::Side& side : c.normal.side) {
+      if (side.body >= 0) approach_m_s -= side.J.dot(Island::fixedVelocity(body(side).rigid));
+    }
+    if (approach_m_s > info.m_restitutionVelocityThreshold)
+      c.target_m_s = point.m_combinedRestitution * approach_m_s;
+  }
+  if (info.m_solverMode & SOLVER_USE_WARMSTARTING) {
+    c.p_n = std::max<double>(0, point.m_appliedImpulse);
+    c.p_t[0] = point.m_appliedImpulseLateral1;
+    c.p_t[1] = point.m_appliedImpulseLateral2;
+  }
+  contacts_.push_back(c);
+}
+
+void ContactSweeps::prepare() {
+  drives_.clear();
+  for (JointRow& row : joints_.rows) {
+    Drive drive{&row, {Vec6::Zero(), Vec6::Zero()}, 0};
+    drive.W = row.inverseMass(island_, &drive.MinvJ);
+    row.impulse_Ns = 0;
+    if (drive.W > 0) drives_.push_back(drive);
+  }
+  for (RigidContact& c : contacts_) {
+    prepareRow(c.normal);
+    prepareRow(c.tangent[0]);
+    prepareRow(c.tangent[1]);
+    double w12 = 0;
+    for (int i = 0; i < 2; ++i)
+      if (c.tangent[0].side[i].body >= 0) w12 += c.tangent[0].side[i].J.dot(c.tangent[1].side[i].MinvJ);
+    const double w11 = c.tangent[0].W, w22 = c.tangent[1].W, det = w11 * w22 - w12 * w12;
+    c.W_t = 0.5 * (w11 + w22) + std::hypot(0.5 * (w11 - w22), w12);
+    c.W_t_inverse[0] = w22 / det;
+    c.W_t_inverse[1] = -w12 / det;
+    c.W_t_inverse[2] = w11 / det;
+  }
+}
+
+void ContactSweeps::start() {
+  prepare();
+  applyImpulses();
+}
+
+void ContactSweeps::applyImpulses() {
+  for (IslandBody& b : island_.bodies) b.u = b.held_inverse * (b.momentum + b.drive);
+  for (const RigidContact& c : contacts_) {
+    if (c.p_n != 0) apply(c.normal, c.p_n);
+    for (int t = 0; t < 2; ++t)
+      if (c.p_t[t] != 0) apply(c.tangent[t], c.p_t[t]);
+  }
+  for (const Drive& drive : drives_)
+    for (int i = 0; i < 2; ++i)
+      if (drive.row->body[i] >= 0)
+        island_.bodies[static_cast<std::size_t>(drive.row->body[i])].u +=
+            drive.row->impulse_Ns * drive.MinvJ[i];
+}
+
+// Joints' rows have units of their own: a turn's change of velocity counts as that of a point 10 mm away.
+// Assumed.
+double ContactSweeps::sweepJoints() {
+  double residual_m_s = 0;
+  for (const Drive& drive : drives_) {
+    JointRow& row = *drive.row;
+    const double error = row.target - row.velocity(island_) - row.softness * drive.W * row.impulse_Ns;
+    const double wanted_Ns = row.impulse_Ns + error / (drive.W * (1 + row.softness));
+    const double change_Ns = std::clamp(wanted_Ns, row.lower_Ns, row.upper_Ns) - row.impulse_Ns;
+    if (change_Ns == 0) continue;
+    row.impulse_Ns += change_Ns;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0)
+        island_.bodies[static_cast<std::size_t>(row.body[i])].u += change_Ns * drive.MinvJ[i];
+    const bool is_turn = row.J[0].tail<3>().isZero(0) && row.J[1].tail<3>().isZero(0);
+    residual_m_s = std::max(residual_m_s, std::abs(change_Ns) * drive.W * (is_turn ? 0.01 : 1));
+  }
+  return residual_m_s;
+}
+
+// One sweep. Returns the greatest change of a row's velocity.
+double ContactSweeps::sweepOnce() {
+  double residual_m_s = sweepJoints();
+  for (RigidContact& c : contacts_) {
+    const double p_n = std::max(0.0, c.p_n + (c.target_m_s - velocity(c.normal)) / c.normal.W);
+    if (p_n != c.p_n) {
+      apply(c.normal, p_n - c.p_n);
+      residual_m_s = std::max(residual_m_s, std::abs(p_n - c.p_n) * c.normal.W);
+      c.p_n = p_n;
+    }
+    if (p_n == 0 && c.p_t[0] == 0 && c.p_t[1] == 0) continue;
+    const double v1 = velocity(c.tangent[0]), v2 = velocity(c.tangent[1]);
+    const double limit = c.mu * p_n;
+    double p1 = c.p_t[0] - (c.W_t_inverse[0] * v1 + c.W_t_inverse[1] * v2);
+    double p2 = c.p_t[1] - (c.W_t_inverse[1] * v1 + c.W_t_inverse[2] * v2);
+    if (lengthOf(p1, p2) > limit) {
+      // It slides. The step must be along the slip itself: stepping by the block's inverse and scaling back
+      // would settle on friction along W^-1 v, off the slip, and 1 % too weak.
+      p1 = c.p_t[0] - v1 / c.W_t;
+      p2 = c.p_t[1] - v2 / c.W_t;
+      const double size = lengthOf(p1, p2);
+      if (size > limit) {
+        p1 *= limit / size;
+        p2 *= limit / size;
+      }
+    }
+    const double d1 = p1 - c.p_t[0], d2 = p2 - c.p_t[1];
+    if (d1 != 0) apply(c.tangent[0], d1);
+    if (d2 != 0) apply(c.tangent[1], d2);
+    c.p_t[0] = p1;
+    c.p_t[1] = p2;
+    residual_m_s =
+        std::max(residual_m_s, std::max(std::abs(d1) * c.tangent[0].W, std::abs(d2) * c.tangent[1].W));
+  }
+  return residual_m_s;
+}
+
+SolveOutcome ContactSweeps::sweep(double residual_m_s, int limit) {
+  SolveOutcome outcome;
+  while (outcome.steps < limit && !outcome.is_settled) {
+    outcome.is_settled = sweepOnce() <= residual_m_s;
+    ++outcome.steps;
+  }
+  return outcome;
+}
+
+// A joint holds against the push; a motor or limit, whose impulse is bounded, does not mind it.
+void ContactSweeps::pushJoint(const Drive& drive) {
+  const JointRow& row = *drive.row;
+  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
+  if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) return;
+  const double impulse_Ns = (row.fixed_velocity - row.velocity(island_)) / drive.W;
+  for (int i = 0; i < 2; ++i)
+    if (row.body[i] >= 0)
+      island_.bodies[static_cast<std::size_t>(row.body[i])].u += impulse_Ns * drive.MinvJ[i];
+}
+
+void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
+  constexpr double kMostPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
+  constexpr double kNothing_m = 1e-9;
+  const double dt = info.m_timeStep;
+  bool is_needed = false;
+  for (RigidContact& c : contacts_) {
+    const double left_m = c.gap_m + velocity(c.normal) * dt;
+    is_needed |= left_m < -kNothing_m;
+    c.target_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMostPush_m_s) : -left_m / dt;
+    c.p_push = 0;
+  }
+  push_.clear();
+  if (!is_needed) return;
+  push_.assign(island_.bodies.size(), Vec6::Zero());
+  for (std::size_t i = 0; i < push_.size(); ++i) std::swap(island_.bodies[i].u, push_[i]);
+  for (int i = 0; i < sweep_limit; ++i) {
+    double residual_m_s = 0;
+    for (const Drive& drive : drives_) pushJoint(drive);
+    for (RigidContact& c : contacts_) {
+      double v = 0;  // the partner's own motion is no part of the push
+      for (const ContactRow::Side& side : c.normal.side)
+        if (side.body >= 0) v += side.J.dot(body(side).u);
+      const double p = std::max(0.0, c.p_push + (c.target_m_s - v) / c.normal.W);
+      if (p == c.p_push) continue;
+      apply(c.normal, p - c.p_push);
+      residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);
+      c.p_push = p;
+    }
+    // Left ten times as far from done, a heavy load on light bodies was lowered by each step's velocity as
+    // much as each push had raised it.
+    if (residual_m_s * dt < kNothing_m) break;
+  }
+  for (std::size_t i = 0; i < push_.size(); ++i) {
+    IslandBody& b = island_.bodies[i];
+    Vec6& push = push_[i];
+    std::swap(b.u, push);
+    // Each row's push is limited already, but rows that contradict each other add up.
+    const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
+    if (fastest_m_s > kMostPush_m_s) push *= kMostPush_m_s / fastest_m_s;
+  }
+}
+
+void ContactSweeps::finish(double dt_s) {
+  for (const RigidContact& c : contacts_) {
+    c.point->m_appliedImpulse = toBt(c.p_n);
+    c.point->m_appliedImpulseLateral1 = toBt(c.p_t[0]);
+    c.point->m_appliedImpulseLateral2 = toBt(c.p_t[1]);
+  }
+  for (std::size_t i = 0; i < push_.size(); ++i) {
+    const Vec6& push = push_[i];
+    if (push.isZero(0)) continue;
+    btRigidBody& rigid = *island_.bodies[i].rigid;
+    btTransform moved;
+    btTransformUtil::integrateTransform(rigid.getWorldTransform(), toBt(Vec3(push.tail<3>())),
+                                        toBt(Vec3(push.head<3>())), toBt(dt_s), moved);
+    rigid.setWorldTransform(moved);
+  }
+}
+
+}  // namespace vps

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A symmetric positive definite matrix over the bodies of an island, in blocks of 6x6, and its factorisation.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solver/island.h"
+
+namespace vps {
+
+/// Dense for a few bodies. For many, sparse, its pattern kept as long as the same bodies touch: finding one
+/// and ordering its columns takes several times as long as factoring it.
+class IslandMatrix {
+ public:
+  /// All zero. Blocks of `pairs` (row body, column body; any order, repeats allowed) and all on the diagonal
+  /// may be added to.
+  void start(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
+  /// Adds to the block of two bodies; the upper half may be left out, and is ignored.
+  void add(int row_body, int column_body, const Mat6& block);
+  /// answer: the matrix's inverse times rhs. False: it is not positive definite.
+  [[nodiscard]] bool solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& answer);
+
+ private:
+  static constexpr std::size_t kDense = 12;  // assumed: bodies up to which dense is quicker
+  [[nodiscard]] bool isDense() const { return body_count_ <= kDense; }
+  void makePattern();
+
+  std::size_t body_count_ = 0;
+  Eigen::MatrixXd dense_;
+  Eigen::LLT<Eigen::MatrixXd> dense_factor_;
+  std::vector<std::uint64_t> blocks_, wanted_;  // column body, then row body; ascending
+  std::vector<int> first_;                      // of a column body's blocks in blocks_
+  Eigen::SparseMatrix<double> sparse_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_factor_;
+};
+
+}  // namespace vps

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/joint_rows.h"
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vps_bullet/convert.h"
+
+namespace vps {
+namespace {
+
+/// A row as getInfo2() fills it.
+struct Filled {
+  btScalar linear[2][4] = {}, angular[2][4] = {};
+  btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;
+};
+static_assert(sizeof(Filled) % sizeof(btScalar) == 0);
+
+Vec6 jacobianOf(const Filled& row, int side) {
+  const auto vec = [](const btScalar* v) { return Vec3(v[0], v[1], v[2]); };
+  return stacked(vec(row.angular[side]), vec(row.linear[side]));
+}
+
+/// The share of a row's impulse that each body gets, added to the joint's feedback.
+void addFeedback(btJointFeedback& feedback, const JointRow& row, double dt_s) {
+  const auto force = [&](int side) { return toBt(Vec3(row.J[side].tail<3>() * (row.impulse_Ns / dt_s))); };
+  const auto torque = [&](int side) { return toBt(Vec3(row.J[side].head<3>() * (row.impulse_Ns / dt_s))); };
+  feedback.m_appliedForceBodyA += force(0);
+  feedback.m_appliedTorqueBodyA += torque(0);
+  feedback.m_appliedForceBodyB += force(1);
+  feedback.m_appliedTorqueBodyB += torque(1);
+}
+
+}  // namespace
+
+double JointRow::inverseMass(const Island& island, Vec6 (*MinvJ)[2]) const {
+  double W = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (body[i] < 0) continue;
+    const Vec6 each = island.bodies[static_cast<std::size_t>(body[i])].held_inverse * J[i];
+    W += J[i].dot(each);
+    if (MinvJ) (*MinvJ)[i] = each;
+  }
+  return W;
+}
+
+void JointRows::add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info) {
+  joint.buildJacobian();
+  joint.internalSetAppliedImpulse(0);
+  if (btJointFeedback* feedback = joint.getJointFeedback()) {
+    feedback->m_appliedForceBodyA = feedback->m_appliedForceBodyB = btVector3(0, 0, 0);
+    feedback->m_appliedTorqueBodyA = feedback->m_appliedTorqueBodyB = btVector3(0, 0, 0);
+  }
+  btTypedConstraint::btConstraintInfo1 size{};
+  joint.getInfo1(&size);
+  if (size.m_numConstraintRows <= 0) return;
+  std::vector<Filled> filled(static_cast<std::size_t>(size.m_numConstraintRows));
+  for (Filled& row : filled) row.cfm = info.m_globalCfm;
+  btTypedConstraint::btConstraintInfo2 ask{};
+  ask.fps = 1 / info.m_timeStep;
+  ask.erp = info.m_erp;
+  ask.m_numIterations = info.m_numIterations;
+  ask.m_damping = info.m_damping;
+  Filled& first = filled.front();
+  ask.m_J1linearAxis = first.linear[0];
+  ask.m_J2linearAxis = first.linear[1];
+  ask.m_J1angularAxis = first.angular[0];
+  ask.m_J2angularAxis = first.angular[1];
+  ask.m_constraintError = &first.error;
+  ask.cfm = &first.cfm;
+  ask.m_lowerLimit = &first.lower;
+  ask.m_upperLimit = &first.upper;
+  ask.rowskip = sizeof(Filled) / sizeof(btScalar);
+  joint.getInfo2(&ask);
+
+  const btCollisionObject* const objects[2] = {&joint.getRigidBodyA(), &joint.getRigidBodyB()};
+  const double torn_Ns = joint.getBreakingImpulseThreshold();
+  for (const Filled& from : filled) {
+    JointRow row;
+    row.joint = &joint;
+    row.target = from.error;
+    row.softness = from.cfm;
+    row.lower_Ns = std::max<double>(from.lower, -torn_Ns);
+    row.upper_Ns = std::min<double>(from.upper, torn_Ns);
+    for (int side = 0; side < 2; ++side) {
+      row.J[side] = jacobianOf(from, side);
+      row.body[side] = island.indexOf(objects[side]);
+      if (row.body[side] < 0) row.fixed_velocity += row.J[side].dot(Island::fixedVelocity(objects[side]));
+    }
+    if (row.body[0] >= 0 || row.body[1] >= 0) rows.push_back(row);
+  }
+}
+
+void JointRows::finish(double dt_s) {
+  for (const JointRow& row : rows) {
+    row.joint->internalSetAppliedImpulse(toBt(row.impulse_Ns));
+    if (btJointFeedback* feedback = row.joint->getJointFeedback()) addFeedback(*feedback, row, dt_s);
+    if (std::abs(row.impulse_Ns) >= row.joint->getBreakingImpulseThreshold()) row.joint->setEnabled(false);
+  }
+}
+
+}  // namespace vps

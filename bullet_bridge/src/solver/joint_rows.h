@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bullet's joints, motors and limits as rows of one island.
+#pragma once
+
+#include <vector>
+
+#include "solver/island.h"
+
+class btTypedConstraint;
+struct btContactSolverInfo;
+
+namespace vps {
+
+/// One degree of freedom that a joint takes or drives: J u = target - softness times impulse, as far as the
+/// impulse's limits go.
+struct JointRow {
+  btTypedConstraint* joint = nullptr;
+  int body[2] = {-1, -1};  ///< -1: not moved
+  Vec6 J[2] = {Vec6::Zero(), Vec6::Zero()};
+  double fixed_velocity = 0;  ///< of bodies that are not moved, along the row
+  double target = 0;
+  double softness = 0;  ///< Bullet's cfm: a share of the row's inverse mass
+  double lower_Ns = 0, upper_Ns = 0;
+  double impulse_Ns = 0;
+
+  /// @param twistOf  a body's twist by its index
+  template <typename TwistOf>
+  [[nodiscard]] double velocity(const TwistOf& twistOf) const {
+    double v = fixed_velocity;
+    for (int i = 0; i < 2; ++i)
+      if (body[i] >= 0) v += J[i].dot(twistOf(static_cast<std::size_t>(body[i])));
+    return v;
+  }
+  [[nodiscard]] double velocity(const Island& island) const {
+    return velocity([&](std::size_t i) -> const Vec6& { return island.bodies[i].u; });
+  }
+  /// J held^-1 J', with each body's held^-1 J' if asked for.
+  double inverseMass(const Island& island, Vec6 (*MinvJ)[2] = nullptr) const;
+};
+
+class JointRows {
+ public:
+  void clear() { rows.clear(); }
+  /// Asks an enabled joint for its rows.
+  void add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info);
+  /// Leaves impulses in the joints, and in their feedback where asked for; breaks those that were torn.
+  void finish(double dt_s);
+
+  std::vector<JointRow> rows;
+};
+
+}  // namespace vps

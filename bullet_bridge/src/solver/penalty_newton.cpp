@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/penalty_newton.h"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vps_bullet/convert.h"
+
+namespace vps {
+namespace {
+
+/// A twist about `from` as one about `to`.
+Mat6 twistShift(const Vec3& from, const Vec3& to) {
+  Mat6 X = Mat6::Identity();
+  X.bottomLeftCorner<3, 3>() = -crossMatrix(to - from);
+  return X;
+}
+
+double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+}  // namespace
+
+void PenaltyNewton::add(PenaltyPair& pair, bool foresees_turning) {
+  if (pair.points.empty()) return;
+  const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
+  if (body[0] < 0 && body[1] < 0) return;
+  if (patch_count_ == patches_.size()) patches_.emplace_back();
+  PenaltyPatch& patch = patches_[patch_count_++];
+  patch.center.setZero();
+  for (const PenaltyPoint& p : pair.points) patch.center += p.p_W;
+  patch.center /= static_cast<double>(pair.points.size());
+  patch.fixed.setZero();
+  // A turning body's points go along a circle, off the tangent that a twist takes them along. Left out, a nut
+  // ends each step a little off its thread, and the springs that put it back brake it.
+  Mat3 off_tangent[2];
+  for (int i = 0; i < 2; ++i) {
+    patch.body[i] = body[i];
+    const Vec6 now = Island::fixedVelocity(pair.object[i]);
+    const double sign = i == 0 ? 1 : -1;
+    patch.X[i] = sign * twistShift(fromBt(pair.object[i]->getWorldTransform().getOrigin()), patch.center);
+    if (body[i] < 0) patch.fixed += patch.X[i] * now;
+    const Vec3 turn = dt_s_ * now.head<3>();
+    off_tangent[i] = foresees_turning ? Mat3(rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn))
+                                      : Mat3(Mat3::Zero());
+  }
+  patch.build(pair, off_tangent, dt_s_);
+}
+
+Vec6 PenaltyNewton::twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& u) const {
+  Vec6 twist = patch.fixed;
+  for (int i = 0; i < 2; ++i)
+    if (patch.body[i] >= 0) twist += patch.X[i] * u[static_cast<std::size_t>(patch.body[i])];
+  return twist;
+}
+
+void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient) {
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const IslandBody& b = island_.bodies[i];
+    gradient[i] = b.held * u[i] - b.momentum - b.drive;
+  }
+  for (std::size_t j = 0; j < joint_kg_.size(); ++j) {
+    const JointRow& row = joints_.rows[j];
+    const double impulse_Ns = jointImpulse(row, joint_kg_[j], u);
+    is_free_[j] = impulse_Ns > row.lower_Ns && impulse_Ns < row.upper_Ns;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0) gradient[static_cast<std::size_t>(row.body[i])] -= impulse_Ns * row.J[i];
+  }
+  for (PenaltyPatch& patch : patches()) {
+    patch.evaluate(twistOf(patch, u), with_hessian);
+    for (int i = 0; i < 2; ++i)
+      if (patch.body[i] >= 0)
+        gradient[static_cast<std::size_t>(patch.body[i])] += patch.X[i].transpose() * patch.gradient;
+  }
+}
+
+void PenaltyNewton::prepareJoints() {
+  constexpr double kStiffer = 1e6;  // than the bodies are heavy
+  joint_kg_.clear();
+  for (const JointRow& row : joints_.rows) {
+    const double W = row.inverseMass(island_);
+    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.softness, 1 / kStiffer)) : 0);
+  }
+  is_free_.assign(joints_.rows.size(), 0);
+}
+
+double PenaltyNewton::jointImpulse(const JointRow& row, double stiffness_kg,
+                                   const std::vector<Vec6>& u) const {
+  const double velocity = row.velocity([&](std::size_t i) -> const Vec6& { return u[i]; });
+  return std::clamp(stiffness_kg * (row.target - velocity), row.lower_Ns, row.upper_Ns);
+}
+
+void PenaltyNewton::startMatrix() {
+  thread_local std::vector<std::pair<int, int>> touching;
+  touching.clear();
+  const auto touch = [](const int(&body)[2]) {
+    if (body[0] >= 0 && body[1] >= 0) touching.emplace_back(body[0], body[1]);
+  };
+  for (const PenaltyPatch& patch : patches()) touch(patch.body);
+  for (const JointRow& row : joints_.rows) touch(row.body);
+  hessian_.start(island_.bodies.size(), touching);
+}
+
+bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) {
+  if (gradient.size() == 1 && joint_kg_.empty()) {
+    Mat6 H = island_.bodies[0].held;
+    for (const PenaltyPatch& patch : patches()) {
+      const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
+      H += X.transpose() * patch.hessian * X;
+    }
+    const Eigen::LLT<Mat6> factor(H);
+    step[0] = -factor.solve(gradient[0]);
+    return factor.info() == Eigen::Success;
+  }
+  startMatrix();
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    hessian_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].held);
+  // Lower blocks only: that is what the factorisation reads.
+  const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (body[i] >= body[j] && body[j] >= 0) hessian_.add(body[i], body[j], blockOf(i, j));
+  };
+  for (const PenaltyPatch& patch : patches())
+    addPair(patch.body,
+            [&](int i, int j) -> Mat6 { return patch.X[i].transpose() * patch.hessian * patch.X[j]; });
+  for (std::size_t r = 0; r < joint_kg_.size(); ++r) {
+    const JointRow& row = joints_.rows[r];
+    if (is_free_[r])
+      addPair(row.body, [&](int i, int j) -> Mat6 { return joint_kg_[r] * row.J[i] * row.J[j].transpose(); });
+  }
+  Eigen::VectorXd rhs(static_cast<Eigen::Index>(6 * gradient.size())), answer;
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    rhs.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
+  if (!hessian_.solve(rhs, answer)) return false;
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = answer.segment<6>(static_cast<Eigen::Index>(6 * i));
+  return true;
+}
+
+// The potential is convex, so its slope along the step grows: the least is where that is zero.
+double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
+  constexpr double kFlat = 0.1;  // of the slope at the start: a better share would not save an iteration
+  trial_.resize(u.size());
+  trial_gradient_.resize(u.size());
+  const auto slopeAt = [&](double share) {
+    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * step[i];
+    evaluateAll(trial_, false, trial_gradient_);
+    return sumOfProducts(trial_gradient_, step);
+  };
+  double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
+  if (high_slope <= -kFlat * slope) return 1;
+  double share = 1;
+  for (int k = 0; k < 20; ++k) {
+    const double room = high - low;
+    share =
+        std::clamp(low - low_slope * room / (high_slope - low_slope), low + 0.05 * room, high - 0.05 * room);
+    const double here = slopeAt(share);
+    if (std::abs(here) <= -kFlat * slope) break;
+    (here < 0 ? low : high) = share;
+    (here < 0 ? low_slope : high_slope) = here;
+  }
+  return share;
+}
+
+double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
+  if (!joint_kg_.empty()) return island_.topSpeed(step);  // joints may move bodies that nothing touches
+  double speed_m_s = 0;
+  for (const PenaltyPatch& patch : patches()) {
+    const Vec6 twist = twistOf(patch, step) - patch.fixed;
+    speed_m_s = std::max(speed_m_s, twist.tail<3>().norm() + twist.head<3>().norm() * patch.radius_m);
+  }
+  return speed_m_s;
+}
+
+double PenaltyNewton::imbalance_m_s() {
+  trial_.resize(gradient_.size());
+  for (std::size_t i = 0; i < gradient_.size(); ++i)
+    trial_[i] = island_.bodies[i].held_inverse * gradient_[i];
+  return island_.topSpeed(trial_);
+}
+
+SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End end) {
+  prepareJoints();
+  island_.readVelocities(u_);
+  gradient_.resize(u_.size());
+  step_.resize(u_.size());
+  SolveOutcome outcome;
+  while (outcome.steps < iteration_limit && !outcome.is_settled) {
+    ++outcome.steps;
+    evaluateAll(u_, true, gradient_);
+    if (end == End::Balanced && imbalance_m_s() < residual_m_s) {
+      outcome.is_settled = true;
+      break;
+    }
+    if (!newtonStep(gradient_, step_)) break;
+    const double slope = sumOfProducts(gradient_, step_);
+    if (!(slope < 0)) {  // as well balanced as rounding allows, or no number
+      constexpr double kGoodEnough = 10;
+      outcome.is_settled = slope >= 0 && (end == End::Short || imbalance_m_s() < kGoodEnough * residual_m_s);
+      break;
+    }
+    // The last step is too short for a better share of it to matter.
+    outcome.is_settled = end == End::Short && greatestSpeed(step_) < residual_m_s;
+    const double share = outcome.is_settled ? 1 : shareOf(u_, step_, slope);
+    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
+  }
+  for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
+  return outcome;
+}
+
+double PenaltyNewton::renewLimits() {
+  island_.readVelocities(u_);
+  double change = 0, greatest = 0;
+  for (PenaltyPatch& patch : patches()) patch.renewLimits(twistOf(patch, u_), change, greatest);
+  return greatest > 0 ? change / greatest : change;
+}
+
+void PenaltyNewton::finish() {
+  island_.readVelocities(u_);
+  for (std::size_t j = 0; j < joint_kg_.size(); ++j)
+    joints_.rows[j].impulse_Ns = jointImpulse(joints_.rows[j], joint_kg_[j], u_);
+  for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));
+}
+
+}  // namespace vps

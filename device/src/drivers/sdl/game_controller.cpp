@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The game controller by SDL2. The one file that includes SDL.
+#include <SDL.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "drivers/polled_device.h"
+#include "vps_device/hand_controllers.h"
+
+namespace vps {
+
+namespace {
+
+constexpr auto kPause = std::chrono::milliseconds(4);  // controllers themselves report each 4 to 8 ms
+
+double axis(SDL_GameController* controller, SDL_GameControllerAxis which) {
+  return std::max(-1.0, SDL_GameControllerGetAxis(controller, which) / 32767.0);
+}
+
+double button(SDL_GameController* controller, SDL_GameControllerButton which) {
+  return SDL_GameControllerGetButton(controller, which) != 0 ? 1 : 0;
+}
+
+/// SDL's sticks are positive to the right and towards the person. D: x towards the person, y right, z up. A
+/// stick pulled tilts the handle's top towards the person, which is about +y; one pushed right turns it
+/// clockwise seen from above; the right shoulder tilts it right.
+Deflection deflectionOf(SDL_GameController* c) {
+  Deflection d;
+  d.push = Vec3(axis(c, SDL_CONTROLLER_AXIS_LEFTY), axis(c, SDL_CONTROLLER_AXIS_LEFTX),
+                axis(c, SDL_CONTROLLER_AXIS_TRIGGERRIGHT) - axis(c, SDL_CONTROLLER_AXIS_TRIGGERLEFT));
+  d.turn =
+      Vec3(button(c, SDL_CONTROLLER_BUTTON_LEFTSHOULDER) - button(c, SDL_CONTROLLER_BUTTON_RIGHTSHOULDER),
+           axis(c, SDL_CONTROLLER_AXIS_RIGHTY), -axis(c, SDL_CONTROLLER_AXIS_RIGHTX));
+  d.is_recentring = button(c, SDL_CONTROLLER_BUTTON_START) > 0;
+  return d;
+}
+
+class GameController final : public HandSource {
+ public:
+  GameController() {
+    // Ctrl-C stays the program's, and a controller counts whichever window is in front.
+    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+    SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
+    const bool is_first = SDL_WasInit(SDL_INIT_GAMECONTROLLER) == 0;
+    is_there_ = SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) == 0;
+    if (!is_there_ || !is_first) return;
+    // Nobody else takes events: let none pile up.
+    SDL_JoystickEventState(SDL_IGNORE);
+    SDL_GameControllerEventState(SDL_IGNORE);
+  }
+  ~GameController() override {
+    close();
+    if (is_there_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+    SDL_TLSCleanup();  // what SDL keeps for this thread, which is not one of its own
+  }
+
+  void poll(HandInput& input) override {
+    std::this_thread::sleep_for(kPause);
+    if (!is_there_) return;
+    SDL_GameControllerUpdate();
+    if (controller_ != nullptr && SDL_GameControllerGetAttached(controller_) == SDL_FALSE) close();
+    if (controller_ == nullptr) open();
+    input = {};
+    if (controller_ == nullptr) return;
+    input.is_connected = true;
+    input.deflection = deflectionOf(controller_);
+  }
+
+ private:
+  void open() {
+    for (int i = 0; i < SDL_NumJoysticks() && controller_ == nullptr; ++i)
+      if (SDL_IsGameController(i) == SDL_TRUE) controller_ = SDL_GameControllerOpen(i);
+  }
+  void close() {
+    if (controller_ != nullptr) SDL_GameControllerClose(controller_);
+    controller_ = nullptr;
+  }
+
+  bool is_there_ = false;
+  SDL_GameController* controller_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> openGameController(const RateSettings& settings) {
+  return std::make_unique<PolledDevice<GameController>>(settings, "game_controller");
+}
+
+}  // namespace vps

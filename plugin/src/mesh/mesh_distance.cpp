@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/mesh_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "mesh/mesh_edges.h"
+#include "mesh/triangle_distance.h"
+
+namespace vps {
+namespace {
+
+/// Twice the area over the longest edge's square, below which corners are collinear but for rounding.
+constexpr double kLeastSlimness = 1e-10;
+/// Faces this far apart are facets of one curved surface: 20 degrees, as PointShellSettings::edge_angle_rad.
+constexpr double kCosSmooth = 0.94;
+/// Corners with more faces than this are the hubs of fans, flat or nearly so; each face against each would
+/// cost its square.
+constexpr std::size_t kMostFaces = 64;
+/// How near is touching, in sizes of the mesh: above the height of what is thin.
+constexpr double kTouch = 1e-9;
+/// Quartering by count makes the depth log4(2^31) at most; three waiting children a level.
+constexpr int kStack = 64;
+
+/// Unit v, or zero where v is too short to have a direction.
+Vec3 unitOrZero(const Vec3& v) {
+  const double length = v.norm();
+  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = (b - a).cross(c - a);
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
+  return n.norm() > kLeastSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
+}
+
+/// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
+double angleBetween(const Vec3& u, const Vec3& v) {
+  return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+}  // namespace
+
+TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept {
+  return closestOnTriangleInline(p, a, b, c);
+}
+
+MeshDistance::MeshDistance(const Mesh& mesh) : mesh_(mesh) {
+  computeNormals();
+  computeSmoothCorners();
+  buildTree();
+}
+
+void MeshDistance::computeNormals() {
+  const std::size_t count = mesh_.triangles.size();
+  face_normals_.resize(count);
+  edge_normals_.assign(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  is_thin_.assign(count, 0);
+  is_edge_of_thin_.assign(count, 0);
+  is_corner_of_thin_.assign(mesh_.vertices.size(), 0);
+  if (count > 0) touch_m_ = kTouch * bounds(mesh_).size().norm();
+  vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& t = mesh_.triangles[i];
+    const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+    face_normals_[i] = normalOrZero(corner[0], corner[1], corner[2]);
+    is_thin_[i] = face_normals_[i].isZero(0);
+    for (int k = 0; k < 3 && is_thin_[i] != 0; ++k) is_corner_of_thin_[t[k]] = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+      vertex_normals_[t[k]] += angle_rad * face_normals_[i];
+    }
+  }
+  forEachEdge(sortedHalfEdges(mesh_), [&](std::span<const HalfEdge> same) {
+    Vec3 sum = Vec3::Zero();
+    for (const HalfEdge& e : same) sum += face_normals_[e.triangle];
+    const bool is_beside_thin =
+        std::any_of(same.begin(), same.end(), [&](const HalfEdge& e) { return is_thin_[e.triangle] != 0; });
+    for (const HalfEdge& e : same) {
+      edge_normals_[e.triangle][e.side] = unitOrZero(sum);
+      if (is_beside_thin) is_edge_of_thin_[e.triangle] |= static_cast<std::uint8_t>(1 << e.side);
+    }
+  });
+  for (Vec3& n : vertex_normals_) n = unitOrZero(n);
+}
+
+void MeshDistance::computeSmoothCorners() {
+  struct Corner {
+    std::uint32_t triangle, k;
+    Vec3 weighted;  // the face's normal times its angle here
+  };
+  // Corners by vertex: first[v] to first[v + 1].
+  std::vector<std::size_t> first(mesh_.vertices.size() + 1, 0);
+  for (const auto& t : mesh_.triangles)
+    for (const std::uint32_t v : t) ++first[v + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<Corner> corners(3 * mesh_.triangles.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const auto& t = mesh_.triangles[i];
+      const Vec3& at = mesh_.vertices[t[k]];
+      const double angle_rad =
+          angleBetween(mesh_.vertices[t[(k + 1) % 3]] - at, mesh_.vertices[t[(k + 2) % 3]] - at);
+      corners[next[t[k]]++] = {i, k, angle_rad * face_normals_[i]};
+    }
+  smooth_corners_.resize(mesh_.triangles.size());
+  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+    const std::span around(corners.data() + first[v], first[v + 1] - first[v]);
+    for (const Corner& own : around) {
+      const Vec3& face = face_normals_[own.triangle];
+      Vec3 sum = around.size() > kMostFaces ? face : own.weighted;
+      for (const Corner& other : around)
+        if (around.size() <= kMostFaces && &other != &own &&
+            face.dot(face_normals_[other.triangle]) > kCosSmooth)
+          sum += other.weighted;
+      smooth_corners_[own.triangle][own.k] = unitOrZero(sum).cast<float>();
+    }
+  }
+}
+
+namespace {
+
+using Range = std::span<std::uint32_t>;
+
+/// Halves a range of triangles at the median of the boxes' longest side.
+std::pair<Range, Range> halved(Range range, const std::vector<Box>& boxes) {
+  if (range.size() < 2) return {range, {}};
+  Box centers;
+  for (const std::uint32_t i : range) centers.add(boxes[i].center());
+  int axis = 0;
+  centers.size().maxCoeff(&axis);
+  const std::size_t half = range.size() / 2;
+  const auto at = [&](std::uint32_t i) { return boxes[i].min[axis] + boxes[i].max[axis]; };
+  std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {  // a strict order: the same tree everywhere
+                     return at(a) != at(b) ? at(a) < at(b) : a < b;
+                   });
+  return {range.first(half), range.subspan(half)};
+}
+
+}  // namespace
+
+void MeshDistance::buildTree() {
+  const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
+  if (count == 0) return;
+  std::vector<Box> boxes(count);
+  Box all;
+  for (std::uint32_t i = 0; i < count; ++i)
+    for (const std::uint32_t v : mesh_.triangles[i]) {
+      boxes[i].add(mesh_.vertices[v]);
+      all.add(mesh_.vertices[v]);
+    }
+  center_ = all.center();
+  // Boxes and points are rounded to floats about the centre: a point no farther off than the mesh's size by
+  // 2^-24 of that, a corner by half as much.
+  constexpr double kRounding = 2.5e-7;
+  const double margin_m = kRounding * 0.5 * all.size().norm();
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+
+  struct Open {
+    std::uint32_t node;
+    Range range;
+  };
+  std::vector<Open> open{{0, order}};
+  nodes_.reserve(count / 2 + 1);
+  nodes_.emplace_back();
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    const auto [low, high] = halved(next.range, boxes);
+    const auto [a, b] = halved(low, boxes);
+    const auto [c, d] = halved(high, boxes);
+    int lane = 0;
+    for (const Range& part : {a, b, c, d}) {
+      if (part.empty()) continue;
+      Box box;
+      for (const std::uint32_t i : part) {
+        box.add(boxes[i].min);
+        box.add(boxes[i].max);
+      }
+      std::uint32_t child = kTriangle | part.front();
+      if (part.size() > 1) {
+        child = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.emplace_back();
+        open.push_back({child, part});
+      }
+      nodes_[next.node].set(lane++, (box.min - center_).array() - margin_m,
+                            (box.max - center_).array() + margin_m, child);
+    }
+  }
+}
+
+MeshDistance::Node::Node() {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    min[k] = Eigen::Array4f::Constant(kFar);
+    max[k] = Eigen::Array4f::Constant(-kFar);
+  }
+}
+
+void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to) {
+  for (int k = 0; k < 3; ++k) {
+    min[k][lane] = static_cast<float>(min_m[k]);
+    max[k][lane] = static_cast<float>(max_m[k]);
+  }
+  child[lane] = to;
+}
+
+/// Squared distances from a point to the four boxes, never too great.
+[[gnu::always_inline]] inline Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
+  // What is far off the mesh, rounded to floats, is off by a share of the distance.
+  constexpr float kRounding = 1 - 2e-6f;
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+  for (int k = 0; k < 3; ++k) sum += (min[k] - p[k]).max(p[k] - max[k]).max(0.0f).square();
+  return kRounding * sum;
+}
+
+/// Visits triangles near first and calls onNearer(triangle, point) for each that is nearer than all before
+/// and max_m; returns the least squared distance. Skips boxes whose squared distance times box_weight is not
+/// less.
+template <typename Visit>
+double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
+  double best2 = max_m * max_m;
+  if (nodes_.empty()) return best2;
+  struct Waiting {
+    std::uint32_t child;
+    float distance2;
+  };
+  const Eigen::Vector3f from_center = (p - center_).cast<float>();
+  Waiting stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = {0, 0};
+  while (waiting > 0) {
+    const Waiting next = stack[--waiting];
+    if (box_weight * static_cast<double>(next.distance2) >= best2) continue;
+    if ((next.child & kTriangle) != 0) {
+      const std::uint32_t triangle = next.child & ~kTriangle;
+      const auto& t = mesh_.triangles[triangle];
+      const TrianglePoint at =
+          closestOnTriangleInline(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+      const double distance2 = (p - at.q).squaredNorm();
+      if (distance2 >= best2) continue;
+      best2 = distance2;
+      onNearer(triangle, at);
+      continue;
+    }
+    const Node& node = nodes_[next.child];
+    const Eigen::Array4f distance2 = node.distance2(from_center);
+    const int first = waiting;
+    for (int lane = 0; lane < 4; ++lane) {
+      const Waiting child{node.child[lane], distance2[lane]};
+      if (!(box_weight * static_cast<double>(child.distance2) < best2)) continue;
+      int at = waiting++;  // the nearest ends on top
+      for (; at > first && stack[at - 1].distance2 < child.distance2; --at) stack[at] = stack[at - 1];
+      stack[at] = child;
+    }
+  }
+  return best2;
+}
+
+MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const noexcept {
+  Closest best;
+  int feature = 0;
+  const double best2 = search(p, max_m, 1, [&](std::uint32_t triangle, const TrianglePoint& at) {
+    best.q = at.q;
+    best.triangle = triangle;
+    best.found = true;
+    feature = at.feature;
+  });
+  best.distance_m = best.found ? std::sqrt(best2) : max_m;
+  if (best.found)
+    best.normal =
+        isBesideThin(best.triangle, feature) ? normalThrough(best.q) : featureNormal(best.triangle, feature);
+  return best;
+}
+
+double MeshDistance::lowerBound(const Vec3& p, double slack, double max_m) const noexcept {
+  // What was skipped is at least best / (1 + slack) away.
+  const double weight = (1 + slack) * (1 + slack);
+  return std::sqrt(search(p, max_m, weight, [](std::uint32_t, const TrianglePoint&) {})) / (1 + slack);
+}
+
+double MeshDistance::signedDistance(const Vec3& p, double max_m) const noexcept {
+  const Closest nearest = closest(p, max_m);
+  const bool is_inside = nearest.found && nearest.normal.dot(p - nearest.q) < 0;
+  return is_inside ? -nearest.distance_m : nearest.distance_m;
+}
+
+bool MeshDistance::isBesideThin(std::uint32_t triangle, int feature) const noexcept {
+  if (is_thin_[triangle] != 0) return true;
+  if (feature == 0) return false;
+  if (feature <= 3) return (is_edge_of_thin_[triangle] >> (feature - 1) & 1) != 0;
+  return is_corner_of_thin_[mesh_.triangles[triangle][feature - 4]] != 0;
+}
+
+/// The pseudonormal at a point of the surface, from all facets that touch it: each by the angle that it takes
+/// of the directions around.
+Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
+  Vec3 sum = Vec3::Zero();
+  const Eigen::Vector3f from_center = (q - center_).cast<float>();
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t next = stack[--waiting];
+    if ((next & kTriangle) == 0) {
+      const Node& node = nodes_[next];
+      const Eigen::Array4f distance2 = node.distance2(from_center);
+      for (int lane = 0; lane < 4; ++lane)
+        if (static_cast<double>(distance2[lane]) <= touch_m_ * touch_m_) stack[waiting++] = node.child[lane];
+      continue;
+    }
+    const std::uint32_t triangle = next & ~kTriangle;
+    const auto& t = mesh_.triangles[triangle];
+    const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+    if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_) continue;
+    double angle_rad = std::numbers::pi;
+    for (int k = 0; k < 3; ++k)
+      if ((corner[k] - q).norm() <= touch_m_)
+        angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+    sum += angle_rad * face_normals_[triangle];
+  }
+  return unitOrZero(sum);
+}
+
+Vec3 MeshDistance::featureNormal(std::uint32_t triangle, int feature) const noexcept {
+  if (feature == 0) return face_normals_[triangle];
+  if (feature <= 3) return edge_normals_[triangle][feature - 1];
+  return vertex_normals_[mesh_.triangles[triangle][feature - 4]];
+}
+
+Vec3 MeshDistance::smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept {
+  const auto& t = mesh_.triangles[triangle];
+  const Vec3& face = face_normals_[triangle];
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 to_a = mesh_.vertices[t[(k + 1) % 3]] - q, to_b = mesh_.vertices[t[(k + 2) % 3]] - q;
+    // The corner's barycentric coordinate times twice the area; rounding may put q a hair outside.
+    sum += std::max(0.0, face.dot(to_a.cross(to_b))) * smooth_corners_[triangle][k].cast<double>();
+  }
+  const double length = sum.norm();
+  return length > 0 ? Vec3(sum / length) : face;
+}
+
+Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
+  if (is_thin_[triangle] != 0) return Mat3::Zero();
+  const auto& t = mesh_.triangles[triangle];
+  const Vec3& face = face_normals_[triangle];
+  const Vec3 e1 = mesh_.vertices[t[1]] - mesh_.vertices[t[0]],
+             e2 = mesh_.vertices[t[2]] - mesh_.vertices[t[0]];
+  const double twice_area_m2 = face.dot(e1.cross(e2));
+  if (!(twice_area_m2 > 0)) return Mat3::Zero();
+  const auto turn = [&](int corner) -> Vec3 {
+    const auto& corners = smooth_corners_[triangle];
+    return (corners[static_cast<std::size_t>(corner)] - corners[0]).cast<double>();
+  };
+  // The edges' dual vectors take a way along the triangle to its shares of the edges.
+  const Mat3 S =
+      (turn(1) * e2.cross(face).transpose() + turn(2) * face.cross(e1).transpose()) / twice_area_m2;
+  const Mat3 along = Mat3::Identity() - face * face.transpose();
+  return along * (0.5 * (S + S.transpose())) * along;
+}
+
+}  // namespace vps

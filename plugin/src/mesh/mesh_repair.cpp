@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/mesh_repair.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "mesh/box_tree.h"
+#include "mesh/mesh_edges.h"
+#include "mesh/mesh_survey.h"
+#include "vps/mesh_distance.h"
+#include "vps/winding_number.h"
+
+namespace vps {
+namespace {
+
+/// Facets that stand for a patch where it is judged whole. Assumed: enough for a mean, few enough to be
+/// quick.
+constexpr std::size_t kSamples = 48;
+/// Rays that judge the sides of open patches, in all meshes. Assumed: seconds, in a soup of 100,000 facets.
+constexpr std::size_t kMostRays = 20000;
+/// How far from 0.5 a mean winding number on a patch must be to call it other than a surface.
+constexpr double kClearly = 0.35;
+/// Winding number in a facet's plane beyond which both sides are clearly inside: 0.5 more is its back, 0.5
+/// less its front, and a threshold of 0.75 there keeps a quarter of margin at both.
+constexpr double kInternal = 1.25;
+
+/// Facets joined over edges of two: what must face the same way.
+struct Patch {
+  std::vector<std::uint32_t> triangles;
+  Box box;
+  double volume_m3 = 0;
+  bool is_closed = false;  ///< every edge is run through as often forwards as backwards
+};
+
+struct Facet {
+  Vec3 center, normal;
+  double area_m2 = 0;
+};
+
+Facet facetOf(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const Vec3 n = 0.5 * (b - a).cross(c - a);
+  const double area_m2 = n.norm();
+  return {(a + b + c) / 3, area_m2 > 0 ? Vec3(n / area_m2) : Vec3(Vec3::Zero()), area_m2};
+}
+
+/// Six times the volume of the tetrahedron from o to a triangle.
+double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3 a = mesh.vertices[t[0]] - o, b = mesh.vertices[t[1]] - o, c = mesh.vertices[t[2]] - o;
+  return a.dot(b.cross(c));
+}
+
+/// Whether shells that are closed, and whose facets agree, all face out, and no two shells' boxes meet.
+bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std::size_t count) {
+  std::vector<Box> boxes(count);
+  for (std::size_t i = 0; i < shell_of.size(); ++i)
+    for (const std::uint32_t v : mesh.triangles[i]) boxes[shell_of[i]].add(mesh.vertices[v]);
+  std::vector<double> volume_m3(count, 0);
+  for (std::uint32_t i = 0; i < shell_of.size(); ++i)
+    volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
+  return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
+         !BoxTree(boxes).hasMeeting();
+}
+
+class Repairer {
+ public:
+  Repairer(Mesh mesh, Crossing crossing) : is_crossing_(crossing == Crossing::Seen) {
+    result_.solid = std::move(mesh);
+  }
+
+  RepairedMesh run() {
+    edges_ = sortedHalfEdges(mesh());
+    std::vector<std::uint32_t> shell_of;
+    result_.report = checkMesh(mesh(), edges_, &shell_of);
+    const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
+    if (is_whole && report().duplicate_triangles == 0 && areSound(mesh(), shell_of, report().shells))
+      return finish(true);
+    if (report().duplicate_triangles > 0) {
+      dropDuplicates(mesh(), edges_);
+      edges_ = sortedHalfEdges(mesh());
+    }
+    surveyOpenEdges(mesh(), edges_, report());
+    findPatches();
+    turnClosed();
+    is_kept_.assign(mesh().triangles.size(), Keep::Both);
+    const bool has_open =
+        std::any_of(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.is_closed; });
+    if (has_open) {
+      turnOpenByWinding();
+      turnOpenByRays();
+      setAsideWallsAndSheets();
+    }
+    dropInternalFacets();
+    // Facets that only faced the wrong way, or were there twice, leave a sound mesh.
+    const bool has_dropped = std::find_if(is_kept_.begin(), is_kept_.end(),
+                                          [](Keep k) { return k != Keep::Both; }) != is_kept_.end();
+    const bool is_sound =
+        !is_crossing_ && report().degenerate_triangles == 0 && !has_dropped && isSound() && agreesOnEdges();
+    return finish(is_sound);
+  }
+
+ private:
+  enum class Keep : std::uint8_t { Both, Solid, Surface, None };
+
+  Mesh& mesh() { return result_.solid; }
+  MeshReport& report() { return result_.report; }
+
+  void flip(std::uint32_t triangle) {
+    std::swap(mesh().triangles[triangle][1], mesh().triangles[triangle][2]);
+  }
+  void flip(Patch& patch) {
+    for (const std::uint32_t i : patch.triangles) flip(i);
+    patch.volume_m3 = -patch.volume_m3;
+    ++report().turned_shells;
+  }
+
+  [[nodiscard]] bool isSound() const {
+    const auto facesOut = [](const Patch& p) { return p.is_closed && p.volume_m3 > 0; };
+    const std::vector<Box> boxes = boxesOfClosed();
+    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasMeeting();
+  }
+  [[nodiscard]] std::vector<Box> boxesOfClosed() const {
+    std::vector<Box> boxes;
+    for (const Patch& patch : patches_)
+      if (patch.is_closed) boxes.push_back(patch.box);
+    return boxes;
+  }
+
+  /// Every edge has two triangles that agree.
+  bool agreesOnEdges() {
+    bool agrees = true;
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+      agrees = agrees && same.size() == 2 && isForward(same[0]) != isForward(same[1]);
+    });
+    return agrees;
+  }
+
+  /// Turns facets to agree within each patch, the fewer to the more.
+  void findPatches() {
+    const std::size_t count = mesh().triangles.size();
+    std::vector<std::array<std::uint32_t, 3>> across(
+        count, {UINT32_MAX, UINT32_MAX, UINT32_MAX});  // triangle * 2 + disagrees
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+      if (same.size() != 2) return;
+      const std::uint32_t disagrees = same[0].is_forward == same[1].is_forward;
+      across[same[0].triangle][same[0].side] = 2 * same[1].triangle + disagrees;
+      across[same[1].triangle][same[1].side] = 2 * same[0].triangle + disagrees;
+    });
+    patches_.clear();
+    patch_of_.assign(count, UINT32_MAX);
+    std::vector<char> is_turned(count, 0);
+    for (std::uint32_t seed = 0; seed < count; ++seed) {
+      if (patch_of_[seed] != UINT32_MAX) continue;
+      const auto id = static_cast<std::uint32_t>(patches_.size());
+      Patch& patch = patches_.emplace_back();
+      patch.triangles.push_back(seed);
+      patch_of_[seed] = id;
+      std::size_t turned = 0;
+      for (std::size_t next = 0; next < patch.triangles.size(); ++next) {
+        const std::uint32_t i = patch.triangles[next];
+        turned += is_turned[i];
+        for (const std::uint32_t side : across[i]) {
+          if (side == UINT32_MAX || patch_of_[side / 2] != UINT32_MAX) continue;
+          patch_of_[side / 2] = id;
+          is_turned[side / 2] = is_turned[i] ^ static_cast<char>(side & 1);
+          patch.triangles.push_back(side / 2);
+        }
+      }
+      const bool is_majority = 2 * turned > patch.triangles.size();
+      for (const std::uint32_t i : patch.triangles)
+        if (is_turned[i] != static_cast<char>(is_majority)) flip(i), ++report().flipped_facets;
+    }
+    measurePatches();
+  }
+
+  void measurePatches() {
+    for (Patch& patch : patches_) {
+      patch.is_closed = true;
+      for (const std::uint32_t i : patch.triangles)
+        for (const std::uint32_t v : mesh().triangles[i]) patch.box.add(mesh().vertices[v]);
+      const Vec3 o = patch.box.center();
+      for (const std::uint32_t i : patch.triangles) patch.volume_m3 += determinant(mesh(), i, o) / 6;
+    }
+    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and which way
+    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+      uses.clear();
+      for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
+      std::sort(uses.begin(), uses.end());
+      for (std::size_t i = 0; i < uses.size();) {
+        const std::uint32_t patch = uses[i].first;
+        int net = 0;
+        for (; i < uses.size() && uses[i].first == patch; ++i) net += uses[i].second;
+        if (net != 0) patches_[patch].is_closed = false;
+      }
+    });
+  }
+
+  /// As the triangle runs now; the half-edge remembers how it ran before it was turned.
+  [[nodiscard]] bool isForward(const HalfEdge& e) {
+    const auto& t = mesh().triangles[e.triangle];
+    for (int i = 0; i < 3; ++i)
+      if (t[i] == e.low) return t[(i + 1) % 3] == e.high;
+    return true;
+  }
+
+  /// Turns closed patches that face in and lie in no other, and all that lies in them.
+  void turnClosed() {
+    std::vector<std::size_t> closed;
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+      if (patches_[i].is_closed) closed.push_back(i);
+    std::sort(closed.begin(), closed.end(), [&](std::size_t a, std::size_t b) {
+      const double va = std::abs(patches_[a].volume_m3), vb = std::abs(patches_[b].volume_m3);
+      return va != vb ? va > vb : a < b;
+    });
+    std::vector<Box> boxes;
+    for (const std::size_t i : closed) boxes.push_back(patches_[i].box);
+    const BoxTree tree(boxes);
+    std::vector<char> is_turned(closed.size(), 0), is_outermost(closed.size(), 0);
+    std::vector<std::optional<WindingNumber>> windings(closed.size());
+    std::vector<std::uint32_t> around;
+    for (std::uint32_t i = 0; i < closed.size(); ++i) {
+      Patch& patch = patches_[closed[i]];
+      const Vec3& p = mesh().vertices[mesh().triangles[patch.triangles[0]][0]];
+      around.clear();
+      tree.forEachMeeting({p, p}, [&](std::uint32_t k) {
+        if (is_outermost[k]) around.push_back(k);
+        return true;
+      });
+      std::sort(around.begin(), around.end());
+      const auto outer = std::find_if(around.begin(), around.end(), [&](std::uint32_t k) {
+        if (!windings[k]) windings[k].emplace(mesh(), patches_[closed[k]].triangles);
+        return windings[k]->at(p).w > 0.75;
+      });
+      is_outermost[i] = outer == around.end();
+      is_turned[i] = is_outermost[i] ? patch.volume_m3 < 0 : is_turned[*outer];
+      if (is_turned[i]) flip(patch);
+    }
+  }
+
+  /// Facets that stand for a patch: spread evenly over its area.
+  [[nodiscard]] std::vector<Facet> samplesOf(const Patch& patch, std::size_t most) {
+    double area_m2 = 0;
+    for (const std::uint32_t i : patch.triangles) area_m2 += facetOf(mesh(), i).area_m2;
+    const std::size_t count = std::min(most, patch.triangles.size());
+    std::vector<Facet> samples;
+    double sum_m2 = 0;
+    for (const std::uint32_t i : patch.triangles) {
+      const Facet facet = facetOf(mesh(), i);
+      sum_m2 += facet.area_m2;
+      const double due = (static_cast<double>(samples.size()) + 0.5) * area_m2 / static_cast<double>(count);
+      if (facet.area_m2 > 0 && sum_m2 > due) samples.push_back(facet);
+    }
+    return samples;
+  }
+
+  /// In the plane of a facet of the mesh that w winds about: half a turn more than a hair in front.
+  static double inPlane(const WindingNumber& w, const Facet& f) {
+    return w.at(f.center + 1e-5 * std::sqrt(f.area_m2) * f.normal).w + 0.5;
+  }
+
+  /// Mean winding number in the planes of each patch's samples.
+  std::vector<double> meanInPlane(const WindingNumber& w) {
+    std::vector<double> mean(patches_.size(), 0.5);
+    tbb::parallel_for(std::size_t{0}, patches_.size(), [&](std::size_t i) {
+      const std::vector<Facet> samples = samplesOf(patches_[i], kSamples);
+      if (samples.empty()) return;
+      double sum = 0;
+      for (const Facet& f : samples) sum += inPlane(w, f);
+      mean[i] = sum / static_cast<double>(samples.size());
+    });
+    return mean;
+  }
+
+  void turnOpenByWinding() {
+    const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+      if (!patches_[i].is_closed && mean[i] < 0.5 - kClearly - 0.25) flip(patches_[i]);
+  }
+
+  /// What a ray first meets: outside if nothing or a front, inside if a back, 0 if its own patch.
+  int sideSeen(const MeshDistance& all, const Facet& from, const Vec3& way, std::uint32_t own,
+               double size_m) {
+    Vec3 p = from.center + 1e-3 * std::sqrt(from.area_m2) * way;
+    for (int step = 0; step < 200; ++step) {
+      const MeshDistance::Closest next = all.closest(p);
+      if (next.distance_m > size_m) return 1;
+      if (next.distance_m < 1e-6 * size_m && step > 0) {
+        if (patch_of_[next.triangle] == own) return 0;
+        return facetOf(mesh(), next.triangle).normal.dot(way) < 0 ? 1 : -1;
+      }
+      p += std::max(next.distance_m, 1e-7 * size_m) * way;
+    }
+    return 0;
+  }
+
+  /// Turns patches whose front looks into the solid and whose back looks out, by what rays meet there.
+  void turnOpenByRays() {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < patches_.size(); ++i)
+      if (!patches_[i].is_closed) open.push_back(i);
+    if (patches_.size() < 2 || 2 * open.size() > kMostRays) return;
+    const std::size_t most = std::clamp<std::size_t>(kMostRays / 2 / open.size(), 1, 16);
+    const double size_m = bounds(mesh()).size().norm();
+    for (int sweep = 0; sweep < 3; ++sweep) {
+      const MeshDistance all(mesh());
+      std::vector<char> is_wrong(open.size(), 0);
+      tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t k) {
+        const std::vector<Facet> samples = samplesOf(patches_[open[k]], most);
+        int votes = 0;
+        for (const Facet& f : samples) {
+          const auto own = static_cast<std::uint32_t>(open[k]);
+          votes += sideSeen(all, f, f.normal, own, size_m) - sideSeen(all, f, -f.normal, own, size_m);
+        }
+        is_wrong[k] = votes < -static_cast<int>(samples.size());  // of twice as many
+      });
+      for (std::size_t k = 0; k < open.size(); ++k)
+        if (is_wrong[k]) flip(patches_[open[k]]);
+      if (std::find(is_wrong.begin(), is_wrong.end(), 1) == is_wrong.end()) return;
+    }
+  }
+
+  /// A patch that bends round nothing, with solid on both sides or with none, bounds no solid; in the sum it
+  /// would pull one side up and the other down by a half.
+  void setAsideWallsAndSheets() {
+    const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+      if (patches_[i].is_closed || std::abs(mean[i] - 0.5) < kClearly) continue;
+      const WindingNumber alone(mesh(), patches_[i].triangles);
+      double self = 0;
+      const std::vector<Facet> samples = samplesOf(patches_[i], kSamples);
+      for (const Facet& f : samples) self += inPlane(alone, f) / static_cast<double>(samples.size());
+      if (std::abs(self) > 0.5 - kClearly) continue;
+      const bool is_wall = mean[i] > 0.5;
+      (is_wall ? report().internal_facets : report().sheet_facets) += patches_[i].triangles.size();
+      for (const std::uint32_t t : patches_[i].triangles) is_kept_[t] = is_wall ? Keep::None : Keep::Surface;
+    }
+  }
+
+  void dropInternalFacets() {
+    std::vector<std::uint32_t> bounding;
+    for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
+      if (is_kept_[i] == Keep::Both) bounding.push_back(i);
+    const WindingNumber w(mesh(), bounding);
+    // Only where shells' boxes meet or a patch shows it, need every facet be asked.
+    if (!mayOverlap(w)) return;
+    tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
+      if (isInternal(w, bounding[k])) is_kept_[bounding[k]] = Keep::Solid;
+    });
+    std::vector<char> is_overlapping(patches_.size(), 0);
+    for (const std::uint32_t i : bounding) {
+      if (is_kept_[i] != Keep::Solid) continue;
+      ++report().internal_facets;
+      is_overlapping[patch_of_[i]] = 1;
+    }
+    report().overlapping_shells =
+        static_cast<std::size_t>(std::count(is_overlapping.begin(), is_overlapping.end(), 1));
+  }
+
+  bool mayOverlap(const WindingNumber& w) {
+    if (is_crossing_) return true;
+    const std::vector<Box> boxes = boxesOfClosed();
+    if (BoxTree(boxes).hasMeeting()) return true;
+    for (const Patch& patch : patches_)
+      for (const Facet& f : samplesOf(patch, kSamples))
+        if (inPlane(w, f) > kInternal) return true;
+    return false;
+  }
+
+  /// At its middle and near its corners.
+  bool isInternal(const WindingNumber& w, std::uint32_t triangle) {
+    Facet f = facetOf(mesh(), triangle);
+    if (!(f.area_m2 > 0)) return false;
+    if (inPlane(w, f) < kInternal) return false;
+    const Vec3 middle = f.center;
+    for (const std::uint32_t v : mesh().triangles[triangle]) {
+      f.center = middle + 0.9 * (mesh().vertices[v] - middle);
+      if (inPlane(w, f) < kInternal) return false;
+    }
+    return true;
+  }
+
+  RepairedMesh finish(bool is_sound) {
+    result_.is_sound = is_sound;
+    if (is_kept_.empty()) {
+      result_.surface = mesh();
+      return std::move(result_);
+    }
+    result_.surface.vertices = mesh().vertices;
+    std::vector<std::array<std::uint32_t, 3>> solid;
+    for (std::size_t i = 0; i < mesh().triangles.size(); ++i) {
+      const Keep keep = is_kept_[i];
+      if (keep == Keep::Both || keep == Keep::Solid) solid.push_back(mesh().triangles[i]);
+      if (keep == Keep::Both || keep == Keep::Surface)
+        result_.surface.triangles.push_back(mesh().triangles[i]);
+    }
+    if (result_.surface.triangles.empty()) result_.surface.triangles = mesh().triangles;
+    mesh().triangles = std::move(solid);
+    return std::move(result_);
+  }
+
+  const bool is_crossing_;
+  RepairedMesh result_;
+  std::vector<HalfEdge> edges_;  // as the facets ran at first
+  std::vector<Patch> patches_;
+  std::vector<std::uint32_t> patch_of_;  // by triangle
+  std::vector<Keep> is_kept_;            // by triangle
+};
+
+}  // namespace
+
+RepairedMesh repairMesh(Mesh mesh, Crossing crossing) {
+  return Repairer(std::move(mesh), crossing).run();
+}
+
+std::string describe(const MeshReport& report) {
+  std::string text;
+  const auto say = [&](std::size_t count, const char* one, const char* many) {
+    if (count == 0) return;
+    if (!text.empty()) text += ", ";
+    text += std::to_string(count) + " " + (count == 1 ? one : many);
+  };
+  say(report.shells, "shell", "shells");
+  say(report.open_edges, "open edge", "open edges");
+  say(report.holes, "hole or crack", "holes or cracks");
+  say(report.t_junctions, "T-junction", "T-junctions");
+  say(report.non_manifold_edges, "edge with more than two facets", "edges with more than two facets");
+  say(report.duplicate_triangles, "duplicate facet left out", "duplicate facets left out");
+  say(report.degenerate_triangles, "facet without area", "facets without area");
+  say(report.flipped_facets, "flipped facet turned", "flipped facets turned");
+  say(report.turned_shells, "shell that faced in turned", "shells that faced in turned");
+  say(report.overlapping_shells, "overlapping shell", "overlapping shells");
+  say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
+  say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
+  char sure[64];
+  // Rounded down: 100 % is all.
+  std::snprintf(sure, sizeof sure, "; the sign is sure for %.4g %%", std::floor(1e4 * report.sure) / 1e2);
+  return text + sure;
+}
+
+}  // namespace vps

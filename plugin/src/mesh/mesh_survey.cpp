@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/mesh_survey.h"
+
+#include <algorithm>
+
+namespace vps {
+
+void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
+  // Of each set of twins what stays: the majority's first, or, back to back, a pair to be judged below.
+  std::vector<char> is_dropped(mesh.triangles.size(), 0), is_pair(mesh.triangles.size(), 0);
+  forEachTwin(mesh, [&](std::span<const Twin> same) {
+    const auto even = static_cast<std::size_t>(
+        std::count_if(same.begin(), same.end(), [](const Twin& t) { return t.is_even; }));
+    const bool is_balanced = 2 * even == same.size();
+    bool has_kept = false;
+    for (const Twin& t : same) {
+      const bool is_first = !has_kept && (is_balanced || t.is_even == (2 * even > same.size()));
+      has_kept |= is_first;
+      is_dropped[t.triangle] = !is_first;
+      is_pair[t.triangle] = is_balanced;
+    }
+  });
+  // A pair that other facets end at is a wall between solids; joined pairs share their fate.
+  Groups groups(mesh.triangles.size());
+  std::vector<char> is_wall(mesh.triangles.size(), 0);
+  forEachEdge(edges, [&](std::span<const HalfEdge> same) {
+    std::uint32_t first = UINT32_MAX;
+    bool has_other = false;
+    for (const HalfEdge& e : same) {
+      has_other |= !is_pair[e.triangle];
+      if (!is_pair[e.triangle]) continue;
+      if (first == UINT32_MAX) first = e.triangle;
+      groups.join(e.triangle, first);
+    }
+    if (first != UINT32_MAX && has_other) is_wall[first] = 1;
+  });
+  for (std::uint32_t i = 0; i < is_wall.size(); ++i)
+    if (is_wall[i]) is_wall[groups.find(i)] = 1;
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < is_dropped.size(); ++i) {
+    const bool is_in_wall = is_pair[i] && is_wall[groups.find(i)];
+    if (!is_dropped[i] && !is_in_wall) mesh.triangles[next++] = mesh.triangles[i];
+  }
+  mesh.triangles.resize(next);
+}
+
+void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report) {
+  std::vector<std::array<std::uint32_t, 2>> open;
+  forEachEdge(edges, [&](std::span<const HalfEdge> same) {
+    if (same.size() == 1) open.push_back({same[0].low, same[0].high});
+  });
+  std::vector<std::uint32_t> corners;
+  for (const auto& e : open) corners.insert(corners.end(), e.begin(), e.end());
+  const auto x = [&](std::uint32_t v) { return mesh.vertices[v].x(); };
+  std::sort(corners.begin(), corners.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return x(a) != x(b) ? x(a) < x(b) : a < b; });
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  // Exporters round to floats: 1e-7 of the size, and some more after a rotation.
+  const double tolerance_m = 1e-6 * bounds(mesh).size().norm();
+  Groups groups(mesh.vertices.size());
+  for (const auto& [a, b] : open) {
+    groups.join(a, b);
+    const Vec3 &from = mesh.vertices[a], &to = mesh.vertices[b];
+    const auto first =
+        std::lower_bound(corners.begin(), corners.end(), std::min(from.x(), to.x()) - tolerance_m,
+                         [&](std::uint32_t v, double at) { return x(v) < at; });
+    for (auto v = first; v != corners.end() && x(*v) <= std::max(from.x(), to.x()) + tolerance_m; ++v) {
+      if (*v == a || *v == b) continue;
+      const Vec3 along = to - from, p = mesh.vertices[*v] - from;
+      const double t = p.dot(along) / along.squaredNorm();
+      const double ends = tolerance_m / along.norm();
+      report.t_junctions += t > ends && t < 1 - ends && (p - t * along).norm() < tolerance_m;
+    }
+  }
+  for (const std::uint32_t v : corners) report.holes += groups.find(v) == v;
+}
+
+}  // namespace vps

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/pointshell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pointshell/shell_hierarchy.h"
+#include "pointshell/shell_samples.h"
+#include "vps/assert.h"
+#include "vps/load_error.h"
+
+namespace vps {
+namespace {
+
+/// Points on edges lie at half the spacing (assumed): edges are where tight fits touch, and cost only in
+/// proportion to their length. A chain's vertex is left out where that moves the rim by less than a
+/// five-hundredth of the spacing: 1 um at 0.5 mm, a fifth of what a fit of 20 um is allowed.
+constexpr double kEdgeStep = 0.5;
+constexpr double kEdgeTolerance = 1.0 / 500;
+/// Face points for each square of spacing (measured 1.25), rounded up for the estimate.
+constexpr double kDensity = 1.3;
+/// Assumed: about 1.5 GB of shell.
+constexpr double kMaxPoints = 16e6;
+
+void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const std::string& part) {
+  const auto microns = [](double length_m) { return std::to_string(std::lround(length_m * 1e6)) + " um"; };
+  if (!(std::isfinite(settings.spacing_m) && settings.spacing_m > 0))
+    throw LoadError(
+        "", part,
+        "point spacing must be a positive length, not " + std::to_string(settings.spacing_m) + " m");
+  if (!(settings.edge_angle_rad > 0 && settings.edge_angle_rad <= std::numbers::pi))
+    throw LoadError("", part,
+                    "edge angle must lie between 0 and pi, not " + std::to_string(settings.edge_angle_rad));
+  // The box's edges stand for those of a needle, which has little area.
+  const double by_area = kDensity * area(mesh) / (settings.spacing_m * settings.spacing_m);
+  const double by_length = bounds(mesh).size().sum() / settings.spacing_m;
+  if (std::max(by_area, by_length) > kMaxPoints) {
+    const double enough_m =
+        settings.spacing_m * std::max(std::sqrt(by_area / kMaxPoints), by_length / kMaxPoints);
+    throw LoadError("", part,
+                    "a point spacing of " + microns(settings.spacing_m) + " gives too many points; " +
+                        microns(std::ceil(enough_m * 1e6) * 1e-6) + " would do, or check the units");
+  }
+}
+
+PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {
+  std::vector<Vec3> unsorted;
+  unsorted.reserve(samples.size());
+  for (const ShellSample& s : samples) unsorted.push_back(s.p);
+
+  PointShell shell;
+  shell.spacing_m = spacing_m;
+  shell.points.reserve(samples.size());
+  shell.inward.reserve(samples.size());
+  shell.area_m2.reserve(samples.size());
+  for (const std::uint32_t i : sortedOrder(unsorted)) {
+    shell.points.push_back(samples[i].p);
+    shell.inward.push_back(-samples[i].outward);
+    shell.area_m2.push_back(samples[i].area_m2);
+  }
+  shell.nodes = sphereHierarchy(shell.points);
+  layOutBlocks(shell);
+  shell.order = progressiveOrder(shell.points);
+  return shell;
+}
+
+/// One node over all shells, then each shell's own nodes, moved: points keep their places, so ids run on in
+/// order.
+std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
+                                   const std::vector<Pose>& X_MPs, std::size_t point_count) {
+  std::vector<ShellNode> nodes(1);
+  std::uint32_t first_point = 0;
+  Box centers;
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    const auto first_node = static_cast<std::uint32_t>(nodes.size());
+    for (ShellNode node : shells[s]->nodes) {
+      node.center = X_MPs[s] * node.center;
+      node.radius_m *= 1 + 1e-12;  // the points and the centre were rounded apart
+      node.first += first_point;
+      node.skip += first_node;
+      nodes.push_back(node);
+    }
+    if (nodes.size() > first_node) centers.add(nodes[first_node].center);
+    first_point += static_cast<std::uint32_t>(shells[s]->size());
+  }
+  ShellNode& root = nodes.front();
+  root.center = centers.center();
+  root.count = static_cast<std::uint32_t>(point_count);
+  root.skip = static_cast<std::uint32_t>(nodes.size());
+  for (std::uint32_t i = 1; i < nodes.size(); i = nodes[i].skip)
+    root.radius_m =
+        std::max(root.radius_m, ((nodes[i].center - root.center).norm() + nodes[i].radius_m) * (1 + 1e-12));
+  return nodes;
+}
+
+}  // namespace
+
+std::size_t PointShell::memoryBytes() const noexcept {
+  return sizeof(PointShell) + points.capacity() * sizeof(Vec3) + inward.capacity() * sizeof(Vec3) +
+         area_m2.capacity() * sizeof(double) + order.capacity() * sizeof(std::uint32_t) +
+         nodes.capacity() * sizeof(ShellNode) + blocks.capacity() * sizeof(ShellBlock);
+}
+
+PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings, const std::string& part,
+                           const Progress& progress) {
+  const auto report = [&progress](double share) {
+    if (progress) progress("sampling points", share);
+  };
+  requireUsable(mesh, "", part);
+  requireSettings(mesh, settings, part);
+  report(0);
+  const Mesh shared = welded(mesh);  // else every edge would look open, and so sharp
+  const std::vector<Vec3> normals = triangleNormals(shared);
+  std::vector<ShellSample> samples =
+      sampleFeatures(shared, normals, kEdgeStep * settings.spacing_m, kEdgeTolerance * settings.spacing_m,
+                     settings.edge_angle_rad);
+  report(0.1);
+  sampleFaces(shared, normals, settings.spacing_m, samples);
+  report(0.8);
+  PointShell shell = laidOut(samples, settings.spacing_m);
+  report(1);
+  return shell;
+}
+
+PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs) {
+  VPS_ASSERT(shells.size() == X_MPs.size());
+  PointShell merged;
+  std::size_t count = 0;
+  for (const PointShell* shell : shells) count += shell->size();
+  if (count == 0) return merged;
+  merged.points.reserve(count);
+  merged.inward.reserve(count);
+  merged.area_m2.reserve(count);
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    for (const Vec3& p : shells[s]->points) merged.points.push_back(X_MPs[s] * p);
+    for (const Vec3& n : shells[s]->inward) merged.inward.push_back(X_MPs[s].R * n);
+    merged.area_m2.insert(merged.area_m2.end(), shells[s]->area_m2.begin(), shells[s]->area_m2.end());
+    merged.spacing_m = std::max(merged.spacing_m, shells[s]->spacing_m);
+  }
+  merged.nodes = joinedNodes(shells, X_MPs, count);
+  layOutBlocks(merged);
+  merged.order = progressiveOrder(merged.points);
+  return merged;
+}
+
+}  // namespace vps

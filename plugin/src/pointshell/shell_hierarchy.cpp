@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pointshell/shell_hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pointshell/shell_grid.h"
+
+namespace vps {
+namespace {
+
+constexpr std::size_t kLeafPoints = kLanes;
+
+/// Where a range of `count` points is cut: near the middle, at a multiple of the leaf size, so that leaves
+/// are full, and of the largest power of 16 that leaves both halves something, so that sixteen leaves in a
+/// row are neighbours too. Sorting and hierarchy must agree on it, and a saved shell finds its leaves again
+/// by it.
+std::size_t cut(std::size_t count) {
+  std::size_t unit = kLeafPoints;
+  while (2 * unit * kLanes <= count) unit *= kLanes;
+  const std::size_t units = (count + unit - 1) / unit;
+  return (units / 2) * unit;
+}
+
+void sortRange(std::span<const Vec3> points, std::span<std::uint32_t> order) {
+  if (order.size() <= kLeafPoints) {
+    std::sort(order.begin(), order.end());
+    return;
+  }
+  Box box;
+  for (const std::uint32_t i : order) box.add(points[i]);
+  int axis = 0;
+  box.size().maxCoeff(&axis);
+  const std::size_t middle = cut(order.size());
+  // Ties by index: the cut must not depend on how the library breaks them.
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return points[a][axis] != points[b][axis] ? points[a][axis] < points[b][axis] : a < b;
+                   });
+  sortRange(points, order.first(middle));
+  sortRange(points, order.subspan(middle));
+}
+
+struct Sphere {
+  Vec3 center = Vec3::Zero();
+  double radius_m = 0;
+};
+
+double greatestDistance2(std::span<const Vec3> points, const Vec3& center, std::size_t& farthest) {
+  double greatest = -1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double squared = (points[i] - center).squaredNorm();
+    if (squared > greatest) {
+      greatest = squared;
+      farthest = i;
+    }
+  }
+  return greatest;
+}
+
+/// Nearly the least enclosing sphere: from the box's centre, steps towards the farthest point that shrink as
+/// 1/k. Source: Badoiu and Clarkson 2003, Smaller core-sets for balls. Large spheres only cull what is far
+/// away: for those the box's centre will do.
+Sphere enclosingSphere(std::span<const Vec3> points) {
+  constexpr std::size_t kWorthSteps = 1024;
+  constexpr int kSteps = 24;
+  Box box;
+  for (const Vec3& p : points) box.add(p);
+  Vec3 center = box.center(), best = center;
+  std::size_t farthest = 0;
+  double best2 = greatestDistance2(points, center, farthest);
+  for (int k = 2; k < kSteps && points.size() <= kWorthSteps; ++k) {
+    center += (points[farthest] - center) / k;
+    const double squared = greatestDistance2(points, center, farthest);
+    if (squared < best2) {
+      best2 = squared;
+      best = center;
+    }
+  }
+  return {best, std::sqrt(best2) * (1 + 1e-12)};  // outward by more than the roundings above
+}
+
+void addNodes(std::span<const Vec3> points, std::size_t first, std::size_t count,
+              std::vector<ShellNode>& nodes) {
+  const std::size_t index = nodes.size();
+  const Sphere sphere = enclosingSphere(points.subspan(first, count));
+  nodes.push_back({sphere.center, sphere.radius_m, static_cast<std::uint32_t>(first),
+                   static_cast<std::uint32_t>(count), 0, count <= kLeafPoints});
+  if (count > kLeafPoints) {
+    const std::size_t left = cut(count);
+    addNodes(points, first, left, nodes);
+    addNodes(points, first + left, count - left, nodes);
+  }
+  nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
+}
+
+/// A block's sphere as the kernels read it: offsets are rounded to floats, so it grows by their error.
+void setSphere(ShellBlock& block, const Vec3& center, double radius_m) {
+  for (int k = 0; k < 3; ++k) block.center[k] = center[k];
+  block.radius_m = radius_m * (1 + 1e-6);
+}
+
+/// Lane i of a block, and of all lanes after it, until those are set.
+void setLane(ShellBlock& block, std::uint32_t lane, const Vec3& p, double weight) {
+  const Vec3 offset = p - Vec3(block.center[0], block.center[1], block.center[2]);
+  block.x[lane] = static_cast<float>(offset.x());
+  block.y[lane] = static_cast<float>(offset.y());
+  block.z[lane] = static_cast<float>(offset.z());
+  block.weight[lane] = static_cast<float>(weight);
+}
+
+void repeatFirstLane(ShellBlock& block) {
+  for (std::uint32_t i = block.count; i < kLanes; ++i) {
+    block.x[i] = block.x[0];
+    block.y[i] = block.y[0];
+    block.z[i] = block.z[0];
+    block.weight[i] = 0;
+  }
+}
+
+/// Around up to sixteen blocks in a row.
+ShellBlock parentBlock(std::span<const ShellBlock> children, std::size_t first) {
+  const auto centerOf = [](const ShellBlock& b) { return Vec3(b.center[0], b.center[1], b.center[2]); };
+  Box box;
+  for (const ShellBlock& child : children) {
+    box.add(centerOf(child) - Vec3::Constant(child.radius_m));
+    box.add(centerOf(child) + Vec3::Constant(child.radius_m));
+  }
+  double radius_m = 0;
+  for (const ShellBlock& child : children)
+    radius_m = std::max(radius_m, (centerOf(child) - box.center()).norm() + child.radius_m);
+  ShellBlock block;
+  setSphere(block, box.center(), radius_m);
+  block.first = static_cast<std::uint32_t>(first);
+  block.count = static_cast<std::uint32_t>(children.size());
+  for (std::uint32_t i = 0; i < block.count; ++i)
+    setLane(block, i, centerOf(children[i]), children[i].radius_m * (1 + 1e-6));
+  repeatFirstLane(block);
+  return block;
+}
+
+/// 0 to count - 1, each next one far from those before (van der Corput: the index with its bits reversed).
+std::vector<std::uint32_t> bitReversed(std::size_t count) {
+  int bits = 0;
+  while ((std::size_t{1} << bits) < count) ++bits;
+  std::vector<std::uint32_t> order;
+  order.reserve(count);
+  for (std::uint64_t i = 0; i < (std::uint64_t{1} << bits); ++i) {
+    std::uint64_t reversed = 0;
+    for (int b = 0; b < bits; ++b) reversed |= ((i >> b) & 1) << (bits - 1 - b);
+    if (reversed < count) order.push_back(static_cast<std::uint32_t>(reversed));
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> sortedOrder(std::span<const Vec3> points) {
+  std::vector<std::uint32_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  sortRange(points, order);
+  return order;
+}
+
+std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points) {
+  std::vector<ShellNode> nodes;
+  if (points.empty()) return nodes;
+  nodes.reserve(2 * (points.size() / kLeafPoints + 1));
+  addNodes(points, 0, points.size(), nodes);
+  return nodes;
+}
+
+ShellBlock leafBlock(const PointShell& shell, const ShellNode& leaf) {
+  ShellBlock block;
+  setSphere(block, leaf.center, leaf.radius_m);
+  block.first = leaf.first;
+  block.count = leaf.count;
+  block.is_leaf = 1;
+  for (std::uint32_t i = 0; i < leaf.count; ++i)
+    setLane(block, i, shell.points[leaf.first + i], shell.area_m2[leaf.first + i]);
+  repeatFirstLane(block);
+  return block;
+}
+
+void layOutBlocks(PointShell& shell) {
+  shell.blocks.clear();
+  for (const ShellNode& node : shell.nodes)
+    if (node.is_leaf) shell.blocks.push_back(leafBlock(shell, node));
+  shell.leaf_blocks = shell.blocks.size();
+  for (std::size_t first = 0, end = shell.blocks.size(); end - first > 1;
+       first = end, end = shell.blocks.size())
+    for (std::size_t i = first; i < end; i += kLanes) {
+      const std::size_t count = std::min<std::size_t>(kLanes, end - i);
+      shell.blocks.push_back(parentBlock(std::span(shell.blocks).subspan(i, count), i));
+    }
+  shell.blocks.shrink_to_fit();
+}
+
+std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
+  // Level by level with half the radius: a point joins when nothing that has joined is within the radius.
+  std::vector<std::uint32_t> waiting = bitReversed(points.size()), order;
+  order.reserve(points.size());
+  Box box;
+  for (const Vec3& p : points) box.add(p);
+  double radius_m = points.empty() ? 0 : box.size().norm();
+  constexpr int kLevels = 32;  // from metres to below a nanometre; what still waits repeats a point
+  for (int level = 0; level < kLevels && !waiting.empty() && radius_m > 0; ++level, radius_m /= 2) {
+    PointGrid grid(2 * radius_m, order.size());
+    for (const std::uint32_t i : order) grid.insert(points[i], i);
+    std::size_t kept = 0;
+    for (const std::uint32_t i : waiting) {
+      bool is_near = false;
+      grid.visitNear(points[i], radius_m, [&is_near](std::uint32_t, double) { return !(is_near = true); });
+      if (is_near) {
+        waiting[kept++] = i;
+        continue;
+      }
+      grid.insert(points[i], i);
+      order.push_back(i);
+    }
+    waiting.resize(kept);
+  }
+  order.insert(order.end(), waiting.begin(), waiting.end());
+  return order;
+}
+
+}  // namespace vps

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which leaves a query reads: all, those that the spheres cannot exclude, or those that may have come near
+// since the last pose.
+#pragma once
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "query/leaf_walk.h"
+#include "vps/query.h"
+#include "vps/query_memory.h"
+
+namespace vps {
+
+/// The walk that remembers; see QueryMemory. Lengths are in voxels.
+template <typename Consume>
+class CoherentWalk {
+ public:
+  CoherentWalk(const Reading& reading, const Pose& X_MP, double cutoff, QueryMemory& memory,
+               Consume consume) noexcept
+      : reading_(reading),
+        memory_(memory),
+        cutoff_(cutoff),
+        error_(reading.field.error),
+        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_
+                                                     : reading.field.band + reading.field.diagonal),
+        turn_(X_MP.R - memory.X_MP_.R),
+        shift_(X_MP.p - memory.X_MP_.p),
+        turn_norm_(largestStretch(turn_)),
+        reader_(reading, Reader{this, consume}) {}
+
+  /// Before a pose's first group: with another cutoff than before the memory starts anew.
+  static void begin(QueryMemory& memory, double cutoff, const Pose& X_MP) noexcept {
+    if (memory.cutoff_ == cutoff) return;
+    memory.clear();
+    memory.cutoff_ = cutoff;
+    memory.X_MP_ = X_MP;
+  }
+  /// After its last.
+  static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
+
+  /// Threads may visit different groups at once. Every leaf taken has been read on return from flush().
+  void visit(std::size_t group) noexcept { visitGroup(group); }
+  void flush() noexcept { reader_.flush(); }
+  [[nodiscard]] std::size_t pointsRead() const noexcept { return reader_.pointsRead(); }
+
+ private:
+  /// What positions, readings and sums are rounded by at most, generously: it only costs a little culling.
+  static constexpr double kRounding = 3e-4;
+  /// Where odometers start anew [voxels], and half the last place of a double there.
+  static constexpr double kFarthestWay = 1 << 20, kRoundingOfWay = 1.3e-10;
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// The largest singular value of a matrix, or a little more: the root of the largest eigenvalue of its
+  /// square. For any matrix, since poses may be rotations to a few digits only.
+  static double largestStretch(const Mat3& m) noexcept {
+    const double scale = m.cwiseAbs().maxCoeff();
+    if (!(scale > 0)) return 0;
+    const Mat3 unit = m / scale, square = unit.transpose() * unit;
+    Eigen::SelfAdjointEigenSolver<Mat3> solver;
+    solver.computeDirect(square, Eigen::EigenvaluesOnly);
+    // Two largest eigenvalues that are equal, as of a difference of rotations, are exact to 1e-8.
+    return scale * std::sqrt(solver.eigenvalues()[2]) * (1 + 1e-6);
+  }
+
+  struct Reader {
+    CoherentWalk* self;
+    Consume consume;
+    void operator()(const ReadLeaf& leaf) {
+      self->note(leaf);
+      consume(leaf);
+    }
+  };
+
+  /// What a leaf, row or group waits for is lowered by note() as its leaves are read, at once or with a later
+  /// batch.
+  void visitGroup(std::size_t g) noexcept {
+    QueryMemory::Group& group = memory_.groups_[g];
+    const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
+    // Rounding of the sum, below kFarthest, is made up for by the last term.
+    group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfWay;
+    if (!(group.way < kFarthestWay)) startAnew(g);
+    if (group.way < group.next) return;
+    group.next = kNever;
+    constexpr std::size_t kRows = kGroupLeaves / kLanes;
+    for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
+      if (group.way >= memory_.row_next_[row]) visitRow(row, group.way);
+      group.next = std::min(group.next, memory_.row_next_[row]);
+    }
+  }
+
+  /// Odometers that have gone far would swallow small steps: back to zero, and look at everything.
+  void startAnew(std::size_t g) noexcept {
+    const std::size_t first = g * kGroupLeaves,
+                      end = std::min(reading_.shell.leaf_blocks, first + kGroupLeaves);
+    memory_.groups_[g].way = 0;
+    memory_.groups_[g].next = -1;
+    std::fill(&memory_.leaf_next_[first], &memory_.leaf_next_[first] + (end - first), -1.0);
+    for (std::size_t row = first / kLanes; row * kLanes < end; ++row) memory_.row_next_[row] = -1;
+  }
+
+  /// Up to sixteen leaves: those whose time has come are read, unless their spheres tell enough.
+  void visitRow(std::size_t row, double way) noexcept {
+    double* next = &memory_.leaf_next_[row * kLanes];
+    const auto due = [&] {
+      std::uint32_t bits = 0;
+      for (int i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(way >= next[i]) << i;
+      return bits;
+    };
+    std::uint32_t waiting = due();
+    if ((waiting & ~std::uint32_t{memory_.row_near_[row]}) != 0) {
+      SphereBounds bounds;
+      boundRow(row, bounds);
+      for (int i = 0; i < kLanes; ++i)
+        next[i] = std::max(next[i], way + (static_cast<double>(bounds.free[i]) - kRounding));
+      waiting = due();
+    }
+    memory_.row_next_[row] = kNever;
+    for (; waiting != 0; waiting &= waiting - 1) {
+      const auto leaf = row * kLanes + static_cast<std::size_t>(std::countr_zero(waiting));
+      memory_.leaf_next_[leaf] = kNever;
+      reader_.add(static_cast<std::uint32_t>(leaf));
+    }
+    double least[4] = {kNever, kNever, kNever, kNever};
+    for (int i = 0; i < kLanes; ++i) least[i % 4] = std::min(least[i % 4], next[i]);
+    const double earliest = std::min(std::min(least[0], least[1]), std::min(least[2], least[3]));
+    memory_.row_next_[row] = std::min(memory_.row_next_[row], earliest);
+  }
+
+  void boundRow(std::size_t row, SphereBounds& bounds) const noexcept {
+    const auto& shell = reading_.shell;
+    const auto cutoff = static_cast<float>(cutoff_);
+    const std::size_t parent = shell.leaf_blocks + row;
+    if (parent < shell.blocks.size()) {
+      reading_.kernels.bound(reading_.field, reading_.motion, shell.blocks[parent], cutoff, bounds);
+      return;
+    }
+    // A shell of one leaf has no block above it.
+    std::fill_n(bounds.free, kLanes, -1.0f);
+  }
+
+  /// After a read: how far the leaf may go. A reading that is all band says what a bound says.
+  void note(const ReadLeaf& leaf) noexcept {
+    const double least = static_cast<double>(leaf.least()) * reading_.field.quantum;
+    double free = (least - cutoff_) / reading_.field.slope;
+    if (reading_.field.is_metric) free = std::max(free, least - error_ - beyond_);
+    QueryMemory::Group& group = memory_.groups_[leaf.index / kGroupLeaves];
+    double& leaf_next = memory_.leaf_next_[leaf.index];
+    // A leaf may be read in pieces: the first sets, the others lower.
+    const double until = group.way + std::max(0.0, free - kRounding);
+    leaf_next = leaf.index == noted_ ? std::min(leaf_next, until) : until;
+    noted_ = leaf.index;
+    const std::size_t row = leaf.index / kLanes;
+    const bool is_near = free * reading_.field.voxel_m < leaf.block.radius_m || leaf.block.count == 1;
+    const auto bit = static_cast<std::uint16_t>(1U << leaf.index % kLanes);
+    std::uint16_t& near = memory_.row_near_[row];
+    near = static_cast<std::uint16_t>(is_near ? near | bit : near & ~bit);
+    memory_.row_next_[row] = std::min(memory_.row_next_[row], leaf_next);
+    group.next = std::min(group.next, leaf_next);
+  }
+
+  const Reading& reading_;
+  QueryMemory& memory_;
+  const double cutoff_;
+  const double error_;   ///< of the field against true distances: half a cell's diagonal, and a quantum
+  const double beyond_;  ///< a true distance above this gives readings above the cutoff
+  const Mat3 turn_;      // since the last pose
+  const Vec3 shift_;
+  const double turn_norm_;
+  std::uint32_t noted_ = UINT32_MAX;
+  LeafReader<Reader> reader_;
+};
+
+/// The memory, if it is of this pair.
+inline QueryMemory* usable(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
+  return memory != nullptr && memory->isFor(map, shell) ? memory : nullptr;
+}
+
+/// Calls consume(const ReadLeaf&), in ascending order, for every leaf that may have a point within the
+/// cutoff; returns a bound [voxels] that the points of the others are not below.
+template <typename Consume>
+double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptions& options, double cutoff_m,
+                      QueryMemory* memory, std::size_t& points_read, Consume consume) noexcept {
+  const double cutoff = cutoff_m / reading.field.voxel_m;
+  double least = std::numeric_limits<double>::infinity();
+  if (reading.shell.leaf_blocks == 0) return least;
+  if (memory != nullptr && !options.is_exhaustive) {
+    using Walk = CoherentWalk<Consume>;
+    Walk::begin(*memory, cutoff, X_MP);
+    Walk walk(reading, X_MP, cutoff, *memory, consume);
+    for (std::size_t g = 0; g < groupCount(reading.shell); ++g) walk.visit(g);
+    walk.flush();
+    Walk::end(*memory, X_MP);
+    points_read = walk.pointsRead();
+    return cutoff;
+  }
+  LeafReader<Consume> reader(reading, consume);
+  if (options.is_exhaustive)
+    for (std::uint32_t leaf = 0; leaf < reading.shell.leaf_blocks; ++leaf) reader.add(leaf);
+  else
+    least = walkNear(reading, static_cast<std::uint32_t>(reading.shell.blocks.size() - 1),
+                     static_cast<float>(cutoff), [&](std::uint32_t leaf) { reader.add(leaf); });
+  reader.flush();
+  points_read = reader.pointsRead();
+  return least;
+}
+
+/// The same for one group, for threads that share a query. With a memory, begin() and end() are the caller's.
+template <typename Consume>
+double readNearLeavesOf(std::size_t group, const Reading& reading, const Pose& X_MP,
+                        const QueryOptions& options, double cutoff_m, QueryMemory* memory,
+                        std::size_t& points_read, Consume consume) noexcept {
+  const double cutoff = cutoff_m / reading.field.voxel_m;
+  if (memory != nullptr && !options.is_exhaustive) {
+    CoherentWalk<Consume> walk(reading, X_MP, cutoff, *memory, consume);
+    walk.visit(group);
+    walk.flush();
+    points_read = walk.pointsRead();
+    return cutoff;
+  }
+  double least = std::numeric_limits<double>::infinity();
+  LeafReader<Consume> reader(reading, consume);
+  const std::size_t end = std::min(reading.shell.leaf_blocks, (group + 1) * kGroupLeaves);
+  if (options.is_exhaustive)
+    for (std::size_t leaf = group * kGroupLeaves; leaf < end; ++leaf)
+      reader.add(static_cast<std::uint32_t>(leaf));
+  else
+    least = walkNear(reading, groupRoot(reading.shell, group), static_cast<float>(cutoff),
+                     [&](std::uint32_t leaf) { reader.add(leaf); });
+  reader.flush();
+  points_read = reader.pointsRead();
+  return least;
+}
+
+/// The result's distance, from the least reading [quanta] and what the points left out are not below
+/// [voxels].
+inline void setDistance(const VoxMap& map, const Reading& reading, float least_read, double least_skipped,
+                        QueryResult& result) noexcept {
+  const double read_m = reading.field.quantum_m * least_read;
+  // Where nothing is left out both are infinite; saturated bounds were rounded to floats.
+  const double skipped_m = std::isfinite(least_skipped)
+                               ? std::min(map.band_m(), reading.field.voxel_m * least_skipped)
+                               : least_skipped;
+  result.min_distance_m = std::min(read_m, skipped_m);
+  result.is_beyond_band = skipped_m < read_m || !(read_m < map.band_m());
+}
+
+}  // namespace vps

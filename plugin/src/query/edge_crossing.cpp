@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/edge_crossing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "mesh/mesh_edges.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kCosSharp = 0.94;        // 20 degrees, as PointShellSettings::edge_angle_rad
+constexpr double kLeastSine = 0.087;      // 5 degrees: below it where lines cross is mostly rounding
+constexpr double kLeastSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
+/// How far into a face's side the plane may lean, as a sine: an edge that passes from one face's edge to the
+/// next of a fine polygon stays a crossing meanwhile. Assumed.
+constexpr double kLean = 0.02;
+/// How far past its end a segment still crosses: at the joints of a curved edge the crossing falls between
+/// two, by a share of the gap. Assumed. At a true end the way out of an overlap past it must not be shorter
+/// than the one across: a square peg's rim in a square hole has long passed the hole's.
+constexpr double kPast_m = 1e-6, kPastShare = 0.1;
+
+struct Face {
+  Vec3 normal, apex;
+  bool is_good;
+};
+
+Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
+  const auto& t = mesh.triangles[e.triangle];
+  Vec3 corner[3];
+  for (int k = 0; k < 3; ++k) corner[k] = X_MP * mesh.vertices[t[static_cast<std::size_t>(k)]];
+  const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+  double longest2 = 0;
+  for (int k = 0; k < 3; ++k) longest2 = std::max(longest2, (corner[(k + 1) % 3] - corner[k]).squaredNorm());
+  return {n.normalized(), corner[(e.side + 2) % 3], n.norm() > kLeastSlimness * longest2};
+}
+
+/// An end of a segment at a vertex.
+struct Tip {
+  std::uint32_t vertex, segment;
+  int end;
+  Vec3 away;  ///< unit, along the segment
+};
+
+// Two edges that meet in a line with no third are one curved edge.
+void joinTips(std::vector<Tip>& tips, std::vector<EdgeSegment>& segments) {
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.segment < b.segment;
+  });
+  for (std::size_t i = 0; i < tips.size();) {
+    std::size_t end = i + 1;
+    while (end < tips.size() && tips[end].vertex == tips[i].vertex) ++end;
+    if (end - i == 2 && tips[i].away.dot(tips[i + 1].away) < -kCosSharp)
+      for (std::size_t k = i; k < end; ++k) segments[tips[k].segment].ends[tips[k].end] = false;
+    i = end;
+  }
+}
+
+}  // namespace
+
+void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::vector<EdgeSegment>& out) {
+  const std::size_t first = out.size();
+  std::vector<Tip> tips;
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    if (same.size() != 2 || same[0].is_forward == same[1].is_forward) return;
+    EdgeSegment s;
+    s.from = X_MP * mesh.vertices[same[0].low];
+    s.to = X_MP * mesh.vertices[same[0].high];
+    const Face face[2] = {faceOf(mesh, X_MP, same[0]), faceOf(mesh, X_MP, same[1])};
+    if (!face[0].is_good || !face[1].is_good || !(face[0].normal.dot(face[1].normal) < kCosSharp)) return;
+    const Vec3 along = (s.to - s.from).normalized();
+    for (int i = 0; i < 2; ++i) {
+      const Vec3 way = face[i].apex - s.from;
+      s.into[i] = (way - along * along.dot(way)).normalized();
+    }
+    if (!(face[0].normal.dot(s.into[1]) < 0)) return;  // a groove
+    // Of a blade with faces back to back the normals cancel; away from both faces is outward all the same.
+    const Vec3 mean = face[0].normal + face[1].normal;
+    s.outward = mean.norm() > 1e-6 ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
+    s.owner = owner;
+    tips.push_back({same[0].low, static_cast<std::uint32_t>(out.size()), 0, along});
+    tips.push_back({same[0].high, static_cast<std::uint32_t>(out.size()), 1, -along});
+    out.push_back(s);
+  });
+  if (out.size() > first) joinTips(tips, out);
+}
+
+EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segments)) {
+  if (!segments_.empty()) build();
+}
+
+void EdgeSet::build() {
+  struct Range {
+    std::uint32_t node, first, count;
+  };
+  std::vector<std::uint32_t> order(segments_.size());
+  std::iota(order.begin(), order.end(), 0u);
+  nodes_.reserve(2 * segments_.size());
+  nodes_.emplace_back();
+  std::vector<Range> waiting{{0, 0, static_cast<std::uint32_t>(segments_.size())}};
+  while (!waiting.empty()) {
+    const Range range = waiting.back();
+    waiting.pop_back();
+    const std::span<std::uint32_t> own(order.data() + range.first, range.count);
+    Box box;
+    for (const std::uint32_t i : own) {
+      box.add(segments_[i].from);
+      box.add(segments_[i].to);
+    }
+    Node node;
+    node.center = box.center();
+    for (const std::uint32_t i : own)
+      node.radius_m = std::max(
+          {node.radius_m, (segments_[i].from - node.center).norm(), (segments_[i].to - node.center).norm()});
+    node.is_leaf = range.count == 1 ? 1 : 0;
+    node.first = node.is_leaf != 0 ? own[0] : static_cast<std::uint32_t>(nodes_.size());
+    nodes_[range.node] = node;
+    if (node.is_leaf != 0) continue;
+    int axis = 0;
+    box.size().maxCoeff(&axis);
+    const std::uint32_t half = range.count / 2;
+    std::nth_element(own.begin(), own.begin() + half, own.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const double at_a = segments_[a].from[axis] + segments_[a].to[axis],
+                   at_b = segments_[b].from[axis] + segments_[b].to[axis];
+      return at_a != at_b ? at_a < at_b : a < b;  // a strict order, so that the tree is the same everywhere
+    });
+    nodes_.emplace_back();
+    nodes_.emplace_back();
+    waiting.push_back({node.first, range.first, half});
+    waiting.push_back({node.first + 1, range.first + half, range.count - half});
+  }
+}
+
+bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept {
+  const EdgeSegment& s = segments_[segment];
+  const Vec3 way = s.to - s.from;
+  const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (p - s.from - share * way).norm() <= radius_m;
+}
+
+/// Goes down both hierarchies at once.
+class CrossingSearch {
+ public:
+  CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
+                 double depth_m, std::vector<EdgeCrossing>& out)
+      : edges0_(edges0),
+        edges1_(edges1),
+        X_01_(X_01),
+        X_10_(X_01.inverse()),
+        cutoff_m_(cutoff_m),
+        depth_m_(depth_m),
+        out_(out) {}
+
+  void run() {
+    if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty()) visit(edges0_.nodes_[0], edges1_.nodes_[0]);
+  }
+
+ private:
+  using Node = EdgeSet::Node;
+
+  // Depth: both trees halve by count, so at most some 2 x 32 deep.
+  void visit(const Node& a, const Node& b) {
+    const Vec3 b_center = X_01_ * b.center;
+    const double reach_m = a.radius_m + b.radius_m + std::max(cutoff_m_, depth_m_);
+    if ((a.center - b_center).squaredNorm() > reach_m * reach_m) return;
+    // A long segment's sphere holds much that the segment is far from.
+    const double near_m = std::max(cutoff_m_, depth_m_);
+    if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + near_m)) return;
+    if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + near_m)) return;
+    if (a.is_leaf != 0 && b.is_leaf != 0) {
+      cross(a.first, b.first);
+    } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
+      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b);
+    } else {
+      for (std::uint32_t i = 0; i < 2; ++i) visit(a, edges1_.nodes_[b.first + i]);
+    }
+  }
+
+  void cross(std::uint32_t i0, std::uint32_t i1) {
+    const EdgeSegment &s0 = edges0_.segments_[i0], &s1 = edges1_.segments_[i1];
+    const Vec3 from1 = X_01_ * s1.from;
+    const Vec3 way0 = s0.to - s0.from, way1 = X_01_.R * (s1.to - s1.from);
+    const double length0_m = way0.norm(), length1_m = way1.norm();
+    const Vec3 d0 = way0 / length0_m, d1 = way1 / length1_m;
+    EdgeCrossing c;
+    c.n = d0.cross(d1);
+    const double sine = c.n.norm();
+    if (!(sine > kLeastSine)) return;
+    c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
+    const Vec3 r = s0.from - from1;
+    c.gap_m = c.n.dot(r);
+    if (!(c.gap_m <= cutoff_m_ && c.gap_m >= -depth_m_)) return;
+    // The nearest points of two lines [Ericson 2005, section 5.1.8].
+    const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
+    const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
+    const double joint_m = kPast_m + kPastShare * std::abs(c.gap_m);
+    const double end_m = c.gap_m >= 0 ? joint_m : kPast_m + c.gap_m;
+    const auto isOn = [&](const EdgeSegment& s, double at_m, double length_m) {
+      return at_m >= -(s.ends[0] ? end_m : joint_m) && at_m <= length_m + (s.ends[1] ? end_m : joint_m);
+    };
+    if (!isOn(s0, at0_m, length0_m) || !isOn(s1, at1_m, length1_m)) return;
+    for (int k = 0; k < 2; ++k)
+      if (-c.n.dot(s0.into[k]) > kLean || c.n.dot(X_01_.R * s1.into[k]) > kLean) return;
+    c.edge[0] = i0;
+    c.edge[1] = i1;
+    c.p[0] = s0.from + at0_m * d0;
+    c.p[1] = from1 + at1_m * d1;
+    out_.push_back(c);
+  }
+
+  const EdgeSet &edges0_, &edges1_;
+  const Pose& X_01_;
+  const Pose X_10_;
+  double cutoff_m_, depth_m_;
+  std::vector<EdgeCrossing>& out_;
+};
+
+void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
+                   double depth_m, std::vector<EdgeCrossing>& out) {
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
+  CrossingSearch(edges0, edges1, X_01, cutoff_m, depth_m, out).run();
+  std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
+    return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];
+  });
+}
+
+}  // namespace vps

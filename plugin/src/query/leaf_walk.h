@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a shell and a pose to its leaves that may matter, read in batches and in ascending order.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "voxmap/coarse_nodes.h"
+#include "vps/pointshell.h"
+
+namespace vps {
+
+/// One map, one shell, one pose.
+struct Reading {
+  Reading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
+      : field(map), motion(field, X_MP), shell(its_shell), kernels(readKernels(simd)) {
+    field.asks_ahead = shell.leaf_blocks > kCachedLeaves;
+  }
+
+  /// Leaves whose nodes the second cache keeps from one query to the next: some 20 lines of 64 bytes each, in
+  /// 1 MB (assumed). Asking ahead for what is there costs a tenth of a read.
+  static constexpr std::size_t kCachedLeaves = 512;
+
+  FieldView field;
+  Motion motion;
+  const PointShell& shell;
+  const ReadKernels& kernels;
+};
+
+/// A leaf that has been read: its block, and where in the batch.
+struct ReadLeaf {
+  const ShellBlock& block;
+  std::uint32_t index;  ///< of the leaf among the shell's blocks
+  const ReadBatch& batch;
+  int slot;
+
+  [[nodiscard]] float least() const { return batch.least[slot]; }
+  [[nodiscard]] float value(int lane) const { return batch.value[kLanes * slot + lane]; }
+};
+
+/// Collects leaves until a batch is full, reads them, and hands each to `consume(const ReadLeaf&)`.
+template <typename Consume>
+class LeafReader {
+ public:
+  LeafReader(const Reading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
+
+  void add(std::uint32_t leaf) noexcept { add(reading_.shell.blocks[leaf], leaf); }
+
+  /// A leaf with other weights than the shell's. The block is looked at until kBatch more have been added.
+  void add(const ShellBlock& block, std::uint32_t leaf) noexcept {
+    if (block.radius_m > kFineEnough * reading_.field.voxel_m) {
+      flush();
+      readOneByOne(block, leaf);
+      return;
+    }
+    blocks_[count_] = &block;
+    leaves_[count_++] = leaf;
+    if (count_ == kBatch) flush();
+  }
+
+  void flush() noexcept {
+    if (count_ == 0) return;
+    reading_.kernels.read(reading_.field, reading_.motion, blocks_, count_, batch_);
+    if (reading_.field.layout != nullptr) readElsewhere(reading_.field, count_, batch_);
+    points_ += countPoints();
+    for (int i = 0; i < count_; ++i) consume_(ReadLeaf{*blocks_[i], leaves_[i], batch_, i});
+    count_ = 0;
+  }
+
+  [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
+
+ private:
+  /// Radius of a leaf, in voxels, up to which rounding of floats stays within a step, 6e-5 voxel.
+  static constexpr double kFineEnough = 100;
+
+  [[nodiscard]] std::size_t countPoints() const noexcept {
+    std::size_t points = 0;
+    for (int i = 0; i < count_; ++i) points += blocks_[i]->count;
+    return points;
+  }
+
+  /// A leaf far larger than a voxel: each point as a block of its own, about itself.
+  void readOneByOne(const ShellBlock& block, std::uint32_t leaf) noexcept {
+    ShellBlock singles[kLanes];
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Vec3& p = reading_.shell.points[block.first + i];
+      for (int k = 0; k < 3; ++k) singles[i].center[k] = p[k];
+      singles[i].first = block.first + i;
+      singles[i].count = singles[i].is_leaf = 1;
+      singles[i].weight[0] = block.weight[i];
+      blocks_[count_] = &singles[i];
+      leaves_[count_++] = leaf;
+    }
+    flush();
+  }
+
+  const Reading& reading_;
+  Consume consume_;
+  ReadBatch batch_;
+  const ShellBlock* blocks_[kBatch];
+  std::uint32_t leaves_[kBatch];
+  int count_ = 0;
+  std::size_t points_ = 0;
+};
+
+/// Leaves that queries treat as one: 4096 points, and all under one block of the second level.
+inline constexpr std::size_t kGroupLeaves = kLanes * kLanes;
+inline std::size_t groupCount(const PointShell& shell) noexcept {
+  return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
+}
+/// The block over a group's leaves.
+inline std::uint32_t groupRoot(const PointShell& shell, std::size_t group) noexcept {
+  if (groupCount(shell) <= 1) return static_cast<std::uint32_t>(shell.blocks.size() - 1);
+  return static_cast<std::uint32_t>(shell.leaf_blocks + (shell.leaf_blocks + kLanes - 1) / kLanes + group);
+}
+
+/// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may come down to
+/// the cutoff [voxels]; of the others, the least bound [voxels].
+template <typename Take>
+float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
+  const auto& blocks = reading.shell.blocks;
+  float least_skipped = std::numeric_limits<float>::infinity();
+  // Sixteen waiting children a level; 2^32 points are eight levels.
+  std::uint32_t waiting[8 * kLanes];
+  int count = 0;
+  waiting[count++] = root;
+  while (count > 0) {
+    const std::uint32_t index = waiting[--count];
+    const ShellBlock& block = blocks[index];
+    if (block.is_leaf) {
+      take(index);
+      continue;
+    }
+    SphereBounds bounds;
+    reading.kernels.bound(reading.field, reading.motion, block, cutoff, bounds);
+    // Backwards, so that the first child is on top: leaves come in ascending order.
+    for (std::uint32_t i = block.count; i-- > 0;) {
+      if (bounds.least[i] > cutoff)
+        least_skipped = std::min(least_skipped, bounds.least[i]);
+      else
+        waiting[count++] = block.first + i;
+    }
+  }
+  return least_skipped;
+}
+
+}  // namespace vps

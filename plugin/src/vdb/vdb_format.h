@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What our .vdb files hold. Only vdb_*.cpp include OpenVDB: its headers are slow to compile.
+//
+// The grid "surface" is what other programs read. Two more make a reload exact: "vps_center" (one value a
+// directory cell: the bound at its centre) and, where parts are merged, "vps_owner". A mark with a checksum
+// ends the file. Files of others have none of these; their bounds are proven from the nodes (field_proof.h).
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <string>
+#include <string_view>
+
+#include "voxmap/voxmap_layout.h"
+
+namespace vps {
+
+inline constexpr const char* kSurface = "surface";
+inline constexpr const char* kCenter = "vps_center";
+inline constexpr const char* kOwner = "vps_owner";
+
+/// Name of a part's metadata.
+inline std::string partKey(std::size_t part, const char* what) {
+  return "vps_part" + std::to_string(part) + "_" + what;
+}
+
+/// Thread-safe; does its work once.
+void initializeOpenVdb();
+
+/// What stands at the end of our files: OpenVDB's reader trusts what it reads, and a wrong byte can make it
+/// write where it must not, so we look first.
+std::string endOf(std::string_view bytes);
+
+enum class Origin {
+  Ours,     ///< whole, as it was written
+  Changed,  ///< ours, but not as it was written
+  Others
+};
+Origin originOf(std::string_view bytes);
+
+inline openvdb::Coord toCoord(const Index3& i) {
+  return {i.x(), i.y(), i.z()};
+}
+inline openvdb::Vec3d toVdb(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline openvdb::Vec3i toVdb(const Index3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Vec3 fromVdb(const openvdb::Vec3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Index3 fromVdb(const openvdb::Vec3i& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Index3 fromVdb(const openvdb::Coord& c) {
+  return {c.x(), c.y(), c.z()};
+}
+
+}  // namespace vps

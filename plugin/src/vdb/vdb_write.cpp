@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Voxmap to .vdb.
+#include <openvdb/io/Stream.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/unfinished_file.h"
+#include "vdb/vdb_format.h"
+#include "voxelise/voxelise.h"
+#include "vps/load_error.h"
+
+namespace vps {
+namespace {
+
+constexpr int kBrick = VoxMap::kBrick, kOwnNodes = kBrick * kBrick * kBrick;
+
+openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m,
+                                    double quantum_m) {
+  const auto grid = openvdb::FloatGrid::create(static_cast<float>(band_m));
+  grid->setName(kSurface);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
+  openvdb::FloatTree& tree = grid->tree();
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
+    const std::uint32_t brick = layout.bricks[i];
+    const openvdb::Coord origin = toCoord(kBrick * layout.cellAt(i));
+    if (brick == kOutside) continue;  // the background
+    if (brick == kInside) {
+      tree.addTile(1, origin, static_cast<float>(-band_m), false);
+      continue;
+    }
+    // A leaf has the order of our own nodes. Values beyond the band are inactive, of the right sign.
+    auto* leaf = tree.touchLeaf(origin);
+    const NodeValue* nodes = layout.nodesOf(i);
+    for (int n = 0; n < kOwnNodes; ++n) {
+      const NodeValue node = nodes[nodeIndex(n / (kBrick * kBrick), n / kBrick % kBrick, n % kBrick)];
+      const auto d = static_cast<float>(quantum_m * node);
+      if (std::abs(node) < kFullBand)
+        leaf->setValueOn(static_cast<openvdb::Index>(n), d);
+      else
+        leaf->setValueOff(static_cast<openvdb::Index>(n), d);
+    }
+  }
+  tree.prune();
+  return grid;
+}
+
+openvdb::FloatGrid::Ptr centerGrid(const VoxLayout& layout, double voxel_m) {
+  const auto grid = openvdb::FloatGrid::create(0);
+  grid->setName(kCenter);
+  const auto transform = openvdb::math::Transform::createLinearTransform(kBrick * voxel_m);
+  transform->postTranslate(openvdb::Vec3d(kBrick / 2 * voxel_m));
+  grid->setTransform(transform);
+  auto accessor = grid->getAccessor();
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i)
+    accessor.setValue(toCoord(layout.cellAt(i)), layout.centers_m[i]);
+  return grid;
+}
+
+openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
+  const auto grid = openvdb::Int32Grid::create(0);
+  grid->setName(kOwner);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
+  // Every node of a brick, border too: the neighbour that owns a border node may have no brick to keep it in.
+  auto accessor = grid->getAccessor();
+  for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
+    const std::uint32_t brick = layout.bricks[i];
+    if (isConstant(brick)) continue;
+    for (int x = 0; x < kNodes; ++x)
+      for (int y = 0; y < kNodes; ++y)
+        for (int z = 0; z < kNodes; ++z) {
+          const int node = nodeIndex(x, y, z);
+          const int owner = layout.pool->ownerOf(brick, node);
+          if (std::abs(layout.nodesOf(i)[node]) < kFullBand && owner != 0)
+            accessor.setValue(toCoord(kBrick * layout.cellAt(i) + Index3(x, y, z)), owner);
+        }
+  }
+  return grid;
+}
+
+/// What a reload needs to give the same bits, beside the nodes.
+void addExactData(const VoxLayout& layout, double band_m, const Box& bounds, openvdb::MetaMap& out) {
+  out.insertMeta("vps_band", openvdb::DoubleMetadata(band_m));
+  out.insertMeta("vps_low", openvdb::Vec3IMetadata(toVdb(layout.low)));
+  out.insertMeta("vps_size", openvdb::Vec3IMetadata(toVdb(layout.size)));
+  out.insertMeta("vps_steepest", openvdb::FloatMetadata(layout.steepest));
+  out.insertMeta("vps_node_error", openvdb::FloatMetadata(layout.node_error));
+  out.insertMeta("vps_is_metric", openvdb::BoolMetadata(layout.is_metric));
+  out.insertMeta("vps_bounds_min", openvdb::Vec3DMetadata(toVdb(bounds.min)));
+  out.insertMeta("vps_bounds_max", openvdb::Vec3DMetadata(toVdb(bounds.max)));
+  out.insertMeta("vps_parts", openvdb::Int32Metadata(static_cast<int>(layout.parts.size())));
+  for (std::size_t i = 0; i < layout.parts.size(); ++i) {
+    const VoxPartRange& part = layout.parts[i];
+    out.insertMeta(partKey(i, "min"), openvdb::Vec3DMetadata(toVdb(part.bounds.min)));
+    out.insertMeta(partKey(i, "max"), openvdb::Vec3DMetadata(toVdb(part.bounds.max)));
+    out.insertMeta(partKey(i, "low"), openvdb::Vec3IMetadata(toVdb(part.low)));
+    out.insertMeta(partKey(i, "high"), openvdb::Vec3IMetadata(toVdb(part.high)));
+  }
+}
+
+void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
+  const std::filesystem::path unfinished = unfinishedName(file);
+  try {
+    std::ostringstream stream;
+    openvdb::io::Stream(stream).write(grids);
+    const std::string bytes = stream.str();
+    std::ofstream out(unfinished, std::ios::binary);
+    if (!out) throw LoadError(file, "", "cannot be written; does its folder exist, and may you write there?");
+    out.exceptions(std::ios::failbit | std::ios::badbit);
+    out << bytes << endOf(bytes);
+    out.close();
+    std::filesystem::rename(unfinished, file);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw LoadError(file, "", "could not be written whole; is the disk full?");
+  }
+}
+
+}  // namespace
+
+void VoxMapBuilder::save(const VoxMap& map, const std::string& file) {
+  if (map.layout_->bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
+  requireOneGrid(map, "written to one .vdb");
+  const VoxLayout& layout = *map.layout_;
+  const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_, map.quantum_m_);
+  addExactData(layout, map.band_m_, map.bounds_, *surface);
+  openvdb::GridPtrVec grids = {surface, centerGrid(layout, map.voxel_m_)};
+  if (layout.parts.size() > 1) grids.push_back(ownerGrid(layout, map.voxel_m_));
+  writeWhole(grids, file);
+}
+
+void saveVdb(const VoxMap& map, const std::string& file) {
+  initializeOpenVdb();
+  VoxMapBuilder::save(map, file);
+}
+
+}  // namespace vps

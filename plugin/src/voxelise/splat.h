@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes the features of a surface into tiles of grid nodes: each node gets the signed distance to the
+// nearest feature whose region it lies in, which is the distance to the surface (surface_features.h).
+//
+// Cost follows the nodes within the band, not their number times the triangles around: most nodes lie in the
+// region of one or two features only.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "voxelise/splat_rows.h"
+#include "voxelise/surface_features.h"
+
+namespace vps {
+
+using Tile = std::array<float, std::size_t{kTileNodes} * kTileNodes * kTileNodes>;
+constexpr int tileIndex(int x, int y, int z) {
+  return (x * kTileNodes + y) * kTileNodes + z;
+}
+
+/// Reads features; one for each thread.
+class Splatter {
+ public:
+  /// @param band  greatest distance that is written, in voxels
+  Splatter(const SurfaceFeatures& features, double band) : features_(features), band_(band) {}
+
+  /// Features are numbered faces first, then edges, then vertices.
+  [[nodiscard]] std::uint32_t count() const {
+    return features_.faceCount() + features_.edgeCount() + features_.vertexCount();
+  }
+
+  /// Box around the nodes that a feature can be nearest to, empty (min > max) if there are none [voxels].
+  [[nodiscard]] Box reach(std::uint32_t feature);
+  /// Whether a feature comes within the band of a ball; may say yes wrongly, never no.
+  [[nodiscard]] bool reaches(std::uint32_t feature, const Vec3& center, double radius) const;
+
+  /// Writes to the nodes of a tile, whose first one lies at `origin`. Nodes hold FLT_MAX or a signed distance
+  /// in voxels, negative inside; of two that are equally far the first stays.
+  void splat(std::uint32_t feature, const Vec3& origin, float* tile);
+
+ private:
+  struct Face;
+  struct Edge;
+  struct Corner;
+  template <typename Visit>
+  auto withFeature(std::uint32_t feature, const Vec3& origin, Visit visit);
+
+  const SurfaceFeatures& features_;
+  double band_;
+  std::array<SplatRow, kMaxRows + 8> rows_;
+  std::vector<Vec3> spokes_;
+};
+
+}  // namespace vps

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mesh to voxmap: the exact distance at every node within the band.
+//
+// 1. Features: faces, edges and vertices with their neighbours (surface_features.h).
+// 2. Gather: for each feature the tiles of 32^3 nodes it can reach; turned round into a list for each tile.
+// 3. Splat: tile by tile, each feature writes to the nodes that may be nearest to it (splat.h). Bricks are
+//    cut from the tile while it is in the cache.
+// 4. Bricks: the neighbours' border, a sign for the nodes beyond the band (brick_assembly.h), and a bound of
+//    the distance at every cell's centre (center_bounds.h).
+//
+// Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
+// every number of threads gives the same bits.
+#include "voxelise/voxelise.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdio>
+
+#include "voxelise/brick_assembly.h"
+#include "voxmap/center_bounds.h"
+#include "voxmap/coarse_nodes.h"
+#include "voxmap/map_limits.h"
+#include "voxelise/splat.h"
+#include "vps/load_error.h"
+#include "vps/map_estimate.h"
+#include "vps/mesh_repair.h"
+#include "voxelise/winding_signs.h"
+
+namespace vps {
+
+/// What a map that is fine in regions only is like elsewhere.
+struct CoarseRest {
+  const FineRegions& regions;
+  const VoxMap& coarse;
+  std::shared_ptr<const VoxLayout> layout;  ///< of the coarse map
+};
+
+namespace {
+
+constexpr int kBrick = VoxMap::kBrick;
+constexpr int kTileBricks = kTile / kBrick;
+
+/// A feature that reaches a tile.
+struct Reached {
+  std::uint32_t tile, feature;
+};
+
+/// A brick in a tile: its first node there, and its cell.
+struct CutBrick {
+  Index3 node;
+  std::size_t cell;
+};
+
+/// As kFar == d, on the bits: compilers do not put comparisons of floats into vectors by default.
+bool isFar(float d) {
+  return std::bit_cast<std::uint32_t>(d) == std::bit_cast<std::uint32_t>(kFar);
+}
+
+class Voxeliser {
+ public:
+  /// @param signer   signs nodes by winding number; null: by pseudonormals
+  /// @param regions  where to build; null: everywhere
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer,
+            const CoarseRest* regions)
+      : mesh_(mesh),
+        box_(box),
+        regions_(regions),
+        h_(settings.voxel_m),
+        band_m_(bandHeld(settings.band_voxels * settings.voxel_m)),
+        // What rounds to the full band need not be computed.
+        reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_),
+        signer_(signer) {}
+
+  std::shared_ptr<VoxLayout> build(const Progress& progress);
+  /// False if pseudonormals turned out to contradict each other.
+  [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
+
+ private:
+  void layOutDirectory();
+  void findWanted();
+  [[nodiscard]] bool wantsTile(std::uint32_t tile) const {
+    return tile_wanted_.empty() || tile_wanted_[tile] != 0;
+  }
+  [[nodiscard]] bool wantsCell(std::size_t cell) const {
+    return cell_wanted_.empty() || cell_wanted_[cell] != 0;
+  }
+  void gather(const SurfaceFeatures& features);
+  void gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const;
+  void gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low, const Index3& size,
+                   std::vector<Reached>& out) const;
+  void splatTiles(const SurfaceFeatures& features);
+  void splatTile(Splatter& splatter, std::size_t at, Tile& tile) const;
+  [[nodiscard]] std::vector<CutBrick> bricksOf(const Tile& tile, const Index3& low) const;
+  void cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer);
+  void boundCenters();
+
+  [[nodiscard]] Index3 tiles() const { return (layout_->size.array() + kTileBricks - 1) / kTileBricks; }
+  [[nodiscard]] std::uint32_t tileNumber(const Index3& tile) const {
+    return static_cast<std::uint32_t>((tile.x() * tiles().y() + tile.y()) * tiles().z() + tile.z());
+  }
+
+  [[nodiscard]] Index3 tileAt(std::size_t number) const {
+    const Index3 size = tiles();
+    const int i = static_cast<int>(number);
+    return {i / (size.y() * size.z()), i / size.z() % size.y(), i % size.z()};
+  }
+
+  const Mesh& mesh_;
+  const Box box_;
+  const CoarseRest* const regions_;
+  const double h_, band_m_;
+  const double reach_;  // of the nodes that are computed [voxels]
+  WindingSigner* const signer_;
+  bool are_signs_sound_ = true;
+  std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
+  std::vector<std::uint8_t> cell_wanted_, tile_wanted_;  // empty: all
+  std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
+  std::vector<std::uint32_t> features_;  // by tile, ascending within each
+  std::vector<std::int32_t> brick_of_;   // by cell; -1: none
+  std::vector<SurfaceBits> surface_;     // by brick
+};
+
+void Voxeliser::layOutDirectory() {
+  const double cell_m = kBrick * h_;
+  // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
+  // And one more where a coarse field, which is blurred by a cell at most, is read at the fine nodes.
+  const double margin = regions_ != nullptr ? 2 : 1;
+  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - margin;
+  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + (margin + 1);
+  layout_->low = low.cast<int>();
+  layout_->size = (high - low).cast<int>();
+  layout_->resizeCells();
+  layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
+}
+
+/// Cells that meet a region, and tiles that hold one.
+void Voxeliser::findWanted() {
+  if (regions_ == nullptr) return;
+  cell_wanted_.assign(layout_->bricks.size(), 0);
+  tile_wanted_.assign(static_cast<std::size_t>(tiles().prod()), 0);
+  const double cell_m = kBrick * h_;
+  for (const Box& box : regions_->regions.boxes_M) {
+    // One more than the directory has on each side, so that a conversion cannot overflow.
+    const auto cellOf = [&](const Vec3& p) -> Index3 {
+      const Vec3 cell = (p.array() / cell_m).floor() - layout_->low.cast<double>().array();
+      return cell.cwiseMax(-1.0).cwiseMin(layout_->size.cast<double>()).cast<int>();
+    };
+    const Index3 from = cellOf(box.min).cwiseMax(0),
+                 to = cellOf(box.max).cwiseMin(layout_->size - Index3::Ones());
+    for (int x = from.x(); x <= to.x(); ++x)
+      for (int y = from.y(); y <= to.y(); ++y)
+        for (int z = from.z(); z <= to.z(); ++z) {
+          cell_wanted_[layout_->cellIndex(layout_->low + Index3(x, y, z))] = 1;
+          tile_wanted_[tileNumber(Index3(x, y, z) / kTileBricks)] = 1;
+        }
+  }
+}
+
+/// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
+/// triangle costs what its surface costs, not its box.
+void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low,
+                            const Index3& size, std::vector<Reached>& out) const {
+  const Vec3 half = 0.5 * kTile * size.cast<double>();
+  if (!splatter.reaches(feature, kTile * low.cast<double>() + half, half.norm())) return;
+  int axis = 0;
+  if (size.maxCoeff(&axis) == 1) {
+    if (wantsTile(tileNumber(low))) out.push_back({tileNumber(low), feature});
+    return;
+  }
+  Index3 near = size, far = size, middle = low;
+  near[axis] = size[axis] / 2;
+  far[axis] = size[axis] - near[axis];
+  middle[axis] += near[axis];
+  gatherRange(splatter, feature, low, near, out);
+  gatherRange(splatter, feature, middle, far, out);
+}
+
+void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const {
+  const Box box = splatter.reach(feature);
+  if (box.isEmpty()) return;
+  // A tile's last nodes are the next one's first.
+  const Index3 low = ((box.min.array() - (kTile + 1e-6)) / kTile).ceil().max(0).cast<int>();
+  const Index3 high = (box.max / kTile).cast<int>();
+  const Index3 size = high - low + Index3::Ones();
+  if (size.maxCoeff() > 2) return gatherRange(splatter, feature, low, size, out);
+  // Few: cheaper to take all of them than to look.
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z)
+        if (const std::uint32_t tile = tileNumber({x, y, z}); wantsTile(tile)) out.push_back({tile, feature});
+}
+
+void Voxeliser::gather(const SurfaceFeatures& features) {
+  constexpr std::size_t kGrain = 4096;
+  const std::size_t count = Splatter(features, reach_).count();
+  std::vector<std::vector<Reached>> reached((count + kGrain - 1) / kGrain);
+  tbb::parallel_for(std::size_t{0}, reached.size(), [&](std::size_t chunk) {
+    Splatter splatter(features, reach_);
+    for (std::size_t i = chunk * kGrain; i < std::min(count, (chunk + 1) * kGrain); ++i)
+      gatherFeature(splatter, static_cast<std::uint32_t>(i), reached[chunk]);
+  });
+
+  // Counting sort by tile.
+  first_.assign(static_cast<std::size_t>(tiles().prod()) + 2, 0);
+  for (const auto& chunk : reached)
+    for (const Reached& r : chunk) ++first_[r.tile + 2];
+  for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  features_.resize(first_.back());
+  for (const auto& chunk : reached)
+    for (const Reached& r : chunk) features_[first_[r.tile + 1]++] = r.feature;
+  first_.pop_back();
+}
+
+void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const {
+  tile.fill(kFar);
+  const Vec3 origin = kTile * tileAt(at).cast<double>();
+  for (std::size_t k = first_[at]; k < first_[at + 1]; ++k) splatter.splat(features_[k], origin, tile.data());
+}
+
+/// The bricks of a tile that have a node within the band.
+std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
+  // Bit b of a row along z: brick b has a node there. A brick's last node is the next one's first.
+  std::array<std::uint8_t, std::size_t{kTileNodes}* kTileNodes> rows = {};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const float* d = &tile[row * kTileNodes];
+    for (int b = 0; b < kTileBricks; ++b) {
+      int known = 0;
+      for (int z = 0; z < kNodes; ++z) known |= isFar(d[kBrick * b + z]) ? 0 : 1;
+      rows[row] |= static_cast<std::uint8_t>(known << b);
+    }
+  }
+  std::vector<CutBrick> bricks;
+  for (int x = 0; x < kTileBricks; ++x)
+    for (int y = 0; y < kTileBricks; ++y) {
+      unsigned known = 0;
+      for (int i = 0; i < kNodes * kNodes; ++i)
+        known |=
+            rows[static_cast<std::size_t>((kBrick * x + i / kNodes) * kTileNodes + kBrick * y + i % kNodes)];
+      for (int z = 0; z < kTileBricks; ++z) {
+        const Index3 at(x, y, z);
+        if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
+        const std::size_t cell = layout_->cellIndex(layout_->low + low + at);
+        if (wantsCell(cell)) bricks.push_back({kBrick * at, cell});
+      }
+    }
+  return bricks;
+}
+
+/// Bit z of a brick's row: the node is so near the surface that it may be the nearest to a point of it.
+std::uint8_t nearBits(const float* row) {
+  constexpr auto kNearBits = std::bit_cast<std::uint32_t>(static_cast<float>(SurfaceBits::kNear));
+  unsigned bits = 0;
+  // Without their sign, floats sort as their bits do.
+  for (unsigned z = 0; z < kBrick; ++z)
+    bits |= (std::bit_cast<std::uint32_t>(row[z]) & 0x7FFFFFFFU) <= kNearBits ? 1U << z : 0U;
+  return static_cast<std::uint8_t>(bits);
+}
+
+/// Copies a brick from its tile, and notes where the surface is.
+void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer) {
+  BrickNodes distance;
+  SurfaceBits& surface = surface_[static_cast<std::size_t>(brick_of_[brick.cell])];
+  for (int x = 0; x < kNodes; ++x)
+    for (int y = 0; y < kNodes; ++y) {
+      const float* from = &tile[tileIndex(brick.node.x() + x, brick.node.y() + y, brick.node.z())];
+      std::copy_n(from, kNodes, &distance[nodeIndex(x, y, 0)]);
+      if (x < kBrick && y < kBrick)
+        surface.rows[static_cast<std::size_t>(x / 2 * 4 + y / 2)] |= nearBits(from);
+    }
+  layout_->bricks[brick.cell] = writer.write(slot, distance);
+}
+
+/// A batch of tiles at a time, in the same memory: fresh pages for all of them would cost more than the work.
+void Voxeliser::splatTiles(const SurfaceFeatures& features) {
+  constexpr std::size_t kBatch = 16;
+  std::vector<std::size_t> wanted;
+  for (std::size_t i = 0; i + 1 < first_.size(); ++i)
+    if (first_[i] < first_[i + 1]) wanted.push_back(i);
+  brick_of_.assign(layout_->bricks.size(), -1);
+  // A surface through a tile takes about a third of its bricks.
+  constexpr std::size_t kExpected = kTileBricks * kTileBricks * kTileBricks / 2;
+  BrickWriter writer(*layout_, h_ / quantumOf(band_m_),
+                     std::min(kExpected * wanted.size(), brick_of_.size()));
+  if (regions_ != nullptr) {
+    writer.take(1);
+    BrickNodes inside;
+    inside.fill(static_cast<float>(-band_m_ / h_));
+    layout_->elsewhere = writer.write(0, inside);
+  }
+  std::vector<Tile> tiles(std::min(kBatch, wanted.size()));
+  std::vector<std::vector<CutBrick>> bricks(tiles.size());
+  std::vector<std::size_t> slot(tiles.size());
+  tbb::enumerable_thread_specific<Splatter> splatters([&] { return Splatter(features, reach_); });
+  for (std::size_t begin = 0; begin < wanted.size(); begin += kBatch) {
+    const std::size_t count = std::min(kBatch, wanted.size() - begin);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      splatTile(splatters.local(), wanted[begin + i], tiles[i]);
+      bricks[i] = bricksOf(tiles[i], kTileBricks * tileAt(wanted[begin + i]));
+    });
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      slot[i] = taken;
+      for (const CutBrick& brick : bricks[i])
+        brick_of_[brick.cell] = static_cast<std::int32_t>(surface_.size() + taken++);
+    }
+    if (taken == 0) continue;
+    writer.take(taken);
+    surface_.resize(surface_.size() + taken);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+      for (std::size_t k = 0; k < bricks[i].size(); ++k)
+        cutBrick(tiles[i], bricks[i][k], slot[i] + k, writer);
+    });
+  }
+}
+
+void Voxeliser::boundCenters() {
+  const std::vector<float> bound = boundCellCenters(layout_->size, brick_of_, surface_);
+  const double quantum_m = quantumOf(band_m_);
+  tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {
+    constexpr int kCenter = kBrick / 2;
+    const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
+    // Within the band the distance itself is known, but for rounding; beyond, it is at least nearly the band.
+    const double known_m = std::max(0.0, (std::abs(center) - 0.51) * quantum_m);
+    const double least_m = std::abs(center) < kFullBand ? known_m : std::max(known_m, bound[i] * h_);
+    layout_->centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
+  });
+}
+
+std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
+  const auto tell = [&](double share) {
+    if (progress) progress("voxelising", share);
+  };
+  tell(0);
+  layOutDirectory();
+  findWanted();
+  {
+    const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
+    tell(0.1);
+    gather(features);
+    tell(0.3);
+    splatTiles(features);
+  }
+  tell(0.8);
+  if (signer_ != nullptr)
+    signer_->signBricks(*layout_, h_, quantumOf(band_m_));
+  else
+    are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
+  if (regions_ != nullptr) {
+    layout_->coarse = regions_->layout;
+    layout_->coarse_shift = std::countr_zero(static_cast<unsigned>(regions_->regions.coarsening));
+    joinCoarse(*layout_, regions_->coarse, h_, quantumOf(band_m_));
+    markFarCells(*layout_);
+    tell(1);
+    return layout_;
+  }
+  fillEmptyCells(*layout_);
+  if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
+  markFarCells(*layout_);
+  tell(0.9);
+  boundCenters();
+  tell(1);
+  return layout_;
+}
+
+/// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
+/// the directory.
+double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
+  const double cell_m = VoxMap::kBrick * h;
+  const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
+  const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
+  constexpr double kOnTheWay = 15;  // bytes a cell, assumed: what is made beside the directory and dropped
+  return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kOnTheWay;
+}
+
+}  // namespace
+
+double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
+  return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
+}
+
+namespace {
+
+/// The box's surface, twice: a region may hold folds of the part's.
+double areaWithin(const FineRegions& regions, double area_m2) {
+  double sum_m2 = 0;
+  for (const Box& box : regions.boxes_M) {
+    const Vec3 s = box.size().cwiseMax(0.0);
+    sum_m2 += 4 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
+  }
+  return std::min(sum_m2, area_m2);
+}
+
+void requireRegions(const FineRegions& regions, const std::string& part) {
+  if (regions.coarsening != 2 && regions.coarsening != 4 && regions.coarsening != 8)
+    throw LoadError("", part, "a map can be coarser by 2, 4 or 8 outside its fine regions, by nothing else");
+  if (regions.boxes_M.empty())
+    throw LoadError("", part, "no fine region is given; give one, or build with larger voxels");
+  for (const Box& box : regions.boxes_M)
+    if (box.isEmpty() || !box.min.allFinite() || !box.max.allFinite())
+      throw LoadError("", part, "a fine region is no box; give its lowest and its highest corner");
+}
+
+/// Before memory is taken: refuses what no map can be of, or none that fits.
+void requireFits(const Box& box, double area_m2, const VoxMapSettings& settings, const std::string& part) {
+  requireSettings(settings, part);
+  requireNear(box, settings.voxel_m, part);
+  const auto bytesAt = [&](double h) { return estimatedBytes(area_m2, box.size(), h, settings.band_voxels); };
+  double h = settings.voxel_m;
+  while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
+  char what_for[48], remedy[48];
+  std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
+  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
+  requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
+}
+
+/// Ready to be voxelised: signs need shared vertices.
+RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
+  Mesh shared = welded(mesh);
+  requireUsable(shared, "", part);
+  return repairMesh(std::move(shared));
+}
+
+}  // namespace
+
+VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
+                            const Progress& progress, MeshReport* report) {
+  requireUsable(mesh, "", part);
+  requireFits(bounds(mesh), area(mesh), settings, part);
+  RepairedMesh repaired = prepared(mesh, part);
+  return build(mesh, repaired, settings, progress, report, nullptr);
+}
+
+VoxMap VoxMapBuilder::buildInRegions(const Mesh& mesh, const VoxMapSettings& settings,
+                                     const FineRegions& regions, const std::string& part,
+                                     const Progress& progress, MeshReport* report) {
+  requireUsable(mesh, "", part);
+  requireRegions(regions, part);
+  const int steps = regions.coarsening;
+  const VoxMapSettings fine = {settings.voxel_m, std::max(settings.band_voxels, 3.0 * steps)};
+  const VoxMapSettings rest = {fine.voxel_m * steps, fine.band_voxels / steps};
+  requireFits(bounds(mesh), area(mesh), rest, part);
+  requireFits(bounds(mesh), areaWithin(regions, area(mesh)), fine, part);
+  RepairedMesh repaired = prepared(mesh, part);
+  const VoxMap coarse = build(mesh, repaired, rest, progress, report, nullptr);
+  const CoarseRest elsewhere{regions, coarse, coarse.layout_};
+  return build(mesh, repaired, fine, progress, report, &elsewhere);
+}
+
+VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
+                            const Progress& progress, MeshReport* report, const CoarseRest* regions) {
+  const Box box = bounds(mesh);
+  std::shared_ptr<const VoxLayout> layout;
+  if (repaired.is_sound) {
+    Voxeliser voxeliser(repaired.surface, box, settings, nullptr, regions);
+    layout = voxeliser.build(progress);
+    if (!voxeliser.areSignsSound()) {
+      layout = nullptr;
+      repaired = repairMesh(welded(mesh), Crossing::Seen);
+      repaired.is_sound = false;
+    }
+  }
+  if (layout == nullptr) {
+    WindingSigner signer(repaired.solid);
+    layout = Voxeliser(repaired.surface, box, settings, &signer, regions).build(progress);
+    repaired.report.signed_by_winding = true;
+    repaired.report.sure = signer.sure();
+  }
+  if (report != nullptr) *report = repaired.report;
+  return wrap(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
+}
+
+VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+                           const Box& bounds) {
+  VoxMap map;
+  map.voxel_m_ = voxel_m;
+  map.band_m_ = bandHeld(band_m);
+  map.quantum_m_ = quantumOf(band_m);
+  map.bounds_ = bounds;
+  map.layout_ = std::move(layout);
+  return map;
+}
+
+VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
+  return wrap(VoxMap().layout_, settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
+}
+
+VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
+                   const Progress& progress, MeshReport* report) {
+  return VoxMapBuilder::build(mesh, settings, part, progress, report);
+}
+
+VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
+                            const std::string& part, const Progress& progress, MeshReport* report) {
+  return VoxMapBuilder::buildInRegions(mesh, settings, regions, part, progress, report);
+}
+
+}  // namespace vps

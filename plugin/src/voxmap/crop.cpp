@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/crop.h"
+
+#include <algorithm>
+
+#include "pointshell/shell_hierarchy.h"
+#include "voxelise/voxelise.h"
+
+namespace vps {
+namespace {
+
+/// Counts of what is kept before each index, and in all.
+std::vector<std::uint32_t> keptBefore(const std::vector<std::uint8_t>& is_kept) {
+  std::vector<std::uint32_t> before(is_kept.size() + 1, 0);
+  for (std::size_t i = 0; i < is_kept.size(); ++i) before[i + 1] = before[i] + is_kept[i];
+  return before;
+}
+
+std::vector<std::uint8_t> pointsWithin(const PointShell& shell, const std::vector<Box>& boxes) {
+  std::vector<std::uint8_t> is_kept(shell.size());
+  for (std::size_t i = 0; i < is_kept.size(); ++i)
+    is_kept[i] = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+      return (shell.points[i].array() >= box.min.array()).all() &&
+             (shell.points[i].array() <= box.max.array()).all();
+    });
+  return is_kept;
+}
+
+/// The nodes that keep a point. Their spheres stay as they are: a leaf's points are read as offsets from its
+/// centre, rounded, and must round as before.
+std::vector<ShellNode> keptNodes(const PointShell& shell, const std::vector<std::uint32_t>& points_before) {
+  const auto countOf = [&](const ShellNode& node) {
+    return points_before[node.first + node.count] - points_before[node.first];
+  };
+  std::vector<std::uint8_t> is_kept(shell.nodes.size());
+  for (std::size_t i = 0; i < is_kept.size(); ++i) is_kept[i] = countOf(shell.nodes[i]) > 0;
+  const std::vector<std::uint32_t> nodes_before = keptBefore(is_kept);
+  std::vector<ShellNode> nodes;
+  nodes.reserve(nodes_before.back());
+  for (std::size_t i = 0; i < is_kept.size(); ++i) {
+    if (is_kept[i] == 0) continue;
+    ShellNode node = shell.nodes[i];
+    node.count = countOf(node);
+    node.first = points_before[node.first];
+    node.skip = nodes_before[node.skip];
+    nodes.push_back(node);
+  }
+  return nodes;
+}
+
+/// Cells of 8 voxels within a cell of a box: gradients at its border read nodes beyond it.
+bool isNear(const std::vector<Box>& boxes_M, const Index3& cell, double cell_m) {
+  Box room;
+  room.add(cell_m * (cell - Index3::Ones()).cast<double>());
+  room.add(cell_m * (cell + Index3::Constant(2)).cast<double>());
+  return std::any_of(boxes_M.begin(), boxes_M.end(), [&](const Box& box) { return overlap(box, room); });
+}
+
+}  // namespace
+
+bool overlap(const Box& a, const Box& b) noexcept {
+  return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
+         (b.min.array() <= a.max.array()).all();
+}
+
+bool isWithin(const Box& inner, const Box& outer) noexcept {
+  return inner.isEmpty() ||
+         ((inner.min.array() >= outer.min.array()).all() && (inner.max.array() <= outer.max.array()).all());
+}
+
+Box grown(const Box& box, double by_m) noexcept {
+  if (box.isEmpty()) return box;
+  Box out = box;
+  out.min.array() -= by_m;
+  out.max.array() += by_m;
+  return out;
+}
+
+Box moved(const Box& box, const Pose& X) noexcept {
+  Box out;
+  if (box.isEmpty()) return out;
+  const Vec3 center = X * box.center(), half = X.R.cwiseAbs() * (0.5 * box.size());
+  out.add(center - half);
+  out.add(center + half);
+  return out;
+}
+
+VoxMap VoxMapBuilder::cropped(const VoxMap& map, const std::vector<Box>& boxes_M) {
+  requireOneGrid(map, "cropped");
+  auto layout = std::make_shared<VoxLayout>(*map.layout_);
+  for (std::size_t i = 0; i < layout->bricks.size(); ++i) {
+    std::uint32_t& brick = layout->bricks[i];
+    if (isConstant(brick) || isNear(boxes_M, layout->cellAt(i), VoxMap::kBrick * map.voxel_m_)) continue;
+    brick = layout->centers_m[i] < 0 ? kInside : kOutside;
+  }
+  moveToNewPool(*layout, 0);
+  markFarCells(*layout);
+  VoxMap out = map;
+  out.layout_ = layout;
+  return out;
+}
+
+VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M) {
+  return VoxMapBuilder::cropped(map, boxes_M);
+}
+
+PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P) {
+  const std::vector<std::uint8_t> is_kept = pointsWithin(shell, boxes_P);
+  const std::vector<std::uint32_t> before = keptBefore(is_kept);
+  PointShell out;
+  out.spacing_m = shell.spacing_m;
+  out.points.reserve(before.back());
+  out.inward.reserve(before.back());
+  out.area_m2.reserve(before.back());
+  out.order.reserve(before.back());
+  for (std::size_t i = 0; i < is_kept.size(); ++i) {
+    if (is_kept[i] == 0) continue;
+    out.points.push_back(shell.points[i]);
+    out.inward.push_back(shell.inward[i]);
+    out.area_m2.push_back(shell.area_m2[i]);
+  }
+  for (const std::uint32_t i : shell.order)
+    if (is_kept[i] != 0) out.order.push_back(before[i]);
+  if (before.back() == 0) return out;
+  out.nodes = keptNodes(shell, before);
+  layOutBlocks(out);
+  return out;
+}
+
+}  // namespace vps

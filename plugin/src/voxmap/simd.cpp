@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/simd.h"
+
+#include "voxmap/read_kernel.h"
+
+namespace vps {
+
+extern const ReadKernels kScalarKernels;
+#ifdef VPS_HAS_X86_KERNELS
+extern const ReadKernels kAvx2Kernels, kAvx512Kernels;
+#endif
+
+namespace {
+
+Simd widest() noexcept {
+#ifdef VPS_HAS_X86_KERNELS
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    return Simd::Avx512;
+  if (__builtin_cpu_supports("avx2")) return Simd::Avx2;
+#endif
+  return Simd::Scalar;
+}
+
+/// Found when the program starts, so that no query waits for another's first one. What asks before that, from
+/// another constant's making, gets zero: Best, and with it the scalar path.
+const Simd kWidest = widest();
+
+}  // namespace
+
+Simd availableSimd(Simd wanted) noexcept {
+  const Simd widest_here = kWidest;
+  return wanted == Simd::Best || wanted > widest_here ? widest_here : wanted;
+}
+
+const char* toText(Simd simd) noexcept {
+  switch (simd) {
+    case Simd::Best:
+      return "best";
+    case Simd::Scalar:
+      return "scalar";
+    case Simd::Avx2:
+      return "AVX2";
+    case Simd::Avx512:
+      return "AVX-512";
+  }
+  return "unknown";
+}
+
+const ReadKernels& readKernels(Simd simd) noexcept {
+#ifdef VPS_HAS_X86_KERNELS
+  switch (availableSimd(simd)) {
+    case Simd::Avx512:
+      return kAvx512Kernels;
+    case Simd::Avx2:
+      return kAvx2Kernels;
+    default:
+      break;
+  }
+#endif
+  return kScalarKernels;
+}
+
+}  // namespace vps

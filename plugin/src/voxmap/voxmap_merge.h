@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What can be merged into a map: another map on the same grid, or one that is resampled on the way.
+#pragma once
+
+#include "voxelise/voxelise.h"
+
+namespace vps {
+
+enum class Combine { Union, Difference };
+
+/// A field on a map's grid, brick by brick, in a box of cells. Reading it is thread-safe.
+class AddedField : public CellBox {
+ public:
+  virtual ~AddedField() = default;
+  /// Writes the nodes of a cell that is not constant, all kBrickStride of them.
+  virtual void write(std::size_t cell, NodeValue* nodes) const = 0;
+  [[nodiscard]] virtual std::uint16_t ownerOf(std::size_t cell, int node) const = 0;
+  [[nodiscard]] virtual bool hasMixedOwners(std::size_t cell) const = 0;
+
+  std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or anything else for nodes
+  std::vector<float> centers_m;      ///< as VoxLayout has them
+  std::vector<VoxPartRange> parts;
+  float steepest = 1, node_error = 0;  ///< as VoxLayout has them
+  bool is_metric = true;
+};
+
+}  // namespace vps

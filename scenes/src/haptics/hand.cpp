@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "haptics/hand.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "haptics/path_segments.h"
+#include "vps/load_error.h"
+#include "vps_device/simulated_dual_arm.h"
+
+namespace vps {
+
+namespace {
+
+OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
+  OperatorHabits habits;
+  habits.seed = hand.seed + step;  // each step aims anew, and does not depend on how long the last one took
+  habits.aim_error_m = hand.aim_error_m;
+  habits.aim_error_rad = hand.aim_error_rad;
+  habits.speed_m_s = hand.speed_m_s;
+  habits.press_N = hand.press_N;
+  habits.force_limit_N = hand.force_limit_N;
+  return habits;
+}
+
+DualArmParameters armsOf(const Scene& scene) {
+  return scene.device.data.empty() ? DualArmParameters{} : loadDualArm(scene.device.data).parameters;
+}
+
+SimulatedDualArmSettings plantSettings(const Scene& scene) {
+  if (scene.device.kind != "dual_arm")
+    throw LoadError(scene.file, "",
+                    "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
+  SimulatedDualArmSettings settings;
+  settings.arms = armsOf(scene);
+  settings.has_quantised_encoders = scene.device.has_quantised_encoders;
+  settings.rate_hz = scene.fidelity.haptic_rate_hz;
+  return settings;
+}
+
+std::vector<Strokes> allStrokes(const Scene& scene, const Vec3& workspace_m) {
+  std::vector<Strokes> all;
+  for (const SceneStep& step : scene.steps) all.push_back(strokesOf(scene, step, workspace_m));
+  return all;
+}
+
+SimulatedDualArmSettings startingAt(SimulatedDualArmSettings settings, const std::vector<Strokes>& strokes) {
+  settings.X_DH_start = strokes.front().X_DH_start.front();
+  return settings;
+}
+
+class SimulatedHand final : public Hand {
+ public:
+  explicit SimulatedHand(const Scene& scene)
+      : scene_(scene),
+        settings_(plantSettings(scene)),
+        strokes_(allStrokes(scene, settings_.arms.workspace_m)),
+        plant_(startingAt(settings_, strokes_)) {
+    X_DH_from_ = X_DH_back_ = plant_.truePose();
+  }
+
+  Device& device() override { return plant_; }
+
+  void prepare(const OperatorTask& task, std::size_t step, double now_s) override {
+    next_ = VirtualOperator(habitsOf(scene_.hand, step));
+    OperatorTask reachable = task;
+    reachable.way_points = strokes_[step].way_points;
+    reachable.regrasps = strokes_[step].regrasps;
+    next_.begin(reachable, now_s);
+    next_s_ = now_s;
+    next_step_ = step;
+  }
+
+  void begin() override {
+    std::swap(operator_, next_);  // moves; what was before is freed by the next prepare()
+    time_s_ = next_s_;
+    step_ = next_step_;
+    stroke_ = 0;
+    is_at_work_ = true;
+  }
+
+  void goBack(std::size_t next) override {
+    goTo(next < strokes_.size() ? strokes_[next].X_DH_start.front() : Pose{});
+  }
+  void recentre() override {
+    const std::vector<Pose>& starts = strokes_[step_].X_DH_start;
+    if (stroke_ + 1 < starts.size()) ++stroke_;
+    goTo(starts[stroke_]);
+  }
+  void goOn() override {
+    operator_.goOn();
+    is_at_work_ = true;
+  }
+
+  void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override {
+    plant_.step(dt_s, is_at_work_ ? atWork(part, loop, dt_s) : returning(part, loop, dt_s));
+  }
+
+  [[nodiscard]] OperatorPhase phase() const override { return operator_.phase(); }
+  [[nodiscard]] bool canGoOn(int) const override { return true; }
+
+ private:
+  void goTo(const Pose& X_DH) {
+    X_DH_back_ = X_DH;
+    X_DH_from_ = plant_.truePose();
+    turn_rad_ = rotationVector(X_DH_back_.R * X_DH_from_.R.transpose());
+    back_s_ = 0;
+    is_at_work_ = false;
+  }
+
+  HandForce atWork(const HeldPart& part, const HapticLoop& loop, double dt_s) {
+    OperatorView view;
+    view.time_s = time_s_;
+    view.X_WG_hand = loop.toGrasp(plant_.truePose());
+    view.V_WG_hand = loop.settings().map.toScene(plant_.trueTwist());
+    view.X_WP = part.X_WP;
+    view.V_WP = part.V_WP;
+    view.F_hand_W = loop.last().F_hand_W;
+    time_s_ += dt_s;
+    HandForce hand = operator_.step(view, dt_s);
+    hand.F = hand.F * loop.clutch().ratio();  // it carries what it feels
+    return loop.toDevice(hand);
+  }
+
+  /// On its way back, or there; where it has a part in hand it carries what the clutch lets it feel.
+  HandForce returning(const HeldPart& part, const HapticLoop& loop, double dt_s) {
+    time_s_ += dt_s;
+    back_s_ += dt_s;
+    const double share = minimumJerk(back_s_ / kHandReturn_s);
+    HandForce hand = evenHand(habitsOf(scene_.hand, 0));
+    hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad_) * X_DH_from_.R),
+                     X_DH_from_.p + share * (X_DH_back_.p - X_DH_from_.p));
+    if (loop.isHolding())
+      hand.F = loop.settings().map.toDevice(Wrench{Vec3::Zero(), -part.weight_W}) * loop.clutch().ratio();
+    return hand;
+  }
+
+  const Scene& scene_;
+  SimulatedDualArmSettings settings_;
+  std::vector<Strokes> strokes_;  ///< of each step
+  SimulatedDualArm plant_;
+  VirtualOperator operator_, next_;
+  double next_s_ = 0;
+  std::size_t next_step_ = 0, step_ = 0, stroke_ = 0;
+  double time_s_ = 0;              ///< of the run
+  double back_s_ = kHandReturn_s;  ///< since it went back
+  bool is_at_work_ = false;
+  Pose X_DH_from_, X_DH_back_;
+  Vec3 turn_rad_ = Vec3::Zero();
+};
+
+/// Does what was recorded: the samples carry the motion, the events what the hand was about.
+class RecordedHand final : public Hand {
+ public:
+  explicit RecordedHand(Recording& recording) : recording_(recording) {}
+  Device& device() override { return recording_; }
+  void prepare(const OperatorTask&, std::size_t, double) override {}
+  void begin() override {}
+  void goBack(std::size_t) override {}
+  void recentre() override {}
+  void goOn() override {}
+  void step(const HeldPart&, const HapticLoop&, double) override {}
+  [[nodiscard]] OperatorPhase phase() const override {
+    return static_cast<OperatorPhase>(recording_.phase().value_or(0));
+  }
+  [[nodiscard]] std::vector<Meeting> meetings() const override {
+    std::vector<Meeting> all;
+    for (const LogEntry& entry : recording_.run().entries)
+      if (const auto* meeting = std::get_if<Meeting>(&entry)) all.push_back(*meeting);
+    return all;
+  }
+  [[nodiscard]] bool canGoOn(int ticks) const override {
+    return recording_.left() >= static_cast<std::size_t>(ticks);
+  }
+
+ private:
+  Recording& recording_;
+};
+
+}  // namespace
+
+std::unique_ptr<Hand> simulatedHand(const Scene& scene) {
+  return std::make_unique<SimulatedHand>(scene);
+}
+
+std::unique_ptr<Hand> recordedHand(Recording& recording) {
+  return std::make_unique<RecordedHand>(recording);
+}
+
+}  // namespace vps

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "haptics/load_governor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vps {
+
+namespace {
+
+constexpr double kMostPeriods = 1e6;  ///< that one step counts for: a clock that leapt must not overflow sums
+
+/// Periods from a step's beginning to the next one's.
+double periodsOf(double busy_s, double period_s) {
+  return std::clamp(std::ceil(busy_s / period_s), 1.0, kMostPeriods);
+}
+
+}  // namespace
+
+RateGovernor::RateGovernor(std::vector<double> dearer, const GovernorSettings& settings)
+    : dearer_(std::move(dearer)), settings_(settings), wait_(settings.calm_windows) {}
+
+int RateGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
+  if (!(busy_s > 0)) busy_s = 0;
+  const double periods = periodsOf(busy_s, period_s);
+  now_.elapsed_s += periods * period_s;
+  now_.lost_s += (periods - 1) * period_s;
+  now_.busy_s += busy_s;
+  now_.late += periods > 1;
+  ++now_.steps;
+  if (level_ > 0) {
+    const double above = periodsOf(dearer_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
+    now_.elapsed_above_s += above * period_s;
+    now_.lost_above_s += (above - 1) * period_s;
+    now_.late_above += above > 1;
+  }
+  // Steps of seconds: as many as could be late enough to count, or each would pass for a stall.
+  const bool is_whole = now_.elapsed_s >= settings_.window_s && now_.steps >= settings_.late_limit;
+  return is_whole ? decide(may_rise) : level_;
+}
+
+bool RateGovernor::isOverloaded() const noexcept {
+  return last_.late >= settings_.late_limit && last_.lostShare() > settings_.lost_limit;
+}
+
+int RateGovernor::decide(bool may_rise) noexcept {
+  last_ = {now_.elapsed_s, now_.lost_s, now_.busy_s / now_.steps, now_.late};
+  const bool is_calm = level_ > 0 && (now_.late_above < settings_.late_limit ||
+                                      now_.lost_above_s <= 0.5 * settings_.lost_limit * now_.elapsed_above_s);
+  now_ = {};
+  calm_ = is_calm ? std::min(calm_ + 1, settings_.most_calm_windows) : 0;
+  if (isOverloaded() && level_ < lastLevel()) {
+    if (has_risen_) waitLonger();
+    moveTo(level_ + 1);
+  } else if (calm_ >= wait_ && may_rise) {
+    has_risen_ = true;
+    moveTo(level_ - 1);
+  }
+  return level_;
+}
+
+void RateGovernor::stayAt(int level) noexcept {
+  waitLonger();
+  moveTo(level);
+}
+
+void RateGovernor::waitLonger() noexcept {
+  wait_ = std::min(2 * wait_, settings_.most_calm_windows);
+  has_risen_ = false;
+}
+
+void RateGovernor::moveTo(int level) noexcept {
+  level_ = level;
+  calm_ = 0;
+}
+
+}  // namespace vps

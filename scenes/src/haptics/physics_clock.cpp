@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "haptics/physics_clock.h"
+
+#include <cmath>
+
+namespace vps {
+
+namespace {
+
+constexpr int kPriority = 70;  // assumed: below the haptic loop's 80
+
+}  // namespace
+
+PhysicsClock::PhysicsClock(double period_s)
+    : metronome_(std::llround(1e9 * period_s), monotonicClock()), period_s_(period_s), step_s_(period_s) {}
+
+RealTimeReport PhysicsClock::start(bool locks_memory) {
+  RealTimeReport report = askForRealTime(kPriority, locks_memory);
+  metronome_.start();
+  woke_ns_ = 0;
+  return report;
+}
+
+Beat PhysicsClock::wait() noexcept {
+  const std::int64_t asked_ns = monotonicClock().now_ns();
+  busy_s_ = woke_ns_ > 0 ? 1e-9 * static_cast<double>(asked_ns - woke_ns_) : 0;
+  const Beat beat = metronome_.wait();
+  woke_ns_ = beat.woke_ns;
+  const double passed_s = 1e-9 * static_cast<double>(beat.periods * metronome_.period_ns());
+  missed_ += static_cast<std::uint64_t>(std::llround(passed_s / period_s_)) - 1;
+  behind_s_ += passed_s - step_s_;
+  return beat;
+}
+
+void PhysicsClock::setPace(double step_s, double period_s) {
+  step_s_ = step_s;
+  metronome_ = Metronome(std::llround(1e9 * period_s), monotonicClock());
+  metronome_.start();
+}
+
+void PhysicsClock::stop() noexcept {
+  leaveRealTime();
+}
+
+}  // namespace vps

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "haptics/clocked_driver.h"
+#include "haptics/haptic_log.h"
+#include "haptics/physics_clock.h"
+#include "vps_device/real_time_loop.h"
+
+namespace vps {
+namespace {
+
+constexpr double kCatchUp =
+    20;  // periods that a simulated device makes up for; beyond that its time stands still
+
+constexpr std::chrono::microseconds kOrderWait{200};  // assumed: well below a haptic period
+
+double microseconds(std::int64_t ns) {
+  return 1e-3 * static_cast<double>(ns);
+}
+
+TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
+  return {all.count,
+          missed,
+          microseconds(all.p50_ns),
+          microseconds(all.p99_ns),
+          microseconds(all.p999_ns),
+          microseconds(all.max_ns),
+          0};
+}
+
+class RealTimeSide final : public ClockedSide {
+ public:
+  RealTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings, double physics_s,
+               const TellFault& tell, RunLog* log)
+      : ClockedSide(hand, settings, tell),
+        port_(port),
+        physics_s_(physics_s),
+        haptic_log_(log),
+        tapped_(hand.device(), haptic_log_),
+        loop_(tapped_, port, told(settings), realTimeSettings()),
+        clock_(physics_s) {}
+  ~RealTimeSide() override { pause(); }
+
+  void pause() override {
+    if (loop_.isRunning()) {
+      loop_.stop();
+      meet(loop_.loop(), MeetingKind::Paused);
+      haptic_log_.passThrough(MeetingKind::Paused);
+      look(LoopView::of(loop_.loop(), hand_.phase()));
+    }
+    clock_.stop();
+  }
+  void resume() override {
+    rearmIfFaulted();
+    if (loop_.isRunning()) return;
+    phase_.store(hand_.phase());
+    const RealTimeReport report = loop_.start();
+    result_.has_priority = report.has_priority;
+    result_.has_locked_memory = report.has_locked_memory;
+    result_.warnings = report.warnings;
+    result_.has_priority = clock_.start(false).has_priority && result_.has_priority;
+  }
+  std::uint64_t missed() override { return loop_.statistics().summary().missed; }
+
+  bool advance(const HeldPart& part) override {
+    part_.write(part);
+    clock_.wait();
+    countFaults();
+    const LoopView& view = views_.read();
+    if (view.tick > ordered_tick_) known_phase_ = view.phase;  // else it is of before the order
+    haptic_log_.passUpTo(view.tick);
+    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, MeetingKind::Step});
+    look(view);
+    return true;
+  }
+  bool hasSettled(bool is_ready) override {
+    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, MeetingKind::Settled});
+    return is_ready;
+  }
+  OperatorPhase phase() override { return known_phase_; }
+  [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
+  void setPace(double step_s, double period_s, const CouplingGains& gains) override {
+    clock_.setPace(step_s, period_s);
+    if (!loop_.isRunning()) return loop_.loop().setGains(gains);
+    while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kOrderWait);
+  }
+  TickTimes times() override {
+    const TickStatistics::Summary all = loop_.statistics().summary();
+    return timesOf(all.tick, all.missed);
+  }
+  std::optional<RealTimeResult> realTime() override;
+
+ protected:
+  void order(MeetingKind what) override {
+    order_.store(what, std::memory_order_release);
+    while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
+      std::this_thread::sleep_for(kOrderWait);
+    if (!loop_.isRunning()) obeyOrder(loop_.loop());  // nobody else would
+    known_phase_ = ordered_phase_;
+    haptic_log_.passThrough(what);
+  }
+  void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
+
+ private:
+  static constexpr MeetingKind kNoOrder = MeetingKind::Tick;
+
+  // The loop's thread from here on, while it runs.
+  void meet(const HapticLoop& loop, MeetingKind kind, std::int64_t periods = 1, std::int32_t snapshot = 0) {
+    haptic_log_.add(Meeting{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
+                            static_cast<std::int32_t>(periods), snapshot, kind});
+  }
+  void obeyOrder(HapticLoop& loop) {
+    const MeetingKind what = order_.load(std::memory_order_acquire);
+    if (what == kNoOrder) return;
+    obey(loop, what);
+    meet(loop, what);
+    ordered_phase_ = hand_.phase();
+    phase_.store(ordered_phase_);
+    ordered_tick_ = static_cast<std::int32_t>(loop.ticks());
+    order_.store(kNoOrder, std::memory_order_release);
+  }
+  void beforeTick(HapticLoop& loop, std::int64_t periods) {
+    obeyOrder(loop);
+    const PhysicsSnapshot& snapshot = snapshots_.read();
+    show(loop, port_, snapshot);
+    const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
+    haptic_log_.add(Meeting{loop.last().time_s, tick, static_cast<std::int32_t>(periods), snapshot.number,
+                            MeetingKind::Tick});
+  }
+
+  LoopSettings told(LoopSettings settings) {
+    settings.events = &events_;
+    return settings;
+  }
+  RealTimeSettings realTimeSettings() {
+    RealTimeSettings settings;
+    settings.stale_s = 2 * physics_s_;
+    settings.physics_limit_s = physicsLimit_s(physics_s_);
+    settings.before = [this](HapticLoop& loop, std::int64_t periods) { beforeTick(loop, periods); };
+    settings.beside = [this](HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
+    return settings;
+  }
+
+  // The simulated device and hand go on as far as time did, in steps they are made for.
+  void moveHand(HapticLoop& loop, double dt_s) {
+    const HeldPart& part = part_.read();
+    const double period_s = loop.settings().period_s;
+    const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
+    for (int i = 0; i < steps; ++i) hand_.step(part, loop, period_s);
+    phase_.store(hand_.phase());
+    views_.write(LoopView::of(loop, hand_.phase()));
+  }
+
+  // The physics thread.
+  void countFaults() {
+    for (DeviceEvent event; events_.pop(event);) result_.faults += severityOf(event.kind) == Severity::Fault;
+  }
+
+  CouplingPort& port_;
+  double physics_s_;
+  DeviceEventQueue events_;
+  HapticLog haptic_log_;
+  TappedDevice tapped_;
+  TripleBuffer<HeldPart> part_;
+  TripleBuffer<PhysicsSnapshot> snapshots_;
+  TripleBuffer<LoopView> views_;
+  std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
+  OperatorPhase known_phase_ = OperatorPhase::Idle;  ///< as of the last look or order
+  std::atomic<MeetingKind> order_{kNoOrder};
+  std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
+  OperatorPhase ordered_phase_ = OperatorPhase::Idle;  ///< after it, likewise
+  RealTimeResult result_;
+  RealTimeLoop loop_;
+  PhysicsClock clock_;
+};
+
+std::optional<RealTimeResult> RealTimeSide::realTime() {
+  countFaults();
+  const TickStatistics::Summary all = loop_.statistics().summary();
+  RealTimeResult result = result_;
+  result.physics_missed = clock_.missed();
+  result.behind_s = clock_.behind_s();
+  result.late = timesOf(all.late, 0);
+  result.response = timesOf(all.response, 0);
+  for (int i = 0; i < kTickCauses; ++i)
+    result.missed_by.push_back(
+        {toText(static_cast<TickCause>(i)), all.missed_by[static_cast<std::size_t>(i)]});
+  result.stale_ticks = all.stale;
+  result.worst_tick = all.worst.tick;
+  result.worst_us = microseconds(all.worst.response_ns());
+  result.worst_cause = toText(all.worst.cause());
+  return result;
+}
+
+}  // namespace
+
+double physicsLimit_s(double physics_s) {
+  return std::max(RealTimeSettings{}.physics_limit_s, 10 * physics_s);
+}
+
+std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
+                                         double physics_s, const TellFault& tell, RunLog* log) {
+  return std::make_unique<RealTimeSide>(hand, port, settings, physics_s, tell, log);
+}
+
+}  // namespace vps

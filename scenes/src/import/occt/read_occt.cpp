@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
+#include <cctype>
+#include <map>
+#include <mutex>
+
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESControl_Controller.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDF_Tool.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+
+#include "import/readers.h"
+#include "import/occt/shape_mesh.h"
+#include "vps/load_error.h"
+
+namespace vps::import {
+namespace {
+
+using Color = std::array<float, 3>;
+
+/// Takes Open CASCADE's console printers away for a scope.
+class Quiet {
+ public:
+  Quiet() : printers_(Message::DefaultMessenger()->Printers()) {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+  }
+  ~Quiet() { Message::DefaultMessenger()->ChangePrinters() = printers_; }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  Message_SequenceOfPrinters printers_;
+};
+
+/// A document, closed when it goes.
+class Document {
+ public:
+  Document() { XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document_); }
+  ~Document() { XCAFApp_Application::GetApplication()->Close(document_); }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+  [[nodiscard]] Handle(TDocStd_Document) & get() { return document_; }
+
+ private:
+  Handle(TDocStd_Document) document_;
+};
+
+Eigen::Affine3d affine(const gp_Trsf& t) {
+  Eigen::Affine3d X = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) X(row, column) = t.Value(row + 1, column + 1);
+  }
+  return X;
+}
+
+/// The label's name, or nothing where it says nothing: Open CASCADE's own paths and counters of other
+/// writers.
+std::string nameOf(const TDF_Label& label) {
+  Handle(TDataStd_Name) attribute;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), attribute)) return "";
+  const TCollection_AsciiString utf8(attribute->Get());
+  std::string name = utf8.ToCString();
+  if (name.starts_with("=>[")) return "";
+  const std::size_t digits = name.find_first_of("0123456789");
+  const bool is_counter = digits != std::string::npos &&
+                          name.find_first_not_of("0123456789", digits) == std::string::npos &&
+                          (digits == 0 || name.compare(0, digits, "NAUO") == 0);
+  return is_counter ? "" : name;
+}
+
+/// Walks an assembly's tree to its leaves and meshes each product once.
+class Tree {
+ public:
+  Tree(const Handle(TDocStd_Document) & document, const ImportSettings& settings, const Progress& progress,
+       RawCad& cad)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        settings_(settings),
+        progress_(progress),
+        cad_(cad) {}
+
+  void walk() {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) count(root);
+    for (const TDF_Label& root : roots) {
+      // A lone shape may carry a location of its own.
+      const Color* none = nullptr;
+      visit(root, "", Eigen::Affine3d::Identity(), none);
+    }
+  }
+
+ private:
+  struct Piece {
+    Mesh mesh;
+    Color color;
+    bool has_color;
+  };
+
+  /// Calls f(component) for each component of an assembly.
+  template <class F>
+  static void forComponents(const TDF_Label& assembly, F f) {
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(assembly, components);
+    for (const TDF_Label& component : components) f(component);
+  }
+
+  static TDF_Label referred(const TDF_Label& label) {
+    TDF_Label target;
+    return XCAFDoc_ShapeTool::GetReferredShape(label, target) ? target : label;
+  }
+
+  void count(const TDF_Label& label) {
+    const TDF_Label product = referred(label);
+    if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+      forComponents(product, [&](const TDF_Label& component) { count(component); });
+    } else {
+      ++leaf_count_;
+    }
+  }
+
+  void visit(const TDF_Label& label, const std::string& name_above, const Eigen::Affine3d& X_WParent,
+             const Color* color_above) {
+    const TDF_Label product = referred(label);
+    std::string name = nameOf(label);
+    if (name.empty()) name = nameOf(product);
+    if (name.empty()) name = name_above;
+    const Eigen::Affine3d X_WP =
+        label == product ? X_WParent
+                         : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
+    Color own{};
+    // The instance's colour hides its product's, and a colour above hides both only where they have none.
+    const bool has_own = colorOf(label, own) || colorOf(product, own);
+    const Color* color = has_own ? &own : color_above;
+    if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+      forComponents(product, [&](const TDF_Label& component) { visit(component, name, X_WP, color); });
+      return;
+    }
+    if (progress_) progress_("meshing " + name, double(leaf_done_++) / double(leaf_count_));
+    for (const Piece& piece : piecesOf(product)) {
+      RawPart part;
+      part.name = name;
+      part.mesh = piece.mesh;
+      part.X_WP = X_WP;
+      if (piece.has_color) part.color = piece.color;
+      if (color) part.color = *color;
+      cad_.parts.push_back(std::move(part));
+    }
+  }
+
+  const std::vector<Piece>& piecesOf(const TDF_Label& product) {
+    TCollection_AsciiString entry;
+    TDF_Tool::Entry(product, entry);
+    const auto [it, is_new] = products_.try_emplace(entry.ToCString());
+    if (!is_new) return it->second;
+    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product))) {
+      Piece piece;
+      piece.has_color = colorOf(shape, piece.color);
+      piece.mesh = meshOf(shape, settings_, 1 / cad_.unit_m);
+      it->second.push_back(std::move(piece));
+    }
+    return it->second;
+  }
+
+  static Color linear(const Quantity_Color& c) { return {float(c.Red()), float(c.Green()), float(c.Blue())}; }
+
+  bool colorOf(const TDF_Label& label, Color& out) const {
+    Quantity_Color c;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorGen, XCAFDoc_ColorSurf}) {
+      if (!colors_->GetColor(label, type, c)) continue;
+      out = linear(c);
+      return true;
+    }
+    return false;
+  }
+
+  /// The solid's colour, or that of its first face that has one.
+  bool colorOf(const TopoDS_Shape& shape, Color& out) const {
+    const auto has = [&](const TopoDS_Shape& s) {
+      Quantity_Color c;
+      for (const XCAFDoc_ColorType type : {XCAFDoc_ColorGen, XCAFDoc_ColorSurf}) {
+        if (!colors_->GetColor(s, type, c)) continue;
+        out = linear(c);
+        return true;
+      }
+      return false;
+    };
+    if (has(shape)) return true;
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      if (has(it.Current())) return true;
+    }
+    return false;
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colors_;
+  const ImportSettings& settings_;
+  const Progress& progress_;
+  RawCad& cad_;
+  std::map<std::string, std::vector<Piece>> products_;
+  std::size_t leaf_count_ = 0, leaf_done_ = 0;
+};
+
+LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
+  return {file, "", "not a readable " + format + " file (" + why + "); export it again"};
+}
+
+/// Refuses a file with entities that could not be read: Open CASCADE goes on with null pointers in their
+/// place, and crashes on some of them (7.6.3: a face bound without its loop).
+void requireIntact(const Handle(Interface_InterfaceModel) & model, const std::string& file,
+                   const std::string& format) {
+  std::string first;
+  int damaged = 0;
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    if (!model->IsErrorEntity(i)) continue;
+    if (damaged++ == 0 && model->Check(i, true)->HasFailed()) first = model->Check(i, true)->CFail(1);
+  }
+  const Handle(Interface_Check) global = model->GlobalCheck(true);
+  if (damaged == 0 && !global->HasFailed()) return;
+  if (first.empty() && global->HasFailed()) first = global->CFail(1);
+  for (char& c : first) c = c == '\n' ? ' ' : c;
+  throw unreadable(file, format, std::to_string(damaged) + " entities are damaged; the first: " + first);
+}
+
+const XSControl_Reader& basic(const STEPCAFControl_Reader& reader) {
+  return reader.Reader();
+}
+const XSControl_Reader& basic(const IGESCAFControl_Reader& reader) {
+  return reader;
+}
+
+template <class Reader>
+void transfer(Reader& reader, const std::string& file, const std::string& format,
+              const Handle(TDocStd_Document) & document) {
+  reader.SetNameMode(true);
+  reader.SetColorMode(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
+    throw unreadable(file, format, "its syntax is wrong");
+  requireIntact(basic(reader).Model(), file, format);
+  Handle(TDocStd_Document) target = document;
+  if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
+}
+
+RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
+            const Progress& progress) {
+  RawCad cad;
+  cad.unit_m = 1e-3;  // both readers convert what the file says to mm
+  if (format == "BREP") {
+    if (!settings.unit_m) {
+      throw LoadError(file, "",
+                      "BREP files do not say their unit; set unit = \"mm\" in the scene or give --units mm");
+    }
+    cad.unit_m = *settings.unit_m;
+    TopoDS_Shape shape;
+    if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull()) {
+      throw unreadable(file, format, "its syntax is wrong");
+    }
+    for (const TopoDS_Shape& piece : pieces(shape)) {
+      RawPart part;
+      part.mesh = meshOf(piece, settings, 1 / cad.unit_m);
+      cad.parts.push_back(std::move(part));
+    }
+    return cad;
+  }
+  Document document;
+  if (format == "STEP") {
+    STEPCAFControl_Controller::Init();  // the static below exists only from here on
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    STEPCAFControl_Reader reader;
+    transfer(reader, file, format, document.get());
+  } else {
+    IGESControl_Controller::Init();
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    IGESCAFControl_Reader reader;
+    transfer(reader, file, format, document.get());
+  }
+  Tree(document.get(), settings, progress, cad).walk();
+  return cad;
+}
+
+}  // namespace
+
+RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
+                const Progress& progress) {
+  static std::mutex one_at_a_time;  // its settings and messages are global
+  const std::lock_guard lock(one_at_a_time);
+  const Quiet quiet;
+  try {
+    return read(file, format, settings, progress);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const Standard_Failure& e) {
+    throw unreadable(file, format, e.GetMessageString());
+  } catch (const std::exception& e) {
+    throw unreadable(file, format, e.what());
+  }
+}
+
+}  // namespace vps::import

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "judge/overlap_judge.h"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+
+#include "vps/query.h"
+#include "vps/sharp_edges.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kSharp_rad = 0.35;  // as pointshells take it: about 20 degrees
+
+struct Deepest {
+  double depth_m = 0;
+  Vec3 p_S = Vec3::Zero();  // in the solid's frame
+};
+
+void keep(Deepest& deepest, double depth_m, const Vec3& p_S) {
+  if (depth_m > deepest.depth_m) deepest = {depth_m, p_S};
+}
+
+/// Exact signed distance, known to be no greater than most_m in size: the search need not go farther.
+double signedDistance(const FitBody& solid, const Vec3& p_S, double most_m) {
+  return solid.distance->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
+}
+
+/// Deepest point of segment ab in the solid, to kCertain_m.
+Deepest deepestOnSegment(const FitBody& solid, const Vec3& a, const Vec3& b) {
+  // Signed distance f is 1-Lipschitz: on a segment it is at least (f(a) + f(b) - |ab|) / 2.
+  struct Piece {
+    Vec3 a, b;
+    double f_a, f_b;
+  };
+  Deepest deepest;
+  std::array<Piece, 64> stack;  // halving to kCertain_m: a depth of 64 would be 10^13 m long
+  std::size_t count = 0;
+  const double f_a = solid.distance->signedDistance(a),
+               f_b = signedDistance(solid, b, std::abs(f_a) + (b - a).norm());
+  keep(deepest, -f_a, a);
+  keep(deepest, -f_b, b);
+  stack[count++] = {a, b, f_a, f_b};
+  while (count > 0) {
+    const Piece piece = stack[--count];
+    const double length_m = (piece.b - piece.a).norm();
+    if (0.5 * (piece.f_a + piece.f_b - length_m) >= -deepest.depth_m - ExactFit::kCertain_m) continue;
+    if (count + 2 > stack.size()) continue;
+    const Vec3 m = 0.5 * (piece.a + piece.b);
+    const double f_m =
+        signedDistance(solid, m, std::min(std::abs(piece.f_a), std::abs(piece.f_b)) + 0.5 * length_m);
+    keep(deepest, -f_m, m);
+    stack[count++] = {piece.a, m, piece.f_a, f_m};
+    stack[count++] = {m, piece.b, f_m, piece.f_b};
+  }
+  return deepest;
+}
+
+/// Can no point of segment ab be inside, by the field's proven bound?
+bool isSurelyOutside(const FitBody& solid, const Vec3& a, const Vec3& b) {
+  return solid.map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
+}
+
+Deepest deepestEdge(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+  std::vector<FitEdge> near;
+  for (const FitEdge& edge : *other.edges) {
+    const FitEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
+    if (!isSurelyOutside(solid, edge_S.a, edge_S.b)) near.push_back(edge_S);
+  }
+  std::vector<Deepest> found(near.size());
+  tbb::parallel_for(std::size_t{0}, near.size(),
+                    [&](std::size_t i) { found[i] = deepestOnSegment(solid, near[i].a, near[i].b); });
+  Deepest deepest;
+  for (const Deepest& d : found) keep(deepest, d.depth_m, d.p_S);
+  return deepest;
+}
+
+Deepest deepestPoint(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+  // Whatever is inside by exact distance reads less than the field's greatest error.
+  QueryOptions options;
+  options.cutoff_m = solid.map->sampleError_m();
+  ContactSet candidates(other.shell->size());
+  queryContacts(*solid.map, *other.shell, X_SO, options, candidates);
+
+  std::vector<double> depths(candidates.contacts.size());
+  tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t i) {
+    const Contact& contact = candidates.contacts[i];
+    // Deeper than the band the field has no number: then search without bound.
+    const bool is_in_band = std::abs(contact.distance_m) < solid.map->band_m();
+    const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.map->sampleError_m() : 1e3;
+    depths[i] = -signedDistance(solid, X_SO * other.shell->points[contact.id], most_m);
+  });
+  Deepest deepest;
+  for (std::size_t i = 0; i < depths.size(); ++i) keep(deepest, depths[i], candidates.contacts[i].p_M);
+  return deepest;
+}
+
+Deepest deepestIn(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+  Deepest deepest = deepestPoint(solid, other, X_SO);
+  const Deepest on_edge = deepestEdge(solid, other, X_SO);
+  keep(deepest, on_edge.depth_m, on_edge.p_S);
+  return deepest;
+}
+
+}  // namespace
+
+FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distance) {
+  const Mesh& mesh = distance->mesh();
+  std::vector<FitEdge> edges;
+  for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
+    edges.push_back({mesh.vertices[a], mesh.vertices[b]});
+  return {part.name, part.map, part.shell, std::move(distance),
+          std::make_shared<const std::vector<FitEdge>>(std::move(edges))};
+}
+
+void ExactFit::mount(FitBody body, const Pose& X_WB) {
+  mounted_.push_back({std::move(body), X_WB});
+}
+
+Penetration ExactFit::deepest(const FitBody& moving, const Pose& X_WP) const {
+  Penetration worst;
+  const auto consider = [&](const Deepest& found, const Pose& X_WS, std::size_t mounted) {
+    if (found.depth_m > worst.depth_m) worst = {found.depth_m, X_WS * found.p_S, mounted};
+  };
+  for (std::size_t i = 0; i < mounted_.size(); ++i) {
+    const auto& [body, X_WB] = mounted_[i];
+    const Pose X_BP = X_WB.inverse() * X_WP;
+    consider(deepestIn(body, moving, X_BP), X_WB, i);
+    consider(deepestIn(moving, body, X_BP.inverse()), X_WP, i);
+  }
+  return worst;
+}
+
+double ExactFit::fieldDepth_m(const FitBody& moving, const Pose& X_WP) const {
+  double least_m = 0;
+  for (const auto& [body, X_WB] : mounted_) {
+    const Pose X_BP = X_WB.inverse() * X_WP;
+    for (const QueryResult& result : {queryDistance(*body.map, *moving.shell, X_BP),
+                                      queryDistance(*moving.map, *body.shell, X_BP.inverse())})
+      if (result.status == Status::Ok) least_m = std::min(least_m, result.min_distance_m);
+  }
+  return -least_m;
+}
+
+}  // namespace vps

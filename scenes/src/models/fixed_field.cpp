@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "models/fixed_field.h"
+
+#include <algorithm>
+
+#include "models/scene_models.h"
+#include "vps/crop.h"
+#include "core/wall_clock.h"
+
+namespace vps {
+
+namespace {
+
+bool isInPlace(const Pose& X_WP) {
+  return X_WP.R.isIdentity(0) && X_WP.p.isZero(0);
+}
+
+/// The first part's field in W: its own map where that lies in W already.
+std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& order) {
+  if (part.map && !order.builds_anew && isInPlace(part.placed.X_WP)) return part.map;
+  VoxMap map = cookVoxMap({{part.mesh, part.placed.X_WP}}, voxMapSettings(order.fidelity));
+  if (part.kept_P.empty()) return std::make_shared<VoxMap>(std::move(map));
+  std::vector<Box> kept_W;
+  for (const Box& box : part.kept_P) kept_W.push_back(moved(box, part.placed.X_WP));
+  return std::make_shared<VoxMap>(croppedVoxMap(map, kept_W));
+}
+
+bool isStopped(const FieldOrder& order) {
+  return order.stop != nullptr && order.stop->load();
+}
+
+std::shared_ptr<const VoxMap> mapOf(const FieldOrder& order) {
+  std::shared_ptr<const VoxMap> map = order.below;
+  for (std::size_t i = map ? order.below_count : 0; i < order.parts.size() && !isStopped(order); ++i) {
+    const FieldPart& part = order.parts[i];
+    map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, PlacedMesh{part.mesh, part.placed.X_WP}))
+              : firstMap(part, order);
+  }
+  return map;
+}
+
+std::shared_ptr<const PointShell> shellOf(const FieldOrder& order) {
+  std::vector<PointShell> cropped;
+  std::vector<const PointShell*> shells;
+  std::vector<Pose> poses;
+  cropped.reserve(order.parts.size());  // pointers stay good
+  for (const FieldPart& part : order.parts) {
+    poses.push_back(part.placed.X_WP);
+    shells.push_back(part.shell.get());
+    if (!order.region_W) continue;
+    const Box region_P = moved(*order.region_W, part.placed.X_WP.inverse());
+    shells.back() = &cropped.emplace_back(croppedShell(*part.shell, {region_P}));
+  }
+  return std::make_shared<PointShell>(mergedShells(shells, poses));
+}
+
+std::shared_ptr<const Mesh> meshOf(const FieldOrder& order) {
+  Mesh mesh;
+  for (const FieldPart& part : order.parts) append(mesh, transformed(*part.mesh, part.placed.X_WP));
+  return std::make_shared<Mesh>(std::move(mesh));
+}
+
+}  // namespace
+
+std::size_t CookedField::memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const {
+  if (!shape) return 0;
+  const VpsModels& models = shape->models();
+  std::size_t bytes = models.map->memoryBytes();
+  for (const auto& map : own)
+    if (map) bytes = std::min(bytes, models.map->memoryBytesBeside(*map));
+  return bytes + (models.shell ? models.shell->memoryBytes() : 0);
+}
+
+CookedField cookField(const FieldOrder& order) {
+  const double begun_s = wallSeconds();
+  CookedField field;
+  field.region_W = order.region_W;
+  VpsModels models;
+  models.map = mapOf(order);
+  if (isStopped(order)) return field;
+  if (order.has_shell) models.shell = shellOf(order);
+  if (order.has_mesh) models.mesh = meshOf(order);
+  for (const FieldPart& part : order.parts) {
+    field.parts.push_back(part.placed);
+    models.surfaces.push_back({part.surface, part.placed.X_WP});
+  }
+  field.shape = std::make_unique<VpsShape>(std::move(models));
+  field.wall_s = wallSeconds() - begun_s;
+  return field;
+}
+
+}  // namespace vps

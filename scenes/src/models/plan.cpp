@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "models/scene_models.h"
+#include "vps/crop.h"
+
+namespace vps {
+
+namespace {
+
+constexpr double kDeviations = 4;        // of the hand's aim: 6 in 100,000 steps miss by more
+constexpr double kPeakOverMean = 1.875;  // of a minimum-jerk reach
+constexpr double kSpare_m = 0.5e-3;      // assumed: what the springs give and the path bends
+/// One-sided queries take the smaller body's points. Within this ratio of sizes both are modelled, since the
+/// bridge's boxes lie along other axes than ours.
+constexpr double kClearlySmaller = 2;
+
+double margin_m(const Scene& scene, const Box& part) {
+  const OperatorSettings& hand = scene.hand;
+  const VoxMapSettings map = voxMapSettings(scene.fidelity);
+  // What placed_parts.h asks for ahead of a part that moves as fast as a hand that reaches, at its fastest.
+  const double ahead_m = 2 * kPeakOverMean * hand.speed_m_s / scene.fidelity.physics_rate_hz;
+  return map.band_voxels * map.voxel_m + kSpare_m + ahead_m +
+         kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
+}
+
+Box pathOf(const SceneStep& step, const Box& part) {
+  Box path;
+  const auto add = [&](const Pose& X_WP) {
+    const Box at = moved(part, X_WP);
+    path.add(at.min);
+    path.add(at.max);
+  };
+  add(step.X_WP_start);
+  for (const Pose& X_WP : step.way_points) add(X_WP);
+  add(step.X_WP_target);
+  return path;
+}
+
+/// Decides for one scene. Lives as long as the decision.
+class Planner {
+ public:
+  Planner(const Scene& scene, PlanFor purpose) : scene_(scene) {
+    plan_.purpose = purpose;
+    plan_.parts.resize(scene.parts.size());
+    for (const ScenePart& part : scene.parts) boxes_.push_back(bounds(part.part.mesh));
+  }
+
+  Plan everything() {
+    planEverything();
+    return std::move(plan_);
+  }
+
+  Plan sharing() {
+    planEverything();
+    shareEqual();
+    return std::move(plan_);
+  }
+
+  Plan spared() {
+    planSteps(true);
+    for (std::size_t i = 0; i < plan_.parts.size(); ++i) planPart(i);
+    shareEqual();
+    return std::move(plan_);
+  }
+
+ private:
+  [[nodiscard]] bool isAssembly() const { return plan_.purpose == PlanFor::Assemble; }
+
+  void planEverything() {
+    plan_.models_everything = true;
+    for (PlannedPart& part : plan_.parts) part = {true, true, {}, {}, "everything is modelled"};
+    planSteps(false);
+  }
+
+  void planSteps(bool is_spared) {
+    if (!isAssembly()) return planSimulation();
+    std::vector<std::size_t> placed;
+    std::vector<Pose> X_WP(scene_.parts.size());
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+      if (scene_.parts[i].is_fixed) {
+        placed.push_back(i);
+        X_WP[i] = scene_.parts[i].X_WP;
+      }
+    for (const SceneStep& step : scene_.steps) {
+      PlannedStep& planned = plan_.steps.emplace_back();
+      planned.part = step.part;
+      if (is_spared)
+        planned.region_W = grown(pathOf(step, boxes_[step.part]), margin_m(scene_, boxes_[step.part]));
+      for (const std::size_t i : placed) {
+        const bool is_met = !planned.region_W || overlap(moved(boxes_[i], X_WP[i]), *planned.region_W);
+        (is_met ? planned.cooked : planned.left_out).push_back(i);
+      }
+      planned.has_shell = !is_spared || needsFieldShell(step.part, planned.cooked);
+      planned.why = planned.has_shell ? "" : "one-sided: the moving part's points are the smaller body's";
+      placed.push_back(step.part);
+      X_WP[step.part] = step.X_WP_target;
+    }
+  }
+
+  void planSimulation() {
+    PlannedStep& planned = plan_.steps.emplace_back();
+    bool has_moving = false;
+    for (const ScenePart& part : scene_.parts) has_moving = has_moving || !part.is_fixed;
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+      if (scene_.parts[i].is_fixed)
+        (has_moving || plan_.models_everything ? planned.cooked : planned.left_out).push_back(i);
+    if (plan_.models_everything) return;
+    planned.has_shell = false;
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+      if (!scene_.parts[i].is_fixed) planned.has_shell |= needsFieldShell(i, planned.cooked);
+  }
+
+  /// Whether points of what is fixed are ever looked at against this part's map.
+  [[nodiscard]] bool needsFieldShell(std::size_t part, const std::vector<std::size_t>& cooked) const {
+    if (scene_.fidelity.sides == Sides::Both) return true;
+    double fixed_m = 0;
+    for (const std::size_t i : cooked) fixed_m = std::max(fixed_m, boxes_[i].size().norm());
+    return fixed_m < kClearlySmaller * boxes_[part].size().norm();
+  }
+
+  void planPart(std::size_t i) {
+    PlannedPart& part = plan_.parts[i];
+    if (!isAssembly()) return planFree(i, part);
+    if (scene_.parts[i].is_fixed) return planFixed(i, part);
+    for (std::size_t s = 0; s < scene_.steps.size(); ++s) {
+      if (scene_.steps[s].part != i) continue;
+      part.has_map = part.has_shell = true;
+      part.why = "moves in step " + std::to_string(s + 1) + servesLater(i, s);
+      return;
+    }
+    part.why = "no step moves it and it is not fixed: nobody can touch it, so it is for pictures only";
+  }
+
+  /// For which later steps a part that was mounted is cooked.
+  [[nodiscard]] std::string servesLater(std::size_t i, std::size_t moved_in) const {
+    std::string steps;
+    for (std::size_t s = moved_in + 1; s < plan_.steps.size(); ++s)
+      if (std::ranges::count(plan_.steps[s].cooked, i) > 0)
+        steps += (steps.empty() ? "" : ", ") + std::to_string(s + 1);
+    return steps.empty() ? "; touched by no later step, so never cooked" : "; then cooked, for step " + steps;
+  }
+
+  void planFixed(std::size_t i, PlannedPart& part) {
+    const Pose X_PW = scene_.parts[i].X_WP.inverse();
+    for (const PlannedStep& step : plan_.steps)
+      if (std::ranges::count(step.cooked, i) > 0) part.kept_P.push_back(moved(*step.region_W, X_PW));
+    part.has_map = part.has_shell = !part.kept_P.empty();
+    part.why = part.has_map ? "fixed: cooked, where a moving part may come"
+                            : "fixed, but no moving part comes near: nobody can touch it";
+  }
+
+  void planFree(std::size_t i, PlannedPart& part) {
+    const PlannedStep& all = plan_.steps.front();
+    if (scene_.parts[i].is_fixed) {
+      const bool is_cooked = std::ranges::count(all.cooked, i) > 0;
+      part.has_shell = is_cooked && all.has_shell;
+      part.why =
+          is_cooked ? "fixed: straight into the cooked field" : "nothing moves, so nobody can touch it";
+      return;
+    }
+    std::size_t others = 0;
+    for (std::size_t j = 0; j < scene_.parts.size(); ++j) others += j != i && !scene_.parts[j].is_fixed;
+    part.has_shell = true;
+    part.has_map = others > 0 || all.has_shell;
+    part.why = part.has_map ? "moves freely" : "moves freely, one-sided: its points alone are looked at";
+  }
+
+  void shareEqual() {
+    for (std::size_t i = 0; i < plan_.parts.size(); ++i)
+      for (std::size_t j = 0; j < i && !plan_.parts[i].same_as; ++j) share(i, j);
+  }
+
+  void share(std::size_t i, std::size_t j) {
+    PlannedPart &a = plan_.parts[j], &b = plan_.parts[i];
+    const bool is_modelled = (a.has_map || a.has_shell) && (b.has_map || b.has_shell);
+    if (!is_modelled || a.same_as || !isEqualGeometry(scene_.parts[i].part.mesh, scene_.parts[j].part.mesh))
+      return;
+    a.has_map = b.has_map = a.has_map || b.has_map;
+    a.has_shell = b.has_shell = a.has_shell || b.has_shell;
+    a.kept_P.clear();  // whole, for the one that moves
+    b.kept_P.clear();
+    b.same_as = j;
+  }
+
+  const Scene& scene_;
+  Plan plan_;
+  std::vector<Box> boxes_;  ///< of the parts, each in its frame
+};
+
+}  // namespace
+
+Plan makeSharingPlan(const Scene& scene) {
+  return Planner(scene, PlanFor::Assemble).sharing();
+}
+
+Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything) {
+  Planner planner(scene, purpose);
+  return models_everything ? planner.everything() : planner.spared();
+}
+
+}  // namespace vps

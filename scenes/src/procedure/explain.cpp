@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/explain.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "models/scene_models.h"
+#include "simulation/simulation.h"
+#include "core/wall_clock.h"
+
+namespace vps {
+
+namespace {
+
+std::vector<PartCost> costOf(const Scene& scene, const Plan& plan, const std::vector<BuildTimes>& times) {
+  std::vector<PartCost> costs(scene.parts.size());
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    if (plan.parts[i].same_as) continue;
+    const Part& part = scene.parts[i].part;
+    costs[i].map_wall_s = times[i].map_wall_s;
+    costs[i].shell_wall_s = times[i].shell_wall_s;
+    if (part.map) costs[i].map_bytes = part.map->memoryBytes();
+    if (!part.shell) continue;
+    costs[i].shell_bytes = part.shell->memoryBytes();
+    costs[i].points = part.shell->size();
+  }
+  return costs;
+}
+
+/// Where the parts that are cooked for a step lie by then.
+class Placed {
+ public:
+  explicit Placed(const Scene& scene) {
+    for (const ScenePart& part : scene.parts) X_WP_.push_back(part.X_WP);
+    for (const SceneStep& step : scene.steps) X_WP_[step.part] = step.X_WP_target;
+  }
+  /// What the field holds already, then what the step adds.
+  [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const PlannedStep& step) const {
+    for (const std::size_t i : step.cooked)
+      if (std::ranges::none_of(parts, [i](const FixedPart& placed) { return placed.part == i; }))
+        parts.push_back({i, X_WP_[i]});
+    return parts;
+  }
+
+ private:
+  std::vector<Pose> X_WP_;
+};
+
+void cookSteps(const Scene& scene, const Plan& plan, const ModelOptions& options, PlanCost& cost) {
+  Simulation simulation(scene, plan);
+  const Placed placed(scene);
+  const ModelledCost own = cost.most;
+  for (std::size_t s = 0; s < plan.steps.size(); ++s) {
+    if (options.progress)
+      options.progress("cooking for step " + std::to_string(s + 1),
+                       static_cast<double>(s) / static_cast<double>(plan.steps.size()));
+    StepCost& step = cost.steps.emplace_back();
+    const std::vector<FixedPart> parts = placed.add(simulation.field().parts, plan.steps[s]);
+    if (simulation.needsField(parts, plan.steps[s])) {
+      CookedField field = cookField(simulation.orderField(parts, plan.steps[s]));
+      step.is_cooked = true;
+      step.cook_wall_s = field.wall_s;
+      cost.cook_wall_s += field.wall_s;
+      simulation.setField(std::move(field), parts.front().part);
+    }
+    ModelledCost with_field = own;
+    simulation.addField(with_field);
+    step.bytes = with_field.bytes - own.bytes;
+    step.points = with_field.field_points;
+    if (with_field.bytes > cost.most.bytes) cost.most = with_field;
+  }
+}
+
+}  // namespace
+
+ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options) {
+  ExplainedPlan explained;
+  explained.plan = makePlan(scene, purpose, options.models_everything);
+  const double begun_s = wallSeconds();
+  const std::vector<BuildTimes> times = buildModels(scene, explained.plan, options);
+  explained.cost.build_wall_s = wallSeconds() - begun_s;
+  explained.cost.parts = costOf(scene, explained.plan, times);
+  explained.cost.most = modelledCost(scene);
+  cookSteps(scene, explained.plan, options, explained.cost);
+  return explained;
+}
+
+PartUse useOf(const Plan& plan, std::size_t part, std::size_t step) {
+  const PlannedStep& planned = plan.steps[step];
+  if (std::ranges::count(planned.cooked, part) > 0) return PartUse::Cooked;
+  if (std::ranges::count(planned.left_out, part) > 0) return PartUse::LeftOut;
+  if (planned.part ? *planned.part == part : plan.parts[part].has_shell) return PartUse::Moves;
+  return PartUse::Absent;
+}
+
+}  // namespace vps

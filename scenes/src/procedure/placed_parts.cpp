@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/placed_parts.h"
+
+#include <algorithm>
+
+#include "models/scene_models.h"
+#include "vps/crop.h"
+
+namespace vps {
+
+PlacedParts::PlacedParts(Scene& scene, Plan& plan, Simulation& simulation, const ModelOptions& options)
+    : scene_(scene),
+      plan_(plan),
+      simulation_(simulation),
+      options_(options),
+      fit_bodies_(scene.parts.size()),
+      modelled_(modelledCost(scene)) {}
+
+void PlacedParts::addToFit(std::size_t part) {
+  const auto placed = std::ranges::find(placed_, part, &FixedPart::part);
+  if (scene_.parts[part].part.shell) fit_.mount(fitBody(part), placed->X_WP);
+}
+
+const FitBody& PlacedParts::fitBody(std::size_t part) {
+  std::optional<FitBody>& body = fit_bodies_[part];
+  if (!body) body = makeFitBody(scene_.parts[part].part, simulation_.surface(part));
+  return *body;
+}
+
+std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step) {
+  const bool is_past_last = step >= plan_.steps.size();
+  if (is_past_last && !plan_.models_everything) return {};
+  const PlannedStep& planned = plan_.steps[std::min(step, plan_.steps.size() - 1)];
+  std::vector<FixedPart> parts = simulation_.field().parts;
+  for (const FixedPart& placed : placed_) {
+    if (std::ranges::find(parts, placed.part, &FixedPart::part) != parts.end()) continue;
+    const Box box_W = moved(bounds(scene_.parts[placed.part].part.mesh), placed.X_WP);
+    if (!planned.region_W || overlap(box_W, *planned.region_W)) parts.push_back(placed);
+  }
+  if (!simulation_.needsField(parts, planned)) return {};
+  return simulation_.orderField(parts, planned);
+}
+
+void PlacedParts::setField(CookedField field) {
+  simulation_.setField(std::move(field), placed_.front().part);
+  ModelledCost cost = modelledCost(scene_);
+  simulation_.addField(cost);
+  if (cost.bytes > modelled_.bytes) modelled_ = cost;
+}
+
+bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP, const Twist& V_W,
+                            double dt_s) const {
+  const std::optional<Box>& region_W = plan_.steps[step].region_W;
+  if (!region_W || placed_.empty()) return true;
+  const VoxMapSettings map = voxMapSettings(scene_.fidelity);
+  const double farthest_m = box_P.size().norm() + box_P.center().norm();
+  const double speed_m_s = V_W.v.norm() + V_W.w.norm() * farthest_m;
+  // Twice: it may gather speed within the step.
+  const double reach_m = map.band_voxels * map.voxel_m + 2 * speed_m_s * dt_s;
+  return isWithin(grown(moved(box_P, X_WP), reach_m), *region_W);
+}
+
+void PlacedParts::widen(std::size_t step) {
+  ++widened_;
+  ModelOptions options;
+  options.cache = options_.cache;  // neither progress nor warnings: both were told of loading
+  buildWhole(scene_, plan_, options);
+  fit_ = ExactFit();
+  for (const FixedPart& placed : placed_) {
+    if (scene_.parts[placed.part].is_fixed) fit_bodies_[placed.part].reset();
+    addToFit(placed.part);
+  }
+  setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
+}
+
+}  // namespace vps

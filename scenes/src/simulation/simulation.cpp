@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulation/simulation.h"
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "models/scene_models.h"
+#include "vps/crop.h"
+#include "vps/load_error.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/coupling.h"
+#include "vps_bullet/install.h"
+#include "vps_bullet/shape.h"
+#include "vps_bullet/solver.h"
+
+namespace vps {
+
+namespace {
+
+struct DynamicBody {
+  std::unique_ptr<VpsShape> shape;
+  std::unique_ptr<btRigidBody> body;
+  BodyFrame frame;
+};
+
+VpsBulletSettings bulletSettings(const Scene& scene) {
+  const Fidelity& fidelity = scene.fidelity;
+  VpsBulletSettings settings;
+  settings.mode = scene.contact == ContactKind::Compliant ? ContactMode::Penalty : ContactMode::Constraint;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
+    // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
+    if (i == 0 || stiffness < settings.stiffness_N_per_m3) settings.stiffness_N_per_m3 = stiffness;
+  }
+  settings.contact_limit = fidelity.contact_limit;
+  settings.sides = fidelity.sides;
+  settings.gradient = fidelity.gradient;
+  return settings;
+}
+
+VpsSolverSettings solverSettings(const Fidelity& fidelity) {
+  VpsSolverSettings settings;
+  settings.iteration_limit = fidelity.solver_iterations;
+  return settings;
+}
+
+}  // namespace
+
+struct Simulation::World {
+  const Scene& scene;
+  const Plan& plan;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  VpsSolver solver;
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+
+  std::map<std::size_t, VpsModels> models;  // by part; the exact surface is built once
+  std::map<std::size_t, DynamicBody> bodies;
+  std::shared_ptr<const ShellSet> shells;  // in place of the parts' own; null: none
+  double dt_s;                             // of the last step
+  CookedField field;
+  std::unique_ptr<btRigidBody> fixed_body;
+  std::unique_ptr<VpsCoupling> coupling;
+  std::size_t grasped = 0;
+  Pose X_PG;
+
+  World(const Scene& s, const Plan& p)
+      : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
+    installVps(dispatcher, bulletSettings(scene));
+    tuneWorld(world, scene.fidelity.solver_iterations);
+    world.setGravity(toBt(scene.gravity_W));
+  }
+  ~World() {
+    letGo();
+    while (!bodies.empty()) remove(bodies.begin()->first);
+    if (fixed_body) world.removeRigidBody(fixed_body.get());
+    uninstallVps(dispatcher);
+  }
+
+  const VpsModels& modelsOf(std::size_t part) {
+    const std::size_t own = plan.parts[part].same_as.value_or(part);
+    const auto found = models.find(own);
+    return found != models.end() ? found->second
+                                 : models.emplace(own, makeModels(scene.parts[own].part)).first->second;
+  }
+
+  /// The points that a part goes by now.
+  [[nodiscard]] std::shared_ptr<const PointShell> shellOf(std::size_t part) const {
+    return shells && (*shells)[part] ? (*shells)[part] : scene.parts[part].part.shell;
+  }
+
+  void letGo() {
+    if (!coupling) return;
+    world.removeConstraint(coupling.get());
+    coupling.reset();
+  }
+
+  void remove(std::size_t part) {
+    const auto found = bodies.find(part);
+    if (found == bodies.end()) return;
+    if (coupling && grasped == part) letGo();
+    world.removeRigidBody(found->second.body.get());
+    bodies.erase(found);
+  }
+
+  void setMaterial(btRigidBody& body, std::size_t part) const {
+    const Material& material = scene.parts[part].part.material;
+    // Bullet multiplies the two bodies' values. Their roots make it the geometric mean of the two materials',
+    // so that two parts of 0.15 rub with 0.15, as tables of friction mean it.
+    body.setFriction(static_cast<btScalar>(std::sqrt(material.friction)));
+    body.setRestitution(static_cast<btScalar>(material.restitution));
+  }
+};
+
+Simulation::Simulation(const Scene& scene, const Plan& plan) : world_(std::make_unique<World>(scene, plan)) {}
+Simulation::~Simulation() = default;
+
+bool Simulation::needsField(const std::vector<FixedPart>& parts, const PlannedStep& step) const {
+  const CookedField& now = world_->field;
+  if (parts.size() != now.parts.size()) return true;
+  if (parts.empty() || !now.region_W) return false;
+  return !step.region_W || !isWithin(*step.region_W, *now.region_W);
+}
+
+FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const PlannedStep& step,
+                                  bool is_anew) {
+  World& w = *world_;
+  FieldOrder order;
+  order.region_W = step.region_W;
+  order.has_shell = step.has_shell;
+  order.has_mesh = order.builds_anew = w.plan.models_everything;
+  order.fidelity = w.scene.fidelity;
+  for (const FixedPart& placed : parts) {
+    const Part& part = w.scene.parts[placed.part].part;
+    order.parts.push_back({placed, &part.mesh, part.map, w.shellOf(placed.part),
+                           w.modelsOf(placed.part).surfaces.front().distance,
+                           w.plan.parts[placed.part].kept_P});
+  }
+  if (hasFixed() && !is_anew) {
+    order.below = w.field.shape->models().map;
+    order.below_count = w.field.parts.size();
+  }
+  return order;
+}
+
+void Simulation::setField(CookedField field, std::size_t material) {
+  World& w = *world_;
+  for (const FixedPart& placed : field.parts) w.remove(placed.part);
+  if (w.fixed_body) w.world.removeRigidBody(w.fixed_body.get());
+  w.fixed_body.reset();
+  w.field = std::move(field);
+  w.fixed_body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));
+  w.setMaterial(*w.fixed_body, material);
+  w.world.addRigidBody(w.fixed_body.get());
+}
+
+PointsOrder Simulation::orderPoints(std::size_t part) {
+  World& w = *world_;
+  PointsOrder order;
+  if (hasFixed()) {
+    PlannedStep as_it_is;
+    as_it_is.region_W = w.field.region_W;
+    order.field_before = w.field.shape->models().shell;
+    as_it_is.has_shell = order.field_before != nullptr;
+    order.field = orderField(w.field.parts, as_it_is);
+    for (FieldPart& fixed : order.field.parts) fixed.shell = w.scene.parts[fixed.placed.part].part.shell;
+  }
+  const DynamicBody& body = w.bodies.at(part);
+  order.part = part;
+  order.models = w.modelsOf(part);
+  order.part_before = body.shape->models().shell;
+  order.X_SM = body.shape->X_SM();
+  order.X_WP = pose(part);
+  order.sides = w.scene.fidelity.sides;
+  return order;
+}
+
+void Simulation::setPoints(OtherPoints points) {
+  World& w = *world_;
+  w.shells = std::move(points.shells);
+  const auto found = w.bodies.find(points.part);
+  if (found == w.bodies.end() || !points.shape) return;
+  DynamicBody& body = found->second;
+  // Out and in again, so that no pair goes on with points that are gone.
+  w.world.removeRigidBody(body.body.get());
+  std::swap(body.shape, points.shape);
+  body.body->setCollisionShape(body.shape.get());
+  w.world.addRigidBody(body.body.get());
+}
+
+const CookedField& Simulation::field() const {
+  return world_->field;
+}
+
+bool Simulation::hasFixed() const {
+  return world_->field.shape != nullptr;
+}
+
+void Simulation::addBody(std::size_t part, const Pose& X_WP) {
+  World& w = *world_;
+  w.remove(part);
+  const ScenePart& scene_part = w.scene.parts[part];
+  DynamicBody added;
+  const MassProperties mass = massProperties(scene_part.part.mesh);
+  if (!(mass.volume_m3 > 0))
+    throw LoadError(
+        scene_part.file, scene_part.part.name,
+        "its volume is not positive, so it has no mass: the mesh is open or inside out; mend it, or mark the "
+        "part as fixed");
+  added.frame = makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
+  VpsModels models = w.modelsOf(part);
+  models.shell = w.shellOf(part);
+  added.shape = std::make_unique<VpsShape>(std::move(models), added.frame.X_PB.inverse());
+  added.body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
+                                               added.shape.get(), toBt(added.frame.inertia_kg_m2)));
+  added.body->setWorldTransform(toBt(X_WP * added.frame.X_PB));
+  added.body->setInterpolationWorldTransform(added.body->getWorldTransform());
+  added.body->setActivationState(DISABLE_DEACTIVATION);
+  w.setMaterial(*added.body, part);
+  w.world.addRigidBody(added.body.get());
+  w.bodies.emplace(part, std::move(added));
+}
+
+void Simulation::removeBody(std::size_t part) {
+  world_->remove(part);
+}
+
+void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains) {
+  World& w = *world_;
+  w.letGo();
+  DynamicBody& held = w.bodies.at(part);
+  w.coupling = std::make_unique<VpsCoupling>(*held.body, held.frame.X_PB.inverse() * X_PG, gains);
+  w.world.addConstraint(w.coupling.get(), true);
+  w.grasped = part;
+  w.X_PG = X_PG;
+}
+
+void Simulation::release() {
+  world_->letGo();
+}
+
+void Simulation::setGains(const CouplingGains& gains) {
+  if (world_->coupling) world_->coupling->setGains(gains);
+}
+
+void Simulation::setProxy(const CouplingState& proxy) {
+  if (world_->coupling) world_->coupling->setTarget(proxy);
+}
+
+CouplingState Simulation::graspState() const {
+  return world_->coupling ? world_->coupling->partState() : CouplingState{};
+}
+
+void Simulation::step(double dt_s) {
+  world_->dt_s = dt_s;
+  // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
+  world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
+  for (const auto& [part, b] : world_->bodies)
+    if (!fromBt(b.body->getWorldTransform()).isFinite())
+      throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
+                      "its pose is no longer a number; check its mass and size, or take a finer fidelity");
+}
+
+Pose Simulation::pose(std::size_t part) const {
+  const DynamicBody& b = world_->bodies.at(part);
+  return fromBt(b.body->getWorldTransform()) * b.frame.X_PB.inverse();
+}
+
+Twist Simulation::twist(std::size_t part) const {
+  const DynamicBody& b = world_->bodies.at(part);
+  Twist V;
+  V.w = fromBt(b.body->getAngularVelocity());
+  const Vec3 p_BP_W = fromBt(b.body->getWorldTransform()).R * b.frame.X_PB.inverse().p;
+  V.v = fromBt(b.body->getLinearVelocity()) + V.w.cross(p_BP_W);
+  return V;
+}
+
+double Simulation::kineticEnergy() const {
+  double energy_J = 0;
+  for (const auto& [part, b] : world_->bodies) {
+    const Vec3 w_B = fromBt(b.body->getWorldTransform()).R.transpose() * fromBt(b.body->getAngularVelocity());
+    energy_J += 0.5 * b.frame.mass_kg * fromBt(b.body->getLinearVelocity()).squaredNorm() +
+                0.5 * w_B.cwiseProduct(b.frame.inertia_kg_m2).dot(w_B);
+  }
+  return energy_J;
+}
+
+double Simulation::mechanicalEnergy() const {
+  double energy_J = kineticEnergy();
+  for (const auto& [part, b] : world_->bodies)
+    energy_J -= b.frame.mass_kg * world_->scene.gravity_W.dot(fromBt(b.body->getWorldTransform()).p);
+  return energy_J;
+}
+
+double Simulation::mass(std::size_t part) const {
+  return world_->bodies.at(part).frame.mass_kg;
+}
+
+Vec3 Simulation::centreOfMass(std::size_t part) const {
+  return world_->bodies.at(part).frame.X_PB.p;
+}
+
+Mat3 Simulation::inertia(std::size_t part) const {
+  const BodyFrame& frame = world_->bodies.at(part).frame;
+  return frame.X_PB.R * frame.inertia_kg_m2.asDiagonal() * frame.X_PB.R.transpose();
+}
+
+double Simulation::friction(std::size_t part) const {
+  const World& w = *world_;
+  const double fixed = w.fixed_body ? static_cast<double>(w.fixed_body->getFriction()) : 0;
+  return fixed * static_cast<double>(w.bodies.at(part).body->getFriction());
+}
+
+const VoxMap* Simulation::fixedMap() const {
+  return hasFixed() ? world_->field.shape->models().map.get() : nullptr;
+}
+
+std::shared_ptr<const MeshDistance> Simulation::surface(std::size_t part) const {
+  return world_->modelsOf(part).surfaces.front().distance;
+}
+
+namespace {
+
+/// Calls visit(point) for every contact point of the last step.
+template <typename Visit>
+void forEachContact(btCollisionDispatcher& dispatcher, const Visit& visit) {
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    for (int j = 0; j < manifold.getNumContacts(); ++j) visit(manifold.getContactPoint(j));
+  }
+}
+
+}  // namespace
+
+TouchState Simulation::touch() const {
+  TouchState state;
+  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
+    state.depth_m = std::max(state.depth_m, -static_cast<double>(point.getDistance()));
+    if (point.getAppliedImpulse() > 0) ++state.contacts;
+    state.force_N += static_cast<double>(point.getAppliedImpulse()) / world_->dt_s;
+  });
+  return state;
+}
+
+void Simulation::contactMarks(std::vector<ContactMark>& marks) const {
+  marks.clear();
+  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
+    if (point.getAppliedImpulse() <= 0) return;
+    marks.push_back({fromBt(point.getPositionWorldOnB()), fromBt(point.m_normalWorldOnB),
+                     std::max(0.0, -static_cast<double>(point.getDistance()))});
+  });
+}
+
+std::size_t Simulation::contactsLeftOut() const {
+  return vpsStats(world_->dispatcher).left_out;
+}
+
+void Simulation::addField(ModelledCost& cost) const {
+  if (!hasFixed()) return;
+  std::vector<std::shared_ptr<const VoxMap>> own;
+  for (const FixedPart& placed : world_->field.parts)
+    own.push_back(world_->scene.parts[placed.part].part.map);
+  const PointShell* shell = world_->field.shape->models().shell.get();
+  cost.bytes += world_->field.memoryBytes(own);
+  ++cost.voxmaps;
+  cost.pointshells += shell != nullptr;
+  cost.field_points = shell != nullptr ? shell->size() : 0;
+}
+
+}  // namespace vps

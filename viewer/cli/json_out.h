@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Results as JSON, with the keys that other programs rely on: viewer/cli/README.md lists them. Wall-clock
+// figures stand in one object `wall`, so that all else repeats byte for byte. Numbers that are not finite
+// become null.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vps/wrench.h"
+#include "vps_scenes/explain.h"
+#include "vps_scenes/import.h"
+#include "vps_scenes/result.h"
+#include "vps_scenes/simulate.h"
+
+namespace vps {
+
+struct FidelityChoice;
+struct TradeResult;       // vps_scenes/trade.h
+struct DualArmCharacter;  // vps_device/dual_arm_character.h
+struct DualArmFile;
+
+/// What `vps query` found at one pose.
+struct PoseAnswer {
+  Pose X_AB;
+  double min_distance_m = 0;  ///< negative when touching; a lower bound if is_beyond
+  bool is_beyond = false;     ///< nothing within the band
+  bool is_saturated = false;  ///< as deep as the band is wide, or deeper
+  std::size_t contact_count = 0, points_tested = 0;
+  Wrench F_Bo_A;  ///< on B about its origin, in A
+  /// Within a budget: what was left coarse. Both sides together.
+  std::size_t clusters_left = 0;
+  double area_left_m2 = 0, force_error_N = 0;
+  [[nodiscard]] double maxDepth_m() const { return min_distance_m < 0 ? -min_distance_m : 0; }
+};
+
+struct QueryAnswer {
+  std::string mesh_a, mesh_b;
+  std::vector<PoseAnswer> poses;
+  std::size_t points_total = 0, memory_bytes = 0;
+  double voxel_m = 0, point_spacing_m = 0;
+  bool has_budget = false;
+  TickTimes time;
+  double build_wall_s = 0;
+};
+
+/// What `vps import` says of a part.
+struct ImportedPartAnswer {
+  std::string name, file;
+  std::size_t triangles = 0;
+  bool is_closed = false;
+  Vec3 size_m = Vec3::Zero();
+};
+
+struct ImportAnswer {
+  std::string cad, format;
+  std::vector<ImportedPartAnswer> parts;
+  std::vector<std::string> warnings;
+};
+
+struct SnapshotAnswer {
+  std::string scene;
+  int width = 0, height = 0;
+  bool is_compared = false, is_same_size = true;
+  double share_beyond = 0, mean_difference = 0;
+  int greatest_difference = 0, tolerance = 0;
+};
+
+/// What `vps explain` found, beside what everything would cost if that was asked.
+struct ExplainAnswer {
+  Scene scene;
+  ExplainedPlan chosen;
+  std::optional<ExplainedPlan> everything;
+};
+
+std::string toJson(const AssembleResult& result);
+std::string toJson(const std::string& scene, double seconds, const SimulateResult& result);
+std::string toJson(const QueryAnswer& answer);
+std::string toJson(const ImportAnswer& answer);
+std::string toJson(const SnapshotAnswer& answer);
+std::string toJson(const ExplainAnswer& answer);
+std::string toJson(const TradeResult& result);
+std::string toJson(const std::string& scene, const FidelityChoice& choice);
+std::string toJson(const DualArmCharacter& character, const DualArmFile& file);
+
+}  // namespace vps
