@@ -18,7 +18,7 @@ namespace {
 
 using test::Built;
 
-constexpr double kMostGain_m = 20e-6;  // as VpsBulletSettings::slack_m
+constexpr double kMostGain_m = 20e-6;  // as VpsBulletSettings::contact_margin_m
 constexpr double kSpacing_m = 0.5e-3, kBall_m = 5e-3, kBelow_m = 20e-3;
 
 const Built& ball() {
@@ -30,7 +30,7 @@ SideView viewOf(const Built& part, const Pose& X_WP, int side) {
   return {part.shape.get(), X_WP, static_cast<std::uint8_t>(side)};
 }
 
-struct Meeting {
+struct SyncEvent {
   Candidate point;
   FacePoint foot;
 
@@ -40,7 +40,7 @@ struct Meeting {
 };
 
 // A point of a side's shell as correct() leaves one that meets a face flush.
-std::optional<Meeting> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
+std::optional<SyncEvent> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
   const VpsModels& models = side.shape->models();
   const VpsSurface& surface = other.shape->models().surfaces[0];
   const MeshDistance& theirs = *surface.distance;
@@ -55,7 +55,7 @@ std::optional<Meeting> corrected(const SideView& side, const SideView& other, st
   c.p_W = p_W;
   c.n_W = (side.side == 0 ? 1 : -1) * n_W;
   c.distance_m = n_W.dot(p_W - other.X_WM * closest.q);
-  return Meeting{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
+  return SyncEvent{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
 /// Where two faces are nearest, by a formula.
@@ -78,10 +78,10 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
     for (std::uint32_t id = 0; id < side.shape->models().shell->size(); ++id) {
       const Vec3 p_W = side.X_WM * side.shape->models().shell->points[id];
       if ((p_W - truth.p_W).norm() > kSpacing_m || side.shape->isEdgePoint(id)) continue;
-      std::optional<Meeting> meeting = corrected(side, sides[1 - side.side], id);
-      if (!meeting) continue;
-      const bool has_moved = meeting->move(sides);
-      const Candidate* c = &meeting->point;
+      std::optional<SyncEvent> sync_event = corrected(side, sides[1 - side.side], id);
+      if (!sync_event) continue;
+      const bool has_moved = sync_event->move(sides);
+      const Candidate* c = &sync_event->point;
       found.least_gap_m = std::min(found.least_gap_m, c->distance_m);
       if (!has_moved) continue;
       ++found.moved;
@@ -206,10 +206,10 @@ TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
   const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};
   int met = 0;
   for (std::uint32_t id = 0; id < peg.shape->models().shell->size(); ++id) {
-    std::optional<Meeting> meeting = corrected(sides[0], sides[1], id);
-    if (!meeting || peg.shape->isEdgePoint(id)) continue;
+    std::optional<SyncEvent> sync_event = corrected(sides[0], sides[1], id);
+    if (!sync_event || peg.shape->isEdgePoint(id)) continue;
     ++met;
-    EXPECT_FALSE(meeting->move(sides)) << id;
+    EXPECT_FALSE(sync_event->move(sides)) << id;
   }
   EXPECT_GT(met, 100);
 }

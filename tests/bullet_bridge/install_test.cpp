@@ -77,7 +77,7 @@ TEST(Install, RefusesSettingsThatCannotWork) {
   settings.contact_limit = 3;
   EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
   settings = {};
-  settings.slack_m = 0;
+  settings.contact_margin_m = 0;
   EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
   settings = {};
   settings.candidate_limit = settings.contact_limit - 1;

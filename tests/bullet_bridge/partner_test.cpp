@@ -338,9 +338,9 @@ const std::vector<Row>& rows() {
   return all;
 }
 
-class Partner : public testing::TestWithParam<Row> {
+class NativeShapeAdapter : public testing::TestWithParam<Row> {
  protected:
-  Partner() { GetParam().make(ground_); }
+  NativeShapeAdapter() { GetParam().make(ground_); }
   Ground ground_;
 };
 
@@ -362,7 +362,7 @@ struct Points : btCollisionWorld::ContactResultCallback {
   }
 };
 
-TEST_P(Partner, APartRestsOnItAtItsHeight) {
+TEST_P(NativeShapeAdapter, APartRestsOnItAtItsHeight) {
   World world;
   world.addShape(*ground_.shape, 0, Vec3::Zero(), ground_.X_WB);
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, kHalf_m + 0.2e-3)));
@@ -375,7 +375,7 @@ TEST_P(Partner, APartRestsOnItAtItsHeight) {
             1e-6);
 }
 
-TEST_P(Partner, APartRestsOnItInPenaltyModeToo) {
+TEST_P(NativeShapeAdapter, APartRestsOnItInPenaltyModeToo) {
   World world(Solver::Penalty);
   world.addShape(*ground_.shape, 0, Vec3::Zero(), ground_.X_WB);
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, kHalf_m + 0.2e-3)));
@@ -388,7 +388,7 @@ TEST_P(Partner, APartRestsOnItInPenaltyModeToo) {
   EXPECT_LE(body.getLinearVelocity().length(), 1e-4);
 }
 
-TEST_P(Partner, QueriesGiveItsDepthAndOppositeNormalsInBothOrders) {
+TEST_P(NativeShapeAdapter, QueriesGiveItsDepthAndOppositeNormalsInBothOrders) {
   constexpr double kDepth_m = 30e-6;
   World world;
   btRigidBody& low = world.addShape(*ground_.shape, 0, Vec3::Zero(), ground_.X_WB);
@@ -410,7 +410,7 @@ TEST_P(Partner, QueriesGiveItsDepthAndOppositeNormalsInBothOrders) {
   }
 }
 
-TEST_P(Partner, QueriesFindNothingBeyondTheThreshold) {
+TEST_P(NativeShapeAdapter, QueriesFindNothingBeyondTheThreshold) {
   World world;
   btRigidBody& low = world.addShape(*ground_.shape, 0, Vec3::Zero(), ground_.X_WB);
   btRigidBody& high = world.add(cube(), Pose::translation(Vec3(0, 0, kHalf_m + 0.1e-3)));
@@ -422,12 +422,12 @@ TEST_P(Partner, QueriesFindNothingBeyondTheThreshold) {
   EXPECT_NEAR(near.least_m(), 0.1e-3, kRounding_m + ground_.tolerance_m);
 }
 
-TEST(PartnerMesh, ABoxHasEightCornersAndACylindersRimIsWithinAMicrometre) {
+TEST(NativeShapeMesh, ABoxHasEightCornersAndACylindersRimIsWithinAMicrometre) {
   const btBoxShape box(at(0.01, 0.02, 0.03));
   EXPECT_EQ(partnerMesh(box).mesh.vertices.size(), 8u);
   EXPECT_LE((bounds(partnerMesh(box).mesh).max - Vec3(0.01, 0.02, 0.03)).norm(), kRounding_m);
   const btCylinderShapeX cylinder(at(0.03, 0.01, 0.01));
-  const PartnerMesh rim = partnerMesh(cylinder);
+  const NativeShapeMesh rim = partnerMesh(cylinder);
   EXPECT_NEAR(bounds(rim.mesh).max.x(), 0.03, kRounding_m);
   for (const auto& t : rim.mesh.triangles) {
     const Vec3 middle = 0.5 * (rim.mesh.vertices[t[0]] + rim.mesh.vertices[t[1]]);
@@ -574,7 +574,7 @@ TEST(OpenMesh, AFastPartDoesNotTunnel) {
 }
 
 // A ball of 3 mm on a part with points a millimetre apart: they are up to 80 um below it between them.
-TEST(RoundPartners, ABallRollsOverAFaceAsIfItHadNoPoints) {
+TEST(RoundNativeShapes, ABallRollsOverAFaceAsIfItHadNoPoints) {
   btSphereShape ball(toBt(0.003));
   World world;
   static const Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.004)), 7850, 0.5e-3, kSpacing_m);
@@ -598,7 +598,7 @@ TEST(RoundPartners, ABallRollsOverAFaceAsIfItHadNoPoints) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().y(), 0.0003, 1e-4);
 }
 
-TEST(RoundPartners, LieOnAFaceAlongTheirSide) {
+TEST(RoundNativeShapes, LieOnAFaceAlongTheirSide) {
   btCylinderShapeX cylinder(at(0.006, 0.003, 0.003));
   btConeShapeX cone(toBt(0.003), toBt(0.012));
   const double tilt_rad = std::atan(0.25);  // the cone's side is level
@@ -619,7 +619,7 @@ TEST(RoundPartners, LieOnAFaceAlongTheirSide) {
 }
 
 // In a bore of nearly its radius all of its side is in contact, not one line of it.
-TEST(RoundPartners, APinInABoreIsHeldAllAround) {
+TEST(RoundNativeShapes, APinInABoreIsHeldAllAround) {
   static const Built tube = test::build(makeTube(0.006, 0.00302, 0.01, 256), 7850, 0.25e-3, 0.5e-3);
   btCylinderShapeZ pin(at(0.003, 0.003, 0.008));
   World world;
@@ -656,7 +656,7 @@ TEST(Heightfield, IsAsHighAsItsSlopeSays) {
     EXPECT_LE((fromBt(p.m_normalWorldOnB) - R.col(2)).norm(), 1e-5);
 }
 
-TEST(Partners, ADynamicHullRestsOnAVpsPart) {
+TEST(NativeShapes, ADynamicHullRestsOnAVpsPart) {
   btConvexHullShape hull;
   for (const btVector3& p : slabCorners(0.004, -0.004, 0.004)) hull.addPoint(p);
   World world;
@@ -670,7 +670,7 @@ TEST(Partners, ADynamicHullRestsOnAVpsPart) {
   EXPECT_LE(body.getAngularVelocity().length(), kIsDouble ? 1e-4 : 2e-3);
 }
 
-TEST(Partners, AShapeThatIsResizedIsMetAsItIsNow) {
+TEST(NativeShapes, AShapeThatIsResizedIsMetAsItIsNow) {
   World world;
   btConvexHullShape hull;
   for (const btVector3& p : slabCorners(0.03, -0.004, 0.004)) hull.addPoint(p);
@@ -686,7 +686,7 @@ TEST(Partners, AShapeThatIsResizedIsMetAsItIsNow) {
 
 // Seven cubes over four kinds of partner; where they are after a tenth of a second. 0 threads: the stock
 // dispatcher.
-std::vector<btTransform> fallOnPartners(int threads) {
+std::vector<btTransform> fallOnNativeShapes(int threads) {
   Ground ground;
   btBoxShape box(at(0.02, 0.02, 0.01));
   btSphereShape ball(toBt(0.02));
@@ -702,17 +702,17 @@ std::vector<btTransform> fallOnPartners(int threads) {
   return test::placesAfter(world, 100);
 }
 
-TEST(Partners, AreMetBySeveralThreadsWithTheSameBits) {
-  const std::vector<btTransform> expected = fallOnPartners(0);
+TEST(NativeShapes, AreMetBySeveralThreadsWithTheSameBits) {
+  const std::vector<btTransform> expected = fallOnNativeShapes(0);
   for (const int threads : {1, 3}) {
-    const std::vector<btTransform> got = fallOnPartners(threads);
+    const std::vector<btTransform> got = fallOnNativeShapes(threads);
     for (std::size_t i = 0; i < expected.size(); ++i)
       ASSERT_TRUE(got[i] == expected[i]) << threads << ", body " << i;
   }
 }
 
-TEST(PartnerCache, SharesOneStandInAndKnowsAShapeThatHasComeToLieAtTheSamePlace) {
-  PartnerCache cache;
+TEST(NativeShapeCache, SharesOneStandInAndKnowsAShapeThatHasComeToLieAtTheSamePlace) {
+  NativeShapeCache cache;
   alignas(16) std::array<unsigned char, sizeof(btConvexHullShape)> room;
   const auto slab = [](double low_m) {
     // Boxes of equal size: only the corners differ.
@@ -726,7 +726,7 @@ TEST(PartnerCache, SharesOneStandInAndKnowsAShapeThatHasComeToLieAtTheSamePlace)
     return hull;
   };
   btConvexHullShape* hull = place(-0.01);
-  const PartnerShape* first = cache.get(*hull).get();
+  const NativeShape* first = cache.get(*hull).get();
   EXPECT_EQ(cache.get(*hull).get(), first);
   hull->~btConvexHullShape();
   hull = place(-0.009);
@@ -744,7 +744,7 @@ std::string saidOf(btCollisionShape& shape) {
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(Partners, ThatCannotCollideAreRefusedInWordsOnce) {
+TEST(NativeShapes, ThatCannotCollideAreRefusedInWordsOnce) {
   btGImpactCompoundShape gimpact;
   btBoxShape box(at(0.01, 0.01, 0.01));
   gimpact.addChildShape(btTransform::getIdentity(), &box);
@@ -762,7 +762,7 @@ TEST(Partners, ThatCannotCollideAreRefusedInWordsOnce) {
   struct TooMuch : OwnConcave {
     void processAllTriangles(btTriangleCallback* visit, const btVector3&, const btVector3&) const override {
       btVector3 corners[3] = {at(0, 0, 0), at(0.01, 0, 0), at(0, 0.01, 0)};
-      for (std::size_t i = 0; i <= kMostPartnerTriangles; ++i) visit->processTriangle(corners, 0, 0);
+      for (std::size_t i = 0; i <= kMaxNativeTriangles; ++i) visit->processTriangle(corners, 0, 0);
     }
   } too_much;
   Ground ground;
@@ -782,12 +782,12 @@ TEST(Partners, ThatCannotCollideAreRefusedInWordsOnce) {
   }
 }
 
-TEST(Partners, AnEmptyShapeMeansNothingAndSaysNothing) {
+TEST(NativeShapes, AnEmptyShapeMeansNothingAndSaysNothing) {
   btEmptyShape empty;
   EXPECT_EQ(saidOf(empty), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Rows, Partner, testing::ValuesIn(rows()),
+INSTANTIATE_TEST_SUITE_P(Rows, NativeShapeAdapter, testing::ValuesIn(rows()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

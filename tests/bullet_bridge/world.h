@@ -74,7 +74,7 @@ class World {
     else
       solver_ = std::make_unique<VpsSolver>(solver_settings);
     VpsBulletSettings used = settings;
-    if (solver == Solver::Penalty) used.mode = ContactMode::Penalty;
+    if (solver == Solver::Penalty) used.mode = ContactMethod::Penalty;
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
     installVps(dispatcher, used);
     tuneWorld(*world, iterations);

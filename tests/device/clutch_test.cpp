@@ -56,7 +56,7 @@ struct Hanging {
   void settle() {
     const Vec3 p_proxy = port.proxy.read().X_W.p, p_part = p_proxy + weight_N / k();
     port.part.write({Pose::translation(p_part), Twist{}, 0, true});
-    loop.noteStored(0.5 * weight_N.squaredNorm() / k() - weight_N.dot(p_part), 0);
+    loop.observeStoredEnergy(0.5 * weight_N.squaredNorm() / k() - weight_N.dot(p_part), 0);
   }
   void take(const Vec3& p_DH = Vec3::Zero()) {
     loop.grasp(Pose{});
@@ -134,7 +134,7 @@ double madeByPumping_J(double scale, double force_scale) {
 }
 
 TEST(Clutch, PumpingHandGetsNoEnergyOutOfItAtAnyScale) {
-  // A stroke's weight is spent and won back through the same lever, tick for tick but one: 6 N in the scene
+  // A segment's weight is spent and won back through the same lever, tick for tick but one: 6 N in the scene
   // over the 0.4 mm that the hand goes at most in a tick.
   for (const auto& [scale, force_scale] : {std::pair{1.0, 1.0}, std::pair{2.5, 1.0}, std::pair{3.0, 0.5}})
     EXPECT_LT(madeByPumping_J(scale, force_scale), 6 * 0.4e-3 * scale) << scale << " " << force_scale;
@@ -152,8 +152,8 @@ TEST(Clutch, RatchetMovesAPartByAMetreWithADeviceOfFourTenths) {
     rig.tick(p);
   };
   travel(Vec3::Zero(), right, speed_m_s, tick);
-  int strokes = 1;
-  for (; rig.proxy().x() < 1 && strokes < 10; ++strokes) {
+  int segments = 1;
+  for (; rig.proxy().x() < 1 && segments < 10; ++segments) {
     rig.loop.disengage();
     for (int i = 0; i < 100; ++i) tick(right);
     travel(right, left, speed_m_s, tick);
@@ -161,8 +161,8 @@ TEST(Clutch, RatchetMovesAPartByAMetreWithADeviceOfFourTenths) {
     for (int i = 0; i < 100; ++i) tick(left);
     travel(left, right, speed_m_s, tick);
   }
-  EXPECT_NEAR(rig.proxy().x(), 0.2 + 0.4 * (strokes - 1), 1e-9);
-  EXPECT_EQ(strokes, 3);
+  EXPECT_NEAR(rig.proxy().x(), 0.2 + 0.4 * (segments - 1), 1e-9);
+  EXPECT_EQ(segments, 3);
   EXPECT_LT(std::abs(rig.proxy().z()), 1e-12);
   // The fade of its weight, and what the spring to a part one tick behind changes by: K a T^2, a <= 2.4
   // m/s^2.

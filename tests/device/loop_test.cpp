@@ -139,11 +139,11 @@ TEST(HapticLoop, InjectedEnergyIsMetWithTheDampingTheDeviceLeaves) {
   settings.gains.b_Ns_per_m = 1;
   HapticLoop loop(device, port, settings);
   device.sample.V_DH.v = Vec3(0.1, 0, 0);
-  loop.noteStored(0, 0);
+  loop.observeStoredEnergy(0, 0);
   loop.tick();
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
-  loop.noteStored(0.5, 0);  // half a joule from nowhere
+  loop.observeStoredEnergy(0.5, 0);  // half a joule from nowhere
   loop.tick();              // books it
   loop.tick();              // and acts
   EXPECT_NEAR(loop.ledger().injected_J, 0.5, 1e-12);
@@ -163,7 +163,7 @@ TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
     const double x = travel_m * (i <= n ? i : 2 * n - i) / n;
     device.sample.X_DH.p.x() = x;
     loop.tick();
-    loop.noteStored(0.5 * k * x * x, 0);
+    loop.observeStoredEnergy(0.5 * k * x * x, 0);
   }
   // Held force: each of n steps of h errs by k h^2 / 2, against the hand on the way out and to it on the way
   // back.
@@ -189,9 +189,9 @@ TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
       x_before_m = x_m;
       device.sample.X_DH.p.x() = step_m * std::round(x_m / step_m);
       loop.tick();
-      const HandLedger& ledger = loop.ledger();
+      const PassivityObserver& ledger = loop.ledger();
       const double hidden_J = std::abs(true_J - (ledger.to_hand_J - ledger.from_hand_J));
-      ASSERT_LE(hidden_J, ledger.unseen_J + 1e-12) << i;
+      ASSERT_LE(hidden_J, ledger.quantisation_error_bound_J + 1e-12) << i;
       greatest_J = std::max(greatest_J, hidden_J);
     }
     EXPECT_GT(greatest_J, 1e-6);  // there is something to hide
@@ -202,7 +202,7 @@ TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
 void lead(HapticLoop& loop, Puppet& device, double x_m, double stored_J) {
   device.sample.X_DH.p.x() = x_m;
   loop.tick();
-  loop.noteStored(stored_J, 0);
+  loop.observeStoredEnergy(stored_J, 0);
 }
 
 TEST(HapticLoop, WhatWasDissipatedEarlyDoesNotPayForWhatIsMadeLater) {

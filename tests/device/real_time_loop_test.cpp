@@ -318,7 +318,7 @@ TEST(RealTimeLoop, InThreadsOfItsOwnForceStaysFiniteAndStopsAtZero) {
   DeviceEvent event;
   while (loop.statistics().summary().tick.count < 400) {
     EXPECT_TRUE(loop.latest().report.F_hand_D.isFinite());
-    loop.noteStored(0, 0);
+    loop.observeStoredEnergy(0, 0);
     while (events.pop(event)) EXPECT_NE(severityOf(event.kind), Severity::Fault) << toText(event.kind);
   }
   loop.stop();

@@ -40,7 +40,7 @@ Engine vpsEngine(const Resolution& resolution, const VpsBulletSettings& settings
   engine.name = "VPS";
   engine.install = [settings](btCollisionDispatcher& dispatcher, Mode mode) {
     VpsBulletSettings with_mode = settings;
-    with_mode.mode = mode == Mode::Penalty ? ContactMode::Penalty : ContactMode::Constraint;
+    with_mode.mode = mode == Mode::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
     installVps(dispatcher, with_mode);
   };
   engine.uninstall = [](btCollisionDispatcher& dispatcher) { uninstallVps(dispatcher); };

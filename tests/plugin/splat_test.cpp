@@ -65,7 +65,7 @@ TEST(SplatRows, HoldEveryNodeOfTheRegionAndNoneFarBeyondIt) {
           }
           // Beyond: the slack, 2e-3 of a node along z, and the lean of vertical planes over a tile.
           if (has) {
-            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kSlack + 2e-3 + 1e-6 * kTile)) << least;
+            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kContactMargin + 2e-3 + 1e-6 * kTile)) << least;
           }
           held += has;
         }

@@ -74,7 +74,7 @@ TEST_F(Scenario, InRealTimeThePegGoesInAndTheReportSaysHowTimeWasKept) {
             0.9 * data["wall"]["run_s"].get<double>());
   EXPECT_EQ(data["wall"]["missed_while_cooking"].size(), data["steps"].size());
   EXPECT_NEAR(static_cast<double>(periods), static_cast<double>(steps), 0.05 * static_cast<double>(steps));
-  for (const json& change : data["wall"]["physics"]["paces"])  // a busy machine may ask for some
+  for (const json& change : data["wall"]["physics"]["load_changes"])  // a busy machine may ask for some
     for (const char* key : {"time_s", "from", "to", "is_done", "why", "cost", "unseen_bound_m", "misread_m"})
       EXPECT_TRUE(change.contains(key)) << key;
   EXPECT_NE(ran.out.find("s behind the clock"), std::string::npos) << ran.out;
@@ -177,7 +177,7 @@ TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndSaysSo) {
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
   const json data = read("out/assemble.json");
   EXPECT_FALSE(data["completed"].get<bool>());
-  EXPECT_NE(data["steps"][0]["why_not"].get<std::string>(), "");
+  EXPECT_NE(data["steps"][0]["failure_reason"].get<std::string>(), "");
 }
 
 TEST_F(Scenario, APartThatDriftsIsNoSuccess) {

@@ -65,9 +65,9 @@ AssembleResult run(Scene scene, double until_s, const std::function<double(doubl
   return assemble(scene, options);
 }
 
-void expectInOrder(const std::vector<PaceChange>& paces) {
+void expectInOrder(const std::vector<LoadLevelChange>& load_changes) {
   int level = 0;
-  for (const PaceChange& change : paces) {
+  for (const LoadLevelChange& change : load_changes) {
     EXPECT_EQ(change.from, level);
     EXPECT_TRUE(change.is_done) << change.why;
     EXPECT_LE(std::abs(change.to - change.from), 1) << change.is;  // 0: the same, of models made anew
@@ -77,26 +77,26 @@ void expectInOrder(const std::vector<PaceChange>& paces) {
 }
 
 // 10 ms of load in a period of 4: too much for 4 and 8, not for 16.
-TEST(Pace, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
+TEST(LoadLevel, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
   const AssembleResult result = run(twoPins(), 2, [](double) { return 10e-3; });
-  const std::vector<PaceChange>& paces = result.real_time->paces;
-  ASSERT_GE(paces.size(), 4u);
-  expectInOrder(paces);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(paces[i].to, static_cast<int>(i + 1)) << paces[i].is;
-  EXPECT_EQ(paces[0].is, "points every 1 mm, physics at 250 Hz, time at the clock's");
-  EXPECT_EQ(paces[3].is, "points every 2 mm, physics at 62.5 Hz, time at the clock's");
-  EXPECT_GT(paces[0].lost_share, 0.5) << "10 ms begin three periods of 4 ms, of which two are lost";
-  EXPECT_EQ(paces[1].unseen_bound_m, 2e-3);
-  EXPECT_LT(paces[3].k_N_per_m, paces[2].k_N_per_m)
+  const std::vector<LoadLevelChange>& load_changes = result.real_time->load_changes;
+  ASSERT_GE(load_changes.size(), 4u);
+  expectInOrder(load_changes);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(load_changes[i].to, static_cast<int>(i + 1)) << load_changes[i].is;
+  EXPECT_EQ(load_changes[0].is, "points every 1 mm, physics at 250 Hz, time at the clock's");
+  EXPECT_EQ(load_changes[3].is, "points every 2 mm, physics at 62.5 Hz, time at the clock's");
+  EXPECT_GT(load_changes[0].lost_share, 0.5) << "10 ms begin three periods of 4 ms, of which two are lost";
+  EXPECT_EQ(load_changes[1].unseen_bound_m, 2e-3);
+  EXPECT_LT(load_changes[3].k_N_per_m, load_changes[2].k_N_per_m)
       << "a coupling that is passive at the lower rate is softer";
-  EXPECT_EQ(paces.back().to, 4) << paces.back().is;
+  EXPECT_EQ(load_changes.back().to, 4) << load_changes.back().is;
   EXPECT_GT(result.real_time->behind_s, 0.5) << "a second went by before that";
   EXPECT_EQ(result.real_time->faults, 0u);
 }
 
 // The load is gone after half a second. The hand takes longer than the 2 s after which a rate could come
 // back, and it comes back only when the pin is let go; 9 s of rest have room for four waits of 2 s.
-TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
+TEST(LoadLevel, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
   Scene scene = twoPins();
   scene.steps.resize(1);
   scene.release_s = 9;
@@ -104,16 +104,16 @@ TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
   scene.steps[0].timeout_s = 60;
   scene.hand.speed_m_s = 0.02;
   const AssembleResult result = run(scene, 60, [](double time_s) { return time_s < 0.5 ? 10e-3 : 0; });
-  const std::vector<PaceChange>& paces = result.real_time->paces;
-  expectInOrder(paces);
-  ASSERT_FALSE(paces.empty());
-  EXPECT_EQ(paces.back().to, 0) << paces.back().is;
-  EXPECT_EQ(paces.back().cost, "nothing is given up any more");
-  EXPECT_EQ(paces.back().k_N_per_m, paces.front().k_N_per_m) << "the coupling is as stiff as before";
-  EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].why_not << result.steps[0].final_error_m
+  const std::vector<LoadLevelChange>& load_changes = result.real_time->load_changes;
+  expectInOrder(load_changes);
+  ASSERT_FALSE(load_changes.empty());
+  EXPECT_EQ(load_changes.back().to, 0) << load_changes.back().is;
+  EXPECT_EQ(load_changes.back().cost, "nothing is given up any more");
+  EXPECT_EQ(load_changes.back().k_N_per_m, load_changes.front().k_N_per_m) << "the coupling is as stiff as before";
+  EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].failure_reason << result.steps[0].final_error_m
                                            << "or nothing could have come back in the hand";
   const double released_s = result.steps[0].start_s + result.steps[0].duration_s;
-  for (const PaceChange& change : paces) {
+  for (const LoadLevelChange& change : load_changes) {
     if (change.to < change.from && change.from > 2) {
       EXPECT_GE(change.time_s, released_s) << "a coupling got stiffer in the hand";
     }
@@ -121,31 +121,31 @@ TEST(Pace, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
 }
 
 // At 100 Hz sixteen periods are longer than the watchdog waits for physics (0.1 s); four are not.
-TEST(Pace, NoPaceIsTakenAtWhichPhysicsWouldLookStalled) {
+TEST(LoadLevel, NoPaceIsTakenAtWhichPhysicsWouldLookStalled) {
   Scene scene = twoPins();
   scene.fidelity.physics_rate_hz = 100;
   const AssembleResult result = run(scene, 2.5, [](double) { return 50e-3; });
-  ASSERT_FALSE(result.real_time->paces.empty());
+  ASSERT_FALSE(result.real_time->load_changes.empty());
   int most = 0;
-  for (const PaceChange& change : result.real_time->paces) most = std::max(most, change.to);
+  for (const LoadLevelChange& change : result.real_time->load_changes) most = std::max(most, change.to);
   EXPECT_EQ(most, 4);
-  EXPECT_FALSE(result.real_time->paces.back().is_done) << "nothing is left to give up";
+  EXPECT_FALSE(result.real_time->load_changes.back().is_done) << "nothing is left to give up";
   EXPECT_EQ(result.real_time->faults, 0u);
 }
 
-TEST(Pace, SwitchedOffItOnlyCounts) {
+TEST(LoadLevel, SwitchedOffItOnlyCounts) {
   const AssembleResult result = run(
       twoPins(), 0.5, [](double) { return 10e-3; }, false);
-  EXPECT_TRUE(result.real_time->paces.empty());
+  EXPECT_TRUE(result.real_time->load_changes.empty());
   EXPECT_GT(result.real_time->physics_missed, result.physics.count) << "two of three periods";
 }
 
 // Points go with the inverse square of their spacing, a period with the divisors.
-TEST(Pace, PointsAreGivenUpBeforeRateAndRateBeforeTimeEachForLess) {
+TEST(LoadLevel, PointsAreGivenUpBeforeRateAndRateBeforeTimeEachForLess) {
   const std::vector<double> expected = {4, 4, 2, 2, 2, 2};
-  for (std::size_t level = 1; level < kPaces.size(); ++level) {
+  for (std::size_t level = 1; level < kLoadLevels.size(); ++level) {
     EXPECT_EQ(dearerBefore(level), expected[level - 1]) << level;
-    const Pace &now = kPaces[level], &before = kPaces[level - 1];
+    const LoadLevel &now = kLoadLevels[level], &before = kLoadLevels[level - 1];
     if (now.rate_divisor > before.rate_divisor) {
       EXPECT_EQ(now.coarser, 4) << level;
     }
@@ -155,7 +155,7 @@ TEST(Pace, PointsAreGivenUpBeforeRateAndRateBeforeTimeEachForLess) {
   }
 }
 
-TEST(Pace, LockstepNeverGivesUpAnything) {
+TEST(LoadLevel, LockstepNeverGivesUpAnything) {
   Scene scene = twoPins();
   AssembleOptions options;
   options.after_step = [](double time_s) { burn(time_s < 0.5 ? 5e-3 : 0); };

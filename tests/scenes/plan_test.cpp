@@ -132,7 +132,7 @@ TEST(Plan, WithNothingThatMovesNothingIsModelled) {
 // bits, so no tolerance.
 TEST(Plan, ASparedAssemblyIsTheOneThatModelsEverythingToTheBitForLess) {
   const AssembleResult spared = assembled(pinsOnPlate(), false), all = assembled(pinsOnPlate(), true);
-  ASSERT_TRUE(spared.completed) << spared.steps[0].why_not;
+  ASSERT_TRUE(spared.completed) << spared.steps[0].failure_reason;
   EXPECT_EQ(greatestDistance(spared, all), 0);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(spared.steps[i].max_penetration_m, all.steps[i].max_penetration_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A way longer than the device's workspace, in strokes.
+// A way longer than the device's workspace, in segments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,46 +38,46 @@ Scene farPin() {
   return scene;
 }
 
-/// Every stroke from where the handle starts it, as the part goes: within the room, and end to end.
-void expectWithinRoom(const Scene& scene, const SceneStep& step, const Strokes& strokes) {
-  ASSERT_EQ(strokes.X_DH_start.size(), strokes.regrasps.size() + 1);
+/// Every segment from where the handle starts it, as the part goes: within the room, and end to end.
+void expectWithinRoom(const Scene& scene, const SceneStep& step, const PathSegments& segments) {
+  ASSERT_EQ(segments.X_DH_start.size(), segments.index_points.size() + 1);
   const Vec3 p_PG = massProperties(scene.parts[step.part].part.mesh).com;
   std::vector<Pose> way = {step.X_WP_start};
-  way.insert(way.end(), strokes.way_points.begin(), strokes.way_points.end());
+  way.insert(way.end(), segments.way_points.begin(), segments.way_points.end());
   way.push_back(step.X_WP_target);
-  std::size_t stroke = 0;
-  Vec3 p_DH = strokes.X_DH_start[0].p;
+  std::size_t segment = 0;
+  Vec3 p_DH = segments.X_DH_start[0].p;
   for (std::size_t i = 0; i < way.size(); ++i) {
     if (i > 0) p_DH += (way[i] * p_PG - way[i - 1] * p_PG) / scene.device.scale;
     for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(p_DH[axis]), kRoom_m[axis] / 2 + 1e-12) << i;
-    if (stroke < strokes.regrasps.size() && i == strokes.regrasps[stroke] + 1)
-      p_DH = strokes.X_DH_start[++stroke].p;
+    if (segment < segments.index_points.size() && i == segments.index_points[segment] + 1)
+      p_DH = segments.X_DH_start[++segment].p;
   }
-  EXPECT_EQ(stroke, strokes.regrasps.size());
+  EXPECT_EQ(segment, segments.index_points.size());
 }
 
-TEST(Strokes, AWayThatFitsIsOneStrokeAroundTheMiddle) {
+TEST(PathSegments, AWayThatFitsIsOneStrokeAroundTheMiddle) {
   Scene scene = farPin();
   scene.steps[0].X_WP_start = Pose::translation({0.3, 0, 50e-3});
-  const Strokes strokes = strokesOf(scene, scene.steps[0], kRoom_m);
-  EXPECT_TRUE(strokes.regrasps.empty());
-  ASSERT_EQ(strokes.way_points.size(), 1u);
-  ASSERT_EQ(strokes.X_DH_start.size(), 1u);
-  EXPECT_NEAR(strokes.X_DH_start[0].p.x(), 0.15, 1e-12);
+  const PathSegments segments = splitPath(scene, scene.steps[0], kRoom_m);
+  EXPECT_TRUE(segments.index_points.empty());
+  ASSERT_EQ(segments.way_points.size(), 1u);
+  ASSERT_EQ(segments.X_DH_start.size(), 1u);
+  EXPECT_NEAR(segments.X_DH_start[0].p.x(), 0.15, 1e-12);
 }
 
-TEST(Strokes, AStraightMetreTakesThreeOfThirtySixCentimetres) {
+TEST(PathSegments, AStraightMetreTakesThreeOfThirtySixCentimetres) {
   // 0.4 m less 20 mm on each side; the last is the longest, so that the first has what is left over: 0.28 m.
   const Scene scene = farPin();
-  const Strokes strokes = strokesOf(scene, scene.steps[0], kRoom_m);
-  ASSERT_EQ(strokes.regrasps, (std::vector<std::size_t>{0, 1}));
-  EXPECT_NEAR(strokes.way_points[0].p.x(), 0.72, 1e-9);
-  EXPECT_NEAR(strokes.way_points[1].p.x(), 0.36, 1e-9);
-  EXPECT_EQ(strokes.way_points[2].p, scene.steps[0].way_points[0].p);
-  expectWithinRoom(scene, scene.steps[0], strokes);
+  const PathSegments segments = splitPath(scene, scene.steps[0], kRoom_m);
+  ASSERT_EQ(segments.index_points, (std::vector<std::size_t>{0, 1}));
+  EXPECT_NEAR(segments.way_points[0].p.x(), 0.72, 1e-9);
+  EXPECT_NEAR(segments.way_points[1].p.x(), 0.36, 1e-9);
+  EXPECT_EQ(segments.way_points[2].p, scene.steps[0].way_points[0].p);
+  expectWithinRoom(scene, scene.steps[0], segments);
 }
 
-TEST(Strokes, AnyWayStaysWithinTheRoomAtAnyScale) {
+TEST(PathSegments, AnyWayStaysWithinTheRoomAtAnyScale) {
   Random random(5);
   for (int i = 0; i < 200; ++i) {
     Scene scene = farPin();
@@ -86,17 +86,17 @@ TEST(Strokes, AnyWayStaysWithinTheRoomAtAnyScale) {
     step.way_points.clear();
     for (int n = i % 5; n > 0; --n) step.way_points.push_back(Pose::translation(random.normal3()));
     step.X_WP_start = Pose(rotationFromVector(random.normal3()), 2 * random.normal3());
-    expectWithinRoom(scene, step, strokesOf(scene, step, kRoom_m));
+    expectWithinRoom(scene, step, splitPath(scene, step, kRoom_m));
   }
 }
 
-TEST(Ratchet, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
+TEST(Indexing, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
   Scene scene = farPin();
   const AssembleResult result = assemble(scene);
   ASSERT_EQ(result.steps.size(), 1u);
   const StepResult& step = result.steps[0];
-  EXPECT_TRUE(step.completed) << step.why_not;
-  EXPECT_EQ(step.regrasps, 2);
+  EXPECT_TRUE(step.completed) << step.failure_reason;
+  EXPECT_EQ(step.index_points, 2);
   EXPECT_LE(result.energy.injected_J, 1e-3);
   // While the hand goes back the proxy stands, and the part hangs on it by its own weight: it rests.
   int still = 0;
@@ -106,9 +106,9 @@ TEST(Ratchet, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
   EXPECT_GE(still, 2 * 250);  // two returns of 1.5 s at 250 Hz, less what the part takes to come to rest
 }
 
-TEST(Ratchet, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
+TEST(Indexing, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
   Scene scene = farPin();
-  scene.device.has_ratchet = false;
+  scene.device.has_indexing = false;
   try {
     assemble(scene);
     FAIL();
@@ -116,11 +116,11 @@ TEST(Ratchet, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
     const std::string words = error.what();
     EXPECT_NE(words.find("longer than the device's workspace of 400 x 600 x 400 mm"), std::string::npos)
         << words;
-    EXPECT_NE(words.find("ratchet = true"), std::string::npos) << words;
+    EXPECT_NE(words.find("indexing = true"), std::string::npos) << words;
   }
 }
 
-TEST(Ratchet, ARunWithARatchetReplaysBitForBit) {
+TEST(Indexing, ARunWithARatchetReplaysBitForBit) {
   const test::TemporaryFolder folder;
   AssembleOptions options;
   options.record = folder.path() / "run.mcap";
@@ -130,7 +130,7 @@ TEST(Ratchet, ARunWithARatchetReplaysBitForBit) {
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, run.entries.size());
-  EXPECT_EQ(replayed.result.steps.at(0).regrasps, 2);
+  EXPECT_EQ(replayed.result.steps.at(0).index_points, 2);
   EXPECT_EQ(replayed.result.steps[0].final_error_m, result.steps[0].final_error_m);
 }
 

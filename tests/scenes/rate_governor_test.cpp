@@ -15,8 +15,8 @@ namespace {
 constexpr double kPeriod_s = 1e-3;
 
 /// Six levels below the one asked for, each half as dear as the one above.
-RateGovernor halving() {
-  return RateGovernor(std::vector<double>(6, 2.0));
+LoadGovernor halving() {
+  return LoadGovernor(std::vector<double>(6, 2.0));
 }
 
 /// A load that costs load(t) periods a step at level 0, and half as much with each level.
@@ -24,7 +24,7 @@ struct Course {
   std::vector<int> levels;  ///< after each change
   std::vector<double> times_s;
 };
-Course follow(RateGovernor& governor, double seconds, const std::function<double(double)>& load,
+Course follow(LoadGovernor& governor, double seconds, const std::function<double(double)>& load,
               bool may_rise = true) {
   Course course;
   for (double time_s = 0; time_s < seconds;) {
@@ -38,14 +38,14 @@ Course follow(RateGovernor& governor, double seconds, const std::function<double
   return course;
 }
 
-TEST(RateGovernor, ALoadThatFitsChangesNothing) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, ALoadThatFitsChangesNothing) {
+  LoadGovernor governor = halving();
   EXPECT_TRUE(follow(governor, 20, [](double) { return 0.99; }).levels.empty());
   EXPECT_EQ(governor.last().lost_s, 0);
 }
 
-TEST(RateGovernor, OneLateStepAWindowIsNoReasonHoweverLate) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, OneLateStepAWindowIsNoReasonHoweverLate) {
+  LoadGovernor governor = halving();
   int step = 0;
   const Course course = follow(governor, 20, [&](double) { return ++step % 200 == 0 ? 500.0 : 0.1; });
   EXPECT_TRUE(course.levels.empty());
@@ -54,9 +54,9 @@ TEST(RateGovernor, OneLateStepAWindowIsNoReasonHoweverLate) {
 }
 
 // Of 100 steps one may take two periods with 1 % lost; of 10, 9 % are.
-TEST(RateGovernor, LateStepsCountByTheTimeTheyLose) {
+TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
   for (const int every : {100, 10}) {
-    RateGovernor governor = halving();
+    LoadGovernor governor = halving();
     int step = 0;
     (void)follow(governor, 0.6, [&](double) { return ++step % every == 0 ? 1.5 : 0.1; });
     EXPECT_EQ(governor.level(), every == 10 ? 1 : 0) << every;
@@ -65,8 +65,8 @@ TEST(RateGovernor, LateStepsCountByTheTimeTheyLose) {
 
 // 5 periods are 2.5, 1.25, 0.625 at levels 1, 2, 3. A window is 0.25 s, and its last step may end up to 5 ms
 // later.
-TEST(RateGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
+  LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double) { return 5.0; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3}));
   for (std::size_t i = 0; i < course.times_s.size(); ++i)
@@ -75,24 +75,24 @@ TEST(RateGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
   EXPECT_NEAR(governor.last().busy_s, 5e-3 / 8, 1e-12);
 }
 
-TEST(RateGovernor, WhatNoLevelCanCarryEndsAtTheLastAndIsSaid) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, WhatNoLevelCanCarryEndsAtTheLastAndIsSaid) {
+  LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double) { return 1000.0; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 4, 5, 6}));
   EXPECT_TRUE(governor.isOverloaded());
 }
 
 // A level is taken back after 8 windows of 0.25 s in which the level above would have done.
-TEST(RateGovernor, WhenTheLoadIsGoneItTakesBackLevelByLevelInTwoSecondsEach) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, WhenTheLoadIsGoneItTakesBackLevelByLevelInTwoSecondsEach) {
+  LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double time_s) { return time_s < 1 ? 5.0 : 0.1; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 2, 1, 0}));
   for (std::size_t i = 4; i < course.times_s.size(); ++i)
     EXPECT_NEAR(course.times_s[i] - course.times_s[i - 1], 2, 0.01);
 }
 
-TEST(RateGovernor, StallsDoNotKeepItFromTakingBack) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, StallsDoNotKeepItFromTakingBack) {
+  LoadGovernor governor = halving();
   int step = 0;
   const Course course = follow(governor, 8, [&](double time_s) {
     return time_s < 0.3 ? 1.5 : ++step % 100 == 0 ? 40.0 : 0.1;
@@ -101,22 +101,22 @@ TEST(RateGovernor, StallsDoNotKeepItFromTakingBack) {
 }
 
 // At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so it must not try.
-TEST(RateGovernor, ItDoesNotTakeBackWhatWouldNotFit) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, ItDoesNotTakeBackWhatWouldNotFit) {
+  LoadGovernor governor = halving();
   EXPECT_EQ(follow(governor, 60, [](double) { return 1.1; }).levels, (std::vector<int>{1}));
 }
 
 // Two seconds of load, three without, for ten minutes: 120 times. Each relapse doubles the wait: 2, 4, 8, 16,
 // 32, 64 s; with pauses of 3 s only the first wait of 2 s can ever be met.
-TEST(RateGovernor, ALoadThatComesAndGoesDoesNotMakeItFlap) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, ALoadThatComesAndGoesDoesNotMakeItFlap) {
+  LoadGovernor governor = halving();
   const Course course =
       follow(governor, 600, [](double time_s) { return std::fmod(time_s, 5) < 2 ? 1.5 : 0.1; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 0, 1}));
 }
 
-TEST(RateGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
+  LoadGovernor governor = halving();
   follow(governor, 1, [](double) { return 3.0; });
   const int before = governor.level();
   ASSERT_EQ(before, 2);
@@ -129,8 +129,8 @@ TEST(RateGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
   EXPECT_NEAR(again.times_s[0], 4, 0.3) << "sixteen windows of a quarter of a second, after " << first_s;
 }
 
-TEST(RateGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
+  LoadGovernor governor = halving();
   (void)follow(governor, 0.3, [](double) { return 1.5; });
   ASSERT_EQ(governor.level(), 1);
   EXPECT_TRUE(follow(
@@ -141,8 +141,8 @@ TEST(RateGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
   EXPECT_LE(course.times_s[0], 0.25 + 1e-9) << "at the end of the first window";
 }
 
-TEST(RateGovernor, TimesThatAreNoNumbersAreNoLoad) {
-  RateGovernor governor = halving();
+TEST(LoadGovernor, TimesThatAreNoNumbersAreNoLoad) {
+  LoadGovernor governor = halving();
   for (const double busy_s : {std::numeric_limits<double>::quiet_NaN(), -1.0})
     for (int i = 0; i < 2000; ++i) ASSERT_EQ(governor.add(busy_s, kPeriod_s), 0);
   for (int i = 0; i < 4; ++i)  // four leaps of the clock: fewer than five late steps a window

@@ -53,10 +53,10 @@ const test::Recorded& recordedByTheClock() {
   return recorded;
 }
 
-std::size_t meetings(const RecordedRun& run, MeetingKind kind) {
+std::size_t sync_events(const RecordedRun& run, SyncEventKind kind) {
   std::size_t count = 0;
   for (const LogEntry& entry : run.entries) {
-    const auto* met = std::get_if<Meeting>(&entry);
+    const auto* met = std::get_if<SyncEvent>(&entry);
     count += met != nullptr && met->kind == kind;
   }
   return count;
@@ -73,12 +73,12 @@ TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
 
 TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndOrder) {
   const test::Recorded& recorded = recordedByTheClock();
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::Tick), recorded.result.haptic.count);
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::Step), recorded.result.physics.count);
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::HandOver), 2u);
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::LetGo), 2u);
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::Settled), 2u);
-  EXPECT_EQ(meetings(recorded.run, MeetingKind::Paused), 1u);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Tick), recorded.result.haptic.count);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Step), recorded.result.physics.count);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::HandOver), 2u);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::LetGo), 2u);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Settled), 2u);
+  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Paused), 1u);
 }
 
 TEST(RealTimeReplay, ACutRecordingRunsUpToTheCutWhereverItIs) {
@@ -100,8 +100,8 @@ TEST(RealTimeReplay, TicksThatSeeOlderPhysicsDepartAndSayWhen) {
   RecordedRun run = recordedByTheClock().run;
   std::int32_t snapshot = 0;
   for (LogEntry& entry : run.entries) {
-    auto* met = std::get_if<Meeting>(&entry);
-    if (met == nullptr || met->kind != MeetingKind::Tick || met->tick < 150 || met->tick >= 200) continue;
+    auto* met = std::get_if<SyncEvent>(&entry);
+    if (met == nullptr || met->kind != SyncEventKind::Tick || met->tick < 150 || met->tick >= 200) continue;
     if (met->tick == 150) snapshot = met->snapshot;
     met->snapshot = snapshot;  // a tenth of a second of physics unseen, while the hand moves the part
   }
@@ -115,12 +115,12 @@ TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
   constexpr int kAdded = 3 * (1 << 15) / 2;
   {
     const vps_test::NoAllocScope guard;
-    for (int i = 0; i < kAdded; ++i) log.add(Meeting{0, i, 1, 0, MeetingKind::Tick});
+    for (int i = 0; i < kAdded; ++i) log.add(SyncEvent{0, i, 1, 0, SyncEventKind::Tick});
   }
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.entries.size(), std::size_t{1} << 15);
   EXPECT_EQ(kept.lost, 0u);  // known with the next that comes
-  log.add(Meeting{0, kAdded, 1, 0, MeetingKind::Tick});
+  log.add(SyncEvent{0, kAdded, 1, 0, SyncEventKind::Tick});
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.lost, static_cast<std::uint64_t>(kAdded - (1 << 15)));
 }
@@ -129,7 +129,7 @@ TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
   test::KeptLog kept;
   HapticLog log(&kept);
   for (int tick = 1; tick <= 3; ++tick) {
-    log.add(Meeting{0, tick, 1, 0, MeetingKind::Tick});
+    log.add(SyncEvent{0, tick, 1, 0, SyncEventKind::Tick});
     log.add(DeviceSample{});
     log.add(WrittenWrench{});
   }

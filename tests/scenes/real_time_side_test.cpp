@@ -88,7 +88,7 @@ LoopSettings settings() {
 
 /// A run: hand-over, work, a new grasp on the way, let go, and back; every request that there is.
 /// @return the proxies that physics saw
-std::vector<Vec3> drive(HapticSide& side, int steps) {
+std::vector<Vec3> drive(HapticDriver& side, int steps) {
   std::vector<Vec3> seen;
   std::optional<double> stored_J;
   CouplingState part;
@@ -129,25 +129,25 @@ std::vector<Vec3> drive(HapticSide& side, int steps) {
   return seen;
 }
 
-TEST(RealTimeSide, WhatTwoThreadsDidIsDoneAgainByOne) {
+TEST(RealTimeDriver, WhatTwoThreadsDidIsDoneAgainByOne) {
   test::KeptLog log;
   CouplingPort port, port_again;
   SwingingHand hand;
   const TellFault tell = [](const std::string&) {};  // a starved machine may well stall physics
-  const auto side = realTimeSide(hand, port, settings(), 0.7e-3, tell, &log);
+  const auto side = makeRealTimeDriver(hand, port, settings(), 0.7e-3, tell, &log);
   const std::vector<Vec3> seen = drive(*side, 60);
   EXPECT_EQ(log.lost, 0u);
   EXPECT_EQ(seen.size(), 3u * 7 * 60);
 
   RecordedRun run;
   run.entries = log.entries;
-  std::vector<Meeting> meetings;
+  std::vector<SyncEvent> sync_events;
   for (const LogEntry& entry : run.entries)
-    if (const auto* met = std::get_if<Meeting>(&entry)) meetings.push_back(*met);
+    if (const auto* met = std::get_if<SyncEvent>(&entry)) sync_events.push_back(*met);
   ReplayCheck check(run);
   Again recorded(run.entries);
   TappedDevice tapped(recorded, check);
-  const auto replay = replayedSide(recorded, meetings, tapped, port_again, settings(), tell, check);
+  const auto replay = makeReplayedDriver(recorded, sync_events, tapped, port_again, settings(), tell, check);
   EXPECT_EQ(drive(*replay, 60), seen);
   EXPECT_EQ(check.departure(), "");
   EXPECT_EQ(check.left(), 0u);

@@ -75,7 +75,7 @@ TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
 TEST(Replay, WhatWasRecordedGivesTheSameReport) {
   const Recorded recorded = recordedPin();
   EXPECT_EQ(recorded.run.damage, "");
-  EXPECT_TRUE(recorded.result.steps.at(0).completed) << recorded.result.steps.at(0).why_not;
+  EXPECT_TRUE(recorded.result.steps.at(0).completed) << recorded.result.steps.at(0).failure_reason;
   const ReplayResult replayed = replay(recorded.run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.other_version, "");
@@ -109,7 +109,7 @@ TEST(Replay, ACutRecordingRunsUpToTheCut) {
   const ReplayResult replayed = replay(cut);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.result.haptic.count + 1, cut.reads());  // one read was the grasp's
-  EXPECT_EQ(replayed.result.steps.at(0).why_not, "the recording ends here");
+  EXPECT_EQ(replayed.result.steps.at(0).failure_reason, "the recording ends here");
   for (std::size_t i = 0; i < replayed.result.trace.size(); ++i)
     ASSERT_EQ(replayed.result.trace[i].X_WP.p, recorded.result.trace[i].X_WP.p);
 }

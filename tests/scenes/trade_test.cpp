@@ -85,7 +85,7 @@ TEST(Trade, AFinerVoxelIsTruerAndLarger) {
   EXPECT_GT(middle.bytes, coarse.bytes);
   EXPECT_GT(fine.bytes, middle.bytes);
   // Trilinear in a ball's field: h^2/8 times its second derivatives, 2/r in sum. The plate's nearest point
-  // lies within s of the deepest one, where the ball is s^2/(2 r) farther. ExactFit is certain to 0.5 um.
+  // lies within s of the deepest one, where the ball is s^2/(2 r) farther. OverlapJudge is certain to 0.5 um.
   const double h = 0.125e-3, inner_m = kRadius_m - 20e-6;
   EXPECT_LE(fine.probe.penetration_m, h * h / (4 * inner_m) + s * s / (2 * inner_m) + 0.5e-6);
 }
@@ -223,7 +223,7 @@ TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
 }
 
 /// Error of depth that 95 of 100 points near a surface do not exceed, at points of the test's own.
-double errorByOtherPoints(const Part& part, double reach_m) {
+double errorByResampledShells(const Part& part, double reach_m) {
   const MeshDistance exact(part.mesh);
   std::mt19937_64 random(99);
   std::uniform_real_distribution<double> share(0, 1);
@@ -257,11 +257,11 @@ TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
     FidelityWish wish;
     wish.tolerance_m = tolerance_m;
     const FidelityChoice choice = chooseFidelity(scene, wish);
-    ASSERT_TRUE(choice.is_met) << choice.why_not;
+    ASSERT_TRUE(choice.is_met) << choice.failure_reason;
     for (const ScenePart& part : scene.parts) {
       ASSERT_TRUE(part.part.map);
       EXPECT_EQ(part.part.map->voxel_m(), choice.fidelity.voxel_m);
-      EXPECT_LE(errorByOtherPoints(part.part, tolerance_m), tolerance_m) << part.part.name;
+      EXPECT_LE(errorByResampledShells(part.part, tolerance_m), tolerance_m) << part.part.name;
     }
   }
 }
@@ -272,7 +272,7 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   FidelityWish wish;
   wish.memory_bytes = 1.4 * static_cast<double>(modelledCost(scene).bytes);  // with the cooked field: 2
   const FidelityChoice small = chooseFidelity(scene, wish);
-  ASSERT_TRUE(small.is_met) << small.why_not;
+  ASSERT_TRUE(small.is_met) << small.failure_reason;
   EXPECT_LE(2 * static_cast<double>(modelledCost(scene).bytes), *wish.memory_bytes);
 
   Scene again = ballOnPlate();
@@ -280,7 +280,7 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   FidelityWish quick;
   quick.budget_hz = 1000;  // 1000 us: 600 us by the model are 10,909 points
   const FidelityChoice few = chooseFidelity(again, quick);
-  ASSERT_TRUE(few.is_met) << few.why_not;
+  ASSERT_TRUE(few.is_met) << few.failure_reason;
   const std::size_t sides = few.fidelity.sides == Sides::Both ? 2 : 1;
   EXPECT_LE(sides * again.parts[1].part.shell->size(), 10910u);
   EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points came first
@@ -296,17 +296,17 @@ TEST(FidelityChoice, TakesOneSideForARateAloneButNotBesideATolerance) {
   scene = ballOnPlate();
   const FidelityChoice kept = chooseFidelity(scene, wish);
   EXPECT_EQ(kept.fidelity.sides, Sides::Both);
-  EXPECT_NE(kept.why_not.find("more tolerance"), std::string::npos) << kept.why_not;
+  EXPECT_NE(kept.failure_reason.find("more tolerance"), std::string::npos) << kept.failure_reason;
 }
 
 TEST(FidelityChoice, SaysWhichWishNobodyCanMeet) {
   Scene scene = ballOnPlate();
   FidelityWish wish;
   wish.budget_hz = 1e5;
-  EXPECT_NE(chooseFidelity(scene, wish).why_not.find("ask for a lower rate"), std::string::npos);
+  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("ask for a lower rate"), std::string::npos);
   wish = {};
   wish.memory_bytes = 10;
-  EXPECT_NE(chooseFidelity(scene, wish).why_not.find("ask for more memory"), std::string::npos);
+  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("ask for more memory"), std::string::npos);
   wish = {};
   wish.tolerance_m = 1e-12;
   EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
@@ -320,12 +320,12 @@ TEST(FidelityChoice, NoMapIsBuiltThatWouldNotFitInMemory) {
   wish.machine_bytes = 40e6;
   const FidelityChoice none = chooseFidelity(scene, wish);
   EXPECT_FALSE(none.is_met);
-  EXPECT_NE(none.why_not.find("half of this machine's memory"), std::string::npos) << none.why_not;
+  EXPECT_NE(none.failure_reason.find("half of this machine's memory"), std::string::npos) << none.failure_reason;
   wish.machine_bytes = 0;
   wish.memory_bytes = 2e6;
   const FidelityChoice small = chooseFidelity(scene, wish);
   EXPECT_FALSE(small.is_met);
-  EXPECT_NE(small.why_not.find("only 2 MB are allowed"), std::string::npos) << small.why_not;
+  EXPECT_NE(small.failure_reason.find("only 2 MB are allowed"), std::string::npos) << small.failure_reason;
   // Nothing to find, and the scene's own maps are too much.
   wish = {};
   wish.budget_hz = 1;

@@ -23,7 +23,7 @@ double springEnergy_J(const CouplingGains& gains, const CouplingState& proxy, co
          gains.k_Nm_per_rad * turn_rad.squaredNorm() / 2;
 }
 
-// A hand shakes the handle by 10 mm, a sine of this jerk, and hits a block on a plate with each stroke.
+// A hand shakes the handle by 10 mm, a sine of this jerk, and hits a block on a plate with each segment.
 Judgement shake(const Run& run) {
   constexpr double amplitude_m = 10e-3, dt_s = 1e-3;
   const double turn_rad_s = std::cbrt(run.value / amplitude_m);
@@ -61,7 +61,7 @@ Judgement shake(const Run& run) {
     CouplingState part = coupling.partState();
     part.is_coupled = true;
     port.part.write(part);
-    loop.noteStored(energy_J(world, {block}) + springEnergy_J(settings.gains, port.proxy.read(), part), 0);
+    loop.observeStoredEnergy(energy_J(world, {block}) + springEnergy_J(settings.gains, port.proxy.read(), part), 0);
   };
   const Watched watched = watch(world, {floor, block}, watching);
   Judgement judgement;

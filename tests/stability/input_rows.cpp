@@ -82,7 +82,7 @@ const std::vector<Quantity>& quantities() {
        }},
       {"stiffness of contact",
        [](Scene& s, double x) { install(s, &VpsBulletSettings::stiffness_N_per_m3, x); }},
-      {"slack of contact", [](Scene& s, double x) { install(s, &VpsBulletSettings::slack_m, x); }},
+      {"slack of contact", [](Scene& s, double x) { install(s, &VpsBulletSettings::contact_margin_m, x); }},
       {"spring of a coupling",
        [](Scene& s, double x) {
          CouplingGains gains;

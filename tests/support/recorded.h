@@ -23,7 +23,7 @@ inline void expectSame(const AssembleResult& a, const AssembleResult& b) {
   EXPECT_EQ(a.energy.injected_J, b.energy.injected_J);
   ASSERT_EQ(a.steps.size(), b.steps.size());
   for (std::size_t i = 0; i < a.steps.size(); ++i) {
-    EXPECT_EQ(a.steps[i].why_not, b.steps[i].why_not);
+    EXPECT_EQ(a.steps[i].failure_reason, b.steps[i].failure_reason);
     EXPECT_EQ(a.steps[i].max_penetration_m, b.steps[i].max_penetration_m);
     EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
     EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);

@@ -67,7 +67,7 @@ AssembleResult smallResult() {
   result.scene = "peg & <hole>";
   StepResult step;
   step.part = "peg <1>";
-  step.why_not = "stuck at \"3 mm\" & <up>";
+  step.failure_reason = "stuck at \"3 mm\" & <up>";
   step.penetration_limit_m = 10e-6;
   step.max_penetration_m = 12.5e-6;
   result.steps = {step};
@@ -147,7 +147,7 @@ TEST(Plot, WritesBothFilesTheSameTwice) {
   if (!hasGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::string file = freshFolder("plot") + "/forces";
   const PlotOutcome outcome = plotForces(tapTapSlide(), file, {"peg_\"1\" \\ `ls`"});
-  ASSERT_TRUE(outcome) << outcome.why_not;
+  ASSERT_TRUE(outcome) << outcome.failure_reason;
   EXPECT_GT(loadPng(file + ".png").width, 1000);
   const std::string png = textOf(file + ".png"), svg = textOf(file + ".svg");
   EXPECT_NE(svg.find("time [s]"), std::string::npos);
@@ -164,7 +164,7 @@ TEST(Plot, WithoutGnuplotSaysWhichPackageHelps) {
   const PlotOutcome outcome = plotForces(tapTapSlide(), freshFolder("none") + "/forces");
   setenv("PATH", kept.c_str(), 1);
   EXPECT_FALSE(outcome);
-  EXPECT_NE(outcome.why_not.find("gnuplot-nox"), std::string::npos) << outcome.why_not;
+  EXPECT_NE(outcome.failure_reason.find("gnuplot-nox"), std::string::npos) << outcome.failure_reason;
 }
 
 TEST(Plot, NothingToPlotIsSaidNotDrawn) {
@@ -173,7 +173,7 @@ TEST(Plot, NothingToPlotIsSaidNotDrawn) {
 }
 
 TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
-  const std::string folder = freshFolder("paces");
+  const std::string folder = freshFolder("load_changes");
   AssembleResult result = smallResult();
   const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};
   ASSERT_TRUE(fs::create_directories(folder));
@@ -182,11 +182,11 @@ TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
   result.real_time.emplace();
   writeReport(smallScene(), result, folder, options);
   EXPECT_NE(textOf(folder + "/report.html").find("nothing was given up"), std::string::npos);
-  PaceChange change;
+  LoadLevelChange change;
   change.is = "points every 1 mm";
   change.why = "34 % of <0.25 s> had no step";
   change.cost = "no touch is deeper unseen than 1 mm";
-  result.real_time->paces = {change};
+  result.real_time->load_changes = {change};
   writeReport(smallScene(), result, folder, options);
   const std::string page = textOf(folder + "/report.html");
   for (const char* words : {"points every 1 mm", "34 % of &lt;0.25 s&gt;", "deeper unseen than 1 mm"})

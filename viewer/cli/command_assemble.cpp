@@ -16,9 +16,9 @@ namespace vps {
 namespace {
 
 /// What was given up to hold the rate, a line each.
-std::string describePaces(const std::vector<PaceChange>& paces) {
+std::string describeLoadChanges(const std::vector<LoadLevelChange>& load_changes) {
   std::string lines;
-  for (const PaceChange& change : paces)
+  for (const LoadLevelChange& change : load_changes)
     lines += "pace: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
              change.is + ", since " + change.why + "; " + inWords(change) + "\n";
   return lines;
@@ -35,7 +35,7 @@ std::string describe(const AssembleResult& result) {
          " at worst, by " + kept.worst_cause + "\nphysics: " + std::to_string(result.physics.count) +
          " steps at " + fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
          std::to_string(kept.physics_missed) + " periods missed, " + fixed(kept.behind_s, 2) +
-         " s behind the clock\n" + describePaces(kept.paces);
+         " s behind the clock\n" + describeLoadChanges(kept.load_changes);
 }
 
 }  // namespace

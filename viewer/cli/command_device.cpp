@@ -168,7 +168,7 @@ int runDevice(const DeviceArguments& given) {
   json.write(toJson(character, file));
   bar.clear();
   print(character);
-  if (!plot) warn("no picture of figure 5: " + plot.why_not);
+  if (!plot) warn("no picture of figure 5: " + plot.failure_reason);
   if (plot && !given.plot.empty())
     std::printf("figure 5: %s.png, %s.svg\n", given.plot.c_str(), given.plot.c_str());
   return kGood;

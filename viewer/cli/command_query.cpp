@@ -136,15 +136,15 @@ struct Asking {
   }
 };
 
-struct SideAnswer {
+struct SideResult {
   QueryResult distance;
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_M;  ///< on the shell's part about p_MO
   BudgetReport left;
 };
 
-SideAnswer ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Asking& asking) {
-  SideAnswer answer;
+SideResult ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Asking& asking) {
+  SideResult answer;
   TouchSummary sum;
   const QueryOptions options = {.gradient = asking.gradient};
   if (asking.budget) {
@@ -171,7 +171,7 @@ bool isSaturated(const QueryResult& found, const VoxMap& map) {
 PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Asking& asking) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
-  const SideAnswer first = ask(b_in_a, X_AB, X_AB.p, asking);
+  const SideResult first = ask(b_in_a, X_AB, X_AB.p, asking);
   answer.min_distance_m = first.distance.min_distance_m;
   answer.is_beyond = first.distance.is_beyond_band;
   answer.is_saturated = isSaturated(first.distance, b_in_a.map);
@@ -183,7 +183,7 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   answer.force_error_N = first.left.force_error_N;
   if (!a_in_b) return answer;
 
-  const SideAnswer second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), asking);
+  const SideResult second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), asking);
   answer.min_distance_m = std::min(answer.min_distance_m, second.distance.min_distance_m);
   answer.is_beyond = answer.is_beyond && second.distance.is_beyond_band;
   answer.is_saturated = answer.is_saturated || isSaturated(second.distance, a_in_b->map);

@@ -76,7 +76,7 @@ int pick(Scene scene, const FidelityWish& wish, OutputFile& json, ProgressBar& b
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
-    say("no fidelity will do: " + choice.why_not);
+    say("no fidelity will do: " + choice.failure_reason);
     return kBad;
   }
   std::printf("# %s\n%s", describe(choice).c_str(), toToml(choice.fidelity).c_str());
@@ -120,7 +120,7 @@ int runTrade(const TradeArguments& given) {
   json.write(toJson(result));
   bar.clear();
   print(result);
-  if (!plot) warn("no plot: " + plot.why_not);
+  if (!plot) warn("no plot: " + plot.failure_reason);
   if (!is_stopped) return kGood;
   say("stopped; what was measured by then is above" +
       std::string(out || !given.csv.empty() || !given.json.empty() ? ", and saved" : ""));

@@ -44,7 +44,7 @@ Json loopWall(const TickTimes& times) {
   return {{"missed", times.missed}, {"tick_us", percentiles(times)}};
 }
 
-Json pace(const PaceChange& change) {
+Json pace(const LoadLevelChange& change) {
   return {{"time_s", change.time_s},
           {"from", {{"level", change.from}, {"words", change.was}}},
           {"to", {{"level", change.to}, {"words", change.is}}},
@@ -72,8 +72,8 @@ void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
   haptic["warnings"] = kept.warnings;
   physics["missed_periods"] = kept.physics_missed;
   physics["behind_s"] = kept.behind_s;
-  physics["paces"] = Json::array();
-  for (const PaceChange& change : kept.paces) physics["paces"].push_back(pace(change));
+  physics["load_changes"] = Json::array();
+  for (const LoadLevelChange& change : kept.load_changes) physics["load_changes"].push_back(pace(change));
 }
 
 Json modelled(const ModelledCost& cost) {
@@ -87,7 +87,7 @@ Json modelled(const ModelledCost& cost) {
 Json step(const StepResult& step) {
   return {{"part", step.part},
           {"completed", step.completed},
-          {"why_not", step.why_not},
+          {"failure_reason", step.failure_reason},
           {"start_s", step.start_s},
           {"duration_s", step.duration_s},
           {"max_penetration_m", step.max_penetration_m},
@@ -100,7 +100,7 @@ Json step(const StepResult& step) {
           {"peak_torque_Nm", step.peak_torque_Nm},
           {"impacts", step.impacts},
           {"slides", step.slides},
-          {"regrasps", step.regrasps},
+          {"index_points", step.index_points},
           {"final_error_m", step.final_error_m},
           {"final_error_rad", step.final_error_rad},
           {"rest_drift_m", step.rest_drift_m},
@@ -139,7 +139,7 @@ std::string toJson(const AssembleResult& result) {
                 {{"to_hand_J", result.energy.to_hand_J},
                  {"from_hand_J", result.energy.from_hand_J},
                  {"injected_J", result.energy.injected_J},
-                 {"unseen_J", result.energy.unseen_J}}},
+                 {"quantisation_error_bound_J", result.energy.quantisation_error_bound_J}}},
                {"local_contact",
                 {{"held_ticks", result.local_contact.held},
                  {"jump_J", result.local_contact.jump_J},
@@ -367,7 +367,7 @@ std::string toJson(const ExplainAnswer& answer) {
 std::string toJson(const std::string& scene, const FidelityChoice& choice) {
   const Json json = {{"scene", scene},
                      {"is_met", choice.is_met},
-                     {"why_not", choice.why_not},
+                     {"failure_reason", choice.failure_reason},
                      {"fidelity", fidelity(choice.fidelity)},
                      {"error_m", choice.error_m},
                      {"points", choice.points},

@@ -27,7 +27,7 @@ std::string csvOf(const std::vector<StepResult>& steps) {
   std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
                              "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
                              "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
-                             "rest_drift_m", "rest_s", "is_placed", "regrasps", "why_not"});
+                             "rest_drift_m", "rest_s", "is_placed", "index_points", "failure_reason"});
   for (const StepResult& step : steps)
     out += csvLine(
         {step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
@@ -35,7 +35,7 @@ std::string csvOf(const std::vector<StepResult>& steps) {
          csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N), csvNumber(step.peak_torque_Nm),
          std::to_string(step.impacts), std::to_string(step.slides), csvNumber(step.final_error_m),
          csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m), csvNumber(step.rest_s),
-         step.is_placed ? "1" : "0", std::to_string(step.regrasps), step.why_not});
+         step.is_placed ? "1" : "0", std::to_string(step.index_points), step.failure_reason});
   return out;
 }
 
@@ -58,10 +58,10 @@ bool printSteps(const AssembleResult& result) {
   bool is_good = result.completed;
   for (const StepResult& step : result.steps) {
     const char* name = step.part.c_str();
-    if (!step.completed) std::printf("%s: %s\n", name, step.why_not.c_str());
-    if (step.regrasps > 0)
+    if (!step.completed) std::printf("%s: %s\n", name, step.failure_reason.c_str());
+    if (step.index_points > 0)
       std::printf("%s: taken anew %s on the way, which is longer than the device's workspace\n", name,
-                  step.regrasps == 1 ? "once" : (std::to_string(step.regrasps) + " times").c_str());
+                  step.index_points == 1 ? "once" : (std::to_string(step.index_points) + " times").c_str());
     if (step.is_placed) std::printf("%s: put on its target all the same, for the next step\n", name);
     if (!isWithinLimit(step))
       std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());

@@ -11,7 +11,7 @@ class btCollisionDispatcher;
 namespace vps {
 
 /// How contact is turned into motion.
-enum class ContactMode {
+enum class ContactMethod {
   Constraint,  ///< rigid: a few contacts for the solver, friction as a cone
   /// Compliant: every touching point presses with stiffness times area times depth and rubs by a bristle,
   /// solved implicitly. Needs VpsSolver: other solvers get the rigid contacts. No restitution.
@@ -19,13 +19,13 @@ enum class ContactMode {
 };
 
 struct VpsBulletSettings {
-  ContactMode mode = ContactMode::Constraint;
+  ContactMethod mode = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< of penalty contact, per area; assumed: steel, 0.2 m thick
   int contact_limit = 64;            ///< contacts given to the solver for each pair, >= 4
   /// A point is a contact if it can come within this of touching during the step. 20 um: measured; larger
   /// feeds the solver contacts that do not act, smaller misses what rotation and the solver's residual bring
   /// in.
-  double slack_m = 20e-6;
+  double contact_margin_m = 20e-6;
   Sides sides = Sides::Both;
   Gradient gradient = Gradient::Continuous;
   bool use_surfaces = true;  ///< correct contacts by VpsModels::surfaces where there are any

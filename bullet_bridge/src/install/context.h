@@ -16,7 +16,7 @@ namespace vps {
 
 struct VpsContext {
   VpsBulletSettings settings;
-  PartnerCache partners;
+  NativeShapeCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0},
       overlapping_starts{0};

@@ -75,7 +75,7 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
       if (vpsOf(*body)) hintAtSleep(*body->getCollisionObject());
     try {
       for (const int side : {0, 1})
-        if (!vpsOf(*bodies[side])) return withPartner(info, bodies, side);
+        if (!vpsOf(*bodies[side])) return withNativeShape(info, bodies, side);
       const VpsShape &a = *vpsOf(*body0), &b = *vpsOf(*body1);
       requireContact((a.models().shell && hasSurface(b)) || (b.models().shell && hasSurface(a)));
       return make<VpsAlgorithm>(info, body0, body1, context);
@@ -86,7 +86,7 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
   }
 
  private:
-  btCollisionAlgorithm* withPartner(btCollisionAlgorithmConstructionInfo& info,
+  btCollisionAlgorithm* withNativeShape(btCollisionAlgorithmConstructionInfo& info,
                                     const btCollisionObjectWrapper* const (&bodies)[2], int side) {
     const btCollisionShape& shape = *bodies[side]->getCollisionShape();
     const VpsShape* vps = vpsOf(*bodies[1 - side]);
@@ -96,7 +96,7 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
     const bool is_smooth = isPrimitive(shape) && !hasCorners(shape);
     requireContact(vps->models().shell || (!is_smooth && hasSurface(*vps)));
     if (is_smooth) return make<VpsAlgorithm>(info, bodies[0], bodies[1], context);
-    return make<PartnerAlgorithm>(info, bodies[0], bodies[1], context, side);
+    return make<NativeShapeAlgorithm>(info, bodies[0], bodies[1], context, side);
   }
 
   // A sleeping threshold of 0.8 m/s stops what slides; see tuneBody.
@@ -166,8 +166,8 @@ void requireUsable(const VpsBulletSettings& s) {
     throw std::invalid_argument("installVps: candidate_limit must be 0 (all) or at least contact_limit");
   if (!(s.stiffness_N_per_m3 > 0) || !std::isfinite(s.stiffness_N_per_m3))
     throw std::invalid_argument("installVps: stiffness_N_per_m3 must be positive and finite");
-  if (!(s.slack_m > 0) || !(s.slack_m < 1e-2))
-    throw std::invalid_argument("installVps: slack_m must be positive and below 10 mm");
+  if (!(s.contact_margin_m > 0) || !(s.contact_margin_m < 1e-2))
+    throw std::invalid_argument("installVps: contact_margin_m must be positive and below 10 mm");
 }
 
 }  // namespace

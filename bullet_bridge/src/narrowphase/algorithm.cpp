@@ -38,7 +38,7 @@ void noteStart(const PairView& pair, VpsPairState& state) {
   if (std::exchange(state.has_met, true)) return;
   double overlap_m = 0;
   for (const Candidate& c : state.contacts) overlap_m = std::max(overlap_m, -c.distance_m);
-  if (overlap_m <= state.motion.slack_m + state.motion.speed_m_s * state.motion.dt_s) return;
+  if (overlap_m <= state.motion.contact_margin_m + state.motion.speed_m_s * state.motion.dt_s) return;
   VpsContext& context = *state.context;
   double deepest_m = context.deepest_start_m;
   while (overlap_m > deepest_m && !context.deepest_start_m.compare_exchange_weak(deepest_m, overlap_m)) {
@@ -54,10 +54,10 @@ void noteStart(const PairView& pair, VpsPairState& state) {
 // Points now rather than contacts for a step.
 void answerQuery(const PairView& pair, VpsContext& context, btManifoldResult& result) {
   RelativeMotion still;
-  still.slack_m =
-      std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), sight_m(pair));
+  still.contact_margin_m =
+      std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), query_range_m(pair));
   std::vector<Candidate> candidates;
-  collect(pair, still.slack_m, context, candidates);
+  collect(pair, still.contact_margin_m, context, candidates);
   choose(pair, still, context.settings, nullptr, candidates);
   reportToQuery(candidates, pair.wrapper, result);
 }
@@ -90,14 +90,14 @@ void VpsAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollis
   state.is_prepared = true;
   forgetReplacedModels(state, pair);
   const VpsBulletSettings& settings = state.context->settings;
-  const bool is_penalty = settings.mode == ContactMode::Penalty;
+  const bool is_penalty = settings.mode == ContactMethod::Penalty;
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
   // Springs push from the first touch on, and only then: what is farther than the step's travel need not be
   // there.
-  constexpr double kPenaltySlack_m = 2e-6;  // assumed: contact turns the motion within the step
-  const double slack_m = is_penalty ? std::min(kPenaltySlack_m, settings.slack_m) : settings.slack_m;
-  state.motion = relativeMotion(pair, info.m_timeStep, slack_m);
+  constexpr double kPenaltyMargin_m = 2e-6;  // assumed: contact turns the motion within the step
+  const double contact_margin_m = is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
+  state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m);
   is_penalty ? choosePenalty(pair, state) : chooseRigid(pair, state);
 }
 

@@ -15,7 +15,7 @@ class btCollisionShape;
 
 namespace vps {
 
-struct SideMemory;
+struct QueryState;
 
 /// A point that can touch within the step: of a side's shell, or where an edge of body 0 crosses one of
 /// body 1.
@@ -42,7 +42,7 @@ struct Candidate {
 struct RelativeMotion {
   Twist V;  ///< velocity of body 0 less that of body 1, about the world's origin, in W
   double dt_s = 0;
-  double slack_m = 0;
+  double contact_margin_m = 0;
   double speed_m_s = 0;      ///< no point of the smaller body moves faster against the other
   double own_speed_m_s = 0;  ///< the same without the couplings' pull
 
@@ -71,8 +71,8 @@ struct SideView {
 };
 
 /// What a step asks of that side's points.
-struct SideAsk {
-  SideMemory* memory = nullptr;  ///< null: all near points, and nothing remembered
+struct SideQuery {
+  QueryState* memory = nullptr;  ///< null: all near points, and nothing remembered
   Twist step_W;                  ///< how the side's body moves against the other, about W's origin [rad, m]
   std::span<const std::uint32_t> always;  ///< ids, ascending: of last step's contacts
 };
@@ -82,7 +82,7 @@ struct SideAsk {
 /// @param cutoff_m   distance to look at, below the map's band
 /// Appends to out. Returns how many did not fit into settings.candidate_limit.
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, const SideAsk& ask, std::vector<Candidate>& out,
+                           const VpsBulletSettings& settings, const SideQuery& ask, std::vector<Candidate>& out,
                            std::size_t& points_tested);
 
 /// The same against one of Bullet's primitives at X_WS.
@@ -130,6 +130,6 @@ void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side);
 /// Chooses at most `limit`: those that carried load, then the deepest, then the farthest from all chosen so
 /// far, in position (in units of length_m) and direction. Ends in ascending key order, so that equal sets are
 /// equal to the bit.
-void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double slack_m);
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double contact_margin_m);
 
 }  // namespace vps

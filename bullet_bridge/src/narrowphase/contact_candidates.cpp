@@ -18,7 +18,7 @@ std::size_t limitOf(const VpsBulletSettings& settings, const PointShell& shell) 
 
 // A spring per area must stay where its area is.
 bool movesToRounds(const VpsBulletSettings& settings) {
-  return settings.use_surfaces && settings.mode == ContactMode::Constraint;
+  return settings.use_surfaces && settings.mode == ContactMethod::Constraint;
 }
 
 // A shell's points against anything that has a distance: walks the shell's spheres.
@@ -198,11 +198,11 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   // So a share of the greatest speed counts in every direction. Half: assumed, it covers a rod struck at one
   // end. The couplings' pull is left out of it: on a part that is pressed home it is large, and contact holds
   // it.
-  return c.distance_m <= slack_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
+  return c.distance_m <= contact_margin_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
 }
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, const SideAsk& ask, std::vector<Candidate>& out,
+                           const VpsBulletSettings& settings, const SideQuery& ask, std::vector<Candidate>& out,
                            std::size_t& points_tested) {
   const VpsModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;

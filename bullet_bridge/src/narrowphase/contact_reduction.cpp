@@ -89,7 +89,7 @@ struct Spread {
   Eigen::ArrayXf urgency;                        // -1 to 1, in slacks
   Eigen::Index size = 0;                         // of them in use
 
-  void take(const std::vector<Candidate>& candidates, double length_m, double slack_m) {
+  void take(const std::vector<Candidate>& candidates, double length_m, double contact_margin_m) {
     const auto count = static_cast<Eigen::Index>(candidates.size());
     if (place.rows() < count) place.resize(count, 6);
     if (urgency.size() < count) urgency.resize(count);
@@ -105,7 +105,7 @@ struct Spread {
         place(i, k) = static_cast<float>(p[k]);
         place(i, 3 + k) = static_cast<float>(c.n_W[k]);
       }
-      urgency[i] = static_cast<float>(std::clamp(vps::urgency(c) / slack_m, -1.0, 1.0));
+      urgency[i] = static_cast<float>(std::clamp(vps::urgency(c) / contact_margin_m, -1.0, 1.0));
     }
   }
 
@@ -158,11 +158,11 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m) {
   candidates.swap(kept);
 }
 
-void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double slack_m) {
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double contact_margin_m) {
   const std::size_t count = candidates.size();
   if (count > limit) {
     thread_local Spread spread;
-    spread.take(candidates, length_m, slack_m);
+    spread.take(candidates, length_m, contact_margin_m);
     thread_local std::vector<Candidate> chosen;
     chosen.clear();
     const auto choose = [&](std::size_t i) {

@@ -215,7 +215,7 @@ void correct(std::vector<Candidate>& candidates, const SideView& side, const Sid
     c.distance_m = exact.meets ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
     if (exact.meets && exact.is_smooth && !is_primitive)
-      moveToNearest(c, side, other, exact.face, motion.slack_m);
+      moveToNearest(c, side, other, exact.face, motion.contact_margin_m);
   }
 }
 
@@ -251,7 +251,7 @@ void correctEdges(std::vector<Candidate>& candidates, const SideView& side, cons
     const double field_m = map.distance(X_MW * p_then_W);
     if (field_m > kFieldError * map.voxel_m()) continue;
     Exact exact = nearFieldDistance(then, p_then_W, way[i].R * inward, field_m, map.voxel_m());
-    if (exact.found && exact.meets && exact.distance_m >= std::min(0.0, c.distance_m) - motion.slack_m) {
+    if (exact.found && exact.meets && exact.distance_m >= std::min(0.0, c.distance_m) - motion.contact_margin_m) {
       exact.distance_m -= exact.n.dot((p_then_W - c.p_W) - (way[j] * c.p_W - c.p_W));
     } else {
       exact = nearFieldDistance(now, c.p_W, inward, c.distance_m, map.voxel_m());

@@ -21,17 +21,17 @@ double roundedUp(double cutoff_m, double most_m) {
 // deeper, points lie inside and do it.
 double edgeDepth_m(const PairView& pair, double cutoff_m) {
   constexpr double kShare = 0.25;
-  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * sight_m(pair)) : cutoff_m;
+  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * query_range_m(pair)) : cutoff_m;
 }
 
-SideMemory& memoryOf(const PairView& pair, int i, VpsPairState& state) {
-  std::optional<SideMemory>& own = state.memory[i];
+QueryState& memoryOf(const PairView& pair, int i, VpsPairState& state) {
+  std::optional<QueryState>& own = state.memory[i];
   return own ? *own
              : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
                            state.context->settings);
 }
 
-SideAsk askOf(const PairView& pair, int i, VpsPairState& state) {
+SideQuery askOf(const PairView& pair, int i, VpsPairState& state) {
   std::vector<std::uint32_t>& always = state.always[i];
   always.clear();
   for (const Candidate& c : state.selection.chosen)  // ascending
@@ -44,7 +44,7 @@ SideAsk askOf(const PairView& pair, int i, VpsPairState& state) {
 void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
                        std::vector<Candidate>& candidates) {
   for (int i = 0; i < 2; ++i)
-    if (settings.mode == ContactMode::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+    if (settings.mode == ContactMethod::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
 }
 
 }  // namespace
@@ -59,15 +59,15 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
       left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
                                        cutoff_m, context.settings, out, tested);
     else if (pair.hasMap(j)) {
-      const double wide_m = state ? roundedUp(cutoff_m, sight_m(pair)) : cutoff_m;
-      const SideAsk ask = state ? askOf(pair, i, *state) : SideAsk{};
+      const double wide_m = state ? roundedUp(cutoff_m, query_range_m(pair)) : cutoff_m;
+      const SideQuery ask = state ? askOf(pair, i, *state) : SideQuery{};
       left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, ask, out, tested);
     } else {
       left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }
   }
   // Springs stand for areas, and a crossing has none.
-  if (context.settings.mode == ContactMode::Constraint && context.settings.use_surfaces && pair.vps[0] &&
+  if (context.settings.mode == ContactMethod::Constraint && context.settings.use_surfaces && pair.vps[0] &&
       pair.vps[1])
     left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
                                  context.settings, out);
@@ -78,27 +78,27 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
 void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
                     std::vector<Candidate>& out) {
   VpsContext& context = *state.context;
-  const double sight = sight_m(pair);
+  const double sight = query_range_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
-  if (motion.slack_m + travel_m <= sight) {
-    collect(pair, motion.slack_m + travel_m, context, out, &state);
+  if (motion.contact_margin_m + travel_m <= sight) {
+    collect(pair, motion.contact_margin_m + travel_m, context, out, &state);
     takeSpringNormals(pair, context.settings, out);
     return;
   }
-  const double stride_m = std::max(0.5 * (sight - motion.slack_m), 0.25 * sight);
+  const double stride_m = std::max(0.5 * (sight - motion.contact_margin_m), 0.25 * sight);
   constexpr double kMostStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
   const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStrides)));
   PairView later = pair;
   for (int k = 0; k < strides && out.empty(); ++k) {
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, motion.dt_s, t_s);
-    collect(later, std::min(motion.slack_m + travel_m / strides, sight), context, out);
+    collect(later, std::min(motion.contact_margin_m + travel_m / strides, sight), context, out);
     takeSpringNormals(later, context.settings, out);
     // Keep what is met in this stride, as planes seen from where the bodies are now.
     std::erase_if(out, [&](Candidate& c) {
       const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
-      if (c.distance_m - approach_m > motion.slack_m) return true;
+      if (c.distance_m - approach_m > motion.contact_margin_m) return true;
       c.distance_m -= c.n_W.dot(moved);
       const Pose& X_then = later.X_WS[c.side];
       c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
@@ -132,7 +132,7 @@ void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletS
     thinOut(candidates, cell_m);
   correctAll(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
-  chooseSpread(candidates, limit, radius_m, settings.slack_m);
+  chooseSpread(candidates, limit, radius_m, settings.contact_margin_m);
 }
 
 void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
@@ -143,14 +143,14 @@ void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, c
   selection.X_W0 = pair.X_WS[0];
   selection.V = motion.V;
   for (int i = 0; i < 2; ++i) selection.key[i] = pair.key(i);
-  selection.reach_m = motion.slack_m + motion.speed_m_s * motion.dt_s;
+  selection.reach_m = motion.contact_margin_m + motion.speed_m_s * motion.dt_s;
 }
 
 bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
   if (!selection.is_valid) return false;
   for (int i = 0; i < 2; ++i)
     if (!(selection.key[i] == pair.key(i))) return false;
-  if (motion.slack_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
+  if (motion.contact_margin_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();

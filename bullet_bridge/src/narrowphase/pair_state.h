@@ -38,7 +38,7 @@ struct VpsPairState {
   bool has_met = false;                  ///< contacts were looked for before
   PenaltyPair penalty;                   ///< in penalty mode
   bool is_registered = false;            ///< penalty is known to the solver
-  std::optional<SideMemory> memory[2];   ///< of side 0's points in side 1's map, and the reverse
+  std::optional<QueryState> memory[2];   ///< of side 0's points in side 1's map, and the reverse
   std::vector<std::uint32_t> always[2];  ///< ids of the points last chosen, for the query
   unsigned revision[2] = {0, 0};         ///< of the shapes that writer's and selection's ids belong to
 };

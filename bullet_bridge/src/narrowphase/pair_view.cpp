@@ -5,10 +5,10 @@
 
 namespace vps {
 
-RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m) {
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m) {
   RelativeMotion motion;
   motion.dt_s = dt_s;
-  motion.slack_m = slack_m;
+  motion.contact_margin_m = contact_margin_m;
   if (!(dt_s > 0)) return motion;
   const auto relative = [&](bool with_couplings) {
     const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), dt_s, with_couplings);
@@ -24,11 +24,11 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m)
   return motion;
 }
 
-double sight_m(const PairView& pair) {
-  double sight_m = 1e30;
+double query_range_m(const PairView& pair) {
+  double query_range_m = 1e30;
   for (const VpsShape* shape : pair.vps)
-    if (shape && shape->models().map) sight_m = std::min(sight_m, 0.95 * shape->models().map->band_m());
-  return sight_m;
+    if (shape && shape->models().map) query_range_m = std::min(query_range_m, 0.95 * shape->models().map->band_m());
+  return query_range_m;
 }
 
 bool asksPoints(const PairView& pair, int i, Sides sides) {

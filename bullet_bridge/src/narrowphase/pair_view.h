@@ -53,10 +53,10 @@ struct PairView {
   }
 };
 
-RelativeMotion relativeMotion(const PairView& pair, double dt_s, double slack_m);
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m);
 
 /// How far the fields can see [m]: the band bounds it.
-double sight_m(const PairView& pair);
+double query_range_m(const PairView& pair);
 
 /// True if the points of side i are looked at. One-sided: only the smaller body's, since a larger one's may
 /// be too far apart to catch it.

@@ -14,7 +14,7 @@ namespace {
 void correctSprings(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
                     std::vector<Candidate>& candidates) {
   // Of a body that was looked at along its way, the places are elsewhere.
-  if (!settings.use_surfaces || motion.slack_m + motion.speed_m_s * motion.dt_s > sight_m(pair)) return;
+  if (!settings.use_surfaces || motion.contact_margin_m + motion.speed_m_s * motion.dt_s > query_range_m(pair)) return;
   Pose way[2];
   coast(pair, motion.dt_s, way);
   for (int i = 0; i < 2; ++i)

@@ -23,10 +23,10 @@ double tileSize_m(const PointShell& shell, const VpsBulletSettings& settings) {
 
 }  // namespace
 
-SideMemory::SideMemory(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings)
+QueryState::QueryState(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings)
     : query(map, shell) {
   // Each spring counts; of rigid contact's points few do.
-  if (settings.mode == ContactMode::Constraint && shell.size() > mayAllBeNear(settings) &&
+  if (settings.mode == ContactMethod::Constraint && shell.size() > mayAllBeNear(settings) &&
       shell.spacing_m > 0)
     leading.emplace(shell, tileSize_m(shell, settings));
 }

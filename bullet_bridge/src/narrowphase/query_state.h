@@ -9,9 +9,9 @@
 
 namespace vps {
 
-struct SideMemory {
+struct QueryState {
   /// O(points). The shell must outlive it.
-  SideMemory(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings);
+  QueryState(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings);
 
   QueryMemory query;  ///< for cutoffs that stay the same
   std::optional<LeadingPoints>

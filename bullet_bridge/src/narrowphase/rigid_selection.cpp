@@ -14,7 +14,7 @@ namespace {
 bool recallSelection(const PairView& pair, VpsPairState& state) {
   if (!isWhereItWas(state.selection, pair, state.motion)) return false;
   // Points that could not be reached as the motion was had more than the slack to go.
-  if (motionChange_m(state.selection, pair, state.motion) > state.motion.slack_m) return false;
+  if (motionChange_m(state.selection, pair, state.motion) > state.motion.contact_margin_m) return false;
   const Carry carry = carryOf(state.selection, pair);
   state.contacts = state.selection.chosen;
   for (Candidate& c : state.contacts) carry(c);

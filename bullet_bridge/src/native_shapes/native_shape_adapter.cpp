@@ -94,7 +94,7 @@ PointShell shellOf(const Corners& corners) {
   return mergedShells(pointers, std::vector<Pose>(leaves.size()));
 }
 
-VpsModels modelsOf(const PartnerMesh& partner) {
+VpsModels modelsOf(const NativeShapeMesh& partner) {
   VpsModels models;
   const auto surface = std::make_shared<const MeshDistance>(partner.mesh);
   models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, partner.is_sheet)));
@@ -118,12 +118,12 @@ std::uint64_t hashOf(const Mesh& mesh) {
 
 }  // namespace
 
-PartnerShape::PartnerShape(const btCollisionShape& shape)
+NativeShape::NativeShape(const btCollisionShape& shape)
     : VpsShape(modelsOf(partnerMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
 
 const btCollisionShape* primitiveBehind(const btCollisionShape& shape) {
-  const auto* stand_in = dynamic_cast<const PartnerShape*>(&shape);
-  return stand_in ? stand_in->primitive() : nullptr;
+  const auto* adapter = dynamic_cast<const NativeShape*>(&shape);
+  return adapter ? adapter->primitive() : nullptr;
 }
 
 const btCollisionShape& withoutStandIn(const btCollisionShape& shape) {
@@ -184,21 +184,21 @@ ShapeKey keyOf(const btCollisionShape& shape) {
   return key;
 }
 
-std::shared_ptr<const PartnerShape> PartnerCache::get(const btCollisionShape& shape) {
+std::shared_ptr<const NativeShape> NativeShapeCache::get(const btCollisionShape& shape) {
   const std::lock_guard lock(mutex_);
   const ShapeKey key = keyOf(shape);
   const auto it = entries_.find(&shape);
   const bool is_known = it != entries_.end() && it->second.key == key;
-  if (is_known && it->second.stand_in.use_count() > 1) return it->second.stand_in;
+  if (is_known && it->second.adapter.use_count() > 1) return it->second.adapter;
   const std::uint64_t hash = hashOf(partnerMesh(shape).mesh);
-  if (is_known && it->second.hash == hash) return it->second.stand_in;
+  if (is_known && it->second.hash == hash) return it->second.adapter;
   // Of shapes that are gone nobody tells us: what no pair uses goes when there is much of it.
   constexpr std::size_t kMostKept = 64;
   if (entries_.size() >= kMostKept)
-    std::erase_if(entries_, [](const auto& entry) { return entry.second.stand_in.use_count() == 1; });
-  const auto stand_in = std::make_shared<const PartnerShape>(shape);
-  entries_[&shape] = {key, hash, stand_in};
-  return stand_in;
+    std::erase_if(entries_, [](const auto& entry) { return entry.second.adapter.use_count() == 1; });
+  const auto adapter = std::make_shared<const NativeShape>(shape);
+  entries_[&shape] = {key, hash, adapter};
+  return adapter;
 }
 
 }  // namespace vps

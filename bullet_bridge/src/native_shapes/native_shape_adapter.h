@@ -16,11 +16,11 @@ namespace vps {
 /// that both are looked up in each other: the VpsShape's points on the surface, the corners in the VpsShape's
 /// map. Of a primitive with corners only the corners are used; its distance is the primitive's own.
 /// Refers to the shape it stands for; holds its geometry as it was.
-class PartnerShape : public VpsShape {
+class NativeShape : public VpsShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   /// Throws as partnerMesh().
-  explicit PartnerShape(const btCollisionShape& shape);
+  explicit NativeShape(const btCollisionShape& shape);
   [[nodiscard]] const btCollisionShape* primitive() const { return primitive_; }
 
  private:
@@ -70,16 +70,16 @@ ShapeKey keyOf(const btCollisionShape& shape);
 /// The stand-ins of an installation: built when a shape first meets a VpsShape, shared by its pairs.
 /// A shape is known by its address, and checked: by its key always, and by a hash of its triangles' corners
 /// when no pair uses it any more, since another shape may have come to lie there. Thread-safe.
-class PartnerCache {
+class NativeShapeCache {
  public:
   /// Throws as partnerMesh(). O(triangles log triangles) the first time.
-  std::shared_ptr<const PartnerShape> get(const btCollisionShape& shape);
+  std::shared_ptr<const NativeShape> get(const btCollisionShape& shape);
 
  private:
   struct Entry {
     ShapeKey key;
     std::uint64_t hash = 0;
-    std::shared_ptr<const PartnerShape> stand_in;
+    std::shared_ptr<const NativeShape> adapter;
   };
   std::mutex mutex_;
   std::map<const btCollisionShape*, Entry> entries_;

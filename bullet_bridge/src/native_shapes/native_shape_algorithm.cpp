@@ -12,7 +12,7 @@
 
 namespace vps {
 
-static_assert(sizeof(PartnerAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
+static_assert(sizeof(NativeShapeAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
 namespace {
 
@@ -20,79 +20,79 @@ namespace {
 struct StandIns {
   btCollisionObjectWrapper replaced;
   const btCollisionObjectWrapper* wrapper[2];
-  StandIns(const PartnerShape& stand_in, int side, const btCollisionObjectWrapper* body0,
+  StandIns(const NativeShape& adapter, int side, const btCollisionObjectWrapper* body0,
            const btCollisionObjectWrapper* body1)
-      : StandIns(stand_in, *(side == 0 ? body0 : body1), body0, body1) {
+      : StandIns(adapter, *(side == 0 ? body0 : body1), body0, body1) {
     wrapper[side] = &replaced;
   }
 
  private:
-  StandIns(const PartnerShape& stand_in, const btCollisionObjectWrapper& partner,
+  StandIns(const NativeShape& adapter, const btCollisionObjectWrapper& partner,
            const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
-      : replaced(partner.m_parent, &stand_in, partner.m_collisionObject, partner.getWorldTransform(),
+      : replaced(partner.m_parent, &adapter, partner.m_collisionObject, partner.getWorldTransform(),
                  partner.m_partId, partner.m_index),
         wrapper{body0, body1} {}
 };
 
 }  // namespace
 
-struct PartnerAlgorithm::State {
+struct NativeShapeAlgorithm::State {
   std::shared_ptr<VpsContext> context;
-  int partner_side = 0;
+  int native_side = 0;
   ShapeKey key;
-  std::shared_ptr<const PartnerShape> stand_in;  // null: the shape has become one that cannot be met
+  std::shared_ptr<const NativeShape> adapter;  // null: the shape has become one that cannot be met
   std::unique_ptr<VpsAlgorithm> inner;
 
   void renew(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
-    const btCollisionShape& shape = *bodies[partner_side]->getCollisionShape();
+    const btCollisionShape& shape = *bodies[native_side]->getCollisionShape();
     key = keyOf(shape);
     inner.reset();
-    stand_in = context->partners.get(shape);
+    adapter = context->partners.get(shape);
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
     inner = std::make_unique<VpsAlgorithm>(info, bodies[0], bodies[1], context);
   }
   // In the middle of a step there is nobody to throw to.
   void renewOrSay(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
-    if (key == keyOf(*bodies[partner_side]->getCollisionShape())) return;
+    if (key == keyOf(*bodies[native_side]->getCollisionShape())) return;
     try {
       renew(dispatcher, bodies);
     } catch (const std::exception& error) {
-      stand_in.reset();
+      adapter.reset();
       std::fprintf(stderr, "vps: %s\n", error.what());
     }
   }
 };
 
-PartnerAlgorithm::PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+NativeShapeAlgorithm::NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                                    const btCollisionObjectWrapper* body0,
                                    const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
-                                   int partner_side)
+                                   int native_side)
     : VpsPair(info, body0, body1), state_(std::make_unique<State>()) {
   state_->context = std::move(context);
-  state_->partner_side = partner_side;
+  state_->native_side = native_side;
   state_->renew(*m_dispatcher, {body0, body1});
 }
 
-PartnerAlgorithm::~PartnerAlgorithm() = default;
+NativeShapeAlgorithm::~NativeShapeAlgorithm() = default;
 
-void PartnerAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+void NativeShapeAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   if (state_->inner) state_->inner->getAllContactManifolds(manifolds);
 }
 
-void PartnerAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+void NativeShapeAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                                const btDispatcherInfo& info) {
-  const btCollisionObjectWrapper* partner = state_->partner_side == 0 ? body0 : body1;
-  if (!state_->stand_in || state_->key != keyOf(*partner->getCollisionShape())) return;
-  const StandIns bodies(*state_->stand_in, state_->partner_side, body0, body1);
+  const btCollisionObjectWrapper* partner = state_->native_side == 0 ? body0 : body1;
+  if (!state_->adapter || state_->key != keyOf(*partner->getCollisionShape())) return;
+  const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
   state_->inner->prepare(bodies.wrapper[0], bodies.wrapper[1], info);
 }
 
-void PartnerAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
+void NativeShapeAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                         const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
                                         btManifoldResult* result) {
   state_->renewOrSay(*m_dispatcher, {body0, body1});
-  if (!state_->stand_in) return;
-  const StandIns bodies(*state_->stand_in, state_->partner_side, body0, body1);
+  if (!state_->adapter) return;
+  const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
   state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Narrow phase for pairs of a VpsShape with a shape that a PartnerShape stands in for.
+// Narrow phase for pairs of a VpsShape with a shape that a NativeShape stands in for.
 #pragma once
 
 #include <memory>
@@ -8,17 +8,17 @@
 
 namespace vps {
 
-class PartnerShape;
+class NativeShape;
 
 /// VpsAlgorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
 /// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
-class PartnerAlgorithm final : public VpsPair {
+class NativeShapeAlgorithm final : public VpsPair {
  public:
-  /// @param partner_side  0 or 1: whose shape is replaced. Throws as PartnerCache::get().
-  PartnerAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+  /// @param native_side  0 or 1: whose shape is replaced. Throws as NativeShapeCache::get().
+  NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
                    const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
-                   int partner_side);
-  ~PartnerAlgorithm() override;
+                   int native_side);
+  ~NativeShapeAlgorithm() override;
 
   /// Does nothing where the stand-in must be renewed: that is left to processCollision(), one pair at a time.
   void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,

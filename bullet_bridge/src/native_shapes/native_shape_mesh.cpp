@@ -85,7 +85,7 @@ void keepOneSide(Mesh& mesh) {
   std::erase_if(mesh.triangles, [&](const auto& t) { return !(areaNormal(mesh, t).dot(front) > 0); });
 }
 
-PartnerMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& points) {
+NativeShapeMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& points) {
   std::vector<double> coordinates;
   for (const Vec3& p : points) {
     if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
@@ -94,7 +94,7 @@ PartnerMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& point
   if (points.size() < 3) refuse(shape, "it has fewer than three corners");
   btConvexHullComputer computer;
   computer.compute(coordinates.data(), 3 * sizeof(double), static_cast<int>(points.size()), 0, 0);
-  PartnerMesh hull;
+  NativeShapeMesh hull;
   // Bullet rounds to 1/10216 of the size to find who is a corner; the corners themselves we take unrounded.
   for (int i = 0; i < computer.vertices.size(); ++i)
     hull.mesh.vertices.push_back(points[static_cast<std::size_t>(computer.original_vertex_index[i])]);
@@ -176,8 +176,8 @@ Mesh allTriangles(const btConcaveShape& shape) {
   const btVector3 beyond = btScalar(0.01) * (high - low) + btVector3(1, 1, 1) * btScalar(1e-3);
   CountTriangles counted;
   shape.processAllTriangles(&counted, low - beyond, high + beyond);
-  if (counted.count > kMostPartnerTriangles)
-    refuse(shape, "it has more than " + std::to_string(kMostPartnerTriangles) + " triangles; split it");
+  if (counted.count > kMaxNativeTriangles)
+    refuse(shape, "it has more than " + std::to_string(kMaxNativeTriangles) + " triangles; split it");
   CollectTriangles all;
   shape.processAllTriangles(&all, low - beyond, high + beyond);
   for (const Vec3& p : all.mesh.vertices)
@@ -188,8 +188,8 @@ Mesh allTriangles(const btConcaveShape& shape) {
   return mesh;
 }
 
-PartnerMesh concaveMesh(const btConcaveShape& shape) {
-  PartnerMesh partner{allTriangles(shape), false};
+NativeShapeMesh concaveMesh(const btConcaveShape& shape) {
+  NativeShapeMesh partner{allTriangles(shape), false};
   if (!checkMesh(partner.mesh).isClosed())
     partner.is_sheet = true;
   else if (massProperties(partner.mesh).volume_m3 < 0)
@@ -213,9 +213,9 @@ std::vector<std::array<std::uint32_t, 2>> borderOf(const Mesh& mesh) {
 //    ~~~~~~~~~~~   the field, facing up
 //    |         |   walls
 //    |_________|   floor
-PartnerMesh terrainMesh(const btHeightfieldTerrainShape& shape) {
+NativeShapeMesh terrainMesh(const btHeightfieldTerrainShape& shape) {
   const int up = shape.getUpAxis();
-  PartnerMesh terrain{allTriangles(shape), false};
+  NativeShapeMesh terrain{allTriangles(shape), false};
   Mesh& mesh = terrain.mesh;
   for (auto& t : mesh.triangles)
     if (areaNormal(mesh, t)[up] < 0) std::swap(t[1], t[2]);
@@ -246,14 +246,14 @@ PartnerMesh terrainMesh(const btHeightfieldTerrainShape& shape) {
   return terrain;
 }
 
-PartnerMesh scaledBy(double factor, PartnerMesh partner) {
+NativeShapeMesh scaledBy(double factor, NativeShapeMesh partner) {
   for (Vec3& p : partner.mesh.vertices) p *= factor;
   if (factor < 0) flip(partner.mesh);
   return partner;
 }
 
 // Bullet's own corners of it lie a margin below its plane.
-PartnerMesh flatBox(const btBox2dShape& shape) {
+NativeShapeMesh flatBox(const btBox2dShape& shape) {
   const Vec3 half = fromBt(shape.getHalfExtentsWithMargin());
   Mesh mesh;
   mesh.vertices = {
@@ -262,7 +262,7 @@ PartnerMesh flatBox(const btBox2dShape& shape) {
   return {mesh, true};
 }
 
-PartnerMesh convexMesh(const btConvexShape& shape) {
+NativeShapeMesh convexMesh(const btConvexShape& shape) {
   if (const auto* triangles = dynamic_cast<const btConvexTriangleMeshShape*>(&shape))
     return hullOf(shape, meshVertices(*triangles));
   if (const auto* cloud = dynamic_cast<const btConvexPointCloudShape*>(&shape))
@@ -274,7 +274,7 @@ PartnerMesh convexMesh(const btConvexShape& shape) {
 
 }  // namespace
 
-PartnerMesh partnerMesh(const btCollisionShape& shape) {
+NativeShapeMesh partnerMesh(const btCollisionShape& shape) {
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
       return {makeBox(2 * fromBt(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin()))};

@@ -16,7 +16,7 @@ struct SurfaceDistance {
 };
 
 /// True for plane, box, sphere, capsule, cylinder, cone, multi-sphere (of up to 12 spheres, scaled evenly),
-/// a btUniformScalingShape of one of those by a positive factor, and a PartnerShape that stands for one.
+/// a btUniformScalingShape of one of those by a positive factor, and a NativeShape that stands for one.
 bool isPrimitive(const btCollisionShape& shape);
 
 /// True for the primitives that have corners or rims: box, cylinder, cone. A shell's points can straddle

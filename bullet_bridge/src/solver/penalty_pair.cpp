@@ -67,7 +67,7 @@ void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, doubl
     }
     // Deeper than the step's approach can bring it: the bodies were put into each other, or another surface
     // became the nearest.
-    const double deeper_m = before_m - motion.slack_m - c.distance_m;
+    const double deeper_m = before_m - motion.contact_margin_m - c.distance_m;
     if (deeper_m > point.ease_m) {
       const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +
                                 0.1 * motion.own_speed_m_s * motion.dt_s;

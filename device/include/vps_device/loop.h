@@ -51,7 +51,7 @@ struct Grasp {
 /// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
 /// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
 /// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
-struct HandLedger {
+struct PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
   double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
@@ -61,7 +61,7 @@ struct HandLedger {
   /// What the encoders may have kept from injected_J, at the most, in scene joules: with a reading off by e,
   /// the sum of F . change of e is, summed by parts, at most the greatest e times (the way that F has gone,
   /// up and down, + F now). Of DeviceLimits::resolution alone, and wide: as if each error were the worst.
-  double unseen_J = 0;
+  double quantisation_error_bound_J = 0;
 
   /// What it has risen by now.
   [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
@@ -77,7 +77,7 @@ struct LoopSettings {
   double hold_limit_s = 2e-3;
   double injected_bound_J =
       1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
-  bool has_passivity_controller = true;  ///< works once noteStored() is called
+  bool has_passivity_controller = true;  ///< works once observeStoredEnergy() is called
   double clutch_s = 0.1;                 ///< hold and let go take so long. assumed: a startle takes longer
   /// A part in hand whose snapshot (by its time stamp) stays the same for longer is a fault. 0: never, as in
   /// lockstep, where physics cannot fall behind. Real time has 0.1 s: see real_time_loop.h.
@@ -140,11 +140,11 @@ class HapticLoop {
   /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
   /// put in by others than the hand so far, both in scene joules. Call once a physics step, from the loop's
   /// thread, with the handle where the last tick read it: there the balance is drawn.
-  void noteStored(double stored_J, double actuator_J) noexcept;
+  void observeStoredEnergy(double stored_J, double actuator_J) noexcept;
 
   [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
   [[nodiscard]] const TickReport& last() const noexcept { return report_; }
-  [[nodiscard]] const HandLedger& ledger() const noexcept { return ledger_; }
+  [[nodiscard]] const PassivityObserver& ledger() const noexcept { return ledger_; }
   [[nodiscard]] const SafetyState& safety() const noexcept { return guard_.state(); }
   [[nodiscard]] const LoopSettings& settings() const noexcept { return settings_; }
   /// Ticks that ended with each Status, indexed by its value.
@@ -182,7 +182,7 @@ class HapticLoop {
   Clutch clutch_;
   bool is_holding_ = false;
   TickReport report_;
-  HandLedger ledger_;
+  PassivityObserver ledger_;
   Pose X_DH_before_;
   bool has_before_ = false;
   std::array<Wrench, kMostDelay + 2> F_written_D_{};  ///< newest first

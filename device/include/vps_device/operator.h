@@ -61,7 +61,7 @@ struct OperatorTask {
   Pose X_WP_start;
   std::vector<Pose> way_points;  ///< X_WP; the last is where insertion begins (the start, if there are none)
   /// Way points (their indices) at which the device is at its border: the hand stops there and takes anew.
-  std::vector<std::size_t> regrasps;
+  std::vector<std::size_t> index_points;
   Pose X_WP_target;
   Pose X_PG;
   double tolerance_m = 0.1e-3;  ///< part's origin against the target
@@ -82,7 +82,7 @@ struct OperatorView {
   Wrench F_hand_W;  ///< felt: wrench of the device on the hand
 };
 
-/// Regrasp: at a way point of OperatorTask::regrasps, holding still until goOn().
+/// Regrasp: at a way point of OperatorTask::index_points, holding still until goOn().
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 const char* toText(OperatorPhase phase) noexcept;
 

@@ -45,7 +45,7 @@ struct RealTimeSettings {
   std::function<void(HapticLoop& loop, double dt_s)> beside;
 };
 
-/// Owns the loop. The one that commands it (grasp to rearm, noteStored) is one thread; requests are
+/// Owns the loop. The one that commands it (grasp to rearm, observeStoredEnergy) is one thread; requests are
 /// done at the start of the next tick. Statistics are read by any thread, latest() by one.
 class RealTimeLoop {
  public:
@@ -70,7 +70,7 @@ class RealTimeLoop {
   bool release() noexcept;
   bool rearm() noexcept;
   bool setGains(const CouplingGains& gains) noexcept;
-  void noteStored(double stored_J, double actuator_J) noexcept {
+  void observeStoredEnergy(double stored_J, double actuator_J) noexcept {
     energies_.write({stored_J, actuator_J, true});
   }
 
@@ -78,7 +78,7 @@ class RealTimeLoop {
   struct Latest {
     TickReport report;
     SafetyState safety;
-    HandLedger ledger;
+    PassivityObserver ledger;
     bool is_holding = false;
   };
   const Latest& latest() noexcept { return latest_.read(); }

@@ -50,7 +50,7 @@ struct RunTrace {
 };
 
 /// Where loop and physics meet in a run by the clock: what each knew of the other. In lockstep there is none.
-enum class MeetingKind : std::uint8_t {
+enum class SyncEventKind : std::uint8_t {
   Tick,     ///< the loop ticks, with that snapshot of physics
   Step,     ///< physics steps, with the proxy of that tick
   Settled,  ///< what was done beside the run is ready
@@ -66,15 +66,15 @@ enum class MeetingKind : std::uint8_t {
   Rearm,
 };
 
-struct Meeting {
+struct SyncEvent {
   double time_s = 0;          ///< of the loop's last sample
   std::int32_t tick = 0;      ///< ticks so far, this one too
   std::int32_t periods = 1;   ///< of the loop since its last tick
   std::int32_t snapshot = 0;  ///< how many physics had published
-  MeetingKind kind = MeetingKind::Tick;
+  SyncEventKind kind = SyncEventKind::Tick;
 };
 
-using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, Meeting>;
+using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, SyncEvent>;
 
 double timeOf(const LogEntry& entry) noexcept;
 

@@ -223,10 +223,10 @@ void HapticLoop::accountUnseen(const Wrench& F_D) noexcept {
   F_accounted_D_ = F_D;
   const double line_J = limits_.resolution_m * (force_way_N_ + F_D.f.norm()),
                turn_J = limits_.resolution_rad * (torque_way_Nm_ + F_D.tau.norm());
-  ledger_.unseen_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
+  ledger_.quantisation_error_bound_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
 }
 
-void HapticLoop::noteStored(double stored_J, double actuator_J) noexcept {
+void HapticLoop::observeStoredEnergy(double stored_J, double actuator_J) noexcept {
   // Device dissipation stands for as much in the scene as the translation it brakes.
   const double dissipated_J = ledger_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
   const double balance_J = net_scene_J_ - dissipated_J + stored_J - actuator_J;

@@ -47,7 +47,7 @@ const char* toText(OperatorPhase phase) noexcept {
     case OperatorPhase::Failed:
       return "failed";
     case OperatorPhase::Regrasp:
-      return "regrasp";
+      return "index_point";
   }
   return "unknown";
 }
@@ -250,8 +250,8 @@ void VirtualOperator::reach(double now_s) noexcept {
   if (now_s < end_s) return;
   const bool has_arrived = (seenGrasp().p - segment_.X_to.p).norm() < kArrived_m;
   if (!has_arrived && now_s < end_s + kArrivalWait_s) return;
-  const auto& regrasps = task_.regrasps;
-  if (std::find(regrasps.begin(), regrasps.end(), next_ - 1) != regrasps.end()) {
+  const auto& index_points = task_.index_points;
+  if (std::find(index_points.begin(), index_points.end(), next_ - 1) != index_points.end()) {
     X_hold_ = wanted(now_s);
     ++next_;
     return enter(OperatorPhase::Regrasp, now_s);

@@ -172,7 +172,7 @@ void RealTimeLoop::answerRequests() noexcept {
   for (; answered != asked; ++answered) answer(requests_[answered % kRequests]);
   answered_.store(answered, std::memory_order_release);
   const Energies& energies = energies_.read();
-  if (energies.is_told) loop_.noteStored(energies.stored_J, energies.actuator_J);
+  if (energies.is_told) loop_.observeStoredEnergy(energies.stored_J, energies.actuator_J);
 }
 
 }  // namespace vps

@@ -173,7 +173,7 @@ LogEntry blank(std::size_t kind) {
     case 3:
       return RunTrace{};
     default:
-      return Meeting{};
+      return SyncEvent{};
   }
 }
 

@@ -58,7 +58,7 @@ void fields(Entry& e, Visit&& visit) {
 }
 
 template <typename Entry, typename Visit>
-requires std::is_same_v<std::remove_const_t<Entry>, Meeting>
+requires std::is_same_v<std::remove_const_t<Entry>, SyncEvent>
 void fields(Entry& e, Visit&& visit) {
   auto& [time_s, tick, periods, snapshot, kind] = e;
   visit("time_s", time_s);
@@ -71,10 +71,10 @@ void fields(Entry& e, Visit&& visit) {
 /// Topics and types by LogEntry::index().
 inline constexpr std::size_t kKinds = std::variant_size_v<LogEntry>;
 inline constexpr const char* kTopics[kKinds] = {"/device/read", "/device/write", "/run/event", "/run/trace",
-                                                "/run/meeting"};
+                                                "/run/sync_event"};
 inline constexpr const char* kTypes[kKinds] = {"vps_msgs/msg/DeviceSample", "vps_msgs/msg/HandWrench",
                                                "vps_msgs/msg/RunEvent", "vps_msgs/msg/RunTrace",
-                                               "vps_msgs/msg/Meeting"};
+                                               "vps_msgs/msg/SyncEvent"};
 inline constexpr const char* kAbout[kKinds] = {
     "# The handle H in the device's base D; v and w of H's origin. status 0: use it.",
     "# On the hand about H's origin, in D, as it went to the device.",

@@ -29,7 +29,7 @@ class BoxTree {
   /// Calls visit(index) for the boxes that meet one, in no particular order, until it returns false; whether
   /// it never did.
   template <typename Visit>
-  bool forEachMeeting(const Box& box, Visit visit) const {
+  bool forEachSyncEvent(const Box& box, Visit visit) const {
     std::uint32_t stack[64];  // halved by count: 32 levels at most, one waiting child each
     int waiting = 0;
     if (!nodes_.empty()) stack[waiting++] = 0;
@@ -48,9 +48,9 @@ class BoxTree {
   }
 
   /// Whether any two boxes meet.
-  [[nodiscard]] bool hasMeeting() const {
+  [[nodiscard]] bool hasSyncEvent() const {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-      if (!forEachMeeting(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
+      if (!forEachSyncEvent(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
     return false;
   }
 

@@ -50,11 +50,11 @@ class Merger {
 
   std::shared_ptr<VoxLayout> run() {
     layOut();
-    findMeetings();
+    findSyncEvents();
     const std::uint32_t first = takeRoom();
     mixed_->resize(mixed_count_);
-    tbb::parallel_for(std::size_t{0}, meetings_.size(), [&](std::size_t i) {
-      fill(meetings_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
+    tbb::parallel_for(std::size_t{0}, sync_events_.size(), [&](std::size_t i) {
+      fill(sync_events_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
     });
     if (!mixed_->empty()) out_->owners.push_back(mixed_);
     markFarCells(*out_);
@@ -62,22 +62,22 @@ class Merger {
   }
 
  private:
-  /// Bricks for the meetings, in a's own pool if it has room: the first's name.
+  /// Bricks for the sync_events, in a's own pool if it has room: the first's name.
   std::uint32_t takeRoom() {
     out_->pool = a_.pool;
     out_->owners = a_.owners;
     out_->leases = a_.leases;
     const auto kept = std::count_if(out_->bricks.begin(), out_->bricks.end(),
                                     [](std::uint32_t brick) { return !isConstant(brick); });
-    requireMemory((static_cast<double>(kept) + static_cast<double>(meetings_.size())) * VoxPool::kBytes,
+    requireMemory((static_cast<double>(kept) + static_cast<double>(sync_events_.size())) * VoxPool::kBytes,
                   " for its bricks", "larger voxels would do");
-    const std::uint32_t first = takeBricks(*out_, meetings_.size());
-    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, meetings_.size()));
+    const std::uint32_t first = takeBricks(*out_, sync_events_.size());
+    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, sync_events_.size()));
     return first;
   }
 
   /// A cell that gets a new brick.
-  struct Meeting {
+  struct SyncEvent {
     std::size_t cell = 0;  ///< in the result's directory
     std::size_t cell_of_b = 0;
     std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
@@ -121,7 +121,7 @@ class Merger {
   }
 
   /// Settles the cells where one field is constant and wins; lists the others.
-  void findMeetings() {
+  void findSyncEvents() {
     const Index3 low = b_.low.cwiseMax(out_->low);
     const Index3 high = (b_.low + b_.size).cwiseMin(out_->low + out_->size);
     const std::uint32_t wins = is_union_ ? kInside : kOutside, yields = is_union_ ? kOutside : kInside;
@@ -129,32 +129,32 @@ class Merger {
       for (int y = low.y(); y < high.y(); ++y)
         for (int z = low.z(); z < high.z(); ++z) {
           const Index3 at(x, y, z);
-          Meeting meeting{out_->cellIndex(at), b_.cellIndex(at), SIZE_MAX};
-          std::uint32_t& brick = out_->bricks[meeting.cell];
-          const std::uint32_t kind = b_.kinds[meeting.cell_of_b];
+          SyncEvent sync_event{out_->cellIndex(at), b_.cellIndex(at), SIZE_MAX};
+          std::uint32_t& brick = out_->bricks[sync_event.cell];
+          const std::uint32_t kind = b_.kinds[sync_event.cell_of_b];
           if (brick == wins || kind == kOutside) continue;
           if (kind == kInside) {
             brick = wins;
             continue;
           }
-          if (brick != yields || b_.hasMixedOwners(meeting.cell_of_b)) meeting.mixed = mixed_count_++;
-          meetings_.push_back(meeting);
+          if (brick != yields || b_.hasMixedOwners(sync_event.cell_of_b)) sync_event.mixed = mixed_count_++;
+          sync_events_.push_back(sync_event);
         }
   }
 
-  void fill(const Meeting& meeting, std::uint32_t brick) {
+  void fill(const SyncEvent& sync_event, std::uint32_t brick) {
     VoxPool& pool = *out_->pool;
-    const std::uint32_t old = out_->bricks[meeting.cell];
+    const std::uint32_t old = out_->bricks[sync_event.cell];
     const NodeValue* old_nodes = pool.nodes(old);
     NodeValue* nodes = pool.nodes(brick);
-    b_.write(meeting.cell_of_b, nodes);
+    b_.write(sync_event.cell_of_b, nodes);
     if (!is_union_) std::transform(nodes, nodes + kBrickStride, nodes, flipped);
-    pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, 0) + owner_offset_);
-    out_->bricks[meeting.cell] = brick;
-    if (meeting.mixed == SIZE_MAX) return;
+    pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(sync_event.cell_of_b, 0) + owner_offset_);
+    out_->bricks[sync_event.cell] = brick;
+    if (sync_event.mixed == SIZE_MAX) return;
 
-    NodeOwners& owners = (*mixed_)[meeting.mixed];
-    const bool has_one_owner = !b_.hasMixedOwners(meeting.cell_of_b);
+    NodeOwners& owners = (*mixed_)[sync_event.mixed];
+    const bool has_one_owner = !b_.hasMixedOwners(sync_event.cell_of_b);
     const std::uint16_t owner = pool.owner(brick);
     bool is_won = true;
     for (int i = 0; i < kBrickNodes; ++i) {
@@ -162,12 +162,12 @@ class Merger {
       owners[i] = takes_old ? pool.ownerOf(old, i)
                   : has_one_owner
                       ? owner
-                      : static_cast<std::uint16_t>(b_.ownerOf(meeting.cell_of_b, i) + owner_offset_);
+                      : static_cast<std::uint16_t>(b_.ownerOf(sync_event.cell_of_b, i) + owner_offset_);
       if (takes_old) nodes[i] = old_nodes[i];
       is_won = is_won && nodes[i] == (is_union_ ? -kFullBand : kFullBand);
     }
     pool.mixed(brick) = &owners;
-    if (is_won) out_->bricks[meeting.cell] = is_union_ ? kInside : kOutside;
+    if (is_won) out_->bricks[sync_event.cell] = is_union_ ? kInside : kOutside;
   }
 
   const VoxLayout& a_;
@@ -176,7 +176,7 @@ class Merger {
   const double voxel_m_;
   const std::uint16_t owner_offset_;
   std::shared_ptr<VoxLayout> out_ = std::make_shared<VoxLayout>();
-  std::vector<Meeting> meetings_;
+  std::vector<SyncEvent> sync_events_;
   std::size_t mixed_count_ = 0;
   std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
 };

@@ -31,7 +31,7 @@ inline constexpr double kStepBase_us = 400, kStepPoint_us = 0.055;
 struct FidelityChoice {
   Fidelity fidelity;
   bool is_met = false;
-  std::string why_not;  ///< empty when met: which wish nobody can meet, and what would help
+  std::string failure_reason;  ///< empty when met: which wish nobody can meet, and what would help
   double error_m = 0;   ///< as FidelityWish::tolerance_m, measured
   std::size_t points = 0, points_near = 0, bytes = 0;  ///< as built; bytes with the cooked field
   double step_us = 0;                                  ///< by the cost model

@@ -12,7 +12,7 @@ namespace vps {
 
 /// How a run goes, by what its scene asks. Force limits, passivity control and watchdogs are no part of it:
 /// they are given up by none.
-struct Pace {
+struct LoadLevel {
   double coarser = 1;    ///< spacing of points by the scene's, >= 1
   int rate_divisor = 1;  ///< of the physics rate
   int slower = 1;        ///< the clock's time by simulated time
@@ -24,7 +24,7 @@ struct Pace {
 /// The stated order: fewer points, then fewer steps, then slower time; each keeps what was given up before.
 /// Spacing up to four times, as fidelity_choice.h goes. assumed: a quarter of the rate and of the clock's
 /// time, beyond which nobody would call it the same task.
-inline constexpr std::array<Pace, 7> kPaces = {
+inline constexpr std::array<LoadLevel, 7> kLoadLevels = {
     {{1, 1, 1}, {2, 1, 1}, {4, 1, 1}, {4, 2, 1}, {4, 4, 1}, {4, 4, 2}, {4, 4, 4}}};
 
 /// How many times as much a step may take of its period at the pace before: points go with the inverse square
@@ -32,12 +32,12 @@ inline constexpr std::array<Pace, 7> kPaces = {
 double dearerBefore(std::size_t level);
 
 /// "points every 1 mm, physics at 500 Hz, time at 1/2".
-std::string describe(const Pace& pace, const Fidelity& fidelity);
+std::string describe(const LoadLevel& pace, const Fidelity& fidelity);
 
 /// One change of pace.
-struct PaceChange {
+struct LoadLevelChange {
   double time_s = 0;     ///< simulated
-  int from = 0, to = 0;  ///< indices of kPaces
+  int from = 0, to = 0;  ///< indices of kLoadLevels
   std::string was, is;   ///< both in words
   std::string why;
   std::string cost;       ///< what it costs in error, or gives back
@@ -53,6 +53,6 @@ struct PaceChange {
 };
 
 /// What a change costs: known beforehand, and measured where it was made.
-std::string inWords(const PaceChange& change);
+std::string inWords(const LoadLevelChange& change);
 
 }  // namespace vps

@@ -26,7 +26,7 @@ struct TickTimes {
 struct StepResult {
   std::string part;
   bool completed = false;
-  std::string why_not;  ///< empty when completed
+  std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
   double max_penetration_m = 0;  ///< by exact mesh distance, over the step and the rest after it
   std::string deepest_against;
@@ -36,7 +36,7 @@ struct StepResult {
   double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int regrasps = 0;  ///< times the hand let go on the way and took the part anew, for a device too small
+  int index_points = 0;  ///< times the hand let go on the way and took the part anew, for a device too small
   double final_error_m = 0, final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
   double rest_s = 0;
@@ -76,7 +76,7 @@ struct TraceRow {
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
   double injected_J = 0;  ///< DESIGN.md section 7, by what the encoders show
-  double unseen_J = 0;    ///< what they may have kept from it at the most (HandLedger)
+  double quantisation_error_bound_J = 0;    ///< what they may have kept from it at the most (PassivityObserver)
 };
 
 struct ModelledCost {
@@ -99,7 +99,7 @@ struct RealTimeResult {
   std::string worst_cause;
   std::uint64_t physics_missed = 0;  ///< physics periods, as asked, without a step of their own
   double behind_s = 0;  ///< by how much less simulated time went by than the clock's while physics ran
-  std::vector<PaceChange> paces;  ///< what was given up to hold the rate, and taken back, in order
+  std::vector<LoadLevelChange> load_changes;  ///< what was given up to hold the rate, and taken back, in order
   std::uint64_t faults = 0;       ///< of safety
 };
 

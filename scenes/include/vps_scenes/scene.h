@@ -50,7 +50,7 @@ struct DeviceSettings {
   double scale = 1;               ///< scene metres per device metre
   bool has_quantised_encoders = true;
   /// Where a way is longer than the workspace: lets go of the part by the clutch, goes back, takes it anew.
-  bool has_ratchet = true;
+  bool has_indexing = true;
 };
 
 /// What the scene asks of the coupling; the rest follows from the device's numbers and rates (deriveGains).
@@ -59,7 +59,7 @@ struct CouplingWishes {
 };
 
 /// How contact is turned into motion: DESIGN.md section 8.
-enum class ContactKind {
+enum class ContactMethod {
   Rigid,      ///< a few contacts for the solver
   Compliant,  ///< every touching point presses with the softest part's stiffness times area times depth
 };
@@ -75,8 +75,8 @@ inline const char* inWords(Sides sides) {
 inline const char* toText(Gradient gradient) {
   return gradient == Gradient::Continuous ? "continuous" : "trilinear";
 }
-inline const char* toText(ContactKind contact) {
-  return contact == ContactKind::Rigid ? "rigid" : "compliant";
+inline const char* toText(ContactMethod contact) {
+  return contact == ContactMethod::Constraint ? "rigid" : "compliant";
 }
 
 struct RecordSettings {
@@ -91,7 +91,7 @@ struct Scene {
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
-  ContactKind contact = ContactKind::Rigid;
+  ContactMethod contact = ContactMethod::Constraint;
   std::string fidelity_choice;  ///< what was chosen for `auto`, in words; empty: nothing was
   CouplingWishes coupling;
   DeviceSettings device;

@@ -34,7 +34,7 @@ struct TradeTry {
   std::string name;  ///< "voxel x2"
   TradeKnob knob = TradeKnob::Own;
   Fidelity fidelity;
-  ContactKind contact = ContactKind::Rigid;
+  ContactMethod contact = ContactMethod::Constraint;
 };
 
 /// What the models say at the probe's poses, against the exact surfaces of the meshes.

@@ -13,52 +13,52 @@ LoopView LoopView::of(const HapticLoop& loop, OperatorPhase phase) noexcept {
           phase};
 }
 
-void ClockedSide::publish(const CouplingState& part, std::optional<double> stored_J) {
+void ClockedDriver::publish(const CouplingState& part, std::optional<double> stored_J) {
   store({part, stored_J.value_or(0), stored_J.has_value(), ++published_});
 }
 
-void ClockedSide::obey(HapticLoop& loop, MeetingKind what) noexcept {
+void ClockedDriver::obey(HapticLoop& loop, SyncEventKind what) noexcept {
   switch (what) {
-    case MeetingKind::Begin:
+    case SyncEventKind::Begin:
       return hand_.begin();
-    case MeetingKind::GoBack:
+    case SyncEventKind::GoBack:
       return hand_.goBack(next_step_);
-    case MeetingKind::Recentre:
+    case SyncEventKind::Recentre:
       return hand_.recentre();
-    case MeetingKind::GoOn:
+    case SyncEventKind::GoOn:
       return hand_.goOn();
-    case MeetingKind::HandOver:
+    case SyncEventKind::HandOver:
       return loop.handOver(X_WG_);
-    case MeetingKind::OpenClutch:
+    case SyncEventKind::OpenClutch:
       return loop.disengage();
-    case MeetingKind::CloseClutch:
+    case SyncEventKind::CloseClutch:
       return loop.engage();
-    case MeetingKind::LetGo:
+    case SyncEventKind::LetGo:
       return loop.release();
-    case MeetingKind::Rearm:
+    case SyncEventKind::Rearm:
       return loop.rearm();
-    case MeetingKind::Tick:
-    case MeetingKind::Step:
-    case MeetingKind::Settled:
-    case MeetingKind::Paused:
+    case SyncEventKind::Tick:
+    case SyncEventKind::Step:
+    case SyncEventKind::Settled:
+    case SyncEventKind::Paused:
       return;
   }
 }
 
-void ClockedSide::show(HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept {
+void ClockedDriver::show(HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept {
   if (snapshot.number == shown_) return;
   shown_ = snapshot.number;
   port.part.write(snapshot.part);
-  if (snapshot.has_stored) loop.noteStored(snapshot.stored_J, 0);
+  if (snapshot.has_stored) loop.observeStoredEnergy(snapshot.stored_J, 0);
 }
 
-void ClockedSide::rearmIfFaulted() {
+void ClockedDriver::rearmIfFaulted() {
   if (view_.safety.fault == SafetyFault::None) return;
-  order(MeetingKind::Rearm);
+  order(SyncEventKind::Rearm);
   view_.safety.fault = SafetyFault::None;
 }
 
-void ClockedSide::look(const LoopView& view) {
+void ClockedDriver::look(const LoopView& view) {
   view_ = view;
   if (view.safety.faults == told_faults_) return;
   told_faults_ = view.safety.faults;

@@ -22,52 +22,52 @@ struct LoopView {
   CouplingState proxy;
   TickReport report;
   SafetyState safety;
-  HandLedger ledger;
+  PassivityObserver ledger;
   OperatorPhase phase = OperatorPhase::Idle;
 
   static LoopView of(const HapticLoop& loop, OperatorPhase phase) noexcept;
 };
 
 /// Physics looks at the loop once a step, in advance(), and asks for one thing at a time. So all that the two
-/// know of each other is a list of meetings, and who has the list can do it again.
-class ClockedSide : public HapticSide {
+/// know of each other is a list of sync_events, and who has the list can do it again.
+class ClockedDriver : public HapticDriver {
  public:
   [[nodiscard]] const LoopSettings& settings() const final { return settings_; }
   [[nodiscard]] bool isByClock() const final { return true; }
 
   void handOver(const Pose& X_WG) final {
     X_WG_ = X_WG;
-    order(MeetingKind::HandOver);
+    order(SyncEventKind::HandOver);
   }
-  void openClutch() final { order(MeetingKind::OpenClutch); }
-  void closeClutch() final { order(MeetingKind::CloseClutch); }
+  void openClutch() final { order(SyncEventKind::OpenClutch); }
+  void closeClutch() final { order(SyncEventKind::CloseClutch); }
   void begin(const OperatorTask& task, std::size_t step, double now_s) final {
     hand_.prepare(task, step, now_s);
-    order(MeetingKind::Begin);
+    order(SyncEventKind::Begin);
   }
-  void letGo() final { order(MeetingKind::LetGo); }
+  void letGo() final { order(SyncEventKind::LetGo); }
   void goBack(std::size_t next) final {
     next_step_ = next;
-    order(MeetingKind::GoBack);
+    order(SyncEventKind::GoBack);
   }
-  void recentre() final { order(MeetingKind::Recentre); }
-  void goOn() final { order(MeetingKind::GoOn); }
+  void recentre() final { order(SyncEventKind::Recentre); }
+  void goOn() final { order(SyncEventKind::GoOn); }
 
   void publish(const CouplingState& part, std::optional<double> stored_J) final;
   const CouplingState& proxy() final { return view_.proxy; }
   const TickReport& last() final { return view_.report; }
-  HandLedger ledger() final { return view_.ledger; }
+  PassivityObserver ledger() final { return view_.ledger; }
 
  protected:
-  ClockedSide(Hand& hand, const LoopSettings& settings, const TellFault& tell)
+  ClockedDriver(Hand& hand, const LoopSettings& settings, const TellFault& tell)
       : hand_(hand), settings_(settings), tell_(tell) {}
 
   /// Returns when it is done.
-  virtual void order(MeetingKind what) = 0;
+  virtual void order(SyncEventKind what) = 0;
   virtual void store(const PhysicsSnapshot& snapshot) = 0;
 
   /// Does what was asked for, by whoever runs the loop. Never allocates.
-  void obey(HapticLoop& loop, MeetingKind what) noexcept;
+  void obey(HapticLoop& loop, SyncEventKind what) noexcept;
   /// Before a tick: the loop gets the snapshot, once.
   void show(HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept;
   /// As a person does between steps.

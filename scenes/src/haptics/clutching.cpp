@@ -25,9 +25,9 @@ bool ClutchWork::goOnFor(double seconds, const std::function<bool()>& go_on) con
 
 // What was asked for shows in the report after a tick only: so at least as long as it takes.
 bool ClutchWork::waitForClutch(double ratio, const std::function<bool()>& go_on) const {
-  const double clutch_s = side_.settings().clutch_s;
+  const double clutch_s = driver_.settings().clutch_s;
   if (!goOnFor(clutch_s, go_on)) return false;
-  for (double waited_s = clutch_s; waited_s < kPatience * clutch_s && side_.last().clutch_ratio != ratio;
+  for (double waited_s = clutch_s; waited_s < kPatience * clutch_s && driver_.last().clutch_ratio != ratio;
        waited_s += step_s_())
     if (!go_on()) return false;
   return true;
@@ -38,29 +38,29 @@ bool ClutchWork::takeHold(const std::function<bool()>& go_on) const {
 }
 
 bool ClutchWork::comeFree(const std::function<bool()>& go_on) const {
-  side_.openClutch();
+  driver_.openClutch();
   return waitForClutch(0, go_on);
 }
 
 bool ClutchWork::setDown(const std::function<bool(double)>& go_on) const {
-  double left_s = side_.settings().clutch_s;
+  double left_s = driver_.settings().clutch_s;
   const auto fade = [&] {
     const double step_s = step_s_();
     left_s = left_s > (1 + kRounding) * step_s ? left_s - step_s : 0;
-    return go_on(left_s / side_.settings().clutch_s);
+    return go_on(left_s / driver_.settings().clutch_s);
   };
   while (left_s > 0)
     if (!fade()) return false;
   return true;
 }
 
-bool ClutchWork::regrasp(const std::function<bool()>& go_on) const {
+bool ClutchWork::index_point(const std::function<bool()>& go_on) const {
   if (!comeFree(go_on)) return false;
-  side_.recentre();
+  driver_.recentre();
   if (!goOnFor(kHandReturn_s, go_on)) return false;
-  side_.closeClutch();
+  driver_.closeClutch();
   if (!takeHold(go_on)) return false;
-  side_.goOn();
+  driver_.goOn();
   return true;
 }
 

@@ -15,7 +15,7 @@ class ClutchWork {
  public:
   /// side outlives it.
   /// @param step_s  what a step of physics takes of the hand's time, which is the clock's; asked before each
-  ClutchWork(HapticSide& side, std::function<double()> step_s) : side_(side), step_s_(std::move(step_s)) {}
+  ClutchWork(HapticDriver& side, std::function<double()> step_s) : driver_(side), step_s_(std::move(step_s)) {}
 
   /// After handOver(): until the hand has all of the part.
   bool takeHold(const std::function<bool()>& go_on) const;
@@ -25,14 +25,14 @@ class ClutchWork {
   /// bit by bit, and the part comes to rest on what it stands on before it is let go.
   /// @param go_on  gets the share of the grip that is left, down to 0
   bool setDown(const std::function<bool(double share)>& go_on) const;
-  /// Lets go, goes back to where the next stroke starts, takes hold again and goes on.
-  bool regrasp(const std::function<bool()>& go_on) const;
+  /// Lets go, goes back to where the next segment starts, takes hold again and goes on.
+  bool index_point(const std::function<bool()>& go_on) const;
 
  private:
   bool waitForClutch(double ratio, const std::function<bool()>& go_on) const;
   bool goOnFor(double seconds, const std::function<bool()>& go_on) const;
 
-  HapticSide& side_;
+  HapticDriver& driver_;
   std::function<double()> step_s_;
 };
 

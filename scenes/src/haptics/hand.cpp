@@ -39,14 +39,14 @@ SimulatedDualArmSettings plantSettings(const Scene& scene) {
   return settings;
 }
 
-std::vector<Strokes> allStrokes(const Scene& scene, const Vec3& workspace_m) {
-  std::vector<Strokes> all;
-  for (const SceneStep& step : scene.steps) all.push_back(strokesOf(scene, step, workspace_m));
+std::vector<PathSegments> allSegments(const Scene& scene, const Vec3& workspace_m) {
+  std::vector<PathSegments> all;
+  for (const SceneStep& step : scene.steps) all.push_back(splitPath(scene, step, workspace_m));
   return all;
 }
 
-SimulatedDualArmSettings startingAt(SimulatedDualArmSettings settings, const std::vector<Strokes>& strokes) {
-  settings.X_DH_start = strokes.front().X_DH_start.front();
+SimulatedDualArmSettings startingAt(SimulatedDualArmSettings settings, const std::vector<PathSegments>& segments) {
+  settings.X_DH_start = segments.front().X_DH_start.front();
   return settings;
 }
 
@@ -55,8 +55,8 @@ class SimulatedHand final : public Hand {
   explicit SimulatedHand(const Scene& scene)
       : scene_(scene),
         settings_(plantSettings(scene)),
-        strokes_(allStrokes(scene, settings_.arms.workspace_m)),
-        plant_(startingAt(settings_, strokes_)) {
+        segments_(allSegments(scene, settings_.arms.workspace_m)),
+        plant_(startingAt(settings_, segments_)) {
     X_DH_from_ = X_DH_back_ = plant_.truePose();
   }
 
@@ -65,8 +65,8 @@ class SimulatedHand final : public Hand {
   void prepare(const OperatorTask& task, std::size_t step, double now_s) override {
     next_ = VirtualOperator(habitsOf(scene_.hand, step));
     OperatorTask reachable = task;
-    reachable.way_points = strokes_[step].way_points;
-    reachable.regrasps = strokes_[step].regrasps;
+    reachable.way_points = segments_[step].way_points;
+    reachable.index_points = segments_[step].index_points;
     next_.begin(reachable, now_s);
     next_s_ = now_s;
     next_step_ = step;
@@ -76,17 +76,17 @@ class SimulatedHand final : public Hand {
     std::swap(operator_, next_);  // moves; what was before is freed by the next prepare()
     time_s_ = next_s_;
     step_ = next_step_;
-    stroke_ = 0;
+    segment_ = 0;
     is_at_work_ = true;
   }
 
   void goBack(std::size_t next) override {
-    goTo(next < strokes_.size() ? strokes_[next].X_DH_start.front() : Pose{});
+    goTo(next < segments_.size() ? segments_[next].X_DH_start.front() : Pose{});
   }
   void recentre() override {
-    const std::vector<Pose>& starts = strokes_[step_].X_DH_start;
-    if (stroke_ + 1 < starts.size()) ++stroke_;
-    goTo(starts[stroke_]);
+    const std::vector<Pose>& starts = segments_[step_].X_DH_start;
+    if (segment_ + 1 < starts.size()) ++segment_;
+    goTo(starts[segment_]);
   }
   void goOn() override {
     operator_.goOn();
@@ -138,11 +138,11 @@ class SimulatedHand final : public Hand {
 
   const Scene& scene_;
   SimulatedDualArmSettings settings_;
-  std::vector<Strokes> strokes_;  ///< of each step
+  std::vector<PathSegments> segments_;  ///< of each step
   SimulatedDualArm plant_;
   VirtualOperator operator_, next_;
   double next_s_ = 0;
-  std::size_t next_step_ = 0, step_ = 0, stroke_ = 0;
+  std::size_t next_step_ = 0, step_ = 0, segment_ = 0;
   double time_s_ = 0;              ///< of the run
   double back_s_ = kHandReturn_s;  ///< since it went back
   bool is_at_work_ = false;
@@ -164,10 +164,10 @@ class RecordedHand final : public Hand {
   [[nodiscard]] OperatorPhase phase() const override {
     return static_cast<OperatorPhase>(recording_.phase().value_or(0));
   }
-  [[nodiscard]] std::vector<Meeting> meetings() const override {
-    std::vector<Meeting> all;
+  [[nodiscard]] std::vector<SyncEvent> sync_events() const override {
+    std::vector<SyncEvent> all;
     for (const LogEntry& entry : recording_.run().entries)
-      if (const auto* meeting = std::get_if<Meeting>(&entry)) all.push_back(*meeting);
+      if (const auto* sync_event = std::get_if<SyncEvent>(&entry)) all.push_back(*sync_event);
     return all;
   }
   [[nodiscard]] bool canGoOn(int ticks) const override {

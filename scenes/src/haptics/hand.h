@@ -33,7 +33,7 @@ class Hand {
   /// Empty, goes back to where that step starts, in kHandReturn_s; beyond the last: to the middle. Never
   /// allocates.
   virtual void goBack(std::size_t next) = 0;
-  /// In OperatorPhase::Regrasp: goes, with the clutch open, to where the next stroke starts, in
+  /// In OperatorPhase::Regrasp: goes, with the clutch open, to where the next segment starts, in
   /// kHandReturn_s, and stays until goOn(). Neither allocates.
   virtual void recentre() = 0;
   /// Has the part again, where it was: goes on.
@@ -42,7 +42,7 @@ class Hand {
   virtual void step(const HeldPart& part, const HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual OperatorPhase phase() const = 0;
   /// Of a run by the clock that is done again; empty: of none.
-  [[nodiscard]] virtual std::vector<Meeting> meetings() const { return {}; }
+  [[nodiscard]] virtual std::vector<SyncEvent> sync_events() const { return {}; }
   /// Has it so many ticks left?
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };

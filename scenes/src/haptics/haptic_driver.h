@@ -18,9 +18,9 @@ namespace vps {
 
 /// What a procedure asks of it, from the physics thread. In lockstep it runs while advance() does; in real
 /// time from resume() to pause(), through all that is asked of it meanwhile.
-class HapticSide {
+class HapticDriver {
  public:
-  virtual ~HapticSide() = default;
+  virtual ~HapticDriver() = default;
   virtual void pause() = 0;
   /// Does nothing but clear a safety fault, as a person does between steps, where it runs already.
   virtual void resume() = 0;
@@ -54,7 +54,7 @@ class HapticSide {
   [[nodiscard]] virtual double busy_s() const { return 0; }
   /// From the next advance() on, where it goes by the clock: steps of step_s of simulated time, one each
   /// period_s of the clock's, and other gains. settings() stays what was asked.
-  virtual void setPace(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
+  virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
   [[nodiscard]] virtual OperatorPhase phase() = 0;
   /// As of the last tick.
@@ -63,7 +63,7 @@ class HapticSide {
   [[nodiscard]] virtual std::uint64_t missed() = 0;
   /// Whether time goes on while the physics thread does other things.
   [[nodiscard]] virtual bool isByClock() const = 0;
-  [[nodiscard]] virtual HandLedger ledger() = 0;
+  [[nodiscard]] virtual PassivityObserver ledger() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
   /// What only real time has.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
@@ -73,18 +73,18 @@ class HapticSide {
 using TellFault = std::function<void(const std::string&)>;
 
 /// @param device  the hand's own, or a tap on it; all outlive the side
-std::unique_ptr<HapticSide> lockstepSide(Hand& hand, Device& device, CouplingPort& port,
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, Device& device, CouplingPort& port,
                                          const LoopSettings& settings, int ticks_per_step,
                                          const TellFault& tell);
 /// @param physics_s  period of physics
 /// @param log        may be null; told by the physics thread what a replay needs
-std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port, const LoopSettings& settings,
                                          double physics_s, const TellFault& tell, RunLog* log);
-/// A run of realTimeSide's again, in simulated time.
-/// @param meetings  as recorded
+/// A run of makeRealTimeDriver's again, in simulated time.
+/// @param sync_events  as recorded
 /// @param device    the recording, tapped
 /// @param settings  as the loop's then, with physicsLimit_s()
-std::unique_ptr<HapticSide> replayedSide(Hand& hand, std::vector<Meeting> meetings, Device& device,
+std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<SyncEvent> sync_events, Device& device,
                                          CouplingPort& port, const LoopSettings& settings,
                                          const TellFault& tell, RunLog& log);
 /// How old a snapshot may be, by the clock.

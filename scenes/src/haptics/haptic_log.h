@@ -22,19 +22,19 @@ class HapticLog final : public RunLog {
   /// Physics thread: all of the ticks up to this one.
   void passUpTo(std::int32_t tick) {
     pass(
-        [tick](const Meeting* met) {
-          return met != nullptr && met->kind == MeetingKind::Tick && met->tick > tick;
+        [tick](const SyncEvent* met) {
+          return met != nullptr && met->kind == SyncEventKind::Tick && met->tick > tick;
         },
-        [](const Meeting*) { return false; });
+        [](const SyncEvent*) { return false; });
   }
-  /// Up to the next meeting of a kind, with it.
-  void passThrough(MeetingKind kind) {
-    pass([](const Meeting*) { return false; },
-         [kind](const Meeting* met) { return met != nullptr && met->kind == kind; });
+  /// Up to the next sync_event of a kind, with it.
+  void passThrough(SyncEventKind kind) {
+    pass([](const SyncEvent*) { return false; },
+         [kind](const SyncEvent* met) { return met != nullptr && met->kind == kind; });
   }
   /// Physics thread's own.
-  void tell(const Meeting& meeting) {
-    if (log_ != nullptr) log_->add(meeting);
+  void tell(const SyncEvent& sync_event) {
+    if (log_ != nullptr) log_->add(sync_event);
   }
 
  private:
@@ -45,7 +45,7 @@ class HapticLog final : public RunLog {
   void pass(const Before& stops_before, const After& stops_after) {
     if (log_ == nullptr) return;
     while (const EntryRing::Slot* slot = ring_.front()) {
-      const auto* met = std::get_if<Meeting>(&slot->entry);
+      const auto* met = std::get_if<SyncEvent>(&slot->entry);
       if (stops_before(met)) return;
       if (slot->number != passed_) log_->lose(slot->number - passed_);
       passed_ = slot->number + 1;

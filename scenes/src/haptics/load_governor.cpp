@@ -18,10 +18,10 @@ double periodsOf(double busy_s, double period_s) {
 
 }  // namespace
 
-RateGovernor::RateGovernor(std::vector<double> dearer, const GovernorSettings& settings)
+LoadGovernor::LoadGovernor(std::vector<double> dearer, const GovernorSettings& settings)
     : dearer_(std::move(dearer)), settings_(settings), wait_(settings.calm_windows) {}
 
-int RateGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
+int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   if (!(busy_s > 0)) busy_s = 0;
   const double periods = periodsOf(busy_s, period_s);
   now_.elapsed_s += periods * period_s;
@@ -40,11 +40,11 @@ int RateGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   return is_whole ? decide(may_rise) : level_;
 }
 
-bool RateGovernor::isOverloaded() const noexcept {
+bool LoadGovernor::isOverloaded() const noexcept {
   return last_.late >= settings_.late_limit && last_.lostShare() > settings_.lost_limit;
 }
 
-int RateGovernor::decide(bool may_rise) noexcept {
+int LoadGovernor::decide(bool may_rise) noexcept {
   last_ = {now_.elapsed_s, now_.lost_s, now_.busy_s / now_.steps, now_.late};
   const bool is_calm = level_ > 0 && (now_.late_above < settings_.late_limit ||
                                       now_.lost_above_s <= 0.5 * settings_.lost_limit * now_.elapsed_above_s);
@@ -60,17 +60,17 @@ int RateGovernor::decide(bool may_rise) noexcept {
   return level_;
 }
 
-void RateGovernor::stayAt(int level) noexcept {
+void LoadGovernor::stayAt(int level) noexcept {
   waitLonger();
   moveTo(level);
 }
 
-void RateGovernor::waitLonger() noexcept {
+void LoadGovernor::waitLonger() noexcept {
   wait_ = std::min(2 * wait_, settings_.most_calm_windows);
   has_risen_ = false;
 }
 
-void RateGovernor::moveTo(int level) noexcept {
+void LoadGovernor::moveTo(int level) noexcept {
   level_ = level;
   calm_ = 0;
 }

@@ -23,11 +23,11 @@ struct GovernorSettings {
 /// half of that would have been lost with every step as much dearer as the level above may be, stalls aside.
 /// Between the two it stays: so neither a late step nor a load near the limit makes it move, and a load that
 /// comes and goes moves it ever more seldom.
-class RateGovernor {
+class LoadGovernor {
  public:
   /// @param dearer  for each level but 0: how many times as much a step may take of its period one level up,
   ///                >= 1
-  explicit RateGovernor(std::vector<double> dearer, const GovernorSettings& settings = {});
+  explicit LoadGovernor(std::vector<double> dearer, const GovernorSettings& settings = {});
 
   /// One step.
   /// @param busy_s    what it took; what is no number or below 0 counts as 0

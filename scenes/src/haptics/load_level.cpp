@@ -6,12 +6,12 @@
 namespace vps {
 
 double dearerBefore(std::size_t level) {
-  const Pace &now = kPaces[level], &before = kPaces[level - 1];
+  const LoadLevel &now = kLoadLevels[level], &before = kLoadLevels[level - 1];
   const double points = now.coarser / before.coarser;
   return points * points * now.periods() / before.periods();
 }
 
-std::string describe(const Pace& pace, const Fidelity& fidelity) {
+std::string describe(const LoadLevel& pace, const Fidelity& fidelity) {
   char text[120];
   std::snprintf(
       text, sizeof text, "points every %.3g mm, physics at %.4g Hz, time at %s",
@@ -20,7 +20,7 @@ std::string describe(const Pace& pace, const Fidelity& fidelity) {
   return text;
 }
 
-std::string inWords(const PaceChange& change) {
+std::string inWords(const LoadLevelChange& change) {
   if (!change.misread_m) return change.cost;
   char text[100];
   std::snprintf(text, sizeof text, "; where the part was, its distance reads %+.2g um against before",

@@ -16,7 +16,7 @@
 
 namespace vps {
 
-struct PaceLimits {
+struct LoadLimits {
   bool may_slow = true;                     ///< simulated time may go slower than the clock's
   const std::atomic<bool>* stop = nullptr;  ///< may be null; ends the making of points early
 };
@@ -25,14 +25,14 @@ struct PaceLimits {
 /// steps when they are ready; until then nothing further is decided. Rates change at once, downwards; upwards
 /// only while nothing is held, since a coupling that turns stiffer would push. A lower rate takes gains that
 /// are passive at it. No pace is taken at which physics would look stalled to the watchdog.
-class PaceKeeper {
+class LoadShedder {
  public:
   /// What gains a physics rate allows [Hz].
   using GainsAt = std::function<CouplingGains(double rate_hz)>;
 
   /// All but gains_at outlive it.
-  PaceKeeper(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
-             HapticSide& side, const PaceLimits& limits, GainsAt gains_at);
+  LoadShedder(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
+             HapticDriver& side, const LoadLimits& limits, GainsAt gains_at);
 
   /// After a step by the clock.
   /// @param busy_s  what the physics thread did since the last
@@ -51,36 +51,36 @@ class PaceKeeper {
   /// The clock's time by simulated time: a speed by the one is as much more by the other.
   [[nodiscard]] double slower() const;
   [[nodiscard]] const CouplingGains& gains() const { return gains_; }
-  [[nodiscard]] const std::vector<PaceChange>& changes() const { return changes_; }
+  [[nodiscard]] const std::vector<LoadLevelChange>& changes() const { return changes_; }
 
  private:
   struct Made {
-    OtherPoints points;
+    ResampledShells points;
     double wall_s = 0;
   };
 
   [[nodiscard]] bool mayRise(bool is_holding) const;
-  [[nodiscard]] PaceChange changeTo(int level, double time_s) const;
-  void order(PaceChange change, std::size_t part);
-  void setRate(PaceChange change);
+  [[nodiscard]] LoadLevelChange changeTo(int level, double time_s) const;
+  void order(LoadLevelChange change, std::size_t part);
+  void setRate(LoadLevelChange change);
   void tellEnd(double time_s);
 
   const Scene& scene_;
   const Plan& plan_;
   Simulation& simulation_;
   PlacedParts& placed_;
-  HapticSide& side_;
-  PaceLimits limits_;
+  HapticDriver& driver_;
+  LoadLimits limits_;
   GainsAt gains_at_;
-  RateGovernor governor_;
+  LoadGovernor governor_;
   double dt_s_;
   CouplingGains gains_;
   int level_ = 0;                                             ///< in place
-  std::map<double, std::shared_ptr<const ShellSet>> shells_;  ///< made before, by Pace::coarser
+  std::map<double, std::shared_ptr<const ShellSet>> shells_;  ///< made before, by LoadLevel::coarser
   std::future<Made> under_way_;
-  PaceChange ordered_;  ///< what is under way
+  LoadLevelChange ordered_;  ///< what is under way
   bool has_told_end_ = false;
-  std::vector<PaceChange> changes_;
+  std::vector<LoadLevelChange> changes_;
 };
 
 }  // namespace vps

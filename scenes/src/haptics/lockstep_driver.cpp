@@ -5,9 +5,9 @@
 namespace vps {
 namespace {
 
-class LockstepSide final : public HapticSide {
+class LockstepDriver final : public HapticDriver {
  public:
-  LockstepSide(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
+  LockstepDriver(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
                int ticks_per_step, const TellFault& tell)
       : hand_(hand),
         port_(port),
@@ -48,11 +48,11 @@ class LockstepSide final : public HapticSide {
   const CouplingState& proxy() override { return port_.proxy.read(); }
   void publish(const CouplingState& part, std::optional<double> stored_J) override {
     port_.part.write(part);
-    if (stored_J) loop_.noteStored(*stored_J, 0);
+    if (stored_J) loop_.observeStoredEnergy(*stored_J, 0);
   }
   OperatorPhase phase() override { return hand_.phase(); }
   const TickReport& last() override { return loop_.last(); }
-  HandLedger ledger() override { return loop_.ledger(); }
+  PassivityObserver ledger() override { return loop_.ledger(); }
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }
 
@@ -75,10 +75,10 @@ class LockstepSide final : public HapticSide {
 
 }  // namespace
 
-std::unique_ptr<HapticSide> lockstepSide(Hand& hand, Device& device, CouplingPort& port,
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, Device& device, CouplingPort& port,
                                          const LoopSettings& settings, int ticks_per_step,
                                          const TellFault& tell) {
-  return std::make_unique<LockstepSide>(hand, device, port, settings, ticks_per_step, tell);
+  return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, tell);
 }
 
 }  // namespace vps

@@ -11,7 +11,7 @@ namespace vps {
 
 namespace {
 
-/// Left free on each side of a stroke, at the device: what aim, sight and a search add to the way. assumed.
+/// Left free on each side of a segment, at the device: what aim, sight and a search add to the way. assumed.
 constexpr double kMargin_m = 20e-3;
 
 Pose between(const Pose& X_from, const Pose& X_to, double share) {
@@ -34,11 +34,11 @@ double reachOf(const Box& box, const Vec3& size_m, const Vec3& a, const Vec3& b)
 /// The way of the grasp frame G, which the handle goes along; at the device it is 1 / scale as long.
 struct Way {
   std::vector<Pose> X_WG;
-  std::vector<bool> is_regrasp;
+  std::vector<bool> is_index_point;
 };
 
-/// Backwards from the target, each stroke as long as it gets.
-Way inStrokes(const std::vector<Pose>& X_WG, const Vec3& room_W) {
+/// Backwards from the target, each segment as long as it gets.
+Way inSegments(const std::vector<Pose>& X_WG, const Vec3& room_W) {
   Way way{{X_WG.back()}, {false}};  // backwards, until the end
   Box box;
   box.add(X_WG.back().p);
@@ -50,19 +50,19 @@ Way inStrokes(const std::vector<Pose>& X_WG, const Vec3& room_W) {
       if (share >= 1) break;
       if (share > 0) {
         way.X_WG.push_back(between(X_at, X_goal, share));
-        way.is_regrasp.push_back(true);
+        way.is_index_point.push_back(true);
       } else {
-        way.is_regrasp.back() = true;  // the border is at a way point
+        way.is_index_point.back() = true;  // the border is at a way point
       }
       box = Box{};
       box.add(way.X_WG.back().p);
     }
     way.X_WG.push_back(X_goal);
-    way.is_regrasp.push_back(false);
+    way.is_index_point.push_back(false);
     box.add(X_goal.p);
   }
   std::reverse(way.X_WG.begin(), way.X_WG.end());
-  std::reverse(way.is_regrasp.begin(), way.is_regrasp.end());
+  std::reverse(way.is_index_point.begin(), way.is_index_point.end());
   return way;
 }
 
@@ -71,38 +71,38 @@ Way inStrokes(const std::vector<Pose>& X_WG, const Vec3& room_W) {
   char words[240];
   std::snprintf(words, sizeof words,
                 "its path is longer than the device's workspace of %.0f x %.0f x %.0f mm; start nearer, set "
-                "[device] scale above %f, or let the hand take it anew on the way ([device] ratchet = true)",
+                "[device] scale above %f, or let the hand take it anew on the way ([device] indexing = true)",
                 1e3 * room_m.x(), 1e3 * room_m.y(), 1e3 * room_m.z(),
                 scene.device.scale * (needed_m.array() / room_m.array()).maxCoeff());
   throw LoadError(scene.file, scene.parts[step.part].part.name, words);
 }
 
-/// Where the handle starts each stroke, and what lies between.
-Strokes handled(const Way& way, const Pose& X_GP, double scale) {
-  Strokes strokes;
-  Box stroke;
+/// Where the handle starts each segment, and what lies between.
+PathSegments handled(const Way& way, const Pose& X_GP, double scale) {
+  PathSegments segments;
+  Box segment;
   Vec3 p_from = way.X_WG.front().p;
-  const auto endStroke = [&](const Vec3& p_next) {
-    strokes.X_DH_start.push_back(Pose::translation((p_from - stroke.center()) / scale));
+  const auto endSegment = [&](const Vec3& p_next) {
+    segments.X_DH_start.push_back(Pose::translation((p_from - segment.center()) / scale));
     p_from = p_next;
-    stroke = Box{};
-    stroke.add(p_next);
+    segment = Box{};
+    segment.add(p_next);
   };
   for (std::size_t i = 0; i < way.X_WG.size(); ++i) {
     const Vec3& p = way.X_WG[i].p;
-    stroke.add(p);
-    if (i > 0 && i + 1 < way.X_WG.size()) strokes.way_points.push_back(way.X_WG[i] * X_GP);
-    if (!way.is_regrasp[i]) continue;
-    strokes.regrasps.push_back(strokes.way_points.size() - 1);
-    endStroke(p);
+    segment.add(p);
+    if (i > 0 && i + 1 < way.X_WG.size()) segments.way_points.push_back(way.X_WG[i] * X_GP);
+    if (!way.is_index_point[i]) continue;
+    segments.index_points.push_back(segments.way_points.size() - 1);
+    endSegment(p);
   }
-  endStroke(p_from);
-  return strokes;
+  endSegment(p_from);
+  return segments;
 }
 
 }  // namespace
 
-Strokes strokesOf(const Scene& scene, const SceneStep& step, const Vec3& room_m) {
+PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& room_m) {
   const double scale = scene.device.scale;
   const Pose X_PG = Pose::translation(massProperties(scene.parts[step.part].part.mesh).com);
   std::vector<Pose> X_WG = {step.X_WP_start * X_PG};
@@ -113,11 +113,11 @@ Strokes strokesOf(const Scene& scene, const SceneStep& step, const Vec3& room_m)
   for (const Pose& X : X_WG) all.add(X.p);
   const Vec3 needed_m = all.size() / scale;
   if ((needed_m.array() > room_m.array()).any()) {
-    if (!scene.device.has_ratchet) refuse(scene, step, needed_m, room_m);
+    if (!scene.device.has_indexing) refuse(scene, step, needed_m, room_m);
     const Vec3 margin_m = (room_m / 10).cwiseMin(kMargin_m);
-    return handled(inStrokes(X_WG, scale * (room_m - 2 * margin_m)), X_PG.inverse(), scale);
+    return handled(inSegments(X_WG, scale * (room_m - 2 * margin_m)), X_PG.inverse(), scale);
   }
-  Strokes one = handled({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
+  PathSegments one = handled({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
   one.way_points = step.way_points;  // to the bit
   return one;
 }

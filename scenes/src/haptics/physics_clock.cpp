@@ -32,7 +32,7 @@ Beat PhysicsClock::wait() noexcept {
   return beat;
 }
 
-void PhysicsClock::setPace(double step_s, double period_s) {
+void PhysicsClock::setLoadLevel(double step_s, double period_s) {
   step_s_ = step_s;
   metronome_ = Metronome(std::llround(1e9 * period_s), monotonicClock());
   metronome_.start();

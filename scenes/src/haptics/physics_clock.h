@@ -21,7 +21,7 @@ class PhysicsClock {
   /// Gives the priority back.
   void stop() noexcept;
   /// From the next wait() on: steps of step_s of simulated time, one each period_s of the clock's.
-  void setPace(double step_s, double period_s);
+  void setLoadLevel(double step_s, double period_s);
 
   /// Periods, of those first asked for, without a step of their own.
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }

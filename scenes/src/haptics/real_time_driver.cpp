@@ -32,24 +32,24 @@ TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
           0};
 }
 
-class RealTimeSide final : public ClockedSide {
+class RealTimeDriver final : public ClockedDriver {
  public:
-  RealTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings, double physics_s,
+  RealTimeDriver(Hand& hand, CouplingPort& port, const LoopSettings& settings, double physics_s,
                const TellFault& tell, RunLog* log)
-      : ClockedSide(hand, settings, tell),
+      : ClockedDriver(hand, settings, tell),
         port_(port),
         physics_s_(physics_s),
         haptic_log_(log),
         tapped_(hand.device(), haptic_log_),
         loop_(tapped_, port, told(settings), realTimeSettings()),
         clock_(physics_s) {}
-  ~RealTimeSide() override { pause(); }
+  ~RealTimeDriver() override { pause(); }
 
   void pause() override {
     if (loop_.isRunning()) {
       loop_.stop();
-      meet(loop_.loop(), MeetingKind::Paused);
-      haptic_log_.passThrough(MeetingKind::Paused);
+      meet(loop_.loop(), SyncEventKind::Paused);
+      haptic_log_.passThrough(SyncEventKind::Paused);
       look(LoopView::of(loop_.loop(), hand_.phase()));
     }
     clock_.stop();
@@ -73,18 +73,18 @@ class RealTimeSide final : public ClockedSide {
     const LoopView& view = views_.read();
     if (view.tick > ordered_tick_) known_phase_ = view.phase;  // else it is of before the order
     haptic_log_.passUpTo(view.tick);
-    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, MeetingKind::Step});
+    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, SyncEventKind::Step});
     look(view);
     return true;
   }
   bool hasSettled(bool is_ready) override {
-    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, MeetingKind::Settled});
+    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, SyncEventKind::Settled});
     return is_ready;
   }
   OperatorPhase phase() override { return known_phase_; }
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
-  void setPace(double step_s, double period_s, const CouplingGains& gains) override {
-    clock_.setPace(step_s, period_s);
+  void setLoadLevel(double step_s, double period_s, const CouplingGains& gains) override {
+    clock_.setLoadLevel(step_s, period_s);
     if (!loop_.isRunning()) return loop_.loop().setGains(gains);
     while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kOrderWait);
   }
@@ -95,7 +95,7 @@ class RealTimeSide final : public ClockedSide {
   std::optional<RealTimeResult> realTime() override;
 
  protected:
-  void order(MeetingKind what) override {
+  void order(SyncEventKind what) override {
     order_.store(what, std::memory_order_release);
     while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
       std::this_thread::sleep_for(kOrderWait);
@@ -106,15 +106,15 @@ class RealTimeSide final : public ClockedSide {
   void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
 
  private:
-  static constexpr MeetingKind kNoOrder = MeetingKind::Tick;
+  static constexpr SyncEventKind kNoOrder = SyncEventKind::Tick;
 
   // The loop's thread from here on, while it runs.
-  void meet(const HapticLoop& loop, MeetingKind kind, std::int64_t periods = 1, std::int32_t snapshot = 0) {
-    haptic_log_.add(Meeting{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
+  void meet(const HapticLoop& loop, SyncEventKind kind, std::int64_t periods = 1, std::int32_t snapshot = 0) {
+    haptic_log_.add(SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
                             static_cast<std::int32_t>(periods), snapshot, kind});
   }
   void obeyOrder(HapticLoop& loop) {
-    const MeetingKind what = order_.load(std::memory_order_acquire);
+    const SyncEventKind what = order_.load(std::memory_order_acquire);
     if (what == kNoOrder) return;
     obey(loop, what);
     meet(loop, what);
@@ -128,8 +128,8 @@ class RealTimeSide final : public ClockedSide {
     const PhysicsSnapshot& snapshot = snapshots_.read();
     show(loop, port_, snapshot);
     const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
-    haptic_log_.add(Meeting{loop.last().time_s, tick, static_cast<std::int32_t>(periods), snapshot.number,
-                            MeetingKind::Tick});
+    haptic_log_.add(SyncEvent{loop.last().time_s, tick, static_cast<std::int32_t>(periods), snapshot.number,
+                            SyncEventKind::Tick});
   }
 
   LoopSettings told(LoopSettings settings) {
@@ -170,7 +170,7 @@ class RealTimeSide final : public ClockedSide {
   TripleBuffer<LoopView> views_;
   std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
   OperatorPhase known_phase_ = OperatorPhase::Idle;  ///< as of the last look or order
-  std::atomic<MeetingKind> order_{kNoOrder};
+  std::atomic<SyncEventKind> order_{kNoOrder};
   std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
   OperatorPhase ordered_phase_ = OperatorPhase::Idle;  ///< after it, likewise
   RealTimeResult result_;
@@ -178,7 +178,7 @@ class RealTimeSide final : public ClockedSide {
   PhysicsClock clock_;
 };
 
-std::optional<RealTimeResult> RealTimeSide::realTime() {
+std::optional<RealTimeResult> RealTimeDriver::realTime() {
   countFaults();
   const TickStatistics::Summary all = loop_.statistics().summary();
   RealTimeResult result = result_;
@@ -202,9 +202,9 @@ double physicsLimit_s(double physics_s) {
   return std::max(RealTimeSettings{}.physics_limit_s, 10 * physics_s);
 }
 
-std::unique_ptr<HapticSide> realTimeSide(Hand& hand, CouplingPort& port, const LoopSettings& settings,
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port, const LoopSettings& settings,
                                          double physics_s, const TellFault& tell, RunLog* log) {
-  return std::make_unique<RealTimeSide>(hand, port, settings, physics_s, tell, log);
+  return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, tell, log);
 }
 
 }  // namespace vps

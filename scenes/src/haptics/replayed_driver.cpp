@@ -10,24 +10,24 @@
 namespace vps {
 namespace {
 
-class ReplayedSide final : public ClockedSide {
+class ReplayedDriver final : public ClockedDriver {
  public:
-  ReplayedSide(Hand& hand, std::vector<Meeting> meetings, Device& device, CouplingPort& port,
+  ReplayedDriver(Hand& hand, std::vector<SyncEvent> sync_events, Device& device, CouplingPort& port,
                const LoopSettings& settings, const TellFault& tell, RunLog& log)
-      : ClockedSide(hand, settings, tell),
+      : ClockedDriver(hand, settings, tell),
         port_(port),
         loop_(device, port, settings),
         device_(device),
-        meetings_(std::move(meetings)),
+        sync_events_(std::move(sync_events)),
         log_(log),
         clock_(settings.period_s) {}
 
   void pause() override {
     if (!is_running_) return;
     is_running_ = false;
-    if (!goTo(MeetingKind::Paused)) return;
+    if (!goTo(SyncEventKind::Paused)) return;
     device_.write({});
-    note(MeetingKind::Paused);
+    note(SyncEventKind::Paused);
     look(LoopView::of(loop_, hand_.phase()));
   }
   void resume() override {
@@ -36,15 +36,15 @@ class ReplayedSide final : public ClockedSide {
   }
 
   bool advance(const HeldPart&) override {
-    while (next_ < meetings_.size() && !goTo(MeetingKind::Step)) ++next_;  // beyond a departure
-    if (!isAt(MeetingKind::Step)) return false;
-    note(MeetingKind::Step);
+    while (next_ < sync_events_.size() && !goTo(SyncEventKind::Step)) ++next_;  // beyond a departure
+    if (!isAt(SyncEventKind::Step)) return false;
+    note(SyncEventKind::Step);
     look(ticked_);
     return true;
   }
   bool hasSettled(bool) override {
-    if (!isAt(MeetingKind::Settled)) return false;
-    note(MeetingKind::Settled);
+    if (!isAt(SyncEventKind::Settled)) return false;
+    note(SyncEventKind::Settled);
     return true;
   }
   OperatorPhase phase() override { return hand_.phase(); }
@@ -53,7 +53,7 @@ class ReplayedSide final : public ClockedSide {
   std::optional<RealTimeResult> realTime() override { return {}; }
 
  protected:
-  void order(MeetingKind what) override {
+  void order(SyncEventKind what) override {
     const bool is_met = goTo(what);
     obey(loop_, what);
     if (is_met) note(what);
@@ -61,28 +61,28 @@ class ReplayedSide final : public ClockedSide {
   void store(const PhysicsSnapshot& snapshot) override { snapshots_.push_back(snapshot); }
 
  private:
-  [[nodiscard]] bool isAt(MeetingKind kind) const {
-    return next_ < meetings_.size() && meetings_[next_].kind == kind;
+  [[nodiscard]] bool isAt(SyncEventKind kind) const {
+    return next_ < sync_events_.size() && sync_events_[next_].kind == kind;
   }
 
   /// Ticks on until physics is met, and says whether it is for this. A cut recording has no more to tick
   /// with.
-  bool goTo(MeetingKind kind) {
-    while (isAt(MeetingKind::Tick)) {
+  bool goTo(SyncEventKind kind) {
+    while (isAt(SyncEventKind::Tick)) {
       if (!hand_.canGoOn(1)) {
-        next_ = meetings_.size();
+        next_ = sync_events_.size();
         return false;
       }
-      tick(meetings_[next_]);
+      tick(sync_events_[next_]);
     }
     return isAt(kind);
   }
 
-  void tick(const Meeting& met) {
+  void tick(const SyncEvent& met) {
     while (snapshots_.size() > 1 && snapshots_.front().number < met.snapshot) snapshots_.pop_front();
     if (!snapshots_.empty() && snapshots_.front().number <= met.snapshot)
       show(loop_, port_, snapshots_.front());
-    note(MeetingKind::Tick);
+    note(SyncEventKind::Tick);
     clock_.start();
     loop_.tick(met.periods * settings_.period_s);
     clock_.stop();
@@ -90,17 +90,17 @@ class ReplayedSide final : public ClockedSide {
   }
 
   /// What the recording has next, as this run knows it.
-  void note(MeetingKind kind) {
-    const Meeting& met = meetings_[next_++];
-    const std::uint64_t ticks = loop_.ticks() + (kind == MeetingKind::Tick ? 1 : 0);
-    log_.add(Meeting{loop_.last().time_s, static_cast<std::int32_t>(ticks), met.periods, met.snapshot, kind});
+  void note(SyncEventKind kind) {
+    const SyncEvent& met = sync_events_[next_++];
+    const std::uint64_t ticks = loop_.ticks() + (kind == SyncEventKind::Tick ? 1 : 0);
+    log_.add(SyncEvent{loop_.last().time_s, static_cast<std::int32_t>(ticks), met.periods, met.snapshot, kind});
   }
 
   CouplingPort& port_;
   HapticLoop loop_;
   LoopView ticked_;  ///< what a tick leaves is what physics sees, whatever is asked of the loop since
   Device& device_;
-  std::vector<Meeting> meetings_;
+  std::vector<SyncEvent> sync_events_;
   std::size_t next_ = 0;
   RunLog& log_;
   std::deque<PhysicsSnapshot> snapshots_;
@@ -110,10 +110,10 @@ class ReplayedSide final : public ClockedSide {
 
 }  // namespace
 
-std::unique_ptr<HapticSide> replayedSide(Hand& hand, std::vector<Meeting> meetings, Device& device,
+std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<SyncEvent> sync_events, Device& device,
                                          CouplingPort& port, const LoopSettings& settings,
                                          const TellFault& tell, RunLog& log) {
-  return std::make_unique<ReplayedSide>(hand, std::move(meetings), device, port, settings, tell, log);
+  return std::make_unique<ReplayedDriver>(hand, std::move(sync_events), device, port, settings, tell, log);
 }
 
 }  // namespace vps

@@ -25,12 +25,12 @@ void keep(Deepest& deepest, double depth_m, const Vec3& p_S) {
 }
 
 /// Exact signed distance, known to be no greater than most_m in size: the search need not go farther.
-double signedDistance(const FitBody& solid, const Vec3& p_S, double most_m) {
+double signedDistance(const JudgedBody& solid, const Vec3& p_S, double most_m) {
   return solid.distance->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
 }
 
 /// Deepest point of segment ab in the solid, to kCertain_m.
-Deepest deepestOnSegment(const FitBody& solid, const Vec3& a, const Vec3& b) {
+Deepest deepestOnSegment(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
   // Signed distance f is 1-Lipschitz: on a segment it is at least (f(a) + f(b) - |ab|) / 2.
   struct Piece {
     Vec3 a, b;
@@ -47,7 +47,7 @@ Deepest deepestOnSegment(const FitBody& solid, const Vec3& a, const Vec3& b) {
   while (count > 0) {
     const Piece piece = stack[--count];
     const double length_m = (piece.b - piece.a).norm();
-    if (0.5 * (piece.f_a + piece.f_b - length_m) >= -deepest.depth_m - ExactFit::kCertain_m) continue;
+    if (0.5 * (piece.f_a + piece.f_b - length_m) >= -deepest.depth_m - OverlapJudge::kCertain_m) continue;
     if (count + 2 > stack.size()) continue;
     const Vec3 m = 0.5 * (piece.a + piece.b);
     const double f_m =
@@ -60,11 +60,11 @@ Deepest deepestOnSegment(const FitBody& solid, const Vec3& a, const Vec3& b) {
 }
 
 /// Can no point of segment ab be inside, by the field's proven bound?
-bool isSurelyOutside(const FitBody& solid, const Vec3& a, const Vec3& b) {
+bool isSurelyOutside(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
   return solid.map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
 }
 
-Deepest deepestEdge(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+Deepest deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   std::vector<FitEdge> near;
   for (const FitEdge& edge : *other.edges) {
     const FitEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
@@ -78,7 +78,7 @@ Deepest deepestEdge(const FitBody& solid, const FitBody& other, const Pose& X_SO
   return deepest;
 }
 
-Deepest deepestPoint(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+Deepest deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   // Whatever is inside by exact distance reads less than the field's greatest error.
   QueryOptions options;
   options.cutoff_m = solid.map->sampleError_m();
@@ -98,7 +98,7 @@ Deepest deepestPoint(const FitBody& solid, const FitBody& other, const Pose& X_S
   return deepest;
 }
 
-Deepest deepestIn(const FitBody& solid, const FitBody& other, const Pose& X_SO) {
+Deepest deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   Deepest deepest = deepestPoint(solid, other, X_SO);
   const Deepest on_edge = deepestEdge(solid, other, X_SO);
   keep(deepest, on_edge.depth_m, on_edge.p_S);
@@ -107,7 +107,7 @@ Deepest deepestIn(const FitBody& solid, const FitBody& other, const Pose& X_SO) 
 
 }  // namespace
 
-FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distance) {
+JudgedBody makeJudgedBody(const Part& part, std::shared_ptr<const MeshDistance> distance) {
   const Mesh& mesh = distance->mesh();
   std::vector<FitEdge> edges;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
@@ -116,11 +116,11 @@ FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distan
           std::make_shared<const std::vector<FitEdge>>(std::move(edges))};
 }
 
-void ExactFit::mount(FitBody body, const Pose& X_WB) {
+void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {
   mounted_.push_back({std::move(body), X_WB});
 }
 
-Penetration ExactFit::deepest(const FitBody& moving, const Pose& X_WP) const {
+Penetration OverlapJudge::deepest(const JudgedBody& moving, const Pose& X_WP) const {
   Penetration worst;
   const auto consider = [&](const Deepest& found, const Pose& X_WS, std::size_t mounted) {
     if (found.depth_m > worst.depth_m) worst = {found.depth_m, X_WS * found.p_S, mounted};
@@ -134,7 +134,7 @@ Penetration ExactFit::deepest(const FitBody& moving, const Pose& X_WP) const {
   return worst;
 }
 
-double ExactFit::fieldDepth_m(const FitBody& moving, const Pose& X_WP) const {
+double OverlapJudge::fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) const {
   double least_m = 0;
   for (const auto& [body, X_WB] : mounted_) {
     const Pose X_BP = X_WB.inverse() * X_WP;

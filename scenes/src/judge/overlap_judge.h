@@ -17,7 +17,7 @@ struct FitEdge {
 };
 
 /// A part with everything the judge needs of it.
-struct FitBody {
+struct JudgedBody {
   std::string name;
   std::shared_ptr<const VoxMap> map;        ///< says what is surely outside; does not decide
   std::shared_ptr<const PointShell> shell;  ///< probes on faces
@@ -26,7 +26,7 @@ struct FitBody {
 };
 
 /// With the part's sharp edges (more than 20 degrees). O(n log n).
-FitBody makeFitBody(const Part& part, std::shared_ptr<const MeshDistance> distance);
+JudgedBody makeJudgedBody(const Part& part, std::shared_ptr<const MeshDistance> distance);
 
 struct Penetration {
   double depth_m = 0;       ///< 0 when free
@@ -38,25 +38,25 @@ struct Penetration {
 /// was found by kCertain_m (a signed distance changes by no more than the way along the edge), and at the
 /// shell's points on faces. Surfaces that cross do so at an edge of one of them, so only what bulges by less
 /// than the mesh's own facets, or between face points of a smooth body, can hide. For closed meshes.
-class ExactFit {
+class OverlapJudge {
  public:
   static constexpr double kCertain_m = 0.5e-6;
 
   /// Mounted parts do not move while they are here.
-  void mount(FitBody body, const Pose& X_WB);
+  void mount(JudgedBody body, const Pose& X_WB);
   [[nodiscard]] const std::string& name(std::size_t mounted) const { return mounted_[mounted].body.name; }
 
   /// Deepest point of `moving` in any mounted part and the reverse. Same input, same bits, on any number of
   /// threads. Allocates; not for the haptic path.
-  [[nodiscard]] Penetration deepest(const FitBody& moving, const Pose& X_WP) const;
+  [[nodiscard]] Penetration deepest(const JudgedBody& moving, const Pose& X_WP) const;
 
   /// The same as the fields read it at the points of both sides [m]; 0 when free. Off by a voxel at sharp
   /// edges: tells poses apart, no more. O(points visited).
-  [[nodiscard]] double fieldDepth_m(const FitBody& moving, const Pose& X_WP) const;
+  [[nodiscard]] double fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) const;
 
  private:
   struct Mounted {
-    FitBody body;
+    JudgedBody body;
     Pose X_WB;
   };
   std::vector<Mounted> mounted_;

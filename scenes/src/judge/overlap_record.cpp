@@ -15,7 +15,7 @@ constexpr std::size_t kSuspects = 50;
 
 }  // namespace
 
-FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
+OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving, const std::vector<OverlapSample>& samples,
                  std::size_t stride, const std::atomic<bool>* stop) {
   std::set<std::size_t> judged;
   for (std::size_t i = 0; i < samples.size(); i += stride) judged.insert(i);
@@ -31,13 +31,13 @@ FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<F
 
   if (!samples.empty()) judged.insert(samples.size() - 1);
 
-  FitVerdict verdict;
+  OverlapVerdict verdict;
   const Box box = bounds(moving.distance->mesh());
   const Pose* last = nullptr;
   for (const std::size_t i : judged) {
     if (stop != nullptr && stop->load()) break;
-    const FitSample& sample = samples[i];
-    if (last && greatestDisplacement(box, *last, sample.X_WP) < ExactFit::kCertain_m) continue;
+    const OverlapSample& sample = samples[i];
+    if (last && greatestDisplacement(box, *last, sample.X_WP) < OverlapJudge::kCertain_m) continue;
     last = &sample.X_WP;
     ++verdict.poses_judged;
     const Penetration found = fit.deepest(moving, sample.X_WP);

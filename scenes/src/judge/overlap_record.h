@@ -10,23 +10,23 @@
 namespace vps {
 
 /// A pose of the part that moves, and how deep its contacts were in that pose as the solver saw them.
-struct FitSample {
+struct OverlapSample {
   double time_s = 0;
   Pose X_WP;
   double depth_m = 0;
 };
 
-struct FitVerdict {
+struct OverlapVerdict {
   Penetration worst;
   double time_s = 0;
   std::size_t poses_judged = 0;
 };
 
 /// Judges every `stride`-th pose, the last, and, whatever the stride, the kSuspects poses whose contacts were
-/// deepest. A pose within ExactFit::kCertain_m of the last one judged (greatest motion of any point) is that
+/// deepest. A pose within OverlapJudge::kCertain_m of the last one judged (greatest motion of any point) is that
 /// one.
 /// @param stop  ends it early when set, with what was found by then; may be null
-FitVerdict judge(const ExactFit& fit, const FitBody& moving, const std::vector<FitSample>& samples,
+OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving, const std::vector<OverlapSample>& samples,
                  std::size_t stride, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace vps

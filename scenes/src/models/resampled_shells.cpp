@@ -56,14 +56,14 @@ std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& pl
   return shells;
 }
 
-OtherPoints makeOtherPoints(PointsOrder order, std::shared_ptr<const ShellSet> shells) {
+ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellSet> shells) {
   const auto use = [&](std::size_t part, std::shared_ptr<const PointShell>& shell) {
     if (shells && shell && (*shells)[part]) shell = (*shells)[part];
   };
   for (FieldPart& part : order.field.parts) use(part.placed.part, part.shell);
   use(order.part, order.models.shell);
 
-  OtherPoints out;
+  ResampledShells out;
   Side field{order.field.below.get(), order.field_before.get()};
   Side part{order.models.map.get(), order.part_before.get()};
   const auto before_m = leastDistance(field, part, order.X_WP, order.sides);

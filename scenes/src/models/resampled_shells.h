@@ -23,7 +23,7 @@ std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& pl
                                               const std::atomic<bool>* stop);
 
 /// What is to be made again: a body, and the field in place where there is one.
-struct PointsOrder {
+struct ResampleOrder {
   FieldOrder field;  ///< with the map in place as `below`, and the parts' own points; without parts: none
   std::size_t part = 0;
   VpsModels models;                                             ///< with its own points
@@ -33,18 +33,18 @@ struct PointsOrder {
   Sides sides = Sides::Both;
 };
 
-struct OtherPoints {
+struct ResampledShells {
   std::shared_ptr<const ShellSet> shells;  ///< null: the parts' own
   std::optional<CookedField> field;
   std::size_t part = 0;
   std::unique_ptr<VpsShape> shape;
-  /// Least distance as they read it at PointsOrder::X_WP, less that of the points before; none where either
+  /// Least distance as they read it at ResampleOrder::X_WP, less that of the points before; none where either
   /// is beyond the map's band.
   std::optional<double> misread_m;
 };
 
 /// The maps stay those in place. Same input, same bits. Throws as cookField(), and std::runtime_error
 /// where that was stopped.
-OtherPoints makeOtherPoints(PointsOrder order, std::shared_ptr<const ShellSet> shells);
+ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellSet> shells);
 
 }  // namespace vps

@@ -118,12 +118,12 @@ class Procedure {
     const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
     LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
-    side_ = sideFor(scene, hand, loop_settings, tell);
-    PaceLimits limits_of_pace;
+    driver_ = sideFor(scene, hand, loop_settings, tell);
+    LoadLimits limits_of_pace;
     limits_of_pace.stop = options.stop;
     // What the loop foretells by itself moves as the clock does.
     limits_of_pace.may_slow = !options.has_local_contact;
-    pace_.emplace(scene_, plan_, simulation_, placed_, *side_, limits_of_pace,
+    shedder_.emplace(scene_, plan_, simulation_, placed_, *driver_, limits_of_pace,
                   [limits = hand.device().limits(), &scene](double rate_hz) {
                     return gainsFor(scene, limits, rate_hz);
                   });
@@ -142,7 +142,7 @@ class Procedure {
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
-  std::unique_ptr<HapticSide> sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+  std::unique_ptr<HapticDriver> sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
                                       const TellFault& tell);
   void mountFixed();
   void runStep(std::size_t index);
@@ -158,17 +158,17 @@ class Procedure {
   /// stands meanwhile, so that the swap comes at a step's number; by the clock, loop and physics go on until
   /// it is ready.
   void settle(StepResult& result, std::size_t index);
-  std::future<FitVerdict> judgeBeside();
-  std::future<CookedField> cookBeside(std::size_t step);  ///< without a state if none is needed
+  std::future<OverlapVerdict> judgeAsync();
+  std::future<CookedField> cookAsync(std::size_t step);  ///< without a state if none is needed
   void goOnUntil(const std::function<bool()>& is_done);
   void swapIn(CookedField field, StepResult& result);
-  void tellVerdict(StepResult& result, const FitVerdict& verdict) const;
+  void tellVerdict(StepResult& result, const OverlapVerdict& verdict) const;
   void mount(std::size_t part);
   /// Models the rest of what is fixed, if the part in hand comes near the border of its region.
   void keepCovered();
 
   /// Gives up what must be to hold the rate, or takes it back.
-  void keepPace();
+  void shedLoad();
 
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
@@ -195,9 +195,9 @@ class Procedure {
   TappedDevice tapped_;
   CouplingPort port_;
   LocalContact local_;
-  std::unique_ptr<HapticSide> side_;
+  std::unique_ptr<HapticDriver> driver_;
   PlacedParts placed_;
-  std::optional<PaceKeeper> pace_;  ///< of side_
+  std::optional<LoadShedder> shedder_;  ///< of driver_
   double dt_s_;
   double grip_ = 1;    ///< share of the gains that holds the part in hand
   long trace_stride_;  ///< physics steps from one logged row to the next
@@ -213,7 +213,7 @@ class Procedure {
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
   std::size_t first_row_ = 0;   ///< of the step, in the trace
-  std::vector<FitSample> samples_;
+  std::vector<OverlapSample> samples_;
   Pose X_WP_before_;
   double peak_contact_N_ = 0;
   AssembleResult result_;
@@ -229,15 +229,15 @@ AssembleResult Procedure::run() {
     if (!options_.keep_going) break;
   }
   if (result_.steps.size() < scene_.steps.size()) result_.completed = false;
-  side_->pause();
+  driver_->pause();
   step_ = -1;
   result_.finished = snapshot();
-  result_.haptic = side_->times();
-  result_.real_time = side_->realTime();
-  if (result_.real_time) result_.real_time->paces = pace_->changes();
+  result_.haptic = driver_->times();
+  result_.real_time = driver_->realTime();
+  if (result_.real_time) result_.real_time->load_changes = shedder_->changes();
   result_.physics = physics_clock_.summary();
-  const HandLedger ledger = side_->ledger();
-  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.unseen_J};
+  const PassivityObserver ledger = driver_->ledger();
+  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.quantisation_error_bound_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = placed_.modelled();
   result_.widened = placed_.widened();
@@ -248,15 +248,15 @@ AssembleResult Procedure::run() {
   return std::move(result_);
 }
 
-std::unique_ptr<HapticSide> Procedure::sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
+std::unique_ptr<HapticDriver> Procedure::sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
                                                const TellFault& tell) {
-  if (options_.is_real_time) return realTimeSide(hand, port_, settings, dt_s_, tell, log_);
+  if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, tell, log_);
   Device& device = log_ != nullptr ? tapped_ : hand.device();
-  if (std::vector<Meeting> meetings = hand.meetings(); !meetings.empty() && log_ != nullptr) {
+  if (std::vector<SyncEvent> sync_events = hand.sync_events(); !sync_events.empty() && log_ != nullptr) {
     settings.physics_limit_s = physicsLimit_s(dt_s_);
-    return replayedSide(hand, std::move(meetings), device, port_, settings, tell, *log_);
+    return makeReplayedDriver(hand, std::move(sync_events), device, port_, settings, tell, *log_);
   }
-  return lockstepSide(hand, device, port_, settings, ticksPerStep(scene), tell);
+  return makeLockstepDriver(hand, device, port_, settings, ticksPerStep(scene), tell);
 }
 
 void Procedure::mountFixed() {
@@ -269,7 +269,7 @@ void Procedure::mountFixed() {
 }
 
 void Procedure::mount(std::size_t part) {
-  placed_.addToFit(part);
+  placed_.addToJudge(part);
   roles_[part] = BodyRole::Mounted;
 }
 
@@ -282,20 +282,20 @@ void Procedure::keepCovered() {
         "'" + scene_.parts[part].part.name +
         "' came to the border of where it was expected; all that is fixed is modelled from there on");
   // By the clock physics that stands still for so long is a fault; paused, the loop knows.
-  const bool pauses = options_.has_local_contact || side_->isByClock();
-  if (pauses) side_->pause();
-  pace_->beforeNewModels(time_s_);
+  const bool pauses = options_.has_local_contact || driver_->isByClock();
+  if (pauses) driver_->pause();
+  shedder_->beforeNewModels(time_s_);
   placed_.widen(step);
-  pace_->afterNewModels(time_s_, part);
+  shedder_->afterNewModels(time_s_, part);
   if (!pauses) return;
   if (options_.has_local_contact && is_holding_) takeLocally(scene_.parts[part]);
-  side_->resume();
+  driver_->resume();
 }
 
 void Procedure::take(const SceneStep& step) {
   const ScenePart& scene_part = scene_.parts[step.part];
   if (!scene_part.allow_overlap) {
-    const Penetration overlap = placed_.fit().deepest(placed_.fitBody(step.part), step.X_WP_start);
+    const Penetration overlap = placed_.fit().deepest(placed_.judgedBody(step.part), step.X_WP_start);
     if (overlap.depth_m > kStartOverlap_m)
       throw LoadError(scene_.file, scene_part.part.name,
                       "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
@@ -311,9 +311,9 @@ void Procedure::take(const SceneStep& step) {
            simulation_.mass(step.part) * scene_.gravity_W,
            0};
   held_.held_energy_J = simulation_.mechanicalEnergy();
-  simulation_.grasp(step.part, held_.X_PG, pace_->gains());
+  simulation_.grasp(step.part, held_.X_PG, shedder_->gains());
   grip_ = 1;
-  side_->handOver(step.X_WP_start * held_.X_PG);
+  driver_->handOver(step.X_WP_start * held_.X_PG);
   is_holding_ = true;
   if (options_.has_local_contact) takeLocally(scene_part);
 }
@@ -337,24 +337,24 @@ void Procedure::letGo() {
   // The ledger goes on from what is stored without the springs: letting go gives their energy to nobody.
   stored_before_J_ += simulation_.mechanicalEnergy() - held_.held_energy_J;
   simulation_.release();
-  side_->letGo();
+  driver_->letGo();
   local_.letGo();
   is_holding_ = false;
   roles_[held_.part] = BodyRole::Released;
 }
 
 bool Procedure::advance() {
-  if (!side_->advance({poses_[held_.part], simulation_.twist(held_.part), held_.weight_W})) {
+  if (!driver_->advance({poses_[held_.part], simulation_.twist(held_.part), held_.weight_W})) {
     is_over_ = true;
     log_ = nullptr;  // what follows is no part of the run
     return false;
   }
   X_WP_before_ = poses_[held_.part];
   if (!is_settling_) keepCovered();
-  keepPace();
+  shedLoad();
   physics_clock_.start();
-  CouplingState proxy = side_->proxy();
-  proxy.V_W = scaled(proxy.V_W, pace_->slower());
+  CouplingState proxy = driver_->proxy();
+  proxy.V_W = scaled(proxy.V_W, shedder_->slower());
   simulation_.setProxy(proxy);
   simulation_.step(dt_s_);
   physics_clock_.stop();
@@ -365,22 +365,22 @@ bool Procedure::advance() {
   CouplingState part = simulation_.graspState();
   part.is_coupled =
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
-  part.V_W = scaled(part.V_W, 1 / pace_->slower());
+  part.V_W = scaled(part.V_W, 1 / shedder_->slower());
   std::optional<double> stored_J;
   if (is_holding_)
     stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
-               springEnergy(faded(pace_->gains(), grip_), proxy, part);
-  side_->publish(part, stored_J);
+               springEnergy(faded(shedder_->gains(), grip_), proxy, part);
+  driver_->publish(part, stored_J);
   return true;
 }
 
-void Procedure::keepPace() {
+void Procedure::shedLoad() {
   // Cooking and judging slow a run down that nothing given up would quicken. A recording does not hold what
   // is given up.
-  if (!options_.degrades || !side_->isByClock() || is_settling_ || log_ != nullptr) return;
-  pace_->keep(side_->busy_s(), time_s_, held_.part, is_holding_);
-  dt_s_ = pace_->dt_s();
-  if (grip_ < 1) simulation_.setGains(faded(pace_->gains(), grip_));  // other gains may have come
+  if (!options_.degrades || !driver_->isByClock() || is_settling_ || log_ != nullptr) return;
+  shedder_->keep(driver_->busy_s(), time_s_, held_.part, is_holding_);
+  dt_s_ = shedder_->dt_s();
+  if (grip_ < 1) simulation_.setGains(faded(shedder_->gains(), grip_));  // other gains may have come
 }
 
 void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
@@ -389,13 +389,13 @@ void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
   event.time_s = time_s_;
   event.step = step_;
   event.kind = kind;
-  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(side_->phase());
+  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(driver_->phase());
   event.say(words);
   log_->add(event);
 }
 
 void Procedure::tellPhase() {
-  const OperatorPhase phase = side_->phase();
+  const OperatorPhase phase = driver_->phase();
   if (told_phase_ == phase) return;
   told_phase_ = phase;
   tellEvent(RunEventKind::Phase, toText(phase));
@@ -407,9 +407,9 @@ void Procedure::record(int phase) {
   row.time_s = time_s_;
   row.step = step_;
   row.phase = phase;
-  row.F_hand_W = is_holding_ ? side_->last().F_hand_W : Wrench{};
+  row.F_hand_W = is_holding_ ? driver_->last().F_hand_W : Wrench{};
   row.X_WP = poses_[held_.part];
-  row.X_W_Proxy = side_->last().X_WG;
+  row.X_W_Proxy = driver_->last().X_WG;
   row.contacts = touch.contacts;
   row.depth_m = touch.depth_m;
   result_.trace.push_back(row);
@@ -443,7 +443,7 @@ OperatorTask Procedure::taskOf(const SceneStep& step) const {
 }
 
 void Procedure::runStep(std::size_t index) {
-  if (options_.has_local_contact) side_->pause();
+  if (options_.has_local_contact) driver_->pause();
   const SceneStep& step = scene_.steps[index];
   const std::string& name = scene_.parts[step.part].part.name;
   step_ = static_cast<int>(index);
@@ -462,7 +462,7 @@ void Procedure::runStep(std::size_t index) {
   result_.contact.push_back(snapshot());
   tellEvent(RunEventKind::Take, "takes '" + name + "'");
   work(result, step, index);
-  if (options_.has_local_contact) side_->pause();
+  if (options_.has_local_contact) driver_->pause();
   for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
     ++(episode.is_slide ? result.slides : result.impacts);
   result.duration_s = time_s_ - result.start_s;
@@ -481,8 +481,8 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   CouplingState part = simulation_.graspState();
   part.is_coupled = true;
   part.time_s = time_s_;
-  side_->publish(part, {});
-  side_->resume();
+  driver_->publish(part, {});
+  driver_->resume();
   const auto go_on = [&](int phase) {
     if (isStopped() || !advance()) return false;
     record(phase);
@@ -490,31 +490,31 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   };
   const auto reaching = [&] { return go_on(0); };
   const auto pressing = [&] { return go_on(2); };
-  const ClutchWork clutch(*side_, [this] { return pace_->dt_s() * pace_->slower(); });
+  const ClutchWork clutch(*driver_, [this] { return shedder_->dt_s() * shedder_->slower(); });
   if (!clutch.takeHold(reaching)) return;
-  side_->begin(taskOf(step), index, time_s_);
+  driver_->begin(taskOf(step), index, time_s_);
   told_phase_.reset();
   tellPhase();
   const auto is_busy = [&] {
-    const OperatorPhase phase = side_->phase();
+    const OperatorPhase phase = driver_->phase();
     return phase != OperatorPhase::Done && phase != OperatorPhase::Failed;
   };
   while (is_busy() && !isStopped() && advance()) {
-    const OperatorPhase phase = side_->phase();
+    const OperatorPhase phase = driver_->phase();
     tellPhase();
     record(phase == OperatorPhase::Press || phase == OperatorPhase::Done ? 2
            : phase == OperatorPhase::Insert                              ? 1
                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
     if (phase != OperatorPhase::Regrasp) continue;
-    ++result.regrasps;
-    if (!clutch.regrasp(reaching)) return;
+    ++result.index_points;
+    if (!clutch.index_point(reaching)) return;
     tellPhase();
   }
   if (!clutch.comeFree(pressing)) return;
   clutch.setDown([&](double share) {
     grip_ = share;
-    simulation_.setGains(faded(pace_->gains(), grip_));
+    simulation_.setGains(faded(shedder_->gains(), grip_));
     return pressing();
   });
 }
@@ -525,10 +525,10 @@ void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) 
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
   const bool is_on_target =
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
-  const bool is_done = side_->phase() == OperatorPhase::Done;
+  const bool is_done = driver_->phase() == OperatorPhase::Done;
   result.completed = is_done && is_on_target;
   if (!result.completed)
-    result.why_not = is_over_      ? "the recording ends here"
+    result.failure_reason = is_over_      ? "the recording ends here"
                      : isStopped() ? "stopped"
                      : is_done     ? "moved off its target after it was let go"
                      : time_s_ - result.start_s > step.timeout_s
@@ -536,20 +536,20 @@ void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) 
                          : "the hand gave up: target not reached";
 }
 
-std::future<FitVerdict> Procedure::judgeBeside() {
+std::future<OverlapVerdict> Procedure::judgeAsync() {
   samples_.push_back({time_s_, poses_[held_.part], 0});
-  const FitBody& body = placed_.fitBody(held_.part);
+  const JudgedBody& body = placed_.judgedBody(held_.part);
   return std::async(std::launch::async, [this, &body] {
     leaveRealTime();  // threads are born with their maker's priority
     // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
     if (scene_.fidelity.sides == Sides::One)
-      for (FitSample& sample : samples_)
+      for (OverlapSample& sample : samples_)
         sample.depth_m = std::max(sample.depth_m, placed_.fit().fieldDepth_m(body, sample.X_WP));
     return judge(placed_.fit(), body, samples_, options_.judge_stride, options_.stop);
   });
 }
 
-std::future<CookedField> Procedure::cookBeside(std::size_t step) {
+std::future<CookedField> Procedure::cookAsync(std::size_t step) {
   auto order = placed_.orderFor(step);
   if (!order) return {};
   order->stop = options_.stop;
@@ -568,20 +568,20 @@ void Procedure::goOnUntil(const std::function<bool()>& is_done) {
 
 void Procedure::settle(StepResult& result, std::size_t index) {
   const std::size_t part = held_.part;
-  if (side_->isByClock()) goOnUntil([this] { return pace_->isReady(); });
-  pace_->finish(time_s_);  // of the part that goes now
-  std::future<FitVerdict> verdict = judgeBeside();
+  if (driver_->isByClock()) goOnUntil([this] { return shedder_->isReady(); });
+  shedder_->finish(time_s_);  // of the part that goes now
+  std::future<OverlapVerdict> verdict = judgeAsync();
   // So that the next step has what it is mounted on.
   const Pose X_WP = result.completed ? poses_[part] : held_.X_WP_target;
   placed_.add(part, X_WP);
-  std::future<CookedField> field = cookBeside(index + 1);
-  const std::uint64_t missed_before = side_->missed();
-  if (side_->isByClock()) goOnUntil([&] { return side_->hasSettled(isReady(verdict) && isReady(field)); });
+  std::future<CookedField> field = cookAsync(index + 1);
+  const std::uint64_t missed_before = driver_->missed();
+  if (driver_->isByClock()) goOnUntil([&] { return driver_->hasSettled(isReady(verdict) && isReady(field)); });
   while (!isReady(verdict) || !isReady(field)) {
     std::this_thread::sleep_for(kLook);
     tell(index, 0.95);  // who listens may stop the run
   }
-  result.missed_while_cooking = side_->missed() - missed_before;
+  result.missed_while_cooking = driver_->missed() - missed_before;
   tellVerdict(result, verdict.get());
   simulation_.removeBody(part);
   poses_[part] = X_WP;
@@ -598,7 +598,7 @@ void Procedure::swapIn(CookedField field, StepResult& result) {
   result.swap_wall_s = wallSeconds() - begun_s;
 }
 
-void Procedure::tellVerdict(StepResult& result, const FitVerdict& verdict) const {
+void Procedure::tellVerdict(StepResult& result, const OverlapVerdict& verdict) const {
   result.max_penetration_m = verdict.worst.depth_m;
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;
@@ -612,9 +612,9 @@ void Procedure::rest(StepResult& result, const SceneStep& step) {
   // Meanwhile the empty hand goes back: to where the next part's path lies around the middle of the
   // workspace.
   const std::size_t next = static_cast<std::size_t>(step_) + 1;
-  side_->goBack(next);
+  driver_->goBack(next);
   // At least until the hand is back.
-  side_->resume();
+  driver_->resume();
   const double first_dt_s = dt_s_;
   const double steps = std::round(std::max(scene_.release_s, kHandReturn_s) / dt_s_);
   result.rest_s = steps * dt_s_;
@@ -635,8 +635,8 @@ Snapshot Procedure::snapshot() const {
     shot.target_part = held_.part;
     shot.X_WP_target = held_.X_WP_target;
     shot.has_hand = is_holding_;
-    shot.X_W_Proxy = side_->last().X_WG;
-    shot.F_hand_W = side_->last().F_hand_W;
+    shot.X_W_Proxy = driver_->last().X_WG;
+    shot.F_hand_W = driver_->last().F_hand_W;
     simulation_.contactMarks(shot.contacts);
   }
   return shot;

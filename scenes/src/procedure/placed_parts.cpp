@@ -16,14 +16,14 @@ PlacedParts::PlacedParts(Scene& scene, Plan& plan, Simulation& simulation, const
       fit_bodies_(scene.parts.size()),
       modelled_(modelledCost(scene)) {}
 
-void PlacedParts::addToFit(std::size_t part) {
+void PlacedParts::addToJudge(std::size_t part) {
   const auto placed = std::ranges::find(placed_, part, &FixedPart::part);
-  if (scene_.parts[part].part.shell) fit_.mount(fitBody(part), placed->X_WP);
+  if (scene_.parts[part].part.shell) fit_.mount(judgedBody(part), placed->X_WP);
 }
 
-const FitBody& PlacedParts::fitBody(std::size_t part) {
-  std::optional<FitBody>& body = fit_bodies_[part];
-  if (!body) body = makeFitBody(scene_.parts[part].part, simulation_.surface(part));
+const JudgedBody& PlacedParts::judgedBody(std::size_t part) {
+  std::optional<JudgedBody>& body = fit_bodies_[part];
+  if (!body) body = makeJudgedBody(scene_.parts[part].part, simulation_.surface(part));
   return *body;
 }
 
@@ -65,10 +65,10 @@ void PlacedParts::widen(std::size_t step) {
   ModelOptions options;
   options.cache = options_.cache;  // neither progress nor warnings: both were told of loading
   buildWhole(scene_, plan_, options);
-  fit_ = ExactFit();
+  fit_ = OverlapJudge();
   for (const FixedPart& placed : placed_) {
     if (scene_.parts[placed.part].is_fixed) fit_bodies_[placed.part].reset();
-    addToFit(placed.part);
+    addToJudge(placed.part);
   }
   setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
 }

@@ -21,10 +21,10 @@ class PlacedParts {
   /// Puts down where a part lies, for the fields of later steps.
   void add(std::size_t part, const Pose& X_WP) { placed_.push_back({part, X_WP}); }
   /// The judge measures against it from now on: one that was added, if it is modelled.
-  void addToFit(std::size_t part);
-  [[nodiscard]] const ExactFit& fit() const { return fit_; }
+  void addToJudge(std::size_t part);
+  [[nodiscard]] const OverlapJudge& fit() const { return fit_; }
   /// Made when first asked for; stays where it is.
-  const FitBody& fitBody(std::size_t part);
+  const JudgedBody& judgedBody(std::size_t part);
 
   /// What to cook for a step's region; nothing if the field in place will do, or after the last step.
   [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step);
@@ -49,8 +49,8 @@ class PlacedParts {
   Simulation& simulation_;
   const ModelOptions& options_;
   std::vector<FixedPart> placed_;  ///< in the order they came in
-  ExactFit fit_;
-  std::vector<std::optional<FitBody>> fit_bodies_;  ///< by part
+  OverlapJudge fit_;
+  std::vector<std::optional<JudgedBody>> fit_bodies_;  ///< by part
   ModelledCost modelled_;
   int widened_ = 0;
 };

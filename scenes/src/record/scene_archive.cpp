@@ -20,7 +20,7 @@ namespace vps {
 
 namespace {
 
-// What came with each: the scene; Scene::contact; DeviceSettings::has_ratchet.
+// What came with each: the scene; Scene::contact; DeviceSettings::has_indexing.
 constexpr std::array<std::string_view, 3> kMagics = {"vps-scene-1\n", "vps-scene-2\n", "vps-scene-3\n"};
 
 class Writer {
@@ -167,7 +167,7 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<DeviceSettings> T>
 void fields(Archive& archive, T& x) {
-  auto& [kind, data, scale, is_quantised, has_ratchet] = x;  // the last: since vps-scene-3
+  auto& [kind, data, scale, is_quantised, has_indexing] = x;  // the last: since vps-scene-3
   archive(kind, data, scale, is_quantised);
 }
 template <typename Archive, Either<OperatorSettings> T>
@@ -227,7 +227,7 @@ std::string sceneToBytes(const Scene& scene) {
   std::string out(kMagics.back());
   Writer writer(out);
   fields(writer, std::as_const(plain));
-  writer(plain.contact, plain.device.has_ratchet);
+  writer(plain.contact, plain.device.has_indexing);
   return out;
 }
 
@@ -240,7 +240,7 @@ Scene sceneFromBytes(std::string_view bytes, const std::string& file) {
   Reader reader(bytes.substr(form->size()));
   fields(reader, scene);
   if (form > kMagics.data()) reader(scene.contact);
-  if (form > kMagics.data() + 1) reader(scene.device.has_ratchet);
+  if (form > kMagics.data() + 1) reader(scene.device.has_indexing);
   if (!reader.isAllRead()) throw LoadError(file, "", "holds a scene that is not whole");
   if (const char* what = impossible(scene))
     throw LoadError(file, "", std::string("holds a scene with ") + what);

@@ -308,12 +308,12 @@ class SceneReader {
     const toml::table* table = top_.table("device");
     if (!table) return;
     const SceneKeys keys(*table, context_, "[device]",
-                         {"kind", "parameters", "scale", "quantised_encoders", "ratchet"});
+                         {"kind", "parameters", "scale", "quantised_encoders", "indexing"});
     keys.text("kind", scene_.device.kind);
     if (std::string file; keys.text("parameters", file)) readDeviceFile(keys, file);
     keys.number("scale", scene_.device.scale, kPositive);
     keys.flag("quantised_encoders", scene_.device.has_quantised_encoders);
-    keys.flag("ratchet", scene_.device.has_ratchet);
+    keys.flag("indexing", scene_.device.has_indexing);
   }
 
   /// Read when it is used; looked at here, so that what is wrong with it is said with line and key.
@@ -380,7 +380,7 @@ class SceneReader {
     if (keys.word("gradient", {"continuous", "trilinear"}, index))
       fidelity.gradient = index == 0 ? Gradient::Continuous : Gradient::Trilinear;
     if (keys.word("contact", {"rigid", "compliant"}, index))
-      scene_.contact = index == 0 ? ContactKind::Rigid : ContactKind::Compliant;
+      scene_.contact = index == 0 ? ContactMethod::Constraint : ContactMethod::Penalty;
     constexpr Range kCount{.min = 1, .max = 1e6};
     std::int64_t count = 0;
     if (keys.integer("contact_limit", count, kCount)) fidelity.contact_limit = static_cast<int>(count);
@@ -427,7 +427,7 @@ class SceneReader {
   /// Chooses by counts, so that the same file gives the same scene everywhere.
   void choose(const FidelityWish& wish) {
     const FidelityChoice choice = chooseFidelity(scene_, wish);
-    if (!choice.is_met) top_.fail("fidelity", "is auto and cannot be met: " + choice.why_not);
+    if (!choice.is_met) top_.fail("fidelity", "is auto and cannot be met: " + choice.failure_reason);
     scene_.fidelity = choice.fidelity;
     scene_.fidelity_choice = describe(choice);
   }

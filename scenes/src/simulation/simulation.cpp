@@ -29,7 +29,7 @@ struct DynamicBody {
 VpsBulletSettings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
   VpsBulletSettings settings;
-  settings.mode = scene.contact == ContactKind::Compliant ? ContactMode::Penalty : ContactMode::Constraint;
+  settings.mode = scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
     // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
@@ -159,9 +159,9 @@ void Simulation::setField(CookedField field, std::size_t material) {
   w.world.addRigidBody(w.fixed_body.get());
 }
 
-PointsOrder Simulation::orderPoints(std::size_t part) {
+ResampleOrder Simulation::orderResampling(std::size_t part) {
   World& w = *world_;
-  PointsOrder order;
+  ResampleOrder order;
   if (hasFixed()) {
     PlannedStep as_it_is;
     as_it_is.region_W = w.field.region_W;
@@ -180,7 +180,7 @@ PointsOrder Simulation::orderPoints(std::size_t part) {
   return order;
 }
 
-void Simulation::setPoints(OtherPoints points) {
+void Simulation::setShells(ResampledShells points) {
   World& w = *world_;
   w.shells = std::move(points.shells);
   const auto found = w.bodies.find(points.part);

@@ -45,11 +45,11 @@ class Simulation {
   [[nodiscard]] const CookedField& field() const;
   [[nodiscard]] bool hasFixed() const;
 
-  /// What makeOtherPoints() needs to make this body and the field in place again, on any thread.
-  [[nodiscard]] PointsOrder orderPoints(std::size_t part);
+  /// What resampleShells() needs to make this body and the field in place again, on any thread.
+  [[nodiscard]] ResampleOrder orderResampling(std::size_t part);
   /// Puts them in place between two steps, all else as it is. Bodies and fields that come later take the same
   /// points. The field goes to setField(). Without a shape: only what comes later. O(1) but for freeing.
-  void setPoints(OtherPoints points);
+  void setShells(ResampledShells points);
 
   /// Adds a part as a dynamic body at rest. Sleeping off, no damping. Throws LoadError where its mass makes
   /// no sense.

@@ -71,7 +71,7 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
   const auto add = [&](const std::string& name, TradeKnob knob, const auto& change) {
     all.push_back(changed(scene, name, knob, change));
   };
-  const bool has_both = scene.fidelity.sides == Sides::Both, is_rigid = scene.contact == ContactKind::Rigid,
+  const bool has_both = scene.fidelity.sides == Sides::Both, is_rigid = scene.contact == ContactMethod::Constraint,
              is_continuous = scene.fidelity.gradient == Gradient::Continuous;
   add("as it is", TradeKnob::Own, [](TradeTry&) {});
   add("all coarser", TradeKnob::Together, coarsen);
@@ -88,7 +88,7 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
   add(is_continuous ? "trilinear" : "continuous", TradeKnob::Gradient,
       [=](TradeTry& t) { t.fidelity.gradient = is_continuous ? Gradient::Trilinear : Gradient::Continuous; });
   add(is_rigid ? "compliant" : "rigid", TradeKnob::Contact,
-      [=](TradeTry& t) { t.contact = is_rigid ? ContactKind::Compliant : ContactKind::Rigid; });
+      [=](TradeTry& t) { t.contact = is_rigid ? ContactMethod::Penalty : ContactMethod::Constraint; });
   add("haptic rate x2", TradeKnob::HapticRate, [](TradeTry& t) { t.fidelity.haptic_rate_hz *= 2; });
   add("spacing /2", TradeKnob::Spacing, [](TradeTry& t) { t.fidelity.spacing_m /= 2; });
   add("all finer", TradeKnob::Together, refine);
@@ -108,7 +108,7 @@ std::vector<TradeTry> tradeReferences(const Scene& scene) {
       t.fidelity.solver_iterations *= 4;
       t.fidelity.haptic_rate_hz *= rates;
       t.fidelity.physics_rate_hz *= rates;
-      t.contact = ContactKind::Rigid;
+      t.contact = ContactMethod::Constraint;
     });
   };
   return {reference("reference", 0.5, 2), reference("reference, rates as they are", 0.5, 1),

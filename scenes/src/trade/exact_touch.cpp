@@ -7,7 +7,7 @@
 
 namespace vps {
 
-Touch exactTouch(const FitBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
+Touch exactTouch(const JudgedBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
                  const Vec3& p_SO) {
   std::vector<double> reading(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(),

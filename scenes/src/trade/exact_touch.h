@@ -24,7 +24,7 @@ struct Touch {
 /// @param X_SB  the samples' part in the solid's frame
 /// @param p_SO  where the wrench is taken, in the solid's frame
 /// Same bits on any number of threads. O(samples), and an exact distance for each that is near.
-Touch exactTouch(const FitBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
+Touch exactTouch(const JudgedBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
                  const Vec3& p_SO);
 
 }  // namespace vps

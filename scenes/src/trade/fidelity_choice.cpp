@@ -85,7 +85,7 @@ class Chooser {
   }
   [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
 
-  /// Looks at maps of a size before they are built, and says so in why_not where they cannot be had.
+  /// Looks at maps of a size before they are built, and says so in failure_reason where they cannot be had.
   bool hasRoomForMaps(double voxel_m);
   bool findVoxel();
   [[nodiscard]] double worstError(double voxel_m, double enough_m);
@@ -135,7 +135,7 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
       1e-6 * (fits_wish ? machine_bytes : *wish_.memory_bytes),
       fits_wish ? "half of this machine's memory" : "allowed",
       fits_wish ? "use a larger machine" : "for more memory");
-  choice_.why_not = words;
+  choice_.failure_reason = words;
   return false;
 }
 
@@ -151,7 +151,7 @@ bool Chooser::findVoxel() {
     choice_.fidelity.spacing_m = 2 * voxel_m;  // as in the presets
     return true;
   }
-  choice_.why_not = "no voxel down to 15 um reads depth to the tolerance; ask for less";
+  choice_.failure_reason = "no voxel down to 15 um reads depth to the tolerance; ask for less";
   return false;
 }
 
@@ -208,7 +208,7 @@ void Chooser::finish() {
         "the models take %.3g MB at the fewest points, and %.3g MB are allowed; ask for more memory%s",
         1e-6 * static_cast<double>(choice_.bytes), 1e-6 * *wish_.memory_bytes,
         wish_.tolerance_m ? ", or more tolerance" : "");
-  choice_.why_not = words;
+  choice_.failure_reason = words;
 }
 
 }  // namespace

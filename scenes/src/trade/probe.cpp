@@ -41,7 +41,7 @@ double relative(const Vec3& v, const Vec3& truth) {
 Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progress)
     : moving_(scene.steps.front().part), poses_(std::move(poses)) {
   const auto bodyOf = [&](const ScenePart& part) {
-    return makeFitBody(part.part, std::make_shared<MeshDistance>(part.part.mesh));
+    return makeJudgedBody(part.part, std::make_shared<MeshDistance>(part.part.mesh));
   };
   held_.body = bodyOf(scene.parts[moving_]);
   std::vector<Pose> X_PWs;

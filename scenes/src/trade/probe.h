@@ -12,7 +12,7 @@
 namespace vps {
 
 /// The part that a scene's first step moves, at poses near contact, against all fixed parts. The truth comes
-/// from the meshes alone: depth by ExactFit (certain to half a micrometre), distance and penalty wrench by
+/// from the meshes alone: depth by OverlapJudge (certain to half a micrometre), distance and penalty wrench by
 /// samples of the surfaces that no pointshell has a hand in, each at its exact distance.
 class Probe {
  public:
@@ -35,7 +35,7 @@ class Probe {
   };
   /// One part as the truth sees it.
   struct Side {
-    FitBody body;
+    JudgedBody body;
     Pose X_WB;  ///< of a fixed part
     std::vector<SurfaceSample> samples;
   };
@@ -47,7 +47,7 @@ class Probe {
   double spacing_m_ = 0;
   Side held_;
   std::vector<Side> mounted_;
-  ExactFit fit_;
+  OverlapJudge fit_;
 };
 
 /// Up to `count` poses of the run's first step at which it touched, evenly in time, every second one pushed

@@ -41,7 +41,7 @@ class LossyDevice final : public Device {
   Wrench held_;
 };
 
-/// DESIGN section 7's balance, of true places and of the forces that truly act; HandLedger says what the rise
+/// DESIGN section 7's balance, of true places and of the forces that truly act; PassivityObserver says what the rise
 /// of it bounds. Device dissipation is the arm's stated least damping alone: its dry friction is to the
 /// hand's good.
 struct TrueLedger {

@@ -137,15 +137,15 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
     fs::create_directories(folder, error);
   for (const auto& [ending, terminal] : kinds) {
     const std::string target = file + ending, temporary = target + ".tmp" + std::to_string(::getpid());
-    std::string why_not =
+    std::string failure_reason =
         run(terminal + "set output " + quoted(temporary) + "\n" + body + "\nunset output\n");
-    if (why_not.empty()) {
+    if (failure_reason.empty()) {
       fs::rename(temporary, target, error);
-      if (error) why_not = target + ": cannot be written: " + error.message();
+      if (error) failure_reason = target + ": cannot be written: " + error.message();
     }
-    if (!why_not.empty()) {
+    if (!failure_reason.empty()) {
       fs::remove(temporary, error);
-      return {false, why_not};
+      return {false, failure_reason};
     }
   }
   return {true, {}};

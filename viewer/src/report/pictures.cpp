@@ -109,7 +109,7 @@ class PictureSet {
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption = result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].why_not;
+      options.caption = result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].failure_reason;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;
@@ -143,7 +143,7 @@ ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, co
   try {
     return PictureSet(scene, result, dir, options).draw();
   } catch (const std::exception& error) {
-    none.why_not = error.what();  // a picture is never worth a run
+    none.failure_reason = error.what();  // a picture is never worth a run
     return none;
   }
 }

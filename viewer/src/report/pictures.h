@@ -16,7 +16,7 @@ struct StepPictures {
 struct ReportPictures {
   std::string overview, section;
   std::vector<StepPictures> steps;
-  std::string why_not;  ///< said when no picture could be made
+  std::string failure_reason;  ///< said when no picture could be made
 };
 
 ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, const std::string& dir,

@@ -85,14 +85,14 @@ std::string stepFacts(const StepResult& s) {
                format(at_mm.z(), "%.2f") + ") mm, " + format(s.deepest_time_s, "%.3f") + " s";
   }
   return html::facts(
-      {{"In place", s.completed ? "yes" : "<b class=\"bad\">no</b>: " + escapeHtml(s.why_not)},
+      {{"In place", s.completed ? "yes" : "<b class=\"bad\">no</b>: " + escapeHtml(s.failure_reason)},
        {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s on"},
        {"Deepest overlap, by exact distance", deepest},
        {"The same by the voxmap", micrometres(s.field_penetration_m) + " µm"},
        {"Peak force, torque on the hand",
         format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
        {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-       {"Taken anew on the way, where the device's workspace ends", std::to_string(s.regrasps)},
+       {"Taken anew on the way, where the device's workspace ends", std::to_string(s.index_points)},
        {"Final error",
         micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
        {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after letting go",
@@ -120,15 +120,15 @@ std::string stepSection(std::size_t i, const StepResult& step, const StepPicture
 }
 
 /// What a run by the clock gave up to hold its rate.
-std::string paces(const AssembleResult& result) {
+std::string load_changes(const AssembleResult& result) {
   if (!result.real_time) return "";
-  const std::vector<PaceChange>& changes = result.real_time->paces;
+  const std::vector<LoadLevelChange>& changes = result.real_time->load_changes;
   const std::string behind = format(result.real_time->behind_s, "%.2f") +
                              " s of the clock's time had no step of "
                              "physics";
   if (changes.empty()) return "<p>" + behind + "; nothing was given up to hold the rate.</p>\n";
   std::vector<std::vector<Cell>> rows;
-  for (const PaceChange& change : changes)
+  for (const LoadLevelChange& change : changes)
     rows.push_back({{format(change.time_s, "%.2f"), "n"},
                     {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
                     {escapeHtml(change.why), ""},
@@ -160,7 +160,7 @@ std::string performance(const AssembleResult& result) {
                       row("physics", result.physics_rate_hz, result.physics)}) +
          "<p>Models were built in " + format(result.build_wall_s, "%.2f") + " s, fixed parts cooked in " +
          format(cook_s, "%.2f") + " s; the run of " + format(result.simulated_s, "%.2f") + " s took " +
-         format(result.run_wall_s, "%.2f") + " s.</p>\n" + paces(result) + "</div>\n";
+         format(result.run_wall_s, "%.2f") + " s.</p>\n" + load_changes(result) + "</div>\n";
 }
 
 std::string method(const Scene& scene, const AssembleResult& result) {
@@ -221,9 +221,9 @@ ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, cons
   for (std::size_t i = 0; forces && result.steps.size() > 1 && i < result.steps.size(); ++i)
     has_plot[i] = static_cast<bool>(plotForces(result.trace, dir + "/plots/step_" + std::to_string(i + 1),
                                                step_names, static_cast<int>(i)));
-  if (!forces) outcome.notes.push_back("No plots: " + forces.why_not);
+  if (!forces) outcome.notes.push_back("No plots: " + forces.failure_reason);
   const ReportPictures pictures = drawPictures(scene, result, dir, options);
-  if (!pictures.why_not.empty()) outcome.notes.push_back("No pictures: " + pictures.why_not);
+  if (!pictures.failure_reason.empty()) outcome.notes.push_back("No pictures: " + pictures.failure_reason);
   if (options.progress) options.progress("report", 1);
 
   const std::string name = !result.scene.empty() ? result.scene : scene.name;
@@ -234,7 +234,7 @@ ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, cons
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     if (!result.steps[i].completed)
       body += "<p class=\"note\">Step " + std::to_string(i + 1) + ", " + escapeHtml(result.steps[i].part) +
-              ": " + escapeHtml(result.steps[i].why_not.empty() ? "not completed" : result.steps[i].why_not) +
+              ": " + escapeHtml(result.steps[i].failure_reason.empty() ? "not completed" : result.steps[i].failure_reason) +
               "</p>\n";
   for (const std::string& note : outcome.notes) body += "<p class=\"note\">" + escapeHtml(note) + "</p>\n";
   if (!pictures.overview.empty())
