@@ -17,27 +17,28 @@ int main() {
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
-  world.setGravity(btVector3(0, 0, vps::toBt(-9.81)));
+  world.setGravity(btVector3(0, 0, vps::bullet::toBt(-9.81)));
   btStaticPlaneShape floor_shape(btVector3(0, 0, 1), 0);
-  btBoxShape block_shape(btVector3(vps::toBt(0.02), vps::toBt(0.02), vps::toBt(0.02)));
+  btBoxShape block_shape(
+      btVector3(vps::bullet::toBt(0.02), vps::bullet::toBt(0.02), vps::bullet::toBt(0.02)));
   btVector3 inertia;
-  block_shape.calculateLocalInertia(vps::toBt(0.1), inertia);
-  btRigidBody floor(0, nullptr, &floor_shape), block(vps::toBt(0.1), nullptr, &block_shape, inertia);
-  block.setWorldTransform(vps::toBt(vps::Pose::translation({0, 0, 0.03})));  // 10 mm above the floor
+  block_shape.calculateLocalInertia(vps::bullet::toBt(0.1), inertia);
+  btRigidBody floor(0, nullptr, &floor_shape), block(vps::bullet::toBt(0.1), nullptr, &block_shape, inertia);
+  block.setWorldTransform(vps::bullet::toBt(vps::Pose::translation({0, 0, 0.03})));  // 10 mm above the floor
   block.setActivationState(DISABLE_DEACTIVATION);
   world.addRigidBody(&floor);
   world.addRigidBody(&block);
 
-  vps::SimulatedDualArm device;  // or any other vps::Device
-  vps::LoopSettings settings;    // 1 kHz
-  settings.gains = vps::deriveGains(device.limits(), {});
+  vps::device::SimulatedDualArm device;  // or any other vps::Device
+  vps::device::LoopSettings settings;    // 1 kHz
+  settings.gains = vps::device::deriveGains(device.limits(), {});
   vps::CouplingPort port;  // where the haptic and the physics side meet
-  vps::HapticLoop loop(device, port, settings);
-  vps::VpsCoupling coupling(block, vps::Pose{}, settings.gains);
+  vps::device::HapticLoop loop(device, port, settings);
+  vps::bullet::CouplingConstraint coupling(block, vps::Pose{}, settings.gains);
   world.addConstraint(&coupling, true);
-  loop.grasp(vps::fromBt(block.getWorldTransform()));  // wherever the handle is: no jump
+  loop.grasp(vps::bullet::fromBt(block.getWorldTransform()));  // wherever the handle is: no jump
 
-  vps::HandForce hand;  // a spring of 500 N/m, whose far end goes down 20 mm in a second
+  vps::device::HandForce hand;  // a spring of 500 N/m, whose far end goes down 20 mm in a second
   hand.k_N_per_m = 500 * vps::Mat3::Identity();
   hand.b_Ns_per_m = 20 * vps::Mat3::Identity();
   hand.k_Nm_per_rad = 3 * vps::Mat3::Identity();
@@ -47,7 +48,7 @@ int main() {
     hand.X_eq.p.z() = -0.02 * std::fmin(1, i / 1000.0);
     device.step(1e-3, hand);
     coupling.setTarget(port.proxy.read());
-    world.stepSimulation(vps::toBt(1e-3), 0);
+    world.stepSimulation(vps::bullet::toBt(1e-3), 0);
     vps::CouplingState part = coupling.partState();
     part.is_coupled = true;
     port.part.write(part);

@@ -38,7 +38,7 @@ double timed(const Call& call) {
   return least_us;
 }
 
-BudgetPoint ownPoint(const Scene& scene, const Motion& motion, int poses, Reference& reference) {
+BudgetPoint ownPoint(const scenes::Scene& scene, const Motion& motion, int poses, Reference& reference) {
   BudgetPoint own;
   own.complete = 1;
   std::vector<double> times_us;
@@ -89,7 +89,7 @@ BudgetPoint pointOf(BudgetQuery& query, const Reference& reference, std::size_t 
 
 }  // namespace
 
-std::vector<BudgetPoint> budgetStudy(const Scene& scene, const Motion& motion, int poses,
+std::vector<BudgetPoint> budgetStudy(const scenes::Scene& scene, const Motion& motion, int poses,
                                      const std::vector<std::size_t>& budgets) {
   Reference reference;
   const BudgetPoint own = ownPoint(scene, motion, poses, reference);

@@ -22,7 +22,7 @@ struct BudgetPoint {
 
 /// One line for each of `budgets`; the wrench is about the shell's origin. The last line is queryWrench()'s
 /// own.
-std::vector<BudgetPoint> budgetStudy(const Scene& scene, const Motion& motion, int poses,
+std::vector<BudgetPoint> budgetStudy(const scenes::Scene& scene, const Motion& motion, int poses,
                                      const std::vector<std::size_t>& budgets);
 
 }  // namespace vps::bench

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 // One rounding to btScalar each way.
@@ -40,4 +40,4 @@ TEST(Convert, RotationsByQuaternionAndByMatrixAgree) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Solver;
@@ -51,7 +51,7 @@ class CouplingWithSolver : public testing::TestWithParam<Solver> {
 
 TEST_P(CouplingWithSolver, HangsByItsWeightOverStiffness) {
   btRigidBody& part = addBox(0.05);
-  VpsCoupling coupling(part, Pose(), gainsOf(2000, 0.05));
+  CouplingConstraint coupling(part, Pose(), gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
   coupling.setTarget(targetAt(Pose()));
   world.step(2000);
@@ -70,7 +70,7 @@ TEST_P(CouplingWithSolver, HeldOffCentreItTurnsUntilTorqueBalances) {
   // lever shortens as cos(angle).
   btRigidBody& part = addBox(0.05);
   const Pose X_BG = Pose::translation(Vec3(0.01, 0, 0));
-  VpsCoupling coupling(part, X_BG, gainsOf(2000, 0.05));
+  CouplingConstraint coupling(part, X_BG, gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
   coupling.setTarget(targetAt(X_BG));
   world.step(4000);
@@ -90,7 +90,7 @@ TEST_P(CouplingWithSolver, IsStableFromAGramToTenKilogramsAtAnyStiffness) {
       CouplingGains gains = gainsOf(k, mass_kg);
       gains.b_Ns_per_m = 0;
       gains.b_Nms_per_rad = 0;  // nothing but the implicit step damps: the hardest case
-      VpsCoupling coupling(part, Pose::translation(Vec3(0, 0.01, 0)), gains);
+      CouplingConstraint coupling(part, Pose::translation(Vec3(0, 0.01, 0)), gains);
       w.world->setGravity(btVector3(0, 0, 0));
       w.world->addConstraint(&coupling, true);
       coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0.01, 0))));
@@ -120,7 +120,7 @@ TEST_P(CouplingWithSolver, PressesWithTheForceOfItsSpring) {
     const test::Built part = test::build(makeBox(Vec3::Constant(0.02)), mass_kg / 8e-6, 0.5e-3, 2e-3);
     w.addShape(ground, 0, Vec3::Zero(), Pose::translation(Vec3(0, 0, -0.01)), 0.2);
     btRigidBody& body = w.add(part, Pose::translation(Vec3(0, 0, 0.01)));
-    VpsCoupling coupling(body, Pose(), gainsOf(20000, mass_kg));
+    CouplingConstraint coupling(body, Pose(), gainsOf(20000, mass_kg));
     w.world->addConstraint(&coupling, true);
     coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0, 0.01 - 5e-3))));  // 100 N
     w.step(200);
@@ -141,7 +141,7 @@ TEST_P(CouplingWithSolver, LimitsTheSpringAndKeepsItsDirection) {
   CouplingGains gains = gainsOf(2000, 0.05);
   gains.b_Ns_per_m = 0;
   gains.max_force_N = 5;
-  VpsCoupling coupling(part, Pose(), gains);
+  CouplingConstraint coupling(part, Pose(), gains);
   world.world->addConstraint(&coupling, true);
   const Vec3 direction = Vec3(1, 2, -2) / 3;
   coupling.setTarget(targetAt(Pose::translation(0.1 * direction)));  // 200 N without a limit
@@ -167,7 +167,7 @@ TEST_P(CouplingWithSolver, ReportsTheForceThatItGaveThePart) {
     gains.b_Ns_per_m = 0;
     gains.max_force_N = limit_N;
     const Pose X_BG = Pose::translation(Vec3(0.01, 0.02, 0));
-    VpsCoupling coupling(part, X_BG, gains);
+    CouplingConstraint coupling(part, X_BG, gains);
     w.world->addConstraint(&coupling, true);
     coupling.setTarget(targetAt(Pose::translation(Vec3(1e-3, 2e-3, 3e-3)) * X_BG));
     w.step();
@@ -183,7 +183,7 @@ TEST_P(CouplingWithSolver, FollowsAKinematicProxy) {
   btRigidBody& proxy = world.addShape(ball, 0, Vec3::Zero(), Pose());
   proxy.setCollisionFlags(proxy.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
   world.world->setGravity(btVector3(0, 0, 0));
-  VpsCoupling coupling(proxy, Pose(), part, Pose(), gainsOf(20000, 0.05));
+  CouplingConstraint coupling(proxy, Pose(), part, Pose(), gainsOf(20000, 0.05));
   world.world->addConstraint(&coupling, true);
   btDefaultMotionState motion;
   proxy.setMotionState(&motion);
@@ -199,7 +199,7 @@ TEST_P(CouplingWithSolver, FollowsAKinematicProxy) {
 
 TEST_P(CouplingWithSolver, ReleasedItGivesNoWrench) {
   btRigidBody& part = addBox(0.05);
-  VpsCoupling coupling(part, Pose(), gainsOf(2000, 0.05));
+  CouplingConstraint coupling(part, Pose(), gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
   coupling.setTarget(targetAt(Pose()));
   world.step(10);
@@ -213,7 +213,7 @@ TEST_P(CouplingWithSolver, ReleasedItGivesNoWrench) {
 
 TEST_P(CouplingWithSolver, ATargetThatIsNotANumberIsNoTarget) {
   btRigidBody& part = addBox(0.05);
-  VpsCoupling coupling(part, Pose(), gainsOf(2000, 0.05));
+  CouplingConstraint coupling(part, Pose(), gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
   CouplingState target = targetAt(Pose());
   target.X_W.p.x() = std::nan("");
@@ -237,7 +237,7 @@ TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
     btRigidBody& part = world.add(box, Pose::translation(Vec3(0, 0, 6e-3)));
     CouplingGains gains = gainsOf(1e6, box.frame.mass_kg);
     gains.k_Nm_per_rad = 100;
-    VpsCoupling coupling(part, Pose(), gains);
+    CouplingConstraint coupling(part, Pose(), gains);
     world.world->addConstraint(&coupling, true);
     coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0, 3e-3))));
     world.step(200);
@@ -251,20 +251,20 @@ TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
 TEST(Coupling, RefusesASolverThatNeverCallsIt) {
   btDantzigSolver dantzig;
   btMLCPSolver mlcp(&dantzig);
-  EXPECT_NE(VpsCoupling::whyUnsupported(mlcp), nullptr);
-  EXPECT_EQ(VpsCoupling::whyUnsupported(VpsSolver()), nullptr);
+  EXPECT_NE(CouplingConstraint::whyUnsupported(mlcp), nullptr);
+  EXPECT_EQ(CouplingConstraint::whyUnsupported(Solver()), nullptr);
 }
 
 TEST(Coupling, RefusesBodiesAndGainsItCannotUse) {
   btSphereShape ball(1);
   btRigidBody fixed(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &ball));
   btRigidBody moving(btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &ball, btVector3(1, 1, 1)));
-  EXPECT_THROW(VpsCoupling(fixed, Pose(), CouplingGains()), std::invalid_argument);
-  EXPECT_THROW(VpsCoupling(moving, Pose(), moving, Pose(), CouplingGains()), std::invalid_argument);
+  EXPECT_THROW(CouplingConstraint(fixed, Pose(), CouplingGains()), std::invalid_argument);
+  EXPECT_THROW(CouplingConstraint(moving, Pose(), moving, Pose(), CouplingGains()), std::invalid_argument);
   CouplingGains negative;
   negative.b_Ns_per_m = -1;
-  EXPECT_THROW(VpsCoupling(moving, Pose(), negative), std::invalid_argument);
+  EXPECT_THROW(CouplingConstraint(moving, Pose(), negative), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::build;
@@ -127,4 +127,4 @@ TEST(Crossing, OfASquarePegsRimDoesNotHoldItOutOfItsHole) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

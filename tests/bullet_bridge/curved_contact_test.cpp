@@ -13,12 +13,12 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
 
-constexpr double kMostGain_m = 20e-6;  // as VpsBulletSettings::contact_margin_m
+constexpr double kMostGain_m = 20e-6;  // as Settings::contact_margin_m
 constexpr double kSpacing_m = 0.5e-3, kBall_m = 5e-3, kBelow_m = 20e-3;
 
 const Built& ball() {
@@ -30,7 +30,7 @@ SideView viewOf(const Built& part, const Pose& X_WP, int side) {
   return {part.shape.get(), X_WP, static_cast<std::uint8_t>(side)};
 }
 
-struct SyncEvent {
+struct device::SyncEvent {
   Candidate point;
   FacePoint foot;
 
@@ -40,9 +40,9 @@ struct SyncEvent {
 };
 
 // A point of a side's shell as correct() leaves one that meets a face flush.
-std::optional<SyncEvent> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
-  const VpsModels& models = side.shape->models();
-  const VpsSurface& surface = other.shape->models().surfaces[0];
+std::optional<device::SyncEvent> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
+  const ShapeModels& models = side.shape->models();
+  const Surface& surface = other.shape->models().surfaces[0];
   const MeshDistance& theirs = *surface.distance;
   const Vec3 p_W = side.X_WM * models.shell->points[id];
   const MeshDistance::Closest closest = theirs.closest(other.X_WM.inverse() * p_W, 0.1e-3);
@@ -55,7 +55,7 @@ std::optional<SyncEvent> corrected(const SideView& side, const SideView& other, 
   c.p_W = p_W;
   c.n_W = (side.side == 0 ? 1 : -1) * n_W;
   c.distance_m = n_W.dot(p_W - other.X_WM * closest.q);
-  return SyncEvent{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
+  return device::SyncEvent{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
 /// Where two faces are nearest, by a formula.
@@ -78,7 +78,7 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
     for (std::uint32_t id = 0; id < side.shape->models().shell->size(); ++id) {
       const Vec3 p_W = side.X_WM * side.shape->models().shell->points[id];
       if ((p_W - truth.p_W).norm() > kSpacing_m || side.shape->isEdgePoint(id)) continue;
-      std::optional<SyncEvent> sync_event = corrected(side, sides[1 - side.side], id);
+      std::optional<device::SyncEvent> sync_event = corrected(side, sides[1 - side.side], id);
       if (!sync_event) continue;
       const bool has_moved = sync_event->move(sides);
       const Candidate* c = &sync_event->point;
@@ -189,7 +189,7 @@ TEST(CurvedContact, ASmallBallLiesStill) {
 TEST(CurvedContact, ABodyWithoutSurfacesRestsOnOneThatHasThem) {
   const Built plate = test::build(makeBox(Vec3(0.03, 0.03, 0.01)), 7850, 0.25e-3, kSpacing_m);
   Built bare = test::build(makeBox(Vec3::Constant(5e-3)), 7850, 0.25e-3, kSpacing_m);
-  VpsModels models = bare.shape->models();
+  ShapeModels models = bare.shape->models();
   models.surfaces.clear();
   bare.shape->setModels(std::move(models));
   test::World world;
@@ -206,7 +206,7 @@ TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
   const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};
   int met = 0;
   for (std::uint32_t id = 0; id < peg.shape->models().shell->size(); ++id) {
-    std::optional<SyncEvent> sync_event = corrected(sides[0], sides[1], id);
+    std::optional<device::SyncEvent> sync_event = corrected(sides[0], sides[1], id);
     if (!sync_event || peg.shape->isEdgePoint(id)) continue;
     ++met;
     EXPECT_FALSE(sync_event->move(sides)) << id;
@@ -215,4 +215,4 @@ TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

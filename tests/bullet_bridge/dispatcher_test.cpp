@@ -7,7 +7,7 @@
 #include "bullet_bridge/world.h"
 #include "vps_bullet/dispatcher.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -42,8 +42,8 @@ INSTANTIATE_TEST_SUITE_P(Each, DispatcherWithMode, testing::Values(test::Solver:
 
 TEST(Dispatcher, RefusesLessThanNoThread) {
   btDefaultCollisionConfiguration config;
-  EXPECT_THROW(VpsDispatcher(&config, -1), std::invalid_argument);
+  EXPECT_THROW(Dispatcher(&config, -1), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -33,8 +33,8 @@ struct Points : btCollisionWorld::ContactResultCallback {
 
 TEST(Install, WithoutItVpsShapesPassThroughEachOther) {
   World world;
-  uninstallVps(world.dispatcher);
-  EXPECT_FALSE(isVpsInstalled(world.dispatcher));
+  uninstall(world.dispatcher);
+  EXPECT_FALSE(isInstalled(world.dispatcher));
   world.add(cube(), Pose(), true);
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.011)));
   world.step(200);
@@ -43,9 +43,9 @@ TEST(Install, WithoutItVpsShapesPassThroughEachOther) {
 
 TEST(Install, TwiceIsAsOnceWithTheLaterSettings) {
   World world;
-  VpsBulletSettings settings;
+  Settings settings;
   settings.contact_limit = 8;
-  installVps(world.dispatcher, settings);
+  install(world.dispatcher, settings);
   world.add(cube(), Pose(), true);
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.010)));
   world.step(100);
@@ -63,25 +63,25 @@ TEST(Install, ABodyPutIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
     world.add(cube(), Pose(), true);
     world.add(cube(), Pose::translation(Vec3(0, 0, z_m))).setLinearVelocity(btVector3(0, 0, toBt(-0.5)));
     world.step(20);
-    return vpsStats(world.dispatcher);
+    return stats(world.dispatcher);
   };
   EXPECT_EQ(startAt(0.0105).overlapping_starts, 0u);
-  const VpsBulletStats stats = startAt(0.010 - kOverlap_m);
+  const Stats stats = startAt(0.010 - kOverlap_m);
   EXPECT_EQ(stats.overlapping_starts, 1u);
   EXPECT_NEAR(stats.deepest_start_m, kOverlap_m, 1e-7);  // faces' distance is exact, but for floats
 }
 
 TEST(Install, RefusesSettingsThatCannotWork) {
   World world;
-  VpsBulletSettings settings;
+  Settings settings;
   settings.contact_limit = 3;
-  EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
+  EXPECT_THROW(install(world.dispatcher, settings), std::invalid_argument);
   settings = {};
   settings.contact_margin_m = 0;
-  EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
+  EXPECT_THROW(install(world.dispatcher, settings), std::invalid_argument);
   settings = {};
   settings.candidate_limit = settings.contact_limit - 1;
-  EXPECT_THROW(installVps(world.dispatcher, settings), std::invalid_argument);
+  EXPECT_THROW(install(world.dispatcher, settings), std::invalid_argument);
 }
 
 Box contactExtent(World& world) {
@@ -105,8 +105,8 @@ TEST(Install, LooksAtEveryPointOfALargeFace) {
     world.addShape(*under, 0, Vec3::Zero(), Pose());
     world.add(plate, Pose::translation(Vec3(0, 0, top_m + 0.001)));
     world.step();
-    EXPECT_GT(vpsStats(world.dispatcher).points_tested, 20000u) << under->getName();
-    EXPECT_EQ(vpsStats(world.dispatcher).left_out, 0u) << under->getName();
+    EXPECT_GT(stats(world.dispatcher).points_tested, 20000u) << under->getName();
+    EXPECT_EQ(stats(world.dispatcher).left_out, 0u) << under->getName();
     // Of 64 contacts some are at every rim: no farther in than a cell of thinning out, 1/8 of half a
     // diagonal.
     const Box held = contactExtent(world);
@@ -118,15 +118,15 @@ TEST(Install, ALimitOnCandidatesIsKeptAndCounted) {
   // After the test above too, whose buffers were larger.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, cube().shape.get()}) {
-    VpsBulletSettings settings;
+    Settings settings;
     settings.sides = Sides::One;
     settings.candidate_limit = 80;
     World world(Solver::Vps, settings);
     world.addShape(*under, 0, Vec3::Zero(), Pose());
     world.add(cube(), Pose::translation(Vec3(0, 0, 0.010)));
     world.step();
-    EXPECT_EQ(vpsStats(world.dispatcher).candidates, 80u) << under->getName();
-    EXPECT_GT(vpsStats(world.dispatcher).left_out, 0u) << under->getName();
+    EXPECT_EQ(stats(world.dispatcher).candidates, 80u) << under->getName();
+    EXPECT_GT(stats(world.dispatcher).left_out, 0u) << under->getName();
   }
 }
 
@@ -165,9 +165,9 @@ TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
   btDefaultCollisionConfiguration config(small);
   btCollisionDispatcher dispatcher(&config);
   btDbvtBroadphase broadphase;
-  VpsSolver solver;
+  Solver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
-  installVps(dispatcher);
+  install(dispatcher);
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   btRigidBody ground(0, nullptr, &plane);
   world.addRigidBody(&ground);
@@ -182,7 +182,7 @@ TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
   for (const auto& body : bodies) EXPECT_NEAR(body->getWorldTransform().getOrigin().z(), 0.005, 1e-6);
   for (const auto& body : bodies) world.removeRigidBody(body.get());
   world.removeRigidBody(&ground);
-  uninstallVps(dispatcher);
+  uninstall(dispatcher);
 }
 
 TEST(Install, TwoRunsGiveTheSameBits) {
@@ -214,19 +214,19 @@ TEST(Install, UndoneItLeavesTheDispatcherAsItWas) {
   btCollisionDispatcher dispatcher(&config);
   btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // for GImpact against all types, ours too
   const auto before = Tables::of(dispatcher);
-  installVps(dispatcher);
+  install(dispatcher);
   EXPECT_NE(Tables::of(dispatcher), before);
-  installVps(dispatcher);
-  uninstallVps(dispatcher);
+  install(dispatcher);
+  uninstall(dispatcher);
   EXPECT_EQ(Tables::of(dispatcher), before);
-  uninstallVps(dispatcher);
+  uninstall(dispatcher);
   EXPECT_EQ(Tables::of(dispatcher), before);
 }
 
 TEST(Install, GImpactThatRegistersAfterItIsTakenOverByInstallingAgain) {
   World world;
   btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
-  installVps(world.dispatcher);
+  install(world.dispatcher);
   btTriangleMesh mesh;
   for (const auto& t : cube().mesh.triangles)
     mesh.addTriangle(toBt(cube().mesh.vertices[t[0]]), toBt(cube().mesh.vertices[t[1]]),
@@ -243,16 +243,16 @@ TEST(Install, ADispatcherAtTheAddressOfADeadOneStartsWithoutIt) {
   btDefaultCollisionConfiguration config;
   alignas(btCollisionDispatcher) unsigned char room[sizeof(btCollisionDispatcher)];
   auto* dispatcher = new (room) btCollisionDispatcher(&config);
-  installVps(*dispatcher);
-  EXPECT_TRUE(isVpsInstalled(*dispatcher));
-  dispatcher->~btCollisionDispatcher();  // without uninstallVps
+  install(*dispatcher);
+  EXPECT_TRUE(isInstalled(*dispatcher));
+  dispatcher->~btCollisionDispatcher();  // without uninstall
   dispatcher = new (room) btCollisionDispatcher(&config);
-  EXPECT_FALSE(isVpsInstalled(*dispatcher));
-  installVps(*dispatcher);
-  EXPECT_TRUE(isVpsInstalled(*dispatcher));
-  EXPECT_EQ(vpsStats(*dispatcher).pair_updates, 0u);
-  uninstallVps(*dispatcher);
-  EXPECT_FALSE(isVpsInstalled(*dispatcher));
+  EXPECT_FALSE(isInstalled(*dispatcher));
+  install(*dispatcher);
+  EXPECT_TRUE(isInstalled(*dispatcher));
+  EXPECT_EQ(stats(*dispatcher).pair_updates, 0u);
+  uninstall(*dispatcher);
+  EXPECT_FALSE(isInstalled(*dispatcher));
   dispatcher->~btCollisionDispatcher();
 }
 
@@ -263,12 +263,12 @@ TEST(Install, UndoneWhilePairsExistTheyKeepTheirContactAndItIsSaid) {
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.005)));
   world.step(10);
   testing::internal::CaptureStderr();
-  uninstallVps(world.dispatcher);
+  uninstall(world.dispatcher);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("they keep VPS contact"), std::string::npos);
   world.step(100);
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
   testing::internal::CaptureStderr();
-  uninstallVps(world.dispatcher);
+  uninstall(world.dispatcher);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
@@ -353,4 +353,4 @@ TEST(TuneWorld, APartThatSlidesAtATenthOfAMetreASecondStaysAwake) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

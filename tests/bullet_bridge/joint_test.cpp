@@ -7,7 +7,7 @@
 #include "bullet_bridge/world.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -124,7 +124,7 @@ TEST_P(JointsWithSolver, ACouplingPullsASliderAlongItsRailOnly) {
   gains.k_Nm_per_rad = 2;
   gains.b_Nms_per_rad = 0.01;
   gains.max_force_N = gains.max_torque_Nm = 1000;
-  VpsCoupling coupling(body, X_BP, gains);
+  CouplingConstraint coupling(body, X_BP, gains);
   world.world->addConstraint(&coupling, true);
   CouplingState target;
   target.is_coupled = true;
@@ -159,4 +159,4 @@ INSTANTIATE_TEST_SUITE_P(Each, JointsWithSolver, testing::Values(Solver::Stock, 
                          [](const auto& info) { return test::nameOf(info.param); });
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

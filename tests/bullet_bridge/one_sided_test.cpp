@@ -9,7 +9,7 @@
 #include "bullet_bridge/world.h"
 #include "support/swept.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::appendLine;
@@ -69,8 +69,8 @@ struct Entering {
   explicit Entering(Sides sides) : world(Solver::Vps, settings(sides)) {
     fixed = &world.add(ring, Pose(), true, 0);
   }
-  static VpsBulletSettings settings(Sides sides) {
-    VpsBulletSettings settings;
+  static Settings settings(Sides sides) {
+    Settings settings;
     settings.sides = sides;
     return settings;
   }
@@ -139,4 +139,4 @@ TEST(OneSided, AChamferSlidesOverTheOthersEdgeNoDeeperThanItsOwnEdgesLet) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A VpsShape against every shape type of Bullet: the table of bullet_bridge/README.md, row by row.
+// A Shape against every shape type of Bullet: the table of bullet_bridge/README.md, row by row.
 #include <BulletCollision/CollisionShapes/btBox2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvex2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
@@ -21,7 +21,7 @@
 #include "native_shapes/primitive.h"
 #include "vps_bullet/dispatcher.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -791,4 +791,4 @@ INSTANTIATE_TEST_SUITE_P(Rows, NativeShapeAdapter, testing::ValuesIn(rows()),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

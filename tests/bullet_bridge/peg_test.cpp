@@ -12,7 +12,7 @@
 #include "support/lathe.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -134,7 +134,7 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   gains.k_Nm_per_rad = 4;
   gains.b_Nms_per_rad = 0.02;
   const Pose X_PG = Pose::translation(Vec3(0, 0, kLength_m));
-  VpsCoupling coupling(body, peg_.frame.X_PB.inverse() * X_PG, gains);
+  CouplingConstraint coupling(body, peg_.frame.X_PB.inverse() * X_PG, gains);
   world.world->addConstraint(&coupling, true);
   CouplingState target;
   target.is_coupled = true;
@@ -179,4 +179,4 @@ INSTANTIATE_TEST_SUITE_P(Fits, PegInBore,
                          nameOf);
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -18,7 +18,7 @@ using test::steelBox;
 using test::World;
 
 TEST(Penalty, ABlockSinksByItsWeightOverStiffnessAndArea) {
-  VpsBulletSettings settings;
+  Settings settings;
   settings.stiffness_N_per_m3 = 1e9;
   settings.sides = Sides::One;
   World world(Solver::Penalty, settings);
@@ -71,12 +71,12 @@ TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
   world.step(500);
-  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  const std::size_t updates = stats(world.dispatcher).pair_updates;
   world.step(100);
-  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  EXPECT_EQ(stats(world.dispatcher).pair_updates, updates);
   body.setLinearVelocity(btVector3(toBt(0.1), 0, 0));
   world.step();
-  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates + 1);
+  EXPECT_EQ(stats(world.dispatcher).pair_updates, updates + 1);
 }
 
 TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
@@ -98,9 +98,9 @@ TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
     return fromBt(below.getWorldTransform()).inverse() * fromBt(body.getWorldTransform());
   };
   const Pose before = ride(500);
-  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  const std::size_t updates = stats(world.dispatcher).pair_updates;
   const Pose after = ride(1000);
-  EXPECT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  EXPECT_EQ(stats(world.dispatcher).pair_updates, updates);
   // The speed that Bullet gives the plate is a difference of places: rounding, for 1000 steps. Springs left
   // behind would be 100 mm off, and the block lie on its side.
   EXPECT_LE((after.p - before.p).norm(), 1e-12);
@@ -117,9 +117,9 @@ TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
   btRigidBody& body =
       world.addShape(ball, 4e-3, Vec3::Constant(4e-8), Pose::translation(Vec3(0, 0, kRadius_m)));
   world.step(2000);
-  const std::size_t updates = vpsStats(world.dispatcher).pair_updates;
+  const std::size_t updates = stats(world.dispatcher).pair_updates;
   world.step();
-  ASSERT_EQ(vpsStats(world.dispatcher).pair_updates, updates);
+  ASSERT_EQ(stats(world.dispatcher).pair_updates, updates);
   ball.setUnscaledRadius(toBt(kGrown_m));
   world.step(200);
   // It is met at the plate's points, 1 mm apart: sinks by up to s^2 / (4 r) between them.
@@ -180,11 +180,11 @@ TEST(Penalty, RefusesAStiffnessThatIsNone) {
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   for (const double k : {0.0, -1.0, std::nan("")}) {
-    VpsBulletSettings settings;
+    Settings settings;
     settings.stiffness_N_per_m3 = k;
-    EXPECT_THROW(installVps(dispatcher, settings), std::invalid_argument);
+    EXPECT_THROW(install(dispatcher, settings), std::invalid_argument);
   }
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 #include "bullet_bridge/world.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -17,7 +17,7 @@ using test::Solver;
 using test::steelBox;
 using test::World;
 
-// A resting velocity is the solver's residual (1e-7 m/s by VpsSolver's settings; PGS 100 leaves about 1e-6),
+// A resting velocity is the solver's residual (1e-7 m/s by Solver's settings; PGS 100 leaves about 1e-6),
 // in float the rounding of dt * g.
 constexpr double kRest_m_s = kIsDouble ? 1e-6 : 2e-5;
 
@@ -179,7 +179,7 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
   EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // they met
   const Vec3 P = m * fromBt(a.getLinearVelocity() + b.getLinearVelocity());
   EXPECT_LE((P - Vec3(0, 0, -m)).norm(), (kIsDouble ? 1e-9 : 1e-5) * m);
-  // VpsSolver applies both forces in one line; the stock solver at points that are up to a step's travel (1
+  // Solver applies both forces in one line; the stock solver at points that are up to a step's travel (1
   // mm) apart, so that friction (0.15 of at most the momentum) leaves a moment.
   const double tol = GetParam() == Solver::Stock ? 0.15 * m * 1e-3 : (kIsDouble ? 1e-9 : 1e-5) * m * 0.01;
   EXPECT_LE((angular(a) + angular(b) - L0 - added).norm(), tol);
@@ -229,7 +229,7 @@ TEST_P(RestWithSolver, AContainedPartKeepsAFinitePose) {
     EXPECT_NEAR(contacts.getContactPoint(i).m_normalWorldOnB.length(), 1, 1e-6);
 }
 
-TEST(VpsSolver, PartsThatStartInsideEachOtherSeparateGently) {
+TEST(Solver, PartsThatStartInsideEachOtherSeparateGently) {
   World world;
   Contained contained;
   btRigidBody& body = contained.addTo(world);
@@ -242,9 +242,9 @@ TEST(VpsSolver, PartsThatStartInsideEachOtherSeparateGently) {
   }
 }
 
-TEST(VpsSolver, OneSweepLeavesAnErrorThatManyRemove) {
+TEST(Solver, OneSweepLeavesAnErrorThatManyRemove) {
   const auto spinAfterLanding = [](int iteration_limit) {
-    VpsSolverSettings settings;
+    SolverSettings settings;
     settings.iteration_limit = iteration_limit;
     World world(Solver::Vps, {}, 100, settings);
     const Built box = steelBox(), ground = plate();
@@ -260,11 +260,11 @@ TEST(VpsSolver, OneSweepLeavesAnErrorThatManyRemove) {
 
 // Sweeps pass a load down a stack one body at a time, and each light body bounces the heavy one's answer
 // back.
-TEST(VpsSolver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
+TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   constexpr int kBoxes = 4;
   constexpr double kHeight_m = 0.01, kRatio = 1000;
   const auto worstOfStack = [=](int iteration_limit) {
-    VpsSolverSettings settings;
+    SolverSettings settings;
     settings.iteration_limit = iteration_limit;
     World world(Solver::Vps, {}, 100, settings);
     const Built light = steelBox(), ground = plate();
@@ -292,7 +292,7 @@ TEST(VpsSolver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   EXPECT_LE(rest.speed_m_s, kRest_m_s);
 }
 
-TEST(VpsSolver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
+TEST(Solver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
   World world;
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -309,4 +309,4 @@ INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver, testing::Values(Solver::Stock, So
                          [](const auto& info) { return test::nameOf(info.param); });
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -13,7 +13,7 @@
 #include "vps/load_error.h"
 #include "vps/query.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 using test::Built;
@@ -21,8 +21,8 @@ using test::World;
 
 constexpr double kRounding_m = sizeof(btScalar) == 8 ? 1e-12 : 1e-7;
 
-VpsModels boxMesh() {
-  VpsModels models;
+ShapeModels boxMesh() {
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
   return models;
 }
@@ -48,17 +48,17 @@ TEST(BodyFrame, RefusesAnInsideOutMesh) {
   EXPECT_THROW(makeBodyFrame(inside_out, 0), LoadError);
 }
 
-TEST(VpsShape, IsAConcaveTypeThatNobodyElseClaims) {
-  const VpsShape shape(boxMesh());
+TEST(Shape, IsAConcaveTypeThatNobodyElseClaims) {
+  const Shape shape(boxMesh());
   EXPECT_EQ(shape.getShapeType(), FAST_CONCAVE_MESH_PROXYTYPE);
   EXPECT_TRUE(shape.isConcave());
   EXPECT_EQ(shape.getMargin(), 0);
 }
 
-TEST(VpsShape, ItsBoxFollowsItsPose) {
-  VpsModels models;
+TEST(Shape, ItsBoxFollowsItsPose) {
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
-  const VpsShape shape(models);
+  const Shape shape(models);
   const Mat3 R = rotationFromVector(Vec3(0, 0, 1.5707963267948966));  // x and y change places
   btVector3 min, max;
   shape.getAabb(toBt(Pose(R, Vec3(1, 2, 3))), min, max);
@@ -66,11 +66,11 @@ TEST(VpsShape, ItsBoxFollowsItsPose) {
   EXPECT_LE((fromBt(max + min) / 2 - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 
-TEST(VpsShape, ItsInertiaIsThatOfTheSolid) {
-  VpsModels models;
+TEST(Shape, ItsInertiaIsThatOfTheSolid) {
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
   btVector3 inertia;
-  VpsShape(models).calculateLocalInertia(3, inertia);
+  Shape(models).calculateLocalInertia(3, inertia);
   EXPECT_LE((fromBt(inertia) -
              Vec3(0.04 * 0.04 + 0.06 * 0.06, 0.02 * 0.02 + 0.06 * 0.06, 0.02 * 0.02 + 0.04 * 0.04) / 4)
                 .norm(),
@@ -90,8 +90,8 @@ std::string refusalOf(const Call& call) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(VpsShape, RefusesAMargin) {
-  VpsShape shape(boxMesh());
+TEST(Shape, RefusesAMargin) {
+  Shape shape(boxMesh());
   testing::internal::CaptureStderr();
   shape.setMargin(toBt(0.01));
   EXPECT_NE(testing::internal::GetCapturedStderr().find("no margin"), std::string::npos);
@@ -100,17 +100,17 @@ TEST(VpsShape, RefusesAMargin) {
     EXPECT_NE(refusalOf([&] { shape.setMargin(toBt(margin)); }).find("margin"), std::string::npos);
 }
 
-TEST(VpsShape, RefusesModelsThatAreNoneAndPosesThatAreNotFinite) {
-  EXPECT_NE(refusalOf([] { VpsShape shape(VpsModels{}); }).find("no models"), std::string::npos);
-  EXPECT_NE(refusalOf([] { VpsShape shape(boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
+TEST(Shape, RefusesModelsThatAreNoneAndPosesThatAreNotFinite) {
+  EXPECT_NE(refusalOf([] { Shape shape(ShapeModels{}); }).find("no models"), std::string::npos);
+  EXPECT_NE(refusalOf([] { Shape shape(boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
             std::string::npos);
-  VpsShape shape(boxMesh());
-  EXPECT_NE(refusalOf([&] { shape.setModels(VpsModels{}); }).find("no models"), std::string::npos);
+  Shape shape(boxMesh());
+  EXPECT_NE(refusalOf([&] { shape.setModels(ShapeModels{}); }).find("no models"), std::string::npos);
   EXPECT_TRUE(shape.models().mesh) << "it is as it was";
 }
 
-TEST(VpsShape, RefusesAMassThatIsNone) {
-  const VpsShape shape(boxMesh());
+TEST(Shape, RefusesAMassThatIsNone) {
+  const Shape shape(boxMesh());
   btVector3 inertia(1, 1, 1);
   for (const double mass : {-1.0, kNan, std::numeric_limits<double>::infinity()})
     EXPECT_NE(refusalOf([&] { shape.calculateLocalInertia(toBt(mass), inertia); }).find("mass"),
@@ -120,16 +120,16 @@ TEST(VpsShape, RefusesAMassThatIsNone) {
   EXPECT_EQ(inertia, btVector3(0, 0, 0)) << "fixed";
 }
 
-TEST(VpsShape, RefusesToBeWrittenInBulletsFormat) {
+TEST(Shape, RefusesToBeWrittenInBulletsFormat) {
   World world;
-  VpsShape shape(boxMesh());
+  Shape shape(boxMesh());
   world.addShape(shape, 0, Vec3::Zero(), Pose());
   btDefaultSerializer serializer;
   EXPECT_NE(refusalOf([&] { world.world->serialize(&serializer); }).find("Bullet's format"),
             std::string::npos);
 }
 
-TEST(VpsShape, RefusesScalesThatAreNotOnePositiveNumber) {
+TEST(Shape, RefusesScalesThatAreNotOnePositiveNumber) {
   Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   const auto is_refused = [&](double x, double y, double z) {
     return !refusalOf([&] { box.shape->setLocalScaling(btVector3(toBt(x), toBt(y), toBt(z))); }).empty();
@@ -140,18 +140,18 @@ TEST(VpsShape, RefusesScalesThatAreNotOnePositiveNumber) {
   EXPECT_TRUE(is_refused(kNan, kNan, kNan));
   EXPECT_TRUE(is_refused(HUGE_VAL, HUGE_VAL, HUGE_VAL));
   EXPECT_EQ(box.shape->getLocalScaling(), btVector3(1, 1, 1)) << "it is as it was";
-  VpsModels only_a_map;
+  ShapeModels only_a_map;
   only_a_map.map = box.shape->models().map;
-  VpsShape shape(only_a_map);
+  Shape shape(only_a_map);
   EXPECT_NE(refusalOf([&] { shape.setLocalScaling(btVector3(2, 2, 2)); }).find("mesh"), std::string::npos);
 }
 
-TEST(VpsShape, ScaledItIsThePartOfThatSize) {
+TEST(Shape, ScaledItIsThePartOfThatSize) {
   Built scaled = test::build(makeTube(0.01, 0.005, 0.02, 32), 1000, 0.5e-3, 1e-3);
   const Built large = test::build(makeTube(0.02, 0.01, 0.04, 32), 1000, 1e-3, 2e-3);
   scaled.shape->setLocalScaling(btVector3(2, 2, 2));
   EXPECT_EQ(scaled.shape->getLocalScaling(), btVector3(2, 2, 2));
-  const VpsModels &a = scaled.shape->models(), &b = large.shape->models();
+  const ShapeModels &a = scaled.shape->models(), &b = large.shape->models();
   EXPECT_LE((scaled.shape->bounds().max - large.shape->bounds().max).norm(), 1e-9);
   ASSERT_EQ(a.shell->size(), b.shell->size());
   double area_m2 = 0;
@@ -178,7 +178,7 @@ TEST(VpsShape, ScaledItIsThePartOfThatSize) {
   EXPECT_EQ(scaled.shape->models().surfaces.size(), 1u);
 }
 
-TEST(VpsShape, ScaledInContactItRestsAtItsNewHeight) {
+TEST(Shape, ScaledInContactItRestsAtItsNewHeight) {
   World world;
   Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
@@ -195,18 +195,18 @@ TEST(VpsShape, ScaledInContactItRestsAtItsNewHeight) {
   EXPECT_NEAR(box.shape->bounds().max.z(), 0.005, 1e-9);
 }
 
-TEST(VpsShape, ReplacedModelsAreScaledAsTheShapeIs) {
-  VpsShape shape(boxMesh());
+TEST(Shape, ReplacedModelsAreScaledAsTheShapeIs) {
+  Shape shape(boxMesh());
   shape.setLocalScaling(btVector3(3, 3, 3));
   shape.setModels(boxMesh());
   EXPECT_LE((shape.bounds().size() - 3 * Vec3(0.02, 0.04, 0.06)).norm(), 1e-12);
 }
 
-TEST(VpsShape, ARayHitsItWhereItIs) {
+TEST(Shape, ARayHitsItWhereItIs) {
   World world;
-  VpsModels models;
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeTube(0.01, 0.005, 0.02, 64));
-  VpsShape shape(models);
+  Shape shape(models);
   world.addShape(shape, 0, Vec3::Zero(), Pose::translation(Vec3(0, 0, 0.1)));
   const auto cast = [&](const Vec3& from, const Vec3& to) {
     btCollisionWorld::ClosestRayResultCallback hit(toBt(from), toBt(to));
@@ -217,11 +217,11 @@ TEST(VpsShape, ARayHitsItWhereItIs) {
   EXPECT_EQ(cast(Vec3(0, 0, 1), Vec3(0, 0, -1)).x(), 9) << "through the hole";
 }
 
-TEST(VpsShape, AConvexSweepStopsAtIt) {
+TEST(Shape, AConvexSweepStopsAtIt) {
   World world;
-  VpsModels models;
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeTube(0.01, 0.005, 0.02, 64));
-  VpsShape shape(models);
+  Shape shape(models);
   world.addShape(shape, 0, Vec3::Zero(), Pose());
   btSphereShape ball(toBt(0.003));  // in floats Bullet's own cast misses a ball of 1 mm
   const auto sweep = [&](double x_m) {
@@ -236,7 +236,7 @@ TEST(VpsShape, AConvexSweepStopsAtIt) {
   EXPECT_EQ(sweep(0), 2) << "through the hole";
 }
 
-TEST(VpsShape, IsDrawnByItsTriangles) {
+TEST(Shape, IsDrawnByItsTriangles) {
   struct Lines : btIDebugDraw {
     int count = 0;
     btVector3 low{1, 1, 1}, high{-1, -1, -1};
@@ -252,7 +252,7 @@ TEST(VpsShape, IsDrawnByItsTriangles) {
   } lines;
   World world;
   world.world->setDebugDrawer(&lines);
-  const VpsShape shape(boxMesh());
+  const Shape shape(boxMesh());
   world.world->debugDrawObject(toBt(Pose::translation(Vec3(0.1, 0, 0))), &shape, btVector3(1, 1, 1));
   EXPECT_GE(lines.count, 12 * 3);
   // With the axes that Bullet draws at the origin, 0.1 m long.
@@ -265,7 +265,7 @@ Built steel() {
   return test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
 }
 
-TEST(VpsShape, AGhostSeesItWithoutHoldingIt) {
+TEST(Shape, AGhostSeesItWithoutHoldingIt) {
   const Built box = steel();
   World world;
   btGhostPairCallback callback;
@@ -300,7 +300,7 @@ TEST(VpsShape, AGhostSeesItWithoutHoldingIt) {
   world.world->removeCollisionObject(&ghost);
 }
 
-TEST(VpsShape, FallsAsleepAtRestAndWakesWhenItIsHit) {
+TEST(Shape, FallsAsleepAtRestAndWakesWhenItIsHit) {
   const Built box = steel();
   World world;
   world.add(box, Pose(), true);
@@ -321,7 +321,7 @@ TEST(VpsShape, FallsAsleepAtRestAndWakesWhenItIsHit) {
   EXPECT_GE(upper.getWorldTransform().getOrigin().z(), 0.020 - 5e-6);
 }
 
-TEST(VpsShape, ABodyIsTakenOutWhileOthersLeanOnIt) {
+TEST(Shape, ABodyIsTakenOutWhileOthersLeanOnIt) {
   const Built box = steel();
   World world;
   world.add(box, Pose(), true);
@@ -336,7 +336,7 @@ TEST(VpsShape, ABodyIsTakenOutWhileOthersLeanOnIt) {
   EXPECT_TRUE(fromBt(middle.getWorldTransform()).isFinite());
 }
 
-TEST(VpsShape, OutlivesItsDispatcherAndServesTheNext) {
+TEST(Shape, OutlivesItsDispatcherAndServesTheNext) {
   const Built box = steel();
   for (int life = 0; life < 2; ++life) {
     World world;
@@ -347,7 +347,7 @@ TEST(VpsShape, OutlivesItsDispatcherAndServesTheNext) {
   }
 }
 
-TEST(VpsShape, ABodyWhosePoseIsNotFiniteTouchesNothing) {
+TEST(Shape, ABodyWhosePoseIsNotFiniteTouchesNothing) {
   const Built box = steel();
   World world;
   btRigidBody& fixed = world.add(box, Pose(), true);
@@ -373,9 +373,9 @@ TEST(VpsShape, ABodyWhosePoseIsNotFiniteTouchesNothing) {
   EXPECT_EQ(found.count, 0);
 }
 
-TEST(VpsShape, WithoutMapOrShellSaysThatItCannotTouch) {
+TEST(Shape, WithoutMapOrShellSaysThatItCannotTouch) {
   World world;
-  VpsShape only_mesh(boxMesh());
+  Shape only_mesh(boxMesh());
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   world.addShape(plane, 0, Vec3::Zero(), Pose());
   world.addShape(only_mesh, 1, Vec3::Ones(), Pose());
@@ -386,11 +386,11 @@ TEST(VpsShape, WithoutMapOrShellSaysThatItCannotTouch) {
   EXPECT_EQ(said.find("needs a shell"), said.rfind("needs a shell")) << "once is enough";
 }
 
-TEST(VpsShape, WithoutAMapIsMetByItsExactSurfaces) {
+TEST(Shape, WithoutAMapIsMetByItsExactSurfaces) {
   const Built box = steel();
-  VpsModels models = box.shape->models();
+  ShapeModels models = box.shape->models();
   models.map = nullptr;
-  VpsShape bare(models, box.shape->X_SM());
+  Shape bare(models, box.shape->X_SM());
   World world;
   world.addShape(bare, 0, Vec3::Zero(), box.frame.X_PB);
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0102)));
@@ -398,10 +398,10 @@ TEST(VpsShape, WithoutAMapIsMetByItsExactSurfaces) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
 }
 
-TEST(VpsShape, GivesAllTrianglesOfABoxAndNoOthers) {
-  VpsModels models;
+TEST(Shape, GivesAllTrianglesOfABoxAndNoOthers) {
+  ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeSphere(0.01, 3));
-  const VpsShape shape(models);
+  const Shape shape(models);
   struct Counter : btTriangleCallback {
     int count = 0;
     void processTriangle(btVector3*, int, int) override { ++count; }
@@ -414,7 +414,7 @@ TEST(VpsShape, GivesAllTrianglesOfABoxAndNoOthers) {
   EXPECT_EQ(none.count, 0);
 }
 
-TEST(VpsShape, TellsEdgePointsFromFacePoints) {
+TEST(Shape, TellsEdgePointsFromFacePoints) {
   const Built box = test::build(makeBox(Vec3::Constant(0.01)), 1000, 0.5e-3, 1e-3);
   const PointShell& shell = *box.shape->models().shell;
   for (std::uint32_t id = 0; id < shell.size(); ++id) {
@@ -424,7 +424,7 @@ TEST(VpsShape, TellsEdgePointsFromFacePoints) {
   }
 }
 
-TEST(VpsShape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
+TEST(Shape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
   constexpr double kRadius_m = 5e-3, kHeight_m = 10e-3;
   constexpr int kFacets = 64;
   const Built peg = test::build(
@@ -443,7 +443,7 @@ TEST(VpsShape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
   EXPECT_GE(facets_off_rad, 0.9 * M_PI / kFacets);
 }
 
-TEST(VpsShape, ReplacedModelsInheritNoImpulses) {
+TEST(Shape, ReplacedModelsInheritNoImpulses) {
   World world;
   const Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.010)), 7850, 0.5e-3, 1e-3);
@@ -468,7 +468,7 @@ TEST(VpsShape, ReplacedModelsInheritNoImpulses) {
   EXPECT_EQ(oldest(), 1);
 }
 
-TEST(VpsShape, ReplacedModelsTakeEffectAtTheNextStep) {
+TEST(Shape, ReplacedModelsTakeEffectAtTheNextStep) {
   // A box on a cooked plate; the plate gets a step that is 1 mm higher: the box comes up with it, gently.
   World world;
   const Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
@@ -489,4 +489,4 @@ TEST(VpsShape, ReplacedModelsTakeEffectAtTheNextStep) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::bullet

@@ -25,7 +25,7 @@ inline std::string nameOf(Solver solver) {
 }
 
 struct Built {
-  std::shared_ptr<VpsShape> shape;
+  std::shared_ptr<Shape> shape;
   Mesh mesh;
   BodyFrame frame;
   std::shared_ptr<const MeshDistance> exact;
@@ -45,9 +45,9 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
   PointShellSettings points;
   points.spacing_m = spacing_m;
   part.shell = std::make_shared<const PointShell>(buildPointShell(mesh, points));
-  VpsModels models = makeModels(part);
+  ShapeModels models = makeModels(part);
   built.exact = models.surfaces[0].distance;
-  built.shape = std::make_shared<VpsShape>(std::move(models), built.frame.X_PB.inverse());
+  built.shape = std::make_shared<Shape>(std::move(models), built.frame.X_PB.inverse());
   return built;
 }
 
@@ -64,25 +64,25 @@ inline Built plate() {
 class World {
  public:
   /// @param threads  0: Bullet's own dispatcher
-  explicit World(Solver solver = Solver::Vps, const VpsBulletSettings& settings = {}, int iterations = 100,
-                 const VpsSolverSettings& solver_settings = {}, int threads = 0)
-      : dispatcher_(threads > 0 ? std::make_unique<VpsDispatcher>(&config, threads)
+  explicit World(Solver solver = Solver::Vps, const Settings& settings = {}, int iterations = 100,
+                 const SolverSettings& solver_settings = {}, int threads = 0)
+      : dispatcher_(threads > 0 ? std::make_unique<Dispatcher>(&config, threads)
                                 : std::make_unique<btCollisionDispatcher>(&config)),
         dispatcher(*dispatcher_) {
     if (solver == Solver::Stock)
       solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
     else
-      solver_ = std::make_unique<VpsSolver>(solver_settings);
-    VpsBulletSettings used = settings;
+      solver_ = std::make_unique<Solver>(solver_settings);
+    Settings used = settings;
     if (solver == Solver::Penalty) used.mode = ContactMethod::Penalty;
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
-    installVps(dispatcher, used);
+    install(dispatcher, used);
     tuneWorld(*world, iterations);
     world->setGravity(btVector3(0, 0, toBt(-9.81)));
   }
   ~World() {
     for (auto& body : bodies) world->removeRigidBody(body.get());
-    uninstallVps(dispatcher);
+    uninstall(dispatcher);
   }
 
   /// mass 0: fixed. X_WP is the pose of the part's own frame.

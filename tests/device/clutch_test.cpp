@@ -9,7 +9,7 @@
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -192,4 +192,4 @@ TEST(Clutch, HandOverToAnotherPartNeitherJumpsNorGivesTheHandTheSpringsEnergy) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

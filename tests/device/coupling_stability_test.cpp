@@ -9,7 +9,7 @@
 #include "support/wall_press.h"
 #include "vps_device/gains.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using namespace vps::test;
@@ -184,4 +184,4 @@ TEST(Coupling, DerivedGainsOnTheRealArmHaveNoLimitCycleInAnyDirection) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

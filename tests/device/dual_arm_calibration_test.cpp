@@ -10,7 +10,7 @@
 #include "vps_device/dual_arm_frames.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // A device whose right base stands a few millimetres and a degree off its drawing.
@@ -155,4 +155,4 @@ TEST(DeviceFrames, ThreeFramesAgreeOnPlacesPowersAndTheArmsOwnReadings) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

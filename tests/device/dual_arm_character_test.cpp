@@ -12,7 +12,7 @@
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // Computed once: it takes a second.
@@ -157,4 +157,4 @@ TEST(Characterise, NoReadingErrsMoreThanTheResolutionSays) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -12,7 +12,7 @@
 #include "support/no_alloc.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kDt_s = 1e-3;
@@ -292,4 +292,4 @@ TEST(DualArmController, NoHostileSequenceGetsAForceAboveTheLimitOrForGood) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

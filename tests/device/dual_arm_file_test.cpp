@@ -10,7 +10,7 @@
 #include "vps/load_error.h"
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 std::string complaint(const std::string& text) {
@@ -118,4 +118,4 @@ TEST(DualArmFile, CutAtEveryByteItIsReadOrRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -10,11 +10,11 @@
 #include "support/no_alloc.h"
 #include "vps_device/dual_arm_structure.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat6 = Eigen::Matrix<double, 6, 6>;
+using bullet::Vec6 = Eigen::Matrix<double, 6, 1>;
+using bullet::Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kDt_s = 1e-3;
 
@@ -26,7 +26,7 @@ DualArmPlantSettings frictionless() {
   return s;
 }
 
-JointVector carryOf(const DualArmParameters& p, const Pose& X_DH) {
+JointVector bullet::carryOf(const DualArmParameters& p, const Pose& X_DH) {
   JointVector efforts;
   EXPECT_EQ(motorEfforts(p, X_DH, {Vec3::Zero(), Vec3(0, 0, 9.81 * p.handle_kg)}, efforts), Status::Ok);
   return efforts;
@@ -48,15 +48,16 @@ TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
   for (int i = 0; i < 27; ++i) {
     const Vec3 corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     settings.X_DH_start = Pose::translation(0.5 * p.workspace_m.cwiseProduct(corner));
-    const JointVector carry = carryOf(p, settings.X_DH_start);
+    const JointVector carry = bullet::carryOf(p, settings.X_DH_start);
     HandleMotion motion;
     ASSERT_EQ(handleMotion(p, settings.X_DH_start, motion), Status::Ok);
-    const Mat6 K = motion.J.transpose() * structureStiffness(p, motion.joints).asDiagonal() * motion.J;
+    const bullet::Mat6 K =
+        motion.J.transpose() * structureStiffness(p, motion.joints).asDiagonal() * motion.J;
     for (const bool is_held : {false, true}) {  // by a hand that lets the handle turn, and one that does not
       HandForce hand;
       hand.X_eq = settings.X_DH_start;
       if (is_held) hand.k_Nm_per_rad = 1e6 * Mat3::Identity();
-      Mat6 K_all = K;
+      bullet::Mat6 K_all = K;
       K_all.topLeftCorner<3, 3>() += hand.k_Nm_per_rad;
       for (int axis = 0; axis < 3; ++axis) {
         DualArmPlant plant(settings);
@@ -65,7 +66,7 @@ TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
           plant.drive(carry);
           plant.step(kDt_s, hand);
         }
-        Vec6 F;
+        bullet::Vec6 F;
         F << Vec3::Zero(), hand.F.f;
         const Vec3 expected = K_all.ldlt().solve(F).tail<3>(), moved = plant.pose().p - settings.X_DH_start.p;
         // Linear for 0.4 mm of 0.45 m; friction below its slip creeps, 1e4 N m at 2e-3 rad/s, over 0.4 s.
@@ -116,15 +117,15 @@ TEST(DualArmPlant, AcceleratesAsItsInertiaSays) {
   HandleMotion motion;
   ASSERT_EQ(handleMotion(p, settings.X_DH_start, motion), Status::Ok);
   const JointVector inertia = jointVector(p.plate_kgm2, p.link_kg, p.rotor_kgm2);
-  Mat6 M = motion.J.transpose() * inertia.asDiagonal() * motion.J;
+  bullet::Mat6 M = motion.J.transpose() * inertia.asDiagonal() * motion.J;
   const Mat3& R = settings.X_DH_start.R;
   M.topLeftCorner<3, 3>() += R * p.handle_kgm2.asDiagonal() * R.transpose();
   M.bottomRightCorner<3, 3>().diagonal().array() += p.handle_kg;
-  plant.drive(carryOf(p, settings.X_DH_start));
+  plant.drive(bullet::carryOf(p, settings.X_DH_start));
   HandForce hand = pushing(Vec3(1, -2, 0.5));
   hand.F.tau = Vec3(0.01, -0.02, 0.015);
   plant.step(1e-6, hand);
-  Vec6 F, V;
+  bullet::Vec6 F, V;
   F << hand.F.tau, hand.F.f;
   V << plant.twist().w, plant.twist().v;
   EXPECT_LT((V / 1e-6 - M.llt().solve(F)).norm(), 1e-6 * (M.llt().solve(F)).norm());
@@ -180,7 +181,7 @@ TEST(DualArmPlant, StopsHoldEachJointAndGiveNoEnergyBack) {
       // A hand that damps: what it takes out and puts in is its affair, and the rest must balance.
       hand.b_Ns_per_m = 30 * Mat3::Identity();
       hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
-      plant.drive(carryOf(p, plant.pose()));
+      plant.drive(bullet::carryOf(p, plant.pose()));
       plant.step(kDt_s, hand);
       HandleMotion motion;
       ASSERT_EQ(handleMotion(p, plant.pose(), motion), Status::Ok) << axis;
@@ -308,4 +309,4 @@ TEST(DualArmPlant, StepsWithoutTheHeap) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -439,4 +439,4 @@ TEST(Statics, SingularAndNonFinitePosesGiveNoEfforts) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -12,7 +12,7 @@
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using test::isThere;
@@ -124,5 +124,5 @@ TEST_F(GameController, ReadingNeverAllocates) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device
 #endif

@@ -14,7 +14,7 @@
 #include "vps/mesh.h"
 #include "vps_device/loop.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kHalf_m = 10e-3;  // of the cube in hand; it touches the wall z <= 0 with its centre there
@@ -297,4 +297,4 @@ TEST(LocalContact, WhatIsNoNumberIsPassedOnForOthersToRefuse) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -11,7 +11,7 @@
 #include "vps_device/random.h"
 #include "vps_device/simulated_dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // A device of the test's making: says what it is told, keeps what it is given.
@@ -144,8 +144,8 @@ TEST(HapticLoop, InjectedEnergyIsMetWithTheDampingTheDeviceLeaves) {
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
   loop.observeStoredEnergy(0.5, 0);  // half a joule from nowhere
-  loop.tick();              // books it
-  loop.tick();              // and acts
+  loop.tick();                       // books it
+  loop.tick();                       // and acts
   EXPECT_NEAR(loop.ledger().injected_J, 0.5, 1e-12);
   EXPECT_NEAR(device.written.f.x(), -0.1 * (5 - 2000 * 0.5e-3 - 1), 1e-12);
 }
@@ -389,4 +389,4 @@ TEST(Coupling, ThirtyTimesTheDerivedStiffnessRings) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

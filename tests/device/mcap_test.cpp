@@ -7,7 +7,7 @@
 
 #include "vps_device/bytes.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr int kMessages = 40;
@@ -161,4 +161,4 @@ TEST(ByteWriter, DoublesGoBitForBit) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

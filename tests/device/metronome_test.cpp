@@ -5,7 +5,7 @@
 
 #include "support/fake_clock.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using vps_test::FakeClock;
@@ -98,4 +98,4 @@ TEST(Metronome, TheSystemsClockNeverWakesEarly) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -13,7 +13,7 @@
 #include "vps_device/loop.h"
 #include "vps_device/simulated_dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // A peg and a hole without geometry: the peg's tip may pass the mouth (z = 0) only when it is within
@@ -214,4 +214,4 @@ TEST(VirtualOperator, StepsWithoutTheHeapAndBearsBadViews) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

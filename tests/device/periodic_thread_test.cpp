@@ -9,7 +9,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 void waitUntil(const std::atomic<int>& value, int most) {
@@ -65,4 +65,4 @@ TEST(AskForRealTime, SaysInWordsWhatWasRefusedAndWhatWouldHelp) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

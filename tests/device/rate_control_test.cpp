@@ -8,7 +8,7 @@
 
 #include "support/no_alloc.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 /// Steps for some seconds at 1 kHz from time t0_s; returns the last sample.
@@ -105,4 +105,4 @@ TEST(RateControl, NeverAllocates) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 #include "support/no_alloc.h"
 #include "support/plain_device.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using vps_test::FakeClock;
@@ -329,4 +329,4 @@ TEST(RealTimeLoop, InThreadsOfItsOwnForceStaysFiniteAndStopsAtZero) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

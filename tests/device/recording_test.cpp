@@ -19,7 +19,7 @@
 #include "vps_device/loop.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 namespace fs = std::filesystem;
@@ -351,4 +351,4 @@ TEST(Recording, TablesHoldEveryNumberToTheBit) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

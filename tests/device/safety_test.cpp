@@ -8,7 +8,7 @@
 
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kDt_s = 1e-3;
@@ -125,4 +125,4 @@ TEST(SafetyGuard, NothingEverExceedsTheLimits) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

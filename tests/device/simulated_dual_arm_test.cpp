@@ -10,7 +10,7 @@
 #include "vps_device/operator.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 HandForce springHand(const Pose& X_eq, double k_N_per_m, double mass_kg) {
@@ -240,4 +240,4 @@ TEST(SimulatedDualArm, NonFiniteWrenchOrHandMovesNothing) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

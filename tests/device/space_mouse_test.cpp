@@ -18,7 +18,7 @@
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using test::isThere;
@@ -187,4 +187,4 @@ TEST_F(SpaceMouse, ReadingNeverAllocates) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

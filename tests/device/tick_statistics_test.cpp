@@ -11,7 +11,7 @@
 #include "support/no_alloc.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // Nearest rank, of all values kept and sorted.
@@ -122,4 +122,4 @@ TEST(TickStatistics, IsReadWholeWhileItIsWritten) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::device

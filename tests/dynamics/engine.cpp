@@ -16,7 +16,7 @@ ShapeHandle buildVpsShape(const PartMesh& part, const Resolution& resolution) {
   PointShellSettings points;
   points.spacing_m = resolution.spacing_m;
   built.shell = std::make_shared<const PointShell>(buildPointShell(part.mesh, points));
-  return std::make_shared<VpsShape>(makeModels(built), part.frame.X_PB.inverse());
+  return std::make_shared<bullet::Shape>(bullet::makeModels(built), part.frame.X_PB.inverse());
 }
 
 }  // namespace
@@ -32,18 +32,19 @@ const char* nameOf(Mode mode) {
   }
 }
 
-Engine vpsEngine(const Resolution& resolution, const VpsBulletSettings& settings) {
+Engine vpsEngine(const Resolution& resolution, const bullet::Settings& settings) {
   // Parts that are the same surface share their exact distance, so its address tells them apart.
   using Shapes = std::map<std::shared_ptr<const MeshDistance>, ShapeHandle>;
   const auto shapes = std::make_shared<Shapes>();
   Engine engine;
   engine.name = "VPS";
   engine.install = [settings](btCollisionDispatcher& dispatcher, Mode mode) {
-    VpsBulletSettings with_mode = settings;
-    with_mode.mode = mode == Mode::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
-    installVps(dispatcher, with_mode);
+    bullet::Settings with_mode = settings;
+    with_mode.mode =
+        mode == Mode::Penalty ? bullet::ContactMethod::Penalty : bullet::ContactMethod::Constraint;
+    bullet::install(dispatcher, with_mode);
   };
-  engine.uninstall = [](btCollisionDispatcher& dispatcher) { uninstallVps(dispatcher); };
+  engine.uninstall = [](btCollisionDispatcher& dispatcher) { bullet::uninstall(dispatcher); };
   engine.makeShape = [shapes, resolution](const PartMesh& part, bool) {
     ShapeHandle& shape = (*shapes)[part.exact];
     if (!shape) shape = buildVpsShape(part, resolution);

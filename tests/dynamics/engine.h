@@ -15,8 +15,8 @@ namespace vps::dynamics {
 
 /// How contacts become motion (DESIGN section 8).
 enum class Mode {
-  Constraint,       ///< rigid contacts, VpsSolver
-  Penalty,          ///< springs on every touching point, VpsSolver
+  Constraint,       ///< rigid contacts, Solver
+  Penalty,          ///< springs on every touching point, Solver
   ConstraintStock,  ///< rigid contacts, Bullet's own sequential impulses
 };
 const char* nameOf(Mode mode);
@@ -40,6 +40,6 @@ struct Resolution {
 
 /// VPS with these settings (their mode is the scene's). Shapes are built once for each mesh and resolution of
 /// this engine, and shared.
-Engine vpsEngine(const Resolution& resolution = {}, const VpsBulletSettings& settings = {});
+Engine vpsEngine(const Resolution& resolution = {}, const bullet::Settings& settings = {});
 
 }  // namespace vps::dynamics

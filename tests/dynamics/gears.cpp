@@ -31,7 +31,8 @@ Mesh makeGear(int teeth) {
 // About z through the gear's centre, fixed to the world.
 std::unique_ptr<btTypedConstraint> makeHinge(const Placed& gear) {
   const Pose X_BP = gear.part.frame.X_PB.inverse();
-  return std::make_unique<btHingeConstraint>(*gear.body, toBt(X_BP.p), toBt(Vec3(X_BP.R.col(2))));
+  return std::make_unique<btHingeConstraint>(*gear.body, bullet::toBt(X_BP.p),
+                                             bullet::toBt(Vec3(X_BP.R.col(2))));
 }
 
 }  // namespace

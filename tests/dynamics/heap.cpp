@@ -37,7 +37,7 @@ const PartMesh& heapPart(int i) {
 
 void addBox(World& world) {
   const auto addWall = [&](const Vec3& half_m, const Vec3& center) {
-    world.addShape(std::make_shared<btBoxShape>(toBt(half_m)), {}, Pose::translation(center));
+    world.addShape(std::make_shared<btBoxShape>(bullet::toBt(half_m)), {}, Pose::translation(center));
   };
   const double half = kInside_m / 2, w = kWall_m / 2;
   addWall({half + kWall_m, half + kWall_m, w}, {0, 0, -w});
@@ -78,7 +78,7 @@ HeapResult dropHeap(const SceneSettings& settings) {
     btRigidBody& body = *parts.back().body;
     body.forceActivationState(ACTIVE_TAG);
     body.setSleepingThresholds(btScalar(5e-3), btScalar(0.2));
-    const auto* shape = dynamic_cast<const VpsShape*>(body.getCollisionShape());
+    const auto* shape = dynamic_cast<const bullet::Shape*>(body.getCollisionShape());
     if (shape) result.points += static_cast<double>(shape->models().shell->size()) / result.bodies;
   }
   result.asleep_s = -1;
@@ -98,12 +98,12 @@ HeapResult dropHeap(const SceneSettings& settings) {
   result.asleep = asleep();
   result.final_m = -1e300;
   for (std::size_t a = 0; a < parts.size(); ++a) {
-    const Vec3 center = fromBt(parts[a].body->getWorldTransform().getOrigin());
+    const Vec3 center = bullet::fromBt(parts[a].body->getWorldTransform().getOrigin());
     const Vec3 past =
         (center - Vec3(0, 0, kHeight_m / 2)).cwiseAbs() - Vec3(kInside_m, kInside_m, kHeight_m) / 2;
     if (past.maxCoeff() > 0) ++result.escaped;
     for (std::size_t b = 0; b < a; ++b)
-      if ((center - fromBt(parts[b].body->getWorldTransform().getOrigin())).norm() < 40e-3)
+      if ((center - bullet::fromBt(parts[b].body->getWorldTransform().getOrigin())).norm() < 40e-3)
         result.final_m = std::max(
             result.final_m, penetration_m(parts[a].part, parts[a].pose(), parts[b].part, parts[b].pose()));
   }

@@ -27,7 +27,7 @@ double leastDistance_m(const PartMesh& a, const PartMesh& b, const Pose& X_AB) {
 PartMesh makePart(Mesh mesh, double density_kg_m3) {
   PartMesh part;
   part.mesh = welded(mesh);
-  part.frame = makeBodyFrame(massProperties(part.mesh), density_kg_m3);
+  part.frame = bullet::makeBodyFrame(massProperties(part.mesh), density_kg_m3);
   part.exact = std::make_shared<const MeshDistance>(part.mesh);
   return part;
 }

@@ -12,8 +12,8 @@
 namespace vps::dynamics {
 
 struct PartMesh {
-  Mesh mesh;        ///< in the part's frame P
-  BodyFrame frame;  ///< a body's frame B in P: centre of mass, principal axes
+  Mesh mesh;                ///< in the part's frame P
+  bullet::BodyFrame frame;  ///< a body's frame B in P: centre of mass, principal axes
   std::shared_ptr<const MeshDistance> exact;
 };
 

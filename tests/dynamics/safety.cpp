@@ -31,9 +31,9 @@ int responsesOf(World& world, const btRigidBody& body) {
 
 // Of the points of `side` in the other part.
 double halfEnergy_J(const Placed& side, const Placed& other) {
-  const auto* shape = dynamic_cast<const VpsShape*>(side.body->getCollisionShape());
+  const auto* shape = dynamic_cast<const bullet::Shape*>(side.body->getCollisionShape());
   if (!shape) return 0;
-  const double k_N_per_m3 = VpsBulletSettings().stiffness_N_per_m3;
+  const double k_N_per_m3 = bullet::Settings().stiffness_N_per_m3;
   const PointShell& shell = *shape->models().shell;
   const Pose X_OP = other.pose().inverse() * side.pose();
   double sum_J = 0;
@@ -85,12 +85,13 @@ ProxyResult leadProxyThrough(const SceneSettings& settings) {
   const Placed below = world.add(blockPart(), Pose::translation(Vec3(0, 0, -15e-3)));
   const Placed hand = world.add(blockPart(), Pose::translation(Vec3(0, 0, 15e-3)));
   // As a user adds it: a kinematic body with the part's shape, in the world.
-  BodyFrame massless = blockPart().frame;
+  bullet::BodyFrame massless = blockPart().frame;
   massless.mass_kg = 0;
   btRigidBody* proxy = world.addShape(settings.engine.makeShape(blockPart(), false), massless,
-                                      fromBt(hand.body->getWorldTransform()));
+                                      bullet::fromBt(hand.body->getWorldTransform()));
   proxy->setCollisionFlags(proxy->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
-  auto coupling = std::make_unique<VpsCoupling>(*proxy, Pose(), *hand.body, Pose(), CouplingGains{});
+  auto coupling =
+      std::make_unique<bullet::CouplingConstraint>(*proxy, Pose(), *hand.body, Pose(), CouplingGains{});
   world.addConstraint(std::move(coupling));
 
   ProxyResult result;

@@ -38,13 +38,13 @@ struct Timed : Solver {
 
 std::unique_ptr<btSequentialImpulseConstraintSolver> makeSolver(Mode mode) {
   if (mode == Mode::ConstraintStock) return std::make_unique<Timed<btSequentialImpulseConstraintSolver>>();
-  return std::make_unique<Timed<VpsSolver>>();
+  return std::make_unique<Timed<bullet::Solver>>();
 }
 
 }  // namespace
 
 Pose Placed::pose() const {
-  return fromBt(body->getWorldTransform()) * part.frame.X_PB.inverse();
+  return bullet::fromBt(body->getWorldTransform()) * part.frame.X_PB.inverse();
 }
 
 double Placed::speed_m_s() const {
@@ -61,8 +61,8 @@ World::World(const SceneSettings& settings)
       world_(std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_, solver_.get(), &config_)) {
   engine_.install(dispatcher_, settings.mode);
   dispatcher_.setNearCallback(timedNearCallback);
-  tuneWorld(*world_);
-  setGravity(Vec3(0, 0, -kGravity_m_s2));
+  bullet::tuneWorld(*world_);
+  setGravity(Vec3(0, 0, -device::kGravity_m_s2));
 }
 
 World::~World() {
@@ -72,17 +72,18 @@ World::~World() {
 }
 
 Placed World::add(const PartMesh& part, const Pose& X_WP, bool is_fixed, double friction) {
-  BodyFrame frame = part.frame;
+  bullet::BodyFrame frame = part.frame;
   if (is_fixed) frame.mass_kg = 0;
   return {addShape(engine_.makeShape(part, is_fixed), frame, X_WP * part.frame.X_PB, friction), part};
 }
 
-btRigidBody* World::addShape(ShapeHandle shape, const BodyFrame& frame, const Pose& X_WB, double friction) {
+btRigidBody* World::addShape(ShapeHandle shape, const bullet::BodyFrame& frame, const Pose& X_WB,
+                             double friction) {
   btRigidBody::btRigidBodyConstructionInfo info(
-      toBt(frame.mass_kg), nullptr, shape.get(),
-      frame.mass_kg > 0 ? toBt(frame.inertia_kg_m2) : btVector3(0, 0, 0));
-  info.m_startWorldTransform = toBt(X_WB);
-  info.m_friction = toBt(std::sqrt(friction));
+      bullet::toBt(frame.mass_kg), nullptr, shape.get(),
+      frame.mass_kg > 0 ? bullet::toBt(frame.inertia_kg_m2) : btVector3(0, 0, 0));
+  info.m_startWorldTransform = bullet::toBt(X_WB);
+  info.m_friction = bullet::toBt(std::sqrt(friction));
   bodies_.push_back(std::make_unique<btRigidBody>(info));
   shapes_.push_back(std::move(shape));
   btRigidBody* body = bodies_.back().get();
@@ -124,11 +125,11 @@ int World::contactCount() const {
 // FNV-1a over the bits.
 void World::addToHash() {
   for (const auto& body : bodies_) {
-    const Pose X = fromBt(body->getWorldTransform());
+    const Pose X = bullet::fromBt(body->getWorldTransform());
     double values[18];
     std::memcpy(values, X.R.data(), sizeof(double) * 9);
     std::memcpy(values + 9, X.p.data(), sizeof(double) * 3);
-    const Vec3 v = fromBt(body->getLinearVelocity()), w = fromBt(body->getAngularVelocity());
+    const Vec3 v = bullet::fromBt(body->getLinearVelocity()), w = bullet::fromBt(body->getAngularVelocity());
     std::memcpy(values + 12, v.data(), sizeof(double) * 3);
     std::memcpy(values + 15, w.data(), sizeof(double) * 3);
     unsigned char bytes[sizeof values];
@@ -139,10 +140,11 @@ void World::addToHash() {
 
 double kineticEnergy_J(const btRigidBody& body) {
   if (!(body.getInvMass() > 0)) return 0;
-  const Vec3 w_B =
-      fromBt(body.getWorldTransform().getBasis()).transpose() * fromBt(body.getAngularVelocity());
-  const Vec3 I = fromBt(body.getInvInertiaDiagLocal()).cwiseInverse();
-  return 0.5 * (fromBt(body.getLinearVelocity()).squaredNorm() / body.getInvMass() + w_B.cwiseAbs2().dot(I));
+  const Vec3 w_B = bullet::fromBt(body.getWorldTransform().getBasis()).transpose() *
+                   bullet::fromBt(body.getAngularVelocity());
+  const Vec3 I = bullet::fromBt(body.getInvInertiaDiagLocal()).cwiseInverse();
+  return 0.5 * (bullet::fromBt(body.getLinearVelocity()).squaredNorm() / body.getInvMass() +
+                w_B.cwiseAbs2().dot(I));
 }
 
 double heightEnergy_J(const btRigidBody& body) {

@@ -42,7 +42,8 @@ class World {
 
   /// @param friction  of this body against one with the same value (Bullet multiplies the two)
   Placed add(const PartMesh& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15);
-  btRigidBody* addShape(ShapeHandle shape, const BodyFrame& frame, const Pose& X_WB, double friction = 0.15);
+  btRigidBody* addShape(ShapeHandle shape, const bullet::BodyFrame& frame, const Pose& X_WB,
+                        double friction = 0.15);
   void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
   void removeBody(btRigidBody* body);
   void setGravity(const Vec3& g_W) {
@@ -58,7 +59,7 @@ class World {
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
   static constexpr double kStep_s = 1e-3;
-  static constexpr double kGravity_m_s2 = 9.81;
+  static constexpr double device::kGravity_m_s2 = 9.81;
 
  private:
   void addToHash();

@@ -9,11 +9,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // The first byte chooses: a device's file, or a sequence for its controller.
   if (size > 0 && data[0] == '[') {
     try {
-      const vps::DualArmFile file =
-          vps::parseDualArm({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
-      vps::fuzz::require(
-          vps::isReachable(file.parameters, vps::Pose::translation(0.5 * file.parameters.workspace_m)),
-          "a file that is accepted makes a device that reaches its workspace");
+      const vps::device::DualArmFile file =
+          vps::device::parseDualArm({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+      vps::fuzz::require(vps::device::isReachable(file.parameters,
+                                                  vps::Pose::translation(0.5 * file.parameters.workspace_m)),
+                         "a file that is accepted makes a device that reaches its workspace");
     } catch (const vps::LoadError&) {
     }
     return 0;

@@ -6,9 +6,9 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const vps::McapContent content = vps::readMcap(bytes);
+  const vps::device::McapContent content = vps::device::readMcap(bytes);
   vps::fuzz::require(content.messages.size() <= size / 31, "a message takes its bytes");
-  for (const vps::McapMessage& message : content.messages) {
+  for (const vps::device::McapMessage& message : content.messages) {
     vps::fuzz::require(content.channels.contains(message.channel), "a message has a channel");
     vps::fuzz::require(message.data.data() >= bytes.data() &&
                            message.data.data() + message.data.size() <= bytes.data() + size,
@@ -20,7 +20,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 
 std::vector<std::string> vps::fuzz::seeds() {
   std::string bytes;
-  McapWriter writer([&](std::string_view piece) { bytes += piece; }, "ros2", "fuzz");
+  device::McapWriter writer([&](std::string_view piece) { bytes += piece; }, "ros2", "fuzz");
   const std::uint16_t schema = writer.addSchema("x/msg/X", "ros2msg", "float64 x\n");
   const std::uint16_t channel = writer.addChannel({0, schema, "/x", "cdr", {{"a", "b"}}});
   writer.addAttachment({"a", "text/plain", "some text"});

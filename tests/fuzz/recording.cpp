@@ -7,7 +7,8 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    vps::Recording device(vps::recordingFrom({reinterpret_cast<const char*>(data), size}, "fuzz"));
+    vps::device::Recording device(
+        vps::device::recordingFrom({reinterpret_cast<const char*>(data), size}, "fuzz"));
     const std::size_t reads = device.run().reads();
     for (std::size_t i = 0; i < reads; ++i) {
       device.read();
@@ -15,7 +16,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     }
     vps::fuzz::require(device.left() == 0, "every sample is read once");
     vps::fuzz::require(device.read().status == vps::Status::Fault, "then the device is lost");
-    vps::fuzz::require(vps::csvTables(device.run()).size() == 5, "a table for each kind");
+    vps::fuzz::require(vps::device::csvTables(device.run()).size() == 5, "a table for each kind");
   } catch (const vps::LoadError&) {
   }
   return 0;
@@ -23,23 +24,23 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 
 std::vector<std::string> vps::fuzz::seeds() {
   const std::string file = fileOf(nullptr, 0);
-  RecordingHead head;
+  device::RecordingHead head;
   head.about = {{"version", "1"}};
   head.device = "fuzz";
   head.attachments = {{"scene", "text/plain", "scene"}};
   {
-    Recorder recorder(file, head);
-    RunEvent event;
-    event.kind = RunEventKind::Phase;
+    device::Recorder recorder(file, head);
+    device::RunEvent event;
+    event.kind = device::RunEventKind::Phase;
     event.say("phase");
     recorder.add(event);
     for (int i = 0; i < 3; ++i) {
-      DeviceSample sample;
+      device::DeviceSample sample;
       sample.time_s = i;
       recorder.add(sample);
-      recorder.add(WrittenWrench{});
+      recorder.add(device::WrittenWrench{});
     }
-    recorder.add(RunTrace{});
+    recorder.add(device::RunTrace{});
     recorder.finish();
   }
   return {bytesOf(file)};

@@ -7,22 +7,24 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {
-    const vps::Scene scene = vps::sceneFromBytes({reinterpret_cast<const char*>(data), size}, "fuzz");
-    for (const vps::ScenePart& part : scene.parts)
+    const vps::scenes::Scene scene =
+        vps::scenes::sceneFromBytes({reinterpret_cast<const char*>(data), size}, "fuzz");
+    for (const vps::scenes::ScenePart& part : scene.parts)
       for (const auto& triangle : part.part.mesh.triangles)
         for (const std::uint32_t corner : triangle)
           vps::fuzz::require(corner < part.part.mesh.vertices.size(), "corners are there");
-    for (const vps::SceneStep& step : scene.steps)
+    for (const vps::scenes::SceneStep& step : scene.steps)
       vps::fuzz::require(step.part < scene.parts.size(), "a step has its part");
-    const std::string again = vps::sceneToBytes(scene);
-    vps::fuzz::require(vps::sceneToBytes(vps::sceneFromBytes(again, "fuzz")) == again, "a scene comes back");
+    const std::string again = vps::scenes::sceneToBytes(scene);
+    vps::fuzz::require(vps::scenes::sceneToBytes(vps::scenes::sceneFromBytes(again, "fuzz")) == again,
+                       "a scene comes back");
   } catch (const vps::LoadError&) {
   }
   return 0;
 }
 
 std::vector<std::string> vps::fuzz::seeds() {
-  Scene scene;
+  scenes::Scene scene;
   scene.name = "scene";
   scene.parts.resize(2);
   scene.parts[0].part.mesh = makeBox({1, 1, 1});
@@ -30,5 +32,5 @@ std::vector<std::string> vps::fuzz::seeds() {
   scene.steps.resize(1);
   scene.steps[0].way_points.resize(2);
   scene.coupling.k_N_per_m = 1000;
-  return {sceneToBytes(scene)};
+  return {scenes::sceneToBytes(scene)};
 }

@@ -22,7 +22,7 @@ using test::RandomPoints;
 constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
 const Vec3 kO(1 * kMm, 2 * kMm, -3 * kMm);
 
-struct Scene {
+struct scenes::Scene {
   const char* name;
   VoxMap map;
   PointShell shell;
@@ -30,14 +30,14 @@ struct Scene {
   double size_m;
 };
 
-Scene pegInPlate() {
+scenes::Scene pegInPlate() {
   const Mesh plate = test::makeBoredPlate({.side_m = 30 * kMm, .bore_m = 5.02 * kMm, .columns = 96});
   const Mesh peg = test::makePeg({.length_m = 30 * kMm, .columns = 96, .rows = 20});
   return {"peg in plate", buildVoxMap(plate, {0.2 * kMm, 4}), buildPointShell(peg, {0.3 * kMm, 0.35}),
           Pose::translation({40 * kUm, 0, 8 * kMm}), 10 * kMm};
 }
 
-Scene planetInRing() {
+scenes::Scene planetInRing() {
   const test::GearShape ring{.teeth = 48, .other_radius_m = 28 * kMm, .points_per_tooth = 16},
       planet{.teeth = 20, .width_m = 8 * kMm, .other_radius_m = 4 * kMm, .points_per_tooth = 16};
   return {"planet in ring", buildVoxMap(test::makeRingGear(ring), {0.2 * kMm, 4}),
@@ -45,7 +45,7 @@ Scene planetInRing() {
           Pose::translation({14.03 * kMm, 0.02 * kMm, 0}), 10 * kMm};
 }
 
-Scene rodInNut() {
+scenes::Scene rodInNut() {
   test::ThreadShape rod{.length_m = 10 * kMm, .columns = 48, .rows_per_pitch = 16};
   const Mesh rod_mesh = test::makeThreadedRod(rod);
   rod.clearance_m = 0.05 * kMm;
@@ -54,9 +54,9 @@ Scene rodInNut() {
           Pose::translation({5 * kUm, 0, 0.05 * kMm / std::sqrt(3.0) + 5 * kUm}), 6 * kMm};
 }
 
-const std::vector<Scene>& scenes() {
-  static const std::vector<Scene> all = [] {
-    std::vector<Scene> s;
+const std::vector<scenes::Scene>& scenes() {
+  static const std::vector<scenes::Scene> all = [] {
+    std::vector<scenes::Scene> s;
     s.push_back(pegInPlate());
     s.push_back(planetInRing());
     s.push_back(rodInNut());
@@ -70,7 +70,7 @@ const std::vector<Scene>& scenes() {
 }
 
 /// Around the touching pose, by a micrometre to a tenth of the part's size.
-std::vector<Pose> posesOf(const Scene& scene, int count, unsigned seed) {
+std::vector<Pose> posesOf(const scenes::Scene& scene, int count, unsigned seed) {
   RandomPoints random(seed);
   std::vector<Pose> poses = {scene.touching};
   while (static_cast<int>(poses.size()) < count) {
@@ -93,7 +93,7 @@ void expectSame(const TouchSummary& a, const TouchSummary& b) {
 
 class BudgetQueryTest : public testing::TestWithParam<int> {
  protected:
-  const Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
+  const scenes::Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
   BudgetQuery query{scene.map, scene.shell};
 
   [[nodiscard]] TouchSummary exact(const Pose& X_MP, Gradient gradient = Gradient::Continuous) const {
@@ -253,7 +253,7 @@ TEST_P(BudgetQueryTest, APoseThatIsNoPoseGivesNothing) {
 }
 
 /// A straight way through the touching pose, turning a little.
-Pose along(const Scene& scene, double s_m) {
+Pose along(const scenes::Scene& scene, double s_m) {
   const Vec3 way = Vec3(1, 0.7, -0.4).normalized();
   return {Mat3(rotationFromVector(Vec3(0, 0, 0.2 * s_m / scene.size_m)) * scene.touching.R),
           scene.touching.p + s_m * way};
@@ -301,10 +301,10 @@ TEST_P(BudgetQueryTest, TheForceHasNoStepsHoweverFineThePosesLie) {
 }
 
 TEST(ClusterBounds, NoPointOfAClusterIsDeeperThanItsBound) {
-  for (const Scene& scene : scenes()) {
+  for (const scenes::Scene& scene : scenes()) {
     const ClusterSamples samples = clusterSamples(scene.shell);
     for (const Pose& X_MP : posesOf(scene, 12, 14)) {
-      const Reading reading(scene.map, scene.shell, X_MP, Simd::Best);
+      const scenes::Reading reading(scene.map, scene.shell, X_MP, Simd::Best);
       for (std::size_t b = scene.shell.leaf_blocks; b < scene.shell.blocks.size(); ++b) {
         ClusterBounds bounds;
         boundClusters(reading, samples.spheres[b - scene.shell.leaf_blocks], bounds);
@@ -345,7 +345,7 @@ TEST(ClusterSamples, ASampleIsAPointOfItsClusterAndStandsForItsArea) {
 }
 
 TEST(BudgetQuery, TakesNoMoreRoomThanItSays) {
-  for (const Scene& scene : scenes()) {
+  for (const scenes::Scene& scene : scenes()) {
     const double leaves = static_cast<double>(scene.shell.size()) / 16;
     // Beside the buckets, which every one has.
     EXPECT_LE(static_cast<double>(BudgetQuery(scene.map, scene.shell).memoryBytes()), 130 * leaves + 20e3);

@@ -113,7 +113,7 @@ struct Agreement {
 
 /// Compares a map's nodes, at random places in and around the part, with the winding number of all triangles
 /// (of the cleaned mesh) and with the parity of eleven rays (of the mesh as it came), where nine agree.
-Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
+Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels) {
   Agreement found;
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
   const VoxMap map = buildVoxMap(mesh, {voxel_m, 4}, "", {}, &found.report);
@@ -145,7 +145,7 @@ Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
   }
   std::printf(
       "%s: %s; by %s; of %zu nodes %zu against all windings, %zu against rays, rays of %zu disagree\n",
-      name.c_str(), describe(found.report).c_str(),
+      name.c_str(), scenes::describe(found.report).c_str(),
       found.report.signed_by_winding ? "winding" : "pseudonormals", found.asked, found.against_windings,
       found.against_rays, found.doubtful);
   return found;
@@ -165,7 +165,7 @@ class CadSigns : public testing::Test {
 TEST_F(CadSigns, Bearing) {
   const fs::path file = find("occt-bearing-motor/bearing.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("bearing", readStl(file, 1e-3), 128);
+  const Agreement found = viewer::compare("bearing", readStl(file, 1e-3), 128);
   EXPECT_EQ(found.report.open_edges, 134u);  // as the folder's LICENCE says
   EXPECT_EQ(found.report.flipped_facets, 29u);
   EXPECT_EQ(found.against_windings, 0u);
@@ -174,7 +174,7 @@ TEST_F(CadSigns, Bearing) {
 TEST_F(CadSigns, Motor) {
   const fs::path file = find("occt-bearing-motor/motor.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("motor", readStl(file, 1e-3), 128);
+  const Agreement found = viewer::compare("motor", readStl(file, 1e-3), 128);
   EXPECT_GT(found.report.overlapping_shells, 0u);
   EXPECT_GT(found.report.sure, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
@@ -183,7 +183,7 @@ TEST_F(CadSigns, Motor) {
 TEST_F(CadSigns, MotorCase) {
   const fs::path file = find("planetary-tiptap/Motor_Case.STL");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("Motor_Case", readStl(file, 1e-3), 128);
+  const Agreement found = viewer::compare("Motor_Case", readStl(file, 1e-3), 128);
   EXPECT_EQ(found.report.open_edges, 123u);
   EXPECT_GT(found.report.sure, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
@@ -192,7 +192,7 @@ TEST_F(CadSigns, MotorCase) {
 TEST_F(CadSigns, Nut) {
   const fs::path file = find("thread-m16-loose/factory_nut_m16_loose_subdiv_3x.obj");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("nut", readObj(file), 128);
+  const Agreement found = viewer::compare("nut", readObj(file), 128);
   EXPECT_EQ(found.report.open_edges, 108u);
   EXPECT_GT(found.report.t_junctions, 50u);
   EXPECT_GT(found.report.sure, 0.999);
@@ -202,7 +202,7 @@ TEST_F(CadSigns, Nut) {
 TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
   const fs::path file = find("kicad-pinheader/PinHeader_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("PinHeader", readWrl(file, 2.54e-3), 128);
+  const Agreement found = viewer::compare("PinHeader", readWrl(file, 2.54e-3), 128);
   EXPECT_FALSE(found.report.signed_by_winding);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
@@ -210,7 +210,7 @@ TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
 TEST_F(CadSigns, PinSocketOfOneShellAFace) {
   const fs::path file = find("kicad-pinheader/PinSocket_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("PinSocket", readWrl(file, 2.54e-3), 128);
+  const Agreement found = viewer::compare("PinSocket", readWrl(file, 2.54e-3), 128);
   EXPECT_FALSE(found.report.signed_by_winding);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
@@ -218,7 +218,7 @@ TEST_F(CadSigns, PinSocketOfOneShellAFace) {
 TEST_F(CadSigns, SoupHasNoInsideWorthItsName) {
   const fs::path file = find("cad-trimesh/soup.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("soup", readStl(file, 1e-3), 64);
+  const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.shells, 100u);
   EXPECT_LT(found.report.sure, 0.9);  // and says so
   EXPECT_EQ(found.against_windings, 0u);
@@ -226,7 +226,7 @@ TEST_F(CadSigns, SoupHasNoInsideWorthItsName) {
 TEST_F(CadSigns, SharedEdge) {
   const fs::path file = find("cad-trimesh/shared.STL");
   SKIP_WITHOUT(file);
-  const Agreement found = compare("shared", readStl(file, 1e-3), 64);
+  const Agreement found = viewer::compare("shared", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.non_manifold_edges, 1u);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);

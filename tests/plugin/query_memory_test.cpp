@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
 
-struct Scene {
+struct scenes::Scene {
   const char* name;
   VoxMap map;
   PointShell shell;
@@ -24,11 +24,11 @@ struct Scene {
   double size_m;
 };
 
-const std::vector<Scene>& scenes() {
-  static const std::vector<Scene> all = [] {
+const std::vector<scenes::Scene>& scenes() {
+  static const std::vector<scenes::Scene> all = [] {
     const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
     const Mesh box = makeBox({6 * kMm, 5 * kMm, 4 * kMm}), plate = makeBox({12 * kMm, 12 * kMm, 0.3 * kMm});
-    std::vector<Scene> s;
+    std::vector<scenes::Scene> s;
     s.push_back({"peg in bore", buildVoxMap(bore, {0.25 * kMm, 4}), buildPointShell(peg, {0.15 * kMm, 0.35}),
                  Pose(), 9 * kMm});
     s.push_back({"box on thin plate", buildVoxMap(plate, {0.2 * kMm, 3}),
@@ -43,7 +43,7 @@ const std::vector<Scene>& scenes() {
 
 /// Steps of every length from a nanometre to the part's size, drifting and jumping back, turning on the spot,
 /// and standing still.
-std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
+std::vector<Pose> motion(const scenes::Scene& scene, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
@@ -66,7 +66,7 @@ std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
 
 class QueryMemoryTest : public testing::TestWithParam<int> {
  protected:
-  const Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
+  const scenes::Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
 
@@ -224,7 +224,7 @@ TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
 }
 
 TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
-  const Scene& scene = scenes()[0];
+  const scenes::Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary sum;
   const Pose X_MP = Pose::translation({15 * kUm, 0, 0});  // free: 20 um of clearance
@@ -239,7 +239,7 @@ TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
 }
 
 TEST(QueryMemory, NothingAllocates) {
-  const Scene& scene = scenes()[0];
+  const scenes::Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
   QueryTeam team(2);
   ContactSet set(scene.shell.size());

@@ -6,8 +6,8 @@
 
 #include <cfloat>
 
-#include "voxmap/center_bounds.h"
 #include "support/analytic.h"
+#include "voxmap/center_bounds.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::test {

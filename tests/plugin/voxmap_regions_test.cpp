@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "voxmap/read_kernel.h"
 #include "support/analytic.h"
 #include "support/no_alloc.h"
+#include "voxmap/read_kernel.h"
 #include "vps/budget_query.h"
 #include "vps/load_error.h"
 #include "vps/query.h"

@@ -6,7 +6,7 @@
 #include "core/tick_times.h"
 #include "vps_scenes/contact_episodes.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 /// A trace at 1 kHz, grown piece by piece.
@@ -76,4 +76,4 @@ TEST(TickClock, EmptyClockSumsUpToZeros) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "judge/overlap_judge.h"
 #include "judge/overlap_record.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 JudgedBody makeBody(const std::string& name, const Mesh& mesh) {
@@ -106,4 +106,4 @@ TEST_F(OverlapJudgeOfBoxes, JudgeFindsTheDeepestPoseEvenBetweenStrides) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -19,7 +19,7 @@
 #include "import/own_process.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -693,5 +693,5 @@ TEST(ImportReal, OpenMeshesAreImportedWithAWarning) {
   EXPECT_NE(cad.warnings[0].find("open edges"), std::string::npos);
 }
 
-}  // namespace vps
-}  // namespace vps
+}  // namespace vps::scenes
+}  // namespace vps::scenes

@@ -10,10 +10,10 @@
 #include <functional>
 #include <string>
 
-#include "vps_scenes/assemble.h"
 #include "core/wall_clock.h"
+#include "vps_scenes/assemble.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kMm = 1e-3;
@@ -82,7 +82,8 @@ TEST(LoadLevel, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
   const std::vector<LoadLevelChange>& load_changes = result.real_time->load_changes;
   ASSERT_GE(load_changes.size(), 4u);
   expectInOrder(load_changes);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(load_changes[i].to, static_cast<int>(i + 1)) << load_changes[i].is;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(load_changes[i].to, static_cast<int>(i + 1)) << load_changes[i].is;
   EXPECT_EQ(load_changes[0].is, "points every 1 mm, physics at 250 Hz, time at the clock's");
   EXPECT_EQ(load_changes[3].is, "points every 2 mm, physics at 62.5 Hz, time at the clock's");
   EXPECT_GT(load_changes[0].lost_share, 0.5) << "10 ms begin three periods of 4 ms, of which two are lost";
@@ -109,7 +110,8 @@ TEST(LoadLevel, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
   ASSERT_FALSE(load_changes.empty());
   EXPECT_EQ(load_changes.back().to, 0) << load_changes.back().is;
   EXPECT_EQ(load_changes.back().cost, "nothing is given up any more");
-  EXPECT_EQ(load_changes.back().k_N_per_m, load_changes.front().k_N_per_m) << "the coupling is as stiff as before";
+  EXPECT_EQ(load_changes.back().k_N_per_m, load_changes.front().k_N_per_m)
+      << "the coupling is as stiff as before";
   EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].failure_reason << result.steps[0].final_error_m
                                            << "or nothing could have come back in the hand";
   const double released_s = result.steps[0].start_s + result.steps[0].duration_s;
@@ -171,4 +173,4 @@ TEST(LoadLevel, LockstepNeverGivesUpAnything) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_scenes/explain.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kMm = 1e-3;
@@ -187,4 +187,4 @@ TEST(Explain, CostsAreThoseOfTheRun) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

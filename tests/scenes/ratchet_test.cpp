@@ -11,7 +11,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/replay.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 const Vec3 kRoom_m(0.4, 0.6, 0.4);  // the dual arm's
@@ -78,7 +78,7 @@ TEST(PathSegments, AStraightMetreTakesThreeOfThirtySixCentimetres) {
 }
 
 TEST(PathSegments, AnyWayStaysWithinTheRoomAtAnyScale) {
-  Random random(5);
+  device::Random random(5);
   for (int i = 0; i < 200; ++i) {
     Scene scene = farPin();
     SceneStep& step = scene.steps[0];
@@ -126,7 +126,7 @@ TEST(Indexing, ARunWithARatchetReplaysBitForBit) {
   options.record = folder.path() / "run.mcap";
   Scene scene = farPin();
   const AssembleResult result = assemble(scene, options);
-  const RecordedRun run = loadRecording(options.record);
+  const device::RecordedRun run = device::loadRecording(options.record);
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, run.entries.size());
@@ -135,4 +135,4 @@ TEST(Indexing, ARunWithARatchetReplaysBitForBit) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
@@ -151,4 +151,4 @@ TEST(LoadGovernor, TimesThatAreNoNumbersAreNoLoad) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/replay.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 /// Two pins that are set down side by side on a plate: a change of parts, and a field that is cooked while
@@ -47,16 +47,16 @@ const test::Recorded& recordedByTheClock() {
     Scene scene = twoPins();
     test::Recorded made;
     made.result = assemble(scene, options);
-    made.run = loadRecording(options.record);
+    made.run = device::loadRecording(options.record);
     return made;
   }();
   return recorded;
 }
 
-std::size_t sync_events(const RecordedRun& run, SyncEventKind kind) {
+std::size_t sync_events(const device::RecordedRun& run, device::SyncEventKind kind) {
   std::size_t count = 0;
-  for (const LogEntry& entry : run.entries) {
-    const auto* met = std::get_if<SyncEvent>(&entry);
+  for (const device::LogEntry& entry : run.entries) {
+    const auto* met = std::get_if<device::SyncEvent>(&entry);
     count += met != nullptr && met->kind == kind;
   }
   return count;
@@ -73,19 +73,19 @@ TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
 
 TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndOrder) {
   const test::Recorded& recorded = recordedByTheClock();
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Tick), recorded.result.haptic.count);
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Step), recorded.result.physics.count);
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::HandOver), 2u);
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::LetGo), 2u);
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Settled), 2u);
-  EXPECT_EQ(sync_events(recorded.run, SyncEventKind::Paused), 1u);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Tick), recorded.result.haptic.count);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Step), recorded.result.physics.count);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::HandOver), 2u);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::LetGo), 2u);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Settled), 2u);
+  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Paused), 1u);
 }
 
 TEST(RealTimeReplay, ACutRecordingRunsUpToTheCutWhereverItIs) {
   for (const double share : {0.1, 0.33331, 0.5, 0.77777}) {
-    RecordedRun cut = recordedByTheClock().run;
+    device::RecordedRun cut = recordedByTheClock().run;
     for (int more = 0; more < 5; ++more) {  // amid a tick, too
-      RecordedRun some = cut;
+      device::RecordedRun some = cut;
       some.entries.resize(static_cast<std::size_t>(share * static_cast<double>(cut.entries.size())) +
                           static_cast<std::size_t>(more));
       some.damage = "ends in the middle of a record";
@@ -97,11 +97,12 @@ TEST(RealTimeReplay, ACutRecordingRunsUpToTheCutWhereverItIs) {
 }
 
 TEST(RealTimeReplay, TicksThatSeeOlderPhysicsDepartAndSayWhen) {
-  RecordedRun run = recordedByTheClock().run;
+  device::RecordedRun run = recordedByTheClock().run;
   std::int32_t snapshot = 0;
-  for (LogEntry& entry : run.entries) {
-    auto* met = std::get_if<SyncEvent>(&entry);
-    if (met == nullptr || met->kind != SyncEventKind::Tick || met->tick < 150 || met->tick >= 200) continue;
+  for (device::LogEntry& entry : run.entries) {
+    auto* met = std::get_if<device::SyncEvent>(&entry);
+    if (met == nullptr || met->kind != device::SyncEventKind::Tick || met->tick < 150 || met->tick >= 200)
+      continue;
     if (met->tick == 150) snapshot = met->snapshot;
     met->snapshot = snapshot;  // a tenth of a second of physics unseen, while the hand moves the part
   }
@@ -115,12 +116,12 @@ TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
   constexpr int kAdded = 3 * (1 << 15) / 2;
   {
     const vps_test::NoAllocScope guard;
-    for (int i = 0; i < kAdded; ++i) log.add(SyncEvent{0, i, 1, 0, SyncEventKind::Tick});
+    for (int i = 0; i < kAdded; ++i) log.add(device::SyncEvent{0, i, 1, 0, device::SyncEventKind::Tick});
   }
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.entries.size(), std::size_t{1} << 15);
   EXPECT_EQ(kept.lost, 0u);  // known with the next that comes
-  log.add(SyncEvent{0, kAdded, 1, 0, SyncEventKind::Tick});
+  log.add(device::SyncEvent{0, kAdded, 1, 0, device::SyncEventKind::Tick});
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.lost, static_cast<std::uint64_t>(kAdded - (1 << 15)));
 }
@@ -129,9 +130,9 @@ TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
   test::KeptLog kept;
   HapticLog log(&kept);
   for (int tick = 1; tick <= 3; ++tick) {
-    log.add(SyncEvent{0, tick, 1, 0, SyncEventKind::Tick});
-    log.add(DeviceSample{});
-    log.add(WrittenWrench{});
+    log.add(device::SyncEvent{0, tick, 1, 0, device::SyncEventKind::Tick});
+    log.add(device::DeviceSample{});
+    log.add(device::WrittenWrench{});
   }
   log.passUpTo(2);
   EXPECT_EQ(kept.entries.size(), 6u);
@@ -142,4 +143,4 @@ TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

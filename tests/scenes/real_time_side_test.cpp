@@ -10,38 +10,40 @@
 #include "support/kept_log.h"
 #include "vps_device/recording.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
 
 /// Swings by itself; the loop's thread has it to itself.
-class Swing final : public Device {
+class Swing final : public device::Device {
  public:
-  DeviceSample read() noexcept override { return sample; }
+  device::DeviceSample read() noexcept override { return sample; }
   void write(const Wrench& F) noexcept override { written = F; }
-  [[nodiscard]] DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
+  [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
   [[nodiscard]] std::string_view name() const noexcept override { return "swing"; }
-  DeviceSample sample;
+  device::DeviceSample sample;
   Wrench written;
 };
 
 class SwingingHand final : public Hand {
  public:
-  Device& device() override { return swing_; }
-  void prepare(const OperatorTask&, std::size_t step, double) override { next_ = static_cast<double>(step); }
+  device::Device& device() override { return swing_; }
+  void prepare(const device::OperatorTask&, std::size_t step, double) override {
+    next_ = static_cast<double>(step);
+  }
   void begin() override { speed_ = next_; }
   void goBack(std::size_t) override { speed_ = 0; }
   void recentre() override { speed_ = -1; }
   void goOn() override { speed_ = 1; }
-  void step(const HeldPart&, const HapticLoop&, double dt_s) override {
-    DeviceSample& sample = swing_.sample;
+  void step(const HeldPart&, const device::HapticLoop&, double dt_s) override {
+    device::DeviceSample& sample = swing_.sample;
     sample.time_s += dt_s;
     sample.V_DH.v = Vec3(0.02 * speed_ * std::cos(10 * sample.time_s), 0, 0);
     sample.X_DH.p += dt_s * sample.V_DH.v;
   }
-  [[nodiscard]] OperatorPhase phase() const override {
-    return speed_ == 0 ? OperatorPhase::Done : OperatorPhase::Reach;
+  [[nodiscard]] device::OperatorPhase phase() const override {
+    return speed_ == 0 ? device::OperatorPhase::Done : device::OperatorPhase::Reach;
   }
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
@@ -51,35 +53,35 @@ class SwingingHand final : public Hand {
 };
 
 /// Gives the samples of a log again.
-class Again final : public Hand, public Device {
+class Again final : public Hand, public device::Device {
  public:
-  explicit Again(const std::vector<LogEntry>& entries) {
-    for (const LogEntry& entry : entries)
-      if (const auto* sample = std::get_if<DeviceSample>(&entry)) samples_.push_back(*sample);
+  explicit Again(const std::vector<device::LogEntry>& entries) {
+    for (const device::LogEntry& entry : entries)
+      if (const auto* sample = std::get_if<device::DeviceSample>(&entry)) samples_.push_back(*sample);
   }
-  Device& device() override { return *this; }
-  DeviceSample read() noexcept override { return samples_[next_++]; }
+  device::Device& device() override { return *this; }
+  device::DeviceSample read() noexcept override { return samples_[next_++]; }
   void write(const Wrench&) noexcept override {}
-  [[nodiscard]] DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
+  [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
   [[nodiscard]] std::string_view name() const noexcept override { return "again"; }
-  void prepare(const OperatorTask&, std::size_t, double) override {}
+  void prepare(const device::OperatorTask&, std::size_t, double) override {}
   void begin() override {}
   void goBack(std::size_t) override {}
   void recentre() override {}
   void goOn() override {}
-  void step(const HeldPart&, const HapticLoop&, double) override {}
-  [[nodiscard]] OperatorPhase phase() const override { return OperatorPhase::Reach; }
+  void step(const HeldPart&, const device::HapticLoop&, double) override {}
+  [[nodiscard]] device::OperatorPhase phase() const override { return device::OperatorPhase::Reach; }
   [[nodiscard]] bool canGoOn(int ticks) const override {
     return next_ + static_cast<std::size_t>(ticks) <= samples_.size();
   }
 
  private:
-  std::vector<DeviceSample> samples_;
+  std::vector<device::DeviceSample> samples_;
   std::size_t next_ = 0;
 };
 
-LoopSettings settings() {
-  LoopSettings s;
+device::LoopSettings settings() {
+  device::LoopSettings s;
   s.period_s = kPeriod_s;
   s.extrapolates_part = true;
   s.physics_limit_s = physicsLimit_s(kPeriod_s);
@@ -109,7 +111,7 @@ std::vector<Vec3> drive(HapticDriver& side, int steps) {
     side.publish(part, {});
     side.resume();
     go(steps);
-    side.begin(OperatorTask{}, 1, 0);
+    side.begin(device::OperatorTask{}, 1, 0);
     go(steps);
     side.openClutch();
     go(steps);
@@ -139,14 +141,14 @@ TEST(RealTimeDriver, WhatTwoThreadsDidIsDoneAgainByOne) {
   EXPECT_EQ(log.lost, 0u);
   EXPECT_EQ(seen.size(), 3u * 7 * 60);
 
-  RecordedRun run;
+  device::RecordedRun run;
   run.entries = log.entries;
-  std::vector<SyncEvent> sync_events;
-  for (const LogEntry& entry : run.entries)
-    if (const auto* met = std::get_if<SyncEvent>(&entry)) sync_events.push_back(*met);
-  ReplayCheck check(run);
+  std::vector<device::SyncEvent> sync_events;
+  for (const device::LogEntry& entry : run.entries)
+    if (const auto* met = std::get_if<device::SyncEvent>(&entry)) sync_events.push_back(*met);
+  device::ReplayCheck check(run);
   Again recorded(run.entries);
-  TappedDevice tapped(recorded, check);
+  device::TappedDevice tapped(recorded, check);
   const auto replay = makeReplayedDriver(recorded, sync_events, tapped, port_again, settings(), tell, check);
   EXPECT_EQ(drive(*replay, 60), seen);
   EXPECT_EQ(check.departure(), "");
@@ -157,4 +159,4 @@ TEST(RealTimeDriver, WhatTwoThreadsDidIsDoneAgainByOne) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

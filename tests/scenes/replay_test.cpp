@@ -13,7 +13,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,7 +50,7 @@ Recorded recordedPin() {
   Scene scene = pinOnPlate();
   Recorded recorded;
   recorded.result = assemble(scene, options);
-  recorded.run = loadRecording(options.record);
+  recorded.run = device::loadRecording(options.record);
   return recorded;
 }
 
@@ -61,7 +61,7 @@ TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
 #ifndef VPS_BULLET_DOUBLE
   GTEST_SKIP() << "recorded with double-precision Bullet";
 #endif
-  const RecordedRun run = loadRecording(kFixture);
+  const device::RecordedRun run = device::loadRecording(kFixture);
   EXPECT_EQ(run.damage, "");
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "") << replayed.other_version;
@@ -89,7 +89,7 @@ TEST(Replay, RecordingChangesNoBitOfTheRun) {
 }
 
 TEST(Replay, AnotherWorldDepartsAndSaysAtWhichTick) {
-  RecordedRun run = recordedPin().run;
+  device::RecordedRun run = recordedPin().run;
   Scene heavier = recordedScene(run);
   heavier.parts[1].part.material.density_kg_m3 *= 1.01;
   run.head.attachments[0].data = sceneToBytes(heavier);
@@ -103,7 +103,7 @@ TEST(Replay, AnotherWorldDepartsAndSaysAtWhichTick) {
 
 TEST(Replay, ACutRecordingRunsUpToTheCut) {
   Recorded recorded = recordedPin();
-  RecordedRun cut = recorded.run;
+  device::RecordedRun cut = recorded.run;
   cut.entries.resize(cut.entries.size() / 3);
   cut.damage = "ends in the middle of a record";
   const ReplayResult replayed = replay(cut);
@@ -125,7 +125,7 @@ TEST(Replay, ARunThatFailsBeforeItBeginsLeavesNothing) {
 }
 
 TEST(Replay, ARecordingWithoutASceneIsRefusedInWords) {
-  RecordedRun run = loadRecording(kFixture);
+  device::RecordedRun run = device::loadRecording(kFixture);
   run.head.attachments.clear();
   try {
     replay(run);
@@ -173,4 +173,4 @@ TEST(SceneArchive, AChangedByteIsRefusedOrAScene) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -342,4 +342,4 @@ TEST_F(SceneFile, AnyByteInTheMiddleIsAnswered) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

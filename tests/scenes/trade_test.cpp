@@ -9,8 +9,8 @@
 #include <new>
 #include <random>
 
-#include "record/scene_archive.h"
 #include "models/scene_models.h"
+#include "record/scene_archive.h"
 #include "support/stl_box.h"
 #include "support/temporary_folder.h"
 #include "trade/design.h"
@@ -23,7 +23,7 @@
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kRadius_m = 3e-3;
@@ -320,7 +320,8 @@ TEST(FidelityChoice, NoMapIsBuiltThatWouldNotFitInMemory) {
   wish.machine_bytes = 40e6;
   const FidelityChoice none = chooseFidelity(scene, wish);
   EXPECT_FALSE(none.is_met);
-  EXPECT_NE(none.failure_reason.find("half of this machine's memory"), std::string::npos) << none.failure_reason;
+  EXPECT_NE(none.failure_reason.find("half of this machine's memory"), std::string::npos)
+      << none.failure_reason;
   wish.machine_bytes = 0;
   wish.memory_bytes = 2e6;
   const FidelityChoice small = chooseFidelity(scene, wish);
@@ -382,8 +383,8 @@ TEST(FidelityChoice, ASceneFileWhoseWishCannotBeMetIsRefusedByLine) {
   EXPECT_NE(complaint("tolerance = 1\n").find("stands without 'auto = true'"), std::string::npos);
   EXPECT_NE(complaint("auto = true\nvoxel = 1\n").find("stands beside 'auto = true'"), std::string::npos);
   EXPECT_NE(complaint("voxle = 1\n").find("voxle"), std::string::npos);
-  EXPECT_EQ(complaint("contact = 'compliant'\n"), "");
+  EXPECT_EQ(complaint("contact = 'penalty'\n"), "");
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::scenes

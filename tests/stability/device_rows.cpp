@@ -31,16 +31,16 @@ Judgement shake(const Run& run) {
   const PartMesh block_part = block();
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed block = world.add(block_part, Pose::translation(Vec3(0, 0, 5e-3 + amplitude_m / 2)));
-  SimulatedDualArm device;
-  LoopSettings settings;
-  settings.gains = deriveGains(device.limits(), {});
+  device::SimulatedDualArm device;
+  device::LoopSettings settings;
+  settings.gains = device::deriveGains(device.limits(), {});
   CouplingPort port;
-  HapticLoop loop(device, port, settings);
-  auto owned = std::make_unique<VpsCoupling>(*block.body, Pose(), settings.gains);
-  VpsCoupling& coupling = *owned;
+  device::HapticLoop loop(device, port, settings);
+  auto owned = std::make_unique<bullet::CouplingConstraint>(*block.body, Pose(), settings.gains);
+  bullet::CouplingConstraint& coupling = *owned;
   world.addConstraint(std::move(owned));
-  loop.grasp(fromBt(block.body->getWorldTransform()));
-  HandForce hand;
+  loop.grasp(bullet::fromBt(block.body->getWorldTransform()));
+  device::HandForce hand;
   hand.k_N_per_m = 2000 * Mat3::Identity();
   hand.b_Ns_per_m = 20 * Mat3::Identity();
   hand.k_Nm_per_rad = 3 * Mat3::Identity();
@@ -61,14 +61,15 @@ Judgement shake(const Run& run) {
     CouplingState part = coupling.partState();
     part.is_coupled = true;
     port.part.write(part);
-    loop.observeStoredEnergy(energy_J(world, {block}) + springEnergy_J(settings.gains, port.proxy.read(), part), 0);
+    loop.observeStoredEnergy(
+        energy_J(world, {block}) + springEnergy_J(settings.gains, port.proxy.read(), part), 0);
   };
   const Watched watched = watch(world, {floor, block}, watching);
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  judgement.require(loop.safety().fault == SafetyFault::None,
+  judgement.require(loop.safety().fault == device::SafetyFault::None,
                     std::string("safety: ") + toText(loop.safety().fault));
-  const DeviceLimits limits = device.limits();
+  const device::DeviceLimits limits = device.limits();
   judgement.atMost("force on the hand", greatest_N, limits.peak_force_N, "N");
   // Rigid contact: a micrometre; springs give way by the greatest force, and by one step's arrival on a
   // corner.
@@ -80,8 +81,8 @@ Judgement shake(const Run& run) {
                             : 0),
                    "m");
   judgement.atMost("energy made", loop.ledger().injected_J, settings.injected_bound_J, "J");
-  judgement.note("force " + toText(greatest_N) + " N, energy made " + toText(loop.ledger().injected_J) +
-                 " J");
+  judgement.note("force " + toText(greatest_N) + " N, energy made " +
+                 toText(loop.ledger().injected_J) + " J");
   return judgement;
 }
 

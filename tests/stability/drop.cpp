@@ -50,7 +50,7 @@ Dropped drop(Mode mode, const Drop& what) {
       world.add(plate_part, what.X_WS * Pose::translation(Vec3(0, 0, -plate_m / 2)), true, what.friction);
   const Placed block =
       world.add(block_part, what.X_WS * toScene(startPose(what, block_mesh)), false, what.friction);
-  block.body->setLinearVelocity(toBt(Vec3(what.speed_m_s * down_W)));
+  block.body->setLinearVelocity(bullet::toBt(Vec3(what.speed_m_s * down_W)));
 
   Dropped result;
   const auto X_SP = [&] { return what.X_WS.inverse() * block.pose(); };

@@ -17,7 +17,7 @@ struct Drop {
   double friction = 0.15;
   double dt_s = 1e-3;
   double duration_s = 0.5;
-  VpsBulletSettings settings;
+  bullet::Settings settings;
   Pose X_WS;  ///< the whole scene, gravity too
   /// The scene in a mirror: x to -x of the scene's frame, meshes too.
   bool is_mirrored = false;

@@ -15,8 +15,8 @@ bool moves(const Placed& part) {
 }
 
 bool isFinite(const Placed& part) {
-  return part.pose().isFinite() && fromBt(part.body->getLinearVelocity()).allFinite() &&
-         fromBt(part.body->getAngularVelocity()).allFinite();
+  return part.pose().isFinite() && bullet::fromBt(part.body->getLinearVelocity()).allFinite() &&
+         bullet::fromBt(part.body->getAngularVelocity()).allFinite();
 }
 
 double overlap_m(const std::vector<Placed>& parts) {
@@ -39,11 +39,11 @@ double fastest_m_s(const std::vector<Placed>& parts) {
 }  // namespace
 
 double energy_J(dynamics::World& world, const std::vector<Placed>& parts) {
-  const Vec3 g_W = fromBt(world.bullet().getGravity());
+  const Vec3 g_W = bullet::fromBt(world.bullet().getGravity());
   double sum_J = 0;
   for (const Placed& part : parts) {
     if (!moves(part)) continue;
-    const Vec3 p = fromBt(part.body->getWorldTransform().getOrigin());
+    const Vec3 p = bullet::fromBt(part.body->getWorldTransform().getOrigin());
     sum_J += dynamics::kineticEnergy_J(*part.body) - g_W.dot(p) / part.body->getInvMass();
   }
   return sum_J;
@@ -52,7 +52,7 @@ double energy_J(dynamics::World& world, const std::vector<Placed>& parts) {
 Vec3 momentum_Ns(const std::vector<Placed>& parts) {
   Vec3 sum = Vec3::Zero();
   for (const Placed& part : parts)
-    if (moves(part)) sum += fromBt(part.body->getLinearVelocity()) / part.body->getInvMass();
+    if (moves(part)) sum += bullet::fromBt(part.body->getLinearVelocity()) / part.body->getInvMass();
   return sum;
 }
 
@@ -61,11 +61,11 @@ Vec3 angularMomentum_Nms(const std::vector<Placed>& parts) {
   for (const Placed& part : parts) {
     if (!moves(part)) continue;
     const btTransform& X = part.body->getWorldTransform();
-    const Mat3 R = fromBt(X.getBasis());
-    const Vec3 I = fromBt(part.body->getInvInertiaDiagLocal()).cwiseInverse();
-    const Vec3 spin = R * I.cwiseProduct(R.transpose() * fromBt(part.body->getAngularVelocity()));
-    const Vec3 p = fromBt(X.getOrigin());
-    sum += spin + p.cross(fromBt(part.body->getLinearVelocity())) / part.body->getInvMass();
+    const Mat3 R = bullet::fromBt(X.getBasis());
+    const Vec3 I = bullet::fromBt(part.body->getInvInertiaDiagLocal()).cwiseInverse();
+    const Vec3 spin = R * I.cwiseProduct(R.transpose() * bullet::fromBt(part.body->getAngularVelocity()));
+    const Vec3 p = bullet::fromBt(X.getOrigin());
+    sum += spin + p.cross(bullet::fromBt(part.body->getLinearVelocity())) / part.body->getInvMass();
   }
   return sum;
 }

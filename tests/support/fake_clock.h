@@ -6,7 +6,7 @@
 
 namespace vps_test {
 
-struct FakeClock final : vps::RealTimeClock {
+struct FakeClock final : vps::device::RealTimeClock {
   explicit FakeClock(std::int64_t start_ns = 0) : now(start_ns) {}
   [[nodiscard]] std::int64_t now_ns() noexcept override { return now; }
   void sleepUntil(std::int64_t time_ns) noexcept override {

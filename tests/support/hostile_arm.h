@@ -19,8 +19,8 @@ namespace vps_test {
 using Require = void (*)(bool claim, const char* promise);
 
 /// About the identity. @param k, b  of translation [N/m, N s/m]
-inline vps::HandForce firmHand(double k, double b) {
-  vps::HandForce hand;
+inline vps::device::HandForce firmHand(double k, double b) {
+  vps::device::HandForce hand;
   hand.k_N_per_m = k * vps::Mat3::Identity();
   hand.b_Ns_per_m = b * vps::Mat3::Identity();
   hand.k_Nm_per_rad = 5 * vps::Mat3::Identity();
@@ -31,7 +31,7 @@ inline vps::HandForce firmHand(double k, double b) {
 }
 
 /// The plant, with a trouble between it and the controller.
-class HostileArm final : public vps::DualArmHardware {
+class HostileArm final : public vps::device::DualArmHardware {
  public:
   enum Trouble {
     kNone,
@@ -48,7 +48,7 @@ class HostileArm final : public vps::DualArmHardware {
   };
   static constexpr int kTroubles = 11;
 
-  HostileArm(vps::DualArmPlant& plant, Require require) : plant_(plant), require_(require) {}
+  HostileArm(vps::device::DualArmPlant& plant, Require require) : plant_(plant), require_(require) {}
 
   void set(Trouble trouble, unsigned detail) {
     trouble_ = trouble;
@@ -58,40 +58,40 @@ class HostileArm final : public vps::DualArmHardware {
   }
   [[nodiscard]] bool hasLied() const { return has_lied_; }
 
-  vps::DualArmReading read() noexcept override {
-    vps::DualArmReading reading = plant_.read();
-    vps::JointVector values = vps::toVector(reading.joints);
+  vps::device::DualArmReading read() noexcept override {
+    vps::device::DualArmReading reading = plant_.read();
+    vps::device::JointVector values = vps::device::toVector(reading.joints);
     double& value = values[detail_ % 7];
     const double size = (detail_ / 7 + 1) * 0.01;
     if (trouble_ == kNan) value = detail_ % 2 == 0 ? std::nan("") : -std::numeric_limits<double>::infinity();
     if (trouble_ == kHuge) value = 1e300;
     if (trouble_ == kJump) value += detail_ % 2 == 0 ? size : -size;
     if (trouble_ == kApart) values[2] -= size;
-    if (trouble_ == kDrift) drift_ += vps::JointVector::Constant(1e-4 * (detail_ % 5));
+    if (trouble_ == kDrift) drift_ += vps::device::JointVector::Constant(1e-4 * (detail_ % 5));
     reading.has_left = trouble_ != kLeftLost;
     reading.has_right = trouble_ != kRightLost;
     if (trouble_ == kClockBack) reading.time_s -= 1e-3 * (detail_ % 64);
     if (trouble_ == kClockNan) reading.time_s = std::nan("");
-    reading.joints = vps::fromVector(values + drift_);
+    reading.joints = vps::device::fromVector(values + drift_);
     if (trouble_ == kSilent) return last_;
     return last_ = reading;
   }
 
-  void drive(const vps::JointVector& efforts) noexcept override {
+  void drive(const vps::device::JointVector& efforts) noexcept override {
     require_(efforts.allFinite(), "motor efforts are finite");
-    const vps::JointVector peak = vps::motorLimits(plant_.settings().arms, 1);
+    const vps::device::JointVector peak = vps::device::motorLimits(plant_.settings().arms, 1);
     require_((efforts.cwiseAbs() - peak).maxCoeff() <= 0, "no motor is asked for more than its peak");
     plant_.drive(efforts);
   }
 
  private:
-  vps::DualArmPlant& plant_;
+  vps::device::DualArmPlant& plant_;
   Require require_;
   Trouble trouble_ = kNone;
   unsigned detail_ = 0;
   bool has_lied_ = false;
-  vps::JointVector drift_ = vps::JointVector::Zero();
-  vps::DualArmReading last_;
+  vps::device::JointVector drift_ = vps::device::JointVector::Zero();
+  vps::device::DualArmReading last_;
 };
 
 struct HostileRun {
@@ -105,17 +105,17 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   using namespace vps;
   HostileRun run;
   if (size < 2) return run;
-  DualArmPlantSettings plant_settings;
+  device::DualArmPlantSettings plant_settings;
   plant_settings.seed = data[0] + 1u;
-  DualArmPlant plant(plant_settings);
-  const DualArmParameters& p = plant_settings.arms;
+  device::DualArmPlant plant(plant_settings);
+  const device::DualArmParameters& p = plant_settings.arms;
   HostileArm hardware(plant, require);
-  DeviceEventQueue events;
-  DualArmController controller(hardware, {p, 1000, true, false, false}, &events);
+  device::DeviceEventQueue events;
+  device::DualArmController controller(hardware, {p, 1000, true, false, false}, &events);
   CouplingPort port;
 
-  LoopSettings settings;
-  settings.gains = deriveGains(controller.limits(), {});
+  device::LoopSettings settings;
+  settings.gains = device::deriveGains(controller.limits(), {});
   static constexpr double kBad[] = {std::numeric_limits<double>::quiet_NaN(), -5, 1e300, 1e5};
   const bool has_bad_gains = data[0] % 8 == 0, is_usable = !has_bad_gains || data[0] / 8 % 4 == 3;
   if (has_bad_gains) settings.gains.k_N_per_m = kBad[data[0] / 8 % 4];
@@ -123,12 +123,12 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   settings.safety.torque_Nm = p.torque_peak_Nm;
   settings.physics_limit_s = 0.02;
   settings.events = &events;
-  HapticLoop loop(controller, port, settings);
+  device::HapticLoop loop(controller, port, settings);
   loop.grasp(Pose{});
   CouplingState part{Pose{}, Twist{}, 0, true};
   port.part.write(part);
 
-  HandForce hand = firmHand(300, 20);
+  device::HandForce hand = firmHand(300, 20);
   hand.F.f = 0.1 * (data[1] - 128.0) * Vec3::Unit(data[1] % 3);
 
   std::uint64_t faults_told = 0;
@@ -138,18 +138,19 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     require(F.isFinite(), "the wrench is finite");
     require(F.f.norm() <= p.force_peak_N * (1 + 1e-12), "the force keeps within its limit");
     require(F.tau.norm() <= p.torque_peak_Nm * (1 + 1e-12), "the torque keeps within its limit");
-    const bool is_faulted = loop.safety().fault != SafetyFault::None;
+    const bool is_faulted = loop.safety().fault != device::SafetyFault::None;
     run.has_faulted = run.has_faulted || is_faulted;
     if (is_faulted) require(F.f.isZero() && F.tau.isZero(), "no wrench while a fault is latched");
     if (silent_ticks > 22 && loop.isHolding()) require(is_faulted, "physics that stalls is a fault");
-    DeviceEvent event;
+    device::DeviceEvent event;
     while (events.pop(event))
-      if (severityOf(event.kind) == Severity::Fault) ++faults_told;
+      if (device::severityOf(event.kind) == device::Severity::Fault) ++faults_told;
     require(faults_told >= loop.safety().faults, "every fault is told");
-    if (controller.hasFault() && controller.fault() != DeviceEventKind::PeerLost)
+    if (controller.hasFault() && controller.fault() != device::DeviceEventKind::PeerLost)
       require(controller.efforts().isZero(), "motors are let go after a fault");
     Wrench felt;
-    if (hardware.hasLied() || handleWrench(p, plant.pose(), controller.efforts(), felt) != Status::Ok) return;
+    if (hardware.hasLied() || device::handleWrench(p, plant.pose(), controller.efforts(), felt) != Status::Ok)
+      return;
     felt.f.z() -= 9.81 * p.handle_kg;
     run.strongest_N = std::max(run.strongest_N, felt.f.norm());
     // The pose is known to 0.1 mm and 2 mrad, of levers of 0.1 m and more; at speed it is a tick old.
@@ -194,7 +195,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   loop.rearm();
   loop.release();
   for (int i = 0; i < 5; ++i) tick(true);
-  run.has_recovered = loop.safety().fault == SafetyFault::None && !controller.hasFault();
+  run.has_recovered = loop.safety().fault == device::SafetyFault::None && !controller.hasFault();
   // An encoder that has drifted needs a calibration; else nothing may stay broken.
   Pose X_read = loop.last().X_WG;
   const bool is_true = (X_read.p - plant.pose().p).norm() < 1e-3 || !hardware.hasLied();

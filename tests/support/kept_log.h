@@ -8,11 +8,11 @@
 
 namespace vps::test {
 
-class KeptLog final : public RunLog {
+class KeptLog final : public device::RunLog {
  public:
-  void add(const LogEntry& entry) noexcept override { entries.push_back(entry); }
+  void add(const device::LogEntry& entry) noexcept override { entries.push_back(entry); }
   void lose(std::uint64_t count) noexcept override { lost += count; }
-  std::vector<LogEntry> entries;
+  std::vector<device::LogEntry> entries;
   std::uint64_t lost = 0;
 };
 

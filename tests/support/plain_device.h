@@ -6,16 +6,16 @@
 
 namespace vps_test {
 
-struct PlainDevice final : vps::Device {
-  vps::DeviceSample read() noexcept override {
+struct PlainDevice final : vps::device::Device {
+  vps::device::DeviceSample read() noexcept override {
     if (on_read != nullptr) on_read(*this);
     return sample;
   }
   void write(const vps::Wrench& F_Ho_D) noexcept override { F_written_D = F_Ho_D; }
-  [[nodiscard]] vps::DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
+  [[nodiscard]] vps::device::DeviceLimits limits() const noexcept override { return {.peak_force_N = 30}; }
   [[nodiscard]] std::string_view name() const noexcept override { return "plain"; }
 
-  vps::DeviceSample sample;
+  vps::device::DeviceSample sample;
   vps::Wrench F_written_D;
   void (*on_read)(PlainDevice&) = nullptr;
 };

@@ -11,7 +11,7 @@ namespace vps::test {
 
 /// Reads until the claim holds; false after 10 s.
 template <typename Claim>
-bool within10s(Device& device, const Claim& claim) {
+bool within10s(device::Device& device, const Claim& claim) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
   while (std::chrono::steady_clock::now() < end) {
     if (claim(device.read())) return true;
@@ -20,7 +20,7 @@ bool within10s(Device& device, const Claim& claim) {
   return false;
 }
 
-inline bool isThere(const DeviceSample& sample) {
+inline bool isThere(const device::DeviceSample& sample) {
   return sample.status == Status::Ok;
 }
 

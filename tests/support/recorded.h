@@ -10,11 +10,11 @@
 namespace vps::test {
 
 struct Recorded {
-  AssembleResult result;
-  RecordedRun run;
+  scenes::AssembleResult result;
+  device::RecordedRun run;
 };
 
-inline void expectSame(const AssembleResult& a, const AssembleResult& b) {
+inline void expectSame(const scenes::AssembleResult& a, const scenes::AssembleResult& b) {
   EXPECT_EQ(a.completed, b.completed);
   EXPECT_EQ(a.haptic.count, b.haptic.count);
   EXPECT_EQ(a.simulated_s, b.simulated_s);

@@ -69,8 +69,8 @@ inline CouplingState stillPart() {
 }
 
 /// The loop with this wall's gains and without limits: what is tested is the law as sampled.
-inline LoopSettings wallLoop(const SampledWall& w) {
-  LoopSettings settings;
+inline device::LoopSettings wallLoop(const SampledWall& w) {
+  device::LoopSettings settings;
   settings.period_s = w.period_s;
   settings.gains.k_N_per_m = w.K_N_per_m;
   settings.gains.b_Ns_per_m = w.B_Ns_per_m;
@@ -83,12 +83,12 @@ inline LoopSettings wallLoop(const SampledWall& w) {
 
 /// A handle on a rail along x: says where it is led or where mass, damping and force bring it, and keeps the
 /// wrenches that were written.
-class RailDevice final : public Device {
+class RailDevice final : public device::Device {
  public:
   explicit RailDevice(double period_s) : period_s_(period_s) {}
 
-  DeviceSample read() noexcept override {
-    DeviceSample sample;
+  device::DeviceSample read() noexcept override {
+    device::DeviceSample sample;
     sample.X_DH.p.x() = x_m;
     sample.V_DH.v.x() = (x_m - x_read_m_) / period_s_;
     sample.time_s = time_s_;
@@ -100,7 +100,7 @@ class RailDevice final : public Device {
     std::rotate(written_N_.begin(), written_N_.end() - 1, written_N_.end());
     written_N_[0] = F.f.x();
   }
-  [[nodiscard]] DeviceLimits limits() const noexcept override { return {}; }
+  [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {}; }
   [[nodiscard]] std::string_view name() const noexcept override { return "rail"; }
 
   /// Force of the wall `ticks` (whole, below 16) before the last one.
@@ -127,7 +127,7 @@ inline double measuredPassiveDamping(const SampledWall& w, int index) {
   RailDevice device(w.period_s);
   CouplingPort port;
   port.part.write(stillPart());
-  HapticLoop loop(device, port, wallLoop(w));
+  device::HapticLoop loop(device, port, wallLoop(w));
   loop.grasp(Pose{});  // at x = 0, where the part is
   const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
   const double reach_m = 1e-3;
@@ -150,7 +150,7 @@ inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m)
   RailDevice device(w.period_s);
   CouplingPort port;
   port.part.write(stillPart());
-  HapticLoop loop(device, port, wallLoop(w));
+  device::HapticLoop loop(device, port, wallLoop(w));
   loop.grasp(Pose{});
   const double push_N = 5, rest_m = push_N / w.K_N_per_m;
   device.x_m = 0.9 * rest_m;

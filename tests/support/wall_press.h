@@ -28,18 +28,18 @@ struct Unrest {
 /// The part in hand stands still, as one that a rigid wall stops; our loop renders the coupling to it. The
 /// plant takes eight steps a period: its integrator moves with the speed of a step's end, which would shorten
 /// the hold of a force by half a step.
-inline Unrest pressOnWall(const SimulatedDualArmSettings& device, const CouplingGains& gains,
+inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const CouplingGains& gains,
                           const WallPress& press = {}) {
-  SimulatedDualArm arm(device);
+  device::SimulatedDualArm arm(device);
   CouplingPort port;
-  LoopSettings settings;
+  device::LoopSettings settings;
   settings.gains = gains;
   settings.period_s = 1 / device.rate_hz;
   settings.has_passivity_controller = false;
-  HapticLoop loop(arm, port, settings);
+  device::HapticLoop loop(arm, port, settings);
   loop.grasp(Pose{});
   port.part.write({Pose{}, Twist{}, 0, true});
-  HandForce hand;
+  device::HandForce hand;
   hand.mass_kg = press.hand_kg;
   hand.inertia_kgm2 = 1e-4;
   hand.F.f = press.push_N * press.along_D;
@@ -67,8 +67,8 @@ inline Unrest pressOnWall(const SimulatedDualArmSettings& device, const Coupling
 /// the encoders' greatest error, about one step of theirs in the middle of the workspace; less is what their
 /// jitter moves. `from_N_per_m` must not cycle. Upwards from `from_N_per_m` in steps of 10%, then by
 /// bisection: whether it cycles is not monotonous.
-inline double stiffestWall(const SimulatedDualArmSettings& device, CouplingGains gains, double from_N_per_m,
-                           const WallPress& press = {}) {
+inline double stiffestWall(const device::SimulatedDualArmSettings& device, CouplingGains gains,
+                           double from_N_per_m, const WallPress& press = {}) {
   const double still_m = device.arms.resolution_m / 2;
   const auto cycles = [&](double K_N_per_m) {
     gains.k_N_per_m = K_N_per_m;

@@ -10,7 +10,7 @@
 #include "vps/load_error.h"
 #include "vps_viewer/write_file.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 std::string scratch(const std::string& name) {
@@ -122,4 +122,4 @@ TEST(Compare, TheDifferencePictureIsRedWhereItDiffersAndGreyElsewhere) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 
 #include "../viewer/src/draw/shading_mesh.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 std::array<int, 3> pixel(const Image& image, double x, double y) {
@@ -18,8 +18,8 @@ std::array<int, 3> pixel(const Image& image, double x, double y) {
   return {p[0], p[1], p[2]};
 }
 
-BodySnapshot mounted(std::size_t part, const Vec3& p_W) {
-  return {part, Pose::translation(p_W), BodyRole::Mounted};
+scenes::BodySnapshot mounted(std::size_t part, const Vec3& p_W) {
+  return {part, Pose::translation(p_W), scenes::BodyRole::Mounted};
 }
 
 /// Nothing but surfaces: what is measured is not covered by lines, shadow or words.
@@ -54,7 +54,7 @@ TEST_F(RendererTest, ARedBoxIsRedInTheMiddleAndAsLargeAsItsProjection) {
   const Mesh box = makeBox(Vec3(0.08, 0.05, 0.02));
   Renderer renderer({{&box, {0.8f, 0.05f, 0.05f}}});
   const Camera camera = fromAbove();
-  Snapshot snapshot;
+  scenes::Snapshot snapshot;
   const Image empty = renderer.render(snapshot, camera, plain());
   snapshot.bodies = {mounted(0, Vec3::Zero())};
   const Image image = renderer.render(snapshot, camera, plain());
@@ -87,7 +87,7 @@ TEST_F(RendererTest, ARedBoxIsRedInTheMiddleAndAsLargeAsItsProjection) {
 
 TEST_F(RendererTest, TheSameInputGivesTheSameBitsFromTwoRenderers) {
   const Mesh tube = makeTube(0.03, 0.02, 0.04, 48);
-  Snapshot snapshot;
+  scenes::Snapshot snapshot;
   snapshot.bodies = {mounted(0, Vec3::Zero())};
   snapshot.contacts = {{Vec3(0.03, 0, 0), Vec3::UnitX(), 5e-6}};
   DrawOptions options;
@@ -106,7 +106,7 @@ TEST_F(RendererTest, TheTargetShinesThroughNothingAndTintsWhatIsBehindIt) {
   const Mesh plate = makeBox(Vec3(0.1, 0.1, 0.002));
   Renderer renderer({{&plate, {0.6f, 0.5f, 0.1f}}, {&plate, {0.5f, 0.5f, 0.5f}}});
   const auto renderWithTarget = [&](std::optional<double> z) {
-    Snapshot snapshot;
+    scenes::Snapshot snapshot;
     snapshot.bodies = {mounted(0, Vec3::Zero())};
     snapshot.has_target = z.has_value();
     snapshot.target_part = 1;
@@ -125,7 +125,7 @@ TEST_F(RendererTest, TheTargetShinesThroughNothingAndTintsWhatIsBehindIt) {
 TEST_F(RendererTest, ASectionShowsHatchedCutFacesAndASmoothBore) {
   const Mesh tube = makeTube(0.03, 0.015, 0.06, 64);
   Renderer renderer({{&tube, {0.7f, 0.1f, 0.1f}}});
-  Snapshot snapshot;
+  scenes::Snapshot snapshot;
   snapshot.bodies = {mounted(0, Vec3::Zero())};
   Camera camera;
   camera.eye_W = Vec3(0, -0.2, 0);
@@ -160,8 +160,8 @@ TEST_F(RendererTest, ASectionShowsHatchedCutFacesAndASmoothBore) {
 TEST_F(RendererTest, SectionLeavesThePartInHandWholeUnlessTold) {
   const Mesh bar = makeBox(Vec3(0.02, 0.1, 0.02));
   Renderer renderer({{&bar, {0.5f, 0.5f, 0.5f}}});
-  Snapshot snapshot;
-  snapshot.bodies = {{0, Pose(), BodyRole::InHand}};
+  scenes::Snapshot snapshot;
+  snapshot.bodies = {{0, Pose(), scenes::BodyRole::InHand}};
   const Camera camera = fromAbove();
   DrawOptions options = plain();
   options.cut = CutPlane{Vec3::Zero(), Vec3::UnitY()};
@@ -175,7 +175,7 @@ TEST_F(RendererTest, SectionLeavesThePartInHandWholeUnlessTold) {
 TEST_F(RendererTest, AnEmptySceneIsABackgroundAndNonsensePosesAreLeftOut) {
   const Mesh box = makeBox(Vec3(0.1, 0.1, 0.1));
   Renderer renderer({{&box, {0.5f, 0.5f, 0.5f}}});
-  Snapshot snapshot;
+  scenes::Snapshot snapshot;
   const Image empty = renderer.render(snapshot, fromAbove(), plain());
   snapshot.bodies = {mounted(0, Vec3(NAN, 0, 0)), mounted(7, Vec3::Zero())};
   EXPECT_EQ(renderer.render(snapshot, fromAbove(), plain()).rgb, empty.rgb);
@@ -234,4 +234,4 @@ TEST(ShadingMesh, SectionOfABoxIsItsRectangle) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::viewer

@@ -13,7 +13,7 @@
 #include "vps_viewer/image.h"
 #include "vps_viewer/plot.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,10 +30,10 @@ std::string textOf(const std::string& file) {
 }
 
 /// One second: two taps of 5 ms, then contact over 10 mm of travel.
-std::vector<TraceRow> tapTapSlide() {
-  std::vector<TraceRow> trace;
+std::vector<scenes::TraceRow> tapTapSlide() {
+  std::vector<scenes::TraceRow> trace;
   for (int i = 0; i < 1000; ++i) {
-    TraceRow row;
+    scenes::TraceRow row;
     row.time_s = 1e-3 * i;
     row.step = 0;
     row.phase = i < 500 ? 1 : 2;
@@ -47,8 +47,8 @@ std::vector<TraceRow> tapTapSlide() {
   return trace;
 }
 
-Scene smallScene() {
-  Scene scene;
+scenes::Scene smallScene() {
+  scenes::Scene scene;
   scene.name = "peg & <hole>";
   scene.parts.resize(2);
   scene.parts[0].part.name = "hole";
@@ -62,19 +62,19 @@ Scene smallScene() {
   return scene;
 }
 
-AssembleResult smallResult() {
-  AssembleResult result;
+scenes::AssembleResult smallResult() {
+  scenes::AssembleResult result;
   result.scene = "peg & <hole>";
-  StepResult step;
+  scenes::StepResult step;
   step.part = "peg <1>";
   step.failure_reason = "stuck at \"3 mm\" & <up>";
   step.penetration_limit_m = 10e-6;
   step.max_penetration_m = 12.5e-6;
   result.steps = {step};
   result.trace = tapTapSlide();
-  Snapshot snapshot;
+  scenes::Snapshot snapshot;
   snapshot.step = 0;
-  snapshot.bodies = {{1, Pose::translation(Vec3(0, 0, 0.02)), BodyRole::InHand}};
+  snapshot.bodies = {{1, Pose::translation(Vec3(0, 0, 0.02)), scenes::BodyRole::InHand}};
   result.start = result.contact = result.end = {snapshot};
   result.finished = snapshot;
   return result;
@@ -135,7 +135,7 @@ TEST(TraceCsv, HasAColumnForEveryNumberOfEveryRow) {
 }
 
 TEST(Plot, EpisodesTellTapsFromSlides) {
-  const auto episodes = contactEpisodes(tapTapSlide());
+  const auto episodes = scenes::contactEpisodes(tapTapSlide());
   ASSERT_EQ(episodes.size(), 3u);
   EXPECT_FALSE(episodes[0].is_slide);
   EXPECT_FALSE(episodes[1].is_slide);
@@ -174,7 +174,7 @@ TEST(Plot, NothingToPlotIsSaidNotDrawn) {
 
 TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
   const std::string folder = freshFolder("load_changes");
-  AssembleResult result = smallResult();
+  scenes::AssembleResult result = smallResult();
   const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};
   ASSERT_TRUE(fs::create_directories(folder));
   writeReport(smallScene(), result, folder, options);
@@ -182,7 +182,7 @@ TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
   result.real_time.emplace();
   writeReport(smallScene(), result, folder, options);
   EXPECT_NE(textOf(folder + "/report.html").find("nothing was given up"), std::string::npos);
-  LoadLevelChange change;
+  scenes::LoadLevelChange change;
   change.is = "points every 1 mm";
   change.why = "34 % of <0.25 s> had no step";
   change.cost = "no touch is deeper unseen than 1 mm";
@@ -194,4 +194,4 @@ TEST(Report, WhatARunGaveUpToHoldItsRateIsListedWithReasonAndCost) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::viewer

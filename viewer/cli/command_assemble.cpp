@@ -11,22 +11,22 @@
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
 /// What was given up to hold the rate, a line each.
-std::string describeLoadChanges(const std::vector<LoadLevelChange>& load_changes) {
+std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
   std::string lines;
-  for (const LoadLevelChange& change : load_changes)
+  for (const scenes::LoadLevelChange& change : load_changes)
     lines += "pace: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
-             change.is + ", since " + change.why + "; " + inWords(change) + "\n";
+             change.is + ", since " + change.why + "; " + scenes::inWords(change) + "\n";
   return lines;
 }
 
 /// How well time was kept, in two lines.
-std::string describe(const AssembleResult& result) {
-  const RealTimeResult& kept = *result.real_time;
+std::string describe(const scenes::AssembleResult& result) {
+  const scenes::RealTimeResult& kept = *result.real_time;
   const auto us = [](double value) { return fixed(value, 0) + " us"; };
   return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
          fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
@@ -45,9 +45,9 @@ int runAssemble(const AssembleArguments& given) {
   OutputFile json(given.json, {given.scene});
   ProgressBar bar;
   requireNotRead(given.record, {given.scene});
-  Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.record});
+  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.record});
 
-  AssembleOptions options;
+  scenes::AssembleOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   fill(options, bar, cache, given.models_everything);
   options.keep_going = !given.stops_at_failure;
@@ -56,7 +56,7 @@ int runAssemble(const AssembleArguments& given) {
   options.is_real_time = given.is_real_time;
   options.degrades = given.degrades;
   options.has_local_contact = given.has_local_contact;
-  const AssembleResult result = assemble(scene, options);
+  const scenes::AssembleResult result = scenes::assemble(scene, options);
   throwIfStopped();
 
   bar.progress()("writing the report", 1);
@@ -77,4 +77,4 @@ int runAssemble(const AssembleArguments& given) {
   return is_good ? kGood : kBad;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

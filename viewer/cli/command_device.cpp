@@ -13,7 +13,7 @@
 #include "vps_device/dual_arm_character.h"
 #include "vps_viewer/device_plot.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -23,7 +23,7 @@ std::string range(double least, double greatest, int digits, double unit = 1) {
   return fixed(least * unit, digits) + " - " + fixed(greatest * unit, digits);
 }
 
-std::string range(const Extent& extent, int digits, double unit = 1) {
+std::string range(const device::Extent& extent, int digits, double unit = 1) {
   return range(extent.least, extent.greatest, digits, unit);
 }
 
@@ -31,10 +31,10 @@ std::string range(const Extent& extent, int digits, double unit = 1) {
 std::string duty(double continuous, double peak, int digits = 1) {
   return fixed(continuous, digits) + " -> " + fixed(peak, digits);
 }
-std::string least(const Duty& d, int digits = 1) {
+std::string least(const device::Duty& d, int digits = 1) {
   return duty(d.continuous.least, d.peak.least, digits);
 }
-std::string typical(const Duty& d, int digits = 1) {
+std::string typical(const device::Duty& d, int digits = 1) {
   return duty(d.continuous.median, d.peak.median, digits);
 }
 
@@ -43,7 +43,7 @@ std::string box(const Vec3& size_m, double scale) {
   return fixed(mm.x(), 0) + " x " + fixed(mm.y(), 0) + " x " + fixed(mm.z(), 0);
 }
 
-void addWorkspace(Table& table, const DualArmCharacter& c) {
+void addWorkspace(Table& table, const device::DualArmCharacter& c) {
   table.add({"workspace, x y z, as stated", "mm", box(c.workspace_m, 1), "400 x 600 x 400"});
   table.add({"  reached with the handle straight", "mm", box(c.workspace_m, c.straight_scale), kNone});
   table.add({"  reached with every tilt to 45 deg", "mm", box(c.workspace_m, c.tilted_scale), kNone});
@@ -52,8 +52,8 @@ void addWorkspace(Table& table, const DualArmCharacter& c) {
   table.add({"  over the workspace", "sr", range(c.solid_angle_sr, 1), kNone});
 }
 
-void addStrength(Table& table, const DualArmCharacter& c) {
-  const DeviceLimits& limits = c.limits_1kHz;
+void addStrength(Table& table, const device::DualArmCharacter& c) {
+  const device::DeviceLimits& limits = c.limits_1kHz;
   const std::string given_N = duty(limits.continuous_force_N, limits.peak_force_N);
   const std::string given_Nm = duty(limits.continuous_torque_Nm, limits.peak_torque_Nm);
   table.add({"force given out at most", "N", given_N, "12.5 -> 30"});
@@ -72,9 +72,9 @@ void addStrength(Table& table, const DualArmCharacter& c) {
   table.add({"  motors, typical", "N m", typical(c.any_torque_Nm, 2), "1.8 -> 10 (5)"});
 }
 
-void addReading(Table& table, const DualArmCharacter& c) {
-  const auto um = [](const Extent& e) { return fixed(1e6 * e.greatest, 0); };
-  const auto rad = [](const Extent& e) { return fixed(e.greatest, 4); };
+void addReading(Table& table, const device::DualArmCharacter& c) {
+  const auto um = [](const device::Extent& e) { return fixed(1e6 * e.greatest, 0); };
+  const auto rad = [](const device::Extent& e) { return fixed(e.greatest, 4); };
   table.add({"resolution, worst: to 45 deg from straight", "um", um(c.resolution_m), "100 (7)"});
   table.add({"  every direction the gimbal leaves", "um", um(c.far_resolution_m), kNone});
   table.add({"angular resolution, worst: to 45 deg", "rad", rad(c.resolution_rad), kNone});
@@ -84,7 +84,7 @@ void addReading(Table& table, const DualArmCharacter& c) {
   table.add({"greatest force over typical friction", "", ratio, "nearly 100 (8)"});
 }
 
-void addMechanics(Table& table, const DualArmCharacter& c) {
+void addMechanics(Table& table, const device::DualArmCharacter& c) {
   table.add({"stiffness, handle's direction held", "N/mm", range(c.held_stiffness_N_per_m, 1, 1e-3),
              "14 - 18 (6)"});
   table.add({"  handle free to turn", "N/mm", range(c.free_stiffness_N_per_m, 1, 1e-3), kNone});
@@ -103,7 +103,8 @@ void addMechanics(Table& table, const DualArmCharacter& c) {
       {"  every direction the gimbal leaves", "mm", fixed(1e3 * c.far_clearance_m, 0), "never meet (1)"});
 }
 
-void addCoupling(Table& table, const char* rate, const DeviceLimits& limits, const CouplingGains& gains) {
+void addCoupling(Table& table, const char* rate, const device::DeviceLimits& limits,
+                 const CouplingGains& gains) {
   const std::string at = std::string(" at ") + rate;
   table.add({"coupling, derived" + at + ": stiffness", "N/mm", fixed(1e-3 * gains.k_N_per_m, 2), kNone});
   table.add({"  damping (the device has " + fixed(limits.damping_Ns_per_m, 1) + ")", "N s/m",
@@ -138,7 +139,7 @@ assumed, and why stands beside each in data/dual_arm.toml. Where this device and
     assumed; with a fifth less of it the peak would be the paper's two decades.
 )";
 
-void print(const DualArmCharacter& c) {
+void print(const device::DualArmCharacter& c) {
   Table table({"<dual arm", "<unit", "this device", "the paper"});
   addWorkspace(table, c);
   addStrength(table, c);
@@ -159,12 +160,13 @@ int runDevice(const DeviceArguments& given) {
         "arm's figures beside the paper's");
   const std::vector<std::string> inputs = {given.parameters};
   OutputFile json(given.json, inputs);
-  const DualArmFile file = given.parameters.empty() ? builtInDualArm() : loadDualArm(given.parameters);
+  const device::DualArmFile file =
+      given.parameters.empty() ? device::builtInDualArm() : device::loadDualArm(given.parameters);
   ProgressBar bar;
-  const DualArmCharacter character = characterise(file.parameters, bar.progress());
+  const device::DualArmCharacter character = device::characterise(file.parameters, bar.progress());
   const PlotOutcome plot = given.plot.empty()
                                ? PlotOutcome{true, {}}
-                               : plotVerticalForces(verticalForces(file.parameters), given.plot);
+                               : plotVerticalForces(device::verticalForces(file.parameters), given.plot);
   json.write(toJson(character, file));
   bar.clear();
   print(character);
@@ -174,4 +176,4 @@ int runDevice(const DeviceArguments& given) {
   return kGood;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "table.h"
 #include "terminal.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -17,33 +17,33 @@ std::string megabytes(std::size_t bytes) {
   return fixed(1e-6 * static_cast<double>(bytes), 2);
 }
 
-std::string namesOf(const Scene& scene, const std::vector<std::size_t>& parts) {
+std::string namesOf(const scenes::Scene& scene, const std::vector<std::size_t>& parts) {
   std::string names;
   for (const std::size_t i : parts) names += (names.empty() ? "" : ", ") + scene.parts[i].part.name;
   return names.empty() ? "-" : names;
 }
 
-std::string modelsOf(const PlannedPart& part) {
+std::string modelsOf(const scenes::PlannedPart& part) {
   if (part.has_map && part.has_shell) return "map and shell";
   return part.has_map ? "map" : part.has_shell ? "shell" : "neither";
 }
 
-std::string whyOf(const Scene& scene, const PlannedPart& part) {
+std::string whyOf(const scenes::Scene& scene, const scenes::PlannedPart& part) {
   if (!part.same_as) return part.why;
   return part.why + "; shares the models of " + scene.parts[*part.same_as].part.name;
 }
 
-std::string whereOf(const PlannedPart& part) {
+std::string whereOf(const scenes::PlannedPart& part) {
   if (!part.has_map && !part.has_shell) return "-";
   if (part.kept_P.empty()) return "whole";
   return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
 }
 
-std::string tableOfParts(const Scene& scene, const ExplainedPlan& explained) {
+std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedPlan& explained) {
   Table table({"<part", "<modelled", "<where", "MB", "points", "build [s]", "<why"});
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    const PlannedPart& part = explained.plan.parts[i];
-    const PartCost& cost = explained.cost.parts[i];
+    const scenes::PlannedPart& part = explained.plan.parts[i];
+    const scenes::PartCost& cost = explained.cost.parts[i];
     table.add({scene.parts[i].part.name, modelsOf(part), whereOf(part),
                megabytes(cost.map_bytes + cost.shell_bytes), std::to_string(cost.points),
                fixed(cost.map_wall_s + cost.shell_wall_s, 3), whyOf(scene, part)});
@@ -51,18 +51,18 @@ std::string tableOfParts(const Scene& scene, const ExplainedPlan& explained) {
   return table.text();
 }
 
-std::string regionOf(const PlannedStep& step) {
+std::string regionOf(const scenes::PlannedStep& step) {
   if (!step.region_W) return "anywhere";
   const Vec3 size = 1e3 * step.region_W->size();
   return fixed(size.x(), 0) + " x " + fixed(size.y(), 0) + " x " + fixed(size.z(), 0);
 }
 
-std::string tableOfSteps(const Scene& scene, const ExplainedPlan& explained) {
+std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedPlan& explained) {
   Table table({"<step", "<moves", "<within [mm]", "<against the field of", "<left out", "field MB", "points",
                "cook [s]"});
   for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
-    const PlannedStep& step = explained.plan.steps[s];
-    const StepCost& cost = explained.cost.steps[s];
+    const scenes::PlannedStep& step = explained.plan.steps[s];
+    const scenes::StepCost& cost = explained.cost.steps[s];
     table.add({std::to_string(s + 1), step.part ? scene.parts[*step.part].part.name : "all that is not fixed",
                regionOf(step), namesOf(scene, step.cooked), namesOf(scene, step.left_out),
                megabytes(cost.bytes), std::to_string(cost.points),
@@ -71,7 +71,7 @@ std::string tableOfSteps(const Scene& scene, const ExplainedPlan& explained) {
   return table.text();
 }
 
-std::string totalOf(const char* words, const PlanCost& cost) {
+std::string totalOf(const char* words, const scenes::PlanCost& cost) {
   return std::string(words) + megabytes(cost.most.bytes) + " MB at most (" +
          std::to_string(cost.most.voxmaps) + " voxmaps, " + std::to_string(cost.most.pointshells) +
          " pointshells, " + std::to_string(cost.most.points) + " points and " +
@@ -84,17 +84,17 @@ std::string totalOf(const char* words, const PlanCost& cost) {
 int runExplain(const ExplainArguments& given) {
   OutputFile json(given.json, {given.scene});
   ProgressBar bar;
-  const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
-  ModelOptions options;
+  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
+  scenes::ModelOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   fill(options, bar, cache, given.models_everything);
-  const PlanFor purpose =
-      given.is_for_simulate || scene.steps.empty() ? PlanFor::Simulate : PlanFor::Assemble;
-  ExplainAnswer answer = {scene, explain(scene, purpose, options), {}};
+  const scenes::PlanFor purpose =
+      given.is_for_simulate || scene.steps.empty() ? scenes::PlanFor::Simulate : scenes::PlanFor::Assemble;
+  ExplainAnswer answer = {scene, scenes::explain(scene, purpose, options), {}};
   if (!given.models_everything) {
     options.models_everything = true;
     options.warn = {};  // said once
-    answer.everything = explain(scene, purpose, options);
+    answer.everything = scenes::explain(scene, purpose, options);
   }
   throwIfStopped();
   json.write(toJson(answer));
@@ -111,4 +111,4 @@ int runExplain(const ExplainArguments& given) {
   return kGood;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

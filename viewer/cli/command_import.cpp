@@ -16,7 +16,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -83,7 +83,7 @@ std::string poseText(const Pose& pose) {
          "], rotation_xyzw = [" + n(q.x()) + ", " + n(q.y()) + ", " + n(q.z()) + ", " + n(q.w()) + "]}";
 }
 
-Box boundsAt(const ImportedPart& part) {
+Box boundsAt(const scenes::ImportedPart& part) {
   Box box;
   for (const Vec3& p_P : part.mesh.vertices) box.add(part.X_WP * p_P);
   return box;
@@ -95,9 +95,9 @@ struct Proposal {
   std::vector<std::size_t> steps;
 };
 
-Proposal propose(const std::vector<ImportedPart>& parts) {
+Proposal propose(const std::vector<scenes::ImportedPart>& parts) {
   std::vector<double> volume_m3, foot_m;
-  for (const ImportedPart& part : parts) {
+  for (const scenes::ImportedPart& part : parts) {
     const Box box = boundsAt(part);
     volume_m3.push_back(box.size().prod());
     foot_m.push_back(box.min.z());
@@ -112,7 +112,7 @@ Proposal propose(const std::vector<ImportedPart>& parts) {
   return proposal;
 }
 
-std::string sceneText(const ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts,
+std::string sceneText(const scenes::ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts,
                       const Proposal& proposal) {
   std::string out =
       "# From " + quoted(cad.file) + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.
@@ -137,13 +137,14 @@ unit = "m"
 }  // namespace
 
 int runImport(const ImportArguments& given) {
-  ImportSettings settings;
+  scenes::ImportSettings settings;
   if (!given.units.empty()) {
-    settings.unit_m = unitFromText(given.units);
+    settings.unit_m = scenes::unitFromText(given.units);
     if (!settings.unit_m)
       throw LoadError("", "", "--units is '" + given.units + "'; expected one of: mm, cm, m, um, inch");
   }
-  if (!given.deflection.empty()) settings.deflection_m = lengthFromText(given.deflection, "--deflection");
+  if (!given.deflection.empty())
+    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
   if (!(settings.deflection_m > 0))
     throw LoadError("", "", "--deflection is " + given.deflection + "; expected more than 0");
   std::error_code error;
@@ -153,12 +154,12 @@ int runImport(const ImportArguments& given) {
   OutputFolder out(given.out);
   OutputFile json(given.json, {given.cad});
   ProgressBar bar;
-  const ImportedCad cad = importCad(given.cad, settings, bar.progress());
+  const scenes::ImportedCad cad = scenes::importCad(given.cad, settings, bar.progress());
 
   ImportAnswer answer{given.cad, cad.format, {}, cad.warnings};
   std::set<std::string> taken;
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
-  for (const ImportedPart& part : cad.parts) {
+  for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
     const ImportedPartAnswer row{part.name, fileNameOf(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
@@ -182,4 +183,4 @@ int runImport(const ImportArguments& given) {
   return kGood;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -22,7 +22,7 @@
 #include "vps/query.h"
 #include "vps_scenes/import.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -77,16 +77,16 @@ std::vector<Pose> readPoses(const QueryArguments& given) {
 
 /// All parts of a file as one mesh, in the file's frame. Says what the file lacks.
 Mesh readMesh(const std::string& file, const std::string& units) {
-  ImportSettings settings;
+  scenes::ImportSettings settings;
   if (!units.empty()) {
-    settings.unit_m = unitFromText(units);
+    settings.unit_m = scenes::unitFromText(units);
     if (!settings.unit_m)
       throw LoadError("", "", "--units is '" + units + "'; expected one of: mm, cm, m, um, inch");
   }
-  const ImportedCad cad = importCad(file, settings);
+  const scenes::ImportedCad cad = scenes::importCad(file, settings);
   for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
   Mesh mesh;
-  for (const ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
+  for (const scenes::ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
   requireUsable(mesh, file, "");
   return mesh;
 }
@@ -115,7 +115,8 @@ struct Side {
   std::optional<BudgetQuery> within_budget;  ///< made when first asked for
 
   Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
-       const std::string& points_name, const std::optional<VoxMapCache>& cache, const Progress& progress)
+               const std::string& points_name, const std::optional<VoxMapCache>& cache,
+               const Progress& progress)
       : map(mapOf(field, {.voxel_m = fidelity.voxel_m}, field_name, cache, progress)),
         shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)) {}
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
@@ -168,7 +169,8 @@ bool isSaturated(const QueryResult& found, const VoxMap& map) {
 
 /// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
 /// half.
-PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Asking& asking) {
+PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
+                    const Asking& asking) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
   const SideResult first = ask(b_in_a, X_AB, X_AB.p, asking);
@@ -196,12 +198,12 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   return answer;
 }
 
-TickTimes summary(std::vector<double>& us) {
+scenes::TickTimes summary(std::vector<double>& us) {
   std::sort(us.begin(), us.end());
   const auto at = [&](double share) {
     return us[static_cast<std::size_t>(share * static_cast<double>(us.size() - 1))];
   };
-  TickTimes times;
+  scenes::TickTimes times;
   times.count = us.size();
   times.p50_us = at(0.5);
   times.p99_us = at(0.99);
@@ -294,4 +296,4 @@ int runQuery(const QueryArguments& given) {
   return kGood;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -13,19 +13,19 @@
 #include "vps/load_error.h"
 #include "vps_scenes/replay.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
-void writeTables(const RecordedRun& run, const OutputFolder& out) {
-  for (const auto& [name, text] : csvTables(run)) out.write(name + ".csv", text);
+void writeTables(const device::RecordedRun& run, const OutputFolder& out) {
+  for (const auto& [name, text] : device::csvTables(run)) out.write(name + ".csv", text);
   std::string about = "key,value\n";
   for (const auto& [key, value] : run.head.about) about += csvLine({key, value});
   out.write("about.csv", about);
 }
 
 /// Says what the replay found; returns the exit status.
-int verdict(const RecordedRun& run, const ReplayResult& replayed) {
+int verdict(const device::RecordedRun& run, const scenes::ReplayResult& replayed) {
   const double end_s = replayed.result.simulated_s;
   if (!replayed.departure.empty()) {
     if (!replayed.other_version.empty()) warn(run.file + " " + replayed.other_version);
@@ -47,7 +47,7 @@ int runReplay(const ReplayArguments& given) {
   if (!given.out.empty()) out.emplace(given.out);
   if (!given.csv.empty()) csv.emplace(given.csv);
   OutputFile json(given.json, {given.recording});
-  const RecordedRun run = loadRecording(given.recording);
+  const device::RecordedRun run = device::loadRecording(given.recording);
   if (csv) {
     writeTables(run, *csv);
     csv->commit();
@@ -58,12 +58,12 @@ int runReplay(const ReplayArguments& given) {
   }
 
   ProgressBar bar;
-  ReplayOptions options;
+  scenes::ReplayOptions options;
   options.progress = bar.progress();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   options.cache = cache ? &*cache : nullptr;
   options.stop = &stopRequested();
-  const ReplayResult replayed = replay(run, options);
+  const scenes::ReplayResult replayed = scenes::replay(run, options);
   throwIfStopped();
 
   std::vector<std::string> notes;
@@ -79,4 +79,4 @@ int runReplay(const ReplayArguments& given) {
   return verdict(run, replayed);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -12,21 +12,21 @@
 #include "vps/load_error.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
-std::string traceHead(const std::vector<BodyState>& bodies) {
+std::string traceHead(const std::vector<scenes::BodyState>& bodies) {
   std::vector<std::string> cells = {"time_s", "max_depth_m"};
-  for (const BodyState& body : bodies)
+  for (const scenes::BodyState& body : bodies)
     for (const char* column : {".x_m", ".y_m", ".z_m", ".qx", ".qy", ".qz", ".qw"})
       cells.push_back(body.name + column);
   return csvLine(cells);
 }
 
-std::string traceRow(double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
+std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies, double max_depth_m) {
   std::vector<std::string> cells = {csvNumber(time_s), csvNumber(max_depth_m)};
-  for (const BodyState& body : bodies) {
+  for (const scenes::BodyState& body : bodies) {
     const Vec3& p = body.X_WP.p;
     const Quat q = body.X_WP.quaternion();
     for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()})
@@ -42,27 +42,27 @@ int runSimulate(const SimulateArguments& given) {
     throw LoadError("", "", "--seconds must be a finite number of more than 0");
   OutputFile trace(given.trace, {given.scene}), json(given.json, {given.scene});
   ProgressBar bar;
-  Scene scene = sceneFrom(given.scene, given.fidelity, {given.trace, given.json});
+  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.trace, given.json});
 
   std::string rows;
-  SimulateOptions options;
+  scenes::SimulateOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   fill(options, bar, cache, given.models_everything);
   options.is_real_time = given.is_real_time;
   options.stop = &stopRequested();
   if (!given.trace.empty())
-    options.trace = [&rows](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
+    options.trace = [&rows](double time_s, const std::vector<scenes::BodyState>& bodies, double max_depth_m) {
       if (rows.empty()) rows = traceHead(bodies);
       rows += traceRow(time_s, bodies, max_depth_m);
     };
-  const SimulateResult result = simulate(scene, given.seconds, options);
+  const scenes::SimulateResult result = scenes::simulate(scene, given.seconds, options);
   throwIfStopped();
   trace.write(rows);
   json.write(toJson(given.scene, given.seconds, result));
   bar.clear();
 
   Table table({"<body", "x [mm]", "y [mm]", "z [mm]", "speed [mm/s]", "spin [rad/s]"});
-  for (const BodyState& body : result.bodies)
+  for (const scenes::BodyState& body : result.bodies)
     table.add({body.name, fixed(body.X_WP.p.x() * 1e3, 4), fixed(body.X_WP.p.y() * 1e3, 4),
                fixed(body.X_WP.p.z() * 1e3, 4), fixed(body.V_WP_W.v.norm() * 1e3, 4),
                fixed(body.V_WP_W.w.norm(), 4)});
@@ -79,4 +79,4 @@ int runSimulate(const SimulateArguments& given) {
   return kGood;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

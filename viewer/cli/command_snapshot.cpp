@@ -13,7 +13,7 @@
 #include "vps_viewer/image.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -40,11 +40,11 @@ std::array<int, 2> sizeFromText(const std::string& text) {
   return size;
 }
 
-Snapshot finished(const Scene& scene) {
-  Snapshot snapshot;
+scenes::Snapshot finished(const scenes::Scene& scene) {
+  scenes::Snapshot snapshot;
   for (std::size_t i = 0; i < scene.parts.size(); ++i)
-    snapshot.bodies.push_back({i, scene.parts[i].X_WP, BodyRole::Mounted});
-  for (const SceneStep& step : scene.steps) snapshot.bodies[step.part].X_WP = step.X_WP_target;
+    snapshot.bodies.push_back({i, scene.parts[i].X_WP, scenes::BodyRole::Mounted});
+  for (const scenes::SceneStep& step : scene.steps) snapshot.bodies[step.part].X_WP = step.X_WP_target;
   return snapshot;
 }
 
@@ -70,9 +70,9 @@ int runSnapshot(const SnapshotArguments& given) {
   // Before the work: an image that is missing is a mistake in the call.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
-  const Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
+  const scenes::Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
   const RenderScene drawn = drawnMeshes(scene);
-  const Snapshot snapshot = finished(scene);
+  const scenes::Snapshot snapshot = finished(scene);
   const Box box = snapshotBounds(drawn, snapshot);
   if (given.has_section) options.cut = CutPlane{.p_W = box.center(), .n_W = -Vec3::UnitY()};
   Camera camera = frameScene(box, views().at(given.view), 0.5, double(width) / height);
@@ -110,4 +110,4 @@ int runSnapshot(const SnapshotArguments& given) {
   return is_equal ? kGood : kBad;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

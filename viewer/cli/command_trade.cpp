@@ -16,20 +16,20 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
 constexpr double kSeconds = 46;  ///< of the fifty that a trade may take
 
-void print(const TradeResult& result) {
+void print(const scenes::TradeResult& result) {
   std::printf("%s, %s; models asked at %zu poses, %zu of them inside\n", result.scene.c_str(),
               result.excerpt.c_str(), result.poses, result.poses_inside);
   std::fputs(tradeTable(result).c_str(), stdout);
   std::printf("\nAgainst the scene as it is:\n");
-  for (const std::string& words : tradeKnobs(result)) std::printf("  %s\n", words.c_str());
+  for (const std::string& words : scenes::tradeKnobs(result)) std::printf("  %s\n", words.c_str());
   std::printf("\n");
-  for (const std::string& words : tradeAnswers(result)) std::printf("%s\n", words.c_str());
+  for (const std::string& words : scenes::tradeAnswers(result)) std::printf("%s\n", words.c_str());
   for (const std::string& words : result.fixed) std::printf("not a scene's choice: %s\n", words.c_str());
   for (const std::string& words : result.left_out) std::printf("left out: %s\n", words.c_str());
 }
@@ -50,19 +50,19 @@ double bytesFromText(const std::string& text) {
   return scale * number;
 }
 
-std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
+std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
   if (!given.budget_hz && !given.tolerance && !given.memory) return std::nullopt;
   if (given.is_thorough || !given.out.empty() || !given.csv.empty())
     throw LoadError("", "",
                     "--thorough, --out and --csv are for what is measured; with --tolerance, --budget-hz or "
                     "--memory nothing is: leave out one or the other");
-  FidelityWish wish;
+  scenes::FidelityWish wish;
   // The command line has looked at its range, which lets nan through.
   if (given.budget_hz && !std::isfinite(*given.budget_hz))
     throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
   wish.budget_hz = given.budget_hz;
   if (given.tolerance) {
-    wish.tolerance_m = lengthFromText(*given.tolerance, "--tolerance");
+    wish.tolerance_m = scenes::lengthFromText(*given.tolerance, "--tolerance");
     if (!(*wish.tolerance_m > 0))
       throw LoadError("", "", "--tolerance is " + *given.tolerance + "; expected more than 0");
   }
@@ -71,15 +71,15 @@ std::optional<FidelityWish> wishFrom(const TradeArguments& given) {
 }
 
 /// Picks, and says what to paste into the scene.
-int pick(Scene scene, const FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
-  const FidelityChoice choice = chooseFidelity(scene, wish, bar.progress());
+int pick(scenes::Scene scene, const scenes::FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
+  const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, bar.progress());
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
     say("no fidelity will do: " + choice.failure_reason);
     return kBad;
   }
-  std::printf("# %s\n%s", describe(choice).c_str(), toToml(choice.fidelity).c_str());
+  std::printf("# %s\n%s", scenes::describe(choice).c_str(), scenes::toToml(choice.fidelity).c_str());
   return kGood;
 }
 
@@ -88,14 +88,14 @@ int pick(Scene scene, const FidelityWish& wish, OutputFile& json, ProgressBar& b
 int runTrade(const TradeArguments& given) {
   using Clock = std::chrono::steady_clock;
   const auto begun = Clock::now();
-  const std::optional<FidelityWish> wish = wishFrom(given);
+  const std::optional<scenes::FidelityWish> wish = wishFrom(given);
   OutputFile json(given.json, {given.scene}), csv(given.csv, {given.scene});
   std::optional<OutputFolder> out;
   if (!given.out.empty()) out.emplace(given.out);
   ProgressBar bar;
-  const Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
+  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
   if (wish) return pick(scene, *wish, json, bar);
-  TradeOptions options;
+  scenes::TradeOptions options;
   // Without throwing when it is stopped: what was finished is kept.
   options.progress = [show = bar.progress()](std::string_view doing, double share) {
     if (!stopRequested()) show(doing, share);
@@ -105,7 +105,7 @@ int runTrade(const TradeArguments& given) {
   options.stop = &stopRequested();
   // Reading the scene counts, and plots come after.
   options.seconds = kSeconds - std::chrono::duration<double>(Clock::now() - begun).count();
-  const TradeResult result = trade(scene, options);
+  const scenes::TradeResult result = scenes::trade(scene, options);
   const bool is_stopped = stopRequested();
   if (result.rows.empty()) throwIfStopped();
 
@@ -127,4 +127,4 @@ int runTrade(const TradeArguments& given) {
   return kCouldNot;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -13,7 +13,7 @@
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::viewer {
 
 class ProgressBar;
 
@@ -130,7 +130,7 @@ std::optional<VoxMapCache> cacheFrom(const std::string& folder);
 
 /// What every command tells of models while they are built, where it keeps them, and what it is asked to
 /// build. Bar and cache outlive the options.
-void fill(ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+void fill(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
           bool models_everything);
 
 /// The views that --view knows.
@@ -138,7 +138,7 @@ std::vector<std::string> viewNames();
 
 /// The scene with the command line's fidelity over its own; what its CAD files lack is said on stderr.
 /// Throws LoadError when one of `outputs` is a file that the scene was read from.
-Scene sceneFrom(const std::string& file, const FidelityArguments& given,
-                const std::vector<std::string>& outputs);
+scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
+                        const std::vector<std::string>& outputs);
 
-}  // namespace vps
+}  // namespace vps::viewer

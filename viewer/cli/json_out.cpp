@@ -8,7 +8,7 @@
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -28,23 +28,23 @@ std::string text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json shortTimes(const TickTimes& times) {
+Json shortTimes(const scenes::TickTimes& times) {
   return {{"median", times.p50_us}, {"p99", times.p99_us}, {"max", times.max_us}};
 }
 
-Json loop(double rate_hz, const TickTimes& times) {
+Json loop(double rate_hz, const scenes::TickTimes& times) {
   return {{"rate_hz", rate_hz}, {"ticks", times.count}};
 }
 
-Json percentiles(const TickTimes& times) {
+Json percentiles(const scenes::TickTimes& times) {
   return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p999", times.p999_us}, {"max", times.max_us}};
 }
 
-Json loopWall(const TickTimes& times) {
+Json loopWall(const scenes::TickTimes& times) {
   return {{"missed", times.missed}, {"tick_us", percentiles(times)}};
 }
 
-Json pace(const LoadLevelChange& change) {
+Json pace(const scenes::LoadLevelChange& change) {
   return {{"time_s", change.time_s},
           {"from", {{"level", change.from}, {"words", change.was}}},
           {"to", {{"level", change.to}, {"words", change.is}}},
@@ -59,7 +59,7 @@ Json pace(const LoadLevelChange& change) {
 }
 
 /// How well a run in real time kept its time, into the haptic and the physics loop's object.
-void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
+void addRealTime(const scenes::RealTimeResult& kept, Json& haptic, Json& physics) {
   haptic["missed_by"] = Json::object();
   for (const auto& [cause, periods] : kept.missed_by) haptic["missed_by"][cause] = periods;
   haptic["late_us"] = percentiles(kept.late);
@@ -73,10 +73,11 @@ void addRealTime(const RealTimeResult& kept, Json& haptic, Json& physics) {
   physics["missed_periods"] = kept.physics_missed;
   physics["behind_s"] = kept.behind_s;
   physics["load_changes"] = Json::array();
-  for (const LoadLevelChange& change : kept.load_changes) physics["load_changes"].push_back(pace(change));
+  for (const scenes::LoadLevelChange& change : kept.load_changes)
+    physics["load_changes"].push_back(pace(change));
 }
 
-Json modelled(const ModelledCost& cost) {
+Json modelled(const scenes::ModelledCost& cost) {
   return {{"voxmaps", cost.voxmaps},
           {"pointshells", cost.pointshells},
           {"points", cost.points},
@@ -84,7 +85,7 @@ Json modelled(const ModelledCost& cost) {
           {"bytes", cost.bytes}};
 }
 
-Json step(const StepResult& step) {
+Json step(const scenes::StepResult& step) {
   return {{"part", step.part},
           {"completed", step.completed},
           {"failure_reason", step.failure_reason},
@@ -110,9 +111,9 @@ Json step(const StepResult& step) {
 
 }  // namespace
 
-std::string toJson(const AssembleResult& result) {
+std::string toJson(const scenes::AssembleResult& result) {
   Json cook_s = Json::array(), swap_s = Json::array(), missed = Json::array(), steps = Json::array();
-  for (const StepResult& s : result.steps) {
+  for (const scenes::StepResult& s : result.steps) {
     cook_s.push_back(s.cook_wall_s);
     swap_s.push_back(s.swap_wall_s);
     missed.push_back(s.missed_while_cooking);
@@ -148,9 +149,9 @@ std::string toJson(const AssembleResult& result) {
                {"modelled", modelled(result.modelled)}});
 }
 
-std::string toJson(const std::string& scene, double seconds, const SimulateResult& result) {
+std::string toJson(const std::string& scene, double seconds, const scenes::SimulateResult& result) {
   Json bodies = Json::array();
-  for (const BodyState& body : result.bodies)
+  for (const scenes::BodyState& body : result.bodies)
     bodies.push_back({{"name", body.name},
                       {"position_m", list(body.X_WP.p)},
                       {"rotation_xyzw", list(body.X_WP.quaternion())},
@@ -234,15 +235,15 @@ Json list(const Box& box) {
   return {list(box.min), list(box.max)};
 }
 
-Json names(const Scene& scene, const std::vector<std::size_t>& parts) {
+Json names(const scenes::Scene& scene, const std::vector<std::size_t>& parts) {
   Json out = Json::array();
   for (const std::size_t i : parts) out.push_back(scene.parts[i].part.name);
   return out;
 }
 
-Json plannedPart(const Scene& scene, const ExplainedPlan& explained, std::size_t i) {
-  const PlannedPart& part = explained.plan.parts[i];
-  const PartCost& cost = explained.cost.parts[i];
+Json plannedPart(const scenes::Scene& scene, const scenes::ExplainedPlan& explained, std::size_t i) {
+  const scenes::PlannedPart& part = explained.plan.parts[i];
+  const scenes::PartCost& cost = explained.cost.parts[i];
   Json kept = Json::array();
   for (const Box& box : part.kept_P) kept.push_back(list(box));
   return {{"part", scene.parts[i].part.name},
@@ -256,9 +257,9 @@ Json plannedPart(const Scene& scene, const ExplainedPlan& explained, std::size_t
           {"why", part.why}};
 }
 
-Json plannedStep(const Scene& scene, const ExplainedPlan& explained, std::size_t s) {
-  const PlannedStep& step = explained.plan.steps[s];
-  const StepCost& cost = explained.cost.steps[s];
+Json plannedStep(const scenes::Scene& scene, const scenes::ExplainedPlan& explained, std::size_t s) {
+  const scenes::PlannedStep& step = explained.plan.steps[s];
+  const scenes::StepCost& cost = explained.cost.steps[s];
   return {{"moves", step.part ? Json(scene.parts[*step.part].part.name) : Json(nullptr)},
           {"region_m", step.region_W ? list(*step.region_W) : Json(nullptr)},
           {"cooked", names(scene, step.cooked)},
@@ -268,11 +269,11 @@ Json plannedStep(const Scene& scene, const ExplainedPlan& explained, std::size_t
           {"field_points", cost.points}};
 }
 
-Json explainWall(const PlanCost& cost) {
+Json explainWall(const scenes::PlanCost& cost) {
   Json parts = Json::array(), steps = Json::array();
-  for (const PartCost& part : cost.parts)
+  for (const scenes::PartCost& part : cost.parts)
     parts.push_back({{"map_s", part.map_wall_s}, {"shell_s", part.shell_wall_s}});
-  for (const StepCost& step : cost.steps) steps.push_back(step.cook_wall_s);
+  for (const scenes::StepCost& step : cost.steps) steps.push_back(step.cook_wall_s);
   return {{"build_s", cost.build_wall_s}, {"cook_s", cost.cook_wall_s}, {"parts", parts}, {"steps", steps}};
 }
 
@@ -287,14 +288,14 @@ Json fidelity(const Fidelity& f) {
           {"solver_iterations", f.solver_iterations}};
 }
 
-Json cpuTimes(const TickTimes& times) {
+Json cpuTimes(const scenes::TickTimes& times) {
   return {{"median", times.p50_us},
           {"p99", times.p99_us},
           {"cpu_median", times.cpu_p50_us},
           {"cpu_p99", times.cpu_p99_us}};
 }
 
-Json tradeRow(const TradeRow& row) {
+Json tradeRow(const scenes::TradeRow& row) {
   Json json = {{"name", row.what.name},
                {"knob", toText(row.what.knob)},
                {"fidelity", fidelity(row.what.fidelity)},
@@ -323,7 +324,7 @@ Json tradeRow(const TradeRow& row) {
   return json;
 }
 
-Json tradeRowWall(const TradeRow& row) {
+Json tradeRowWall(const scenes::TradeRow& row) {
   Json json = {{"name", row.what.name}, {"models_s", row.models_wall_s}, {"on_front", row.is_on_front}};
   if (row.has_probe) {
     json["query_us"] = cpuTimes(row.query);
@@ -334,7 +335,7 @@ Json tradeRowWall(const TradeRow& row) {
     json["run_s"] = row.run.wall_s;
     json["physics_us"] = cpuTimes(row.run.physics);
     json["haptic_us"] = cpuTimes(row.run.haptic);
-    json["rate_hz"] = rateOf(row);
+    json["rate_hz"] = scenes::rateOf(row);
   }
   return json;
 }
@@ -342,14 +343,14 @@ Json tradeRowWall(const TradeRow& row) {
 }  // namespace
 
 std::string toJson(const ExplainAnswer& answer) {
-  const Scene& scene = answer.scene;
-  const Plan& plan = answer.chosen.plan;
+  const scenes::Scene& scene = answer.scene;
+  const scenes::Plan& plan = answer.chosen.plan;
   Json parts = Json::array(), steps = Json::array();
   for (std::size_t i = 0; i < plan.parts.size(); ++i) parts.push_back(plannedPart(scene, answer.chosen, i));
   for (std::size_t s = 0; s < plan.steps.size(); ++s) steps.push_back(plannedStep(scene, answer.chosen, s));
   Json json = {{"wall", explainWall(answer.chosen.cost)},
                {"scene", scene.name},
-               {"for", plan.purpose == PlanFor::Assemble ? "assemble" : "simulate"},
+               {"for", plan.purpose == scenes::PlanFor::Assemble ? "assemble" : "simulate"},
                {"models_everything", plan.models_everything},
                {"voxel_m", scene.fidelity.voxel_m},
                {"point_spacing_m", scene.fidelity.spacing_m},
@@ -364,7 +365,7 @@ std::string toJson(const ExplainAnswer& answer) {
   return text(json);
 }
 
-std::string toJson(const std::string& scene, const FidelityChoice& choice) {
+std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice) {
   const Json json = {{"scene", scene},
                      {"is_met", choice.is_met},
                      {"failure_reason", choice.failure_reason},
@@ -377,16 +378,16 @@ std::string toJson(const std::string& scene, const FidelityChoice& choice) {
   return text(json);
 }
 
-std::string toJson(const TradeResult& result) {
+std::string toJson(const scenes::TradeResult& result) {
   Json rows = Json::array(), wall = Json::array();
-  for (const TradeRow& row : result.rows) {
+  for (const scenes::TradeRow& row : result.rows) {
     rows.push_back(tradeRow(row));
     wall.push_back(tradeRowWall(row));
   }
   return text({{"wall",
                 {{"rows", wall},
-                 {"answers", tradeAnswers(result)},
-                 {"knobs", tradeKnobs(result)},
+                 {"answers", scenes::tradeAnswers(result)},
+                 {"knobs", scenes::tradeKnobs(result)},
                  {"left_out", result.left_out}}},
                {"scene", result.scene},
                {"excerpt", result.excerpt},
@@ -399,15 +400,15 @@ std::string toJson(const TradeResult& result) {
 
 namespace {
 
-Json extent(const Extent& e) {
+Json extent(const device::Extent& e) {
   return {{"least", e.least}, {"median", e.median}, {"greatest", e.greatest}};
 }
 
-Json duty(const Duty& d) {
+Json duty(const device::Duty& d) {
   return {{"continuous", extent(d.continuous)}, {"peak", extent(d.peak)}};
 }
 
-Json coupling(const DeviceLimits& limits, const CouplingGains& gains) {
+Json coupling(const device::DeviceLimits& limits, const CouplingGains& gains) {
   return {{"k_N_per_m", gains.k_N_per_m},
           {"b_Ns_per_m", gains.b_Ns_per_m},
           {"k_Nm_per_rad", gains.k_Nm_per_rad},
@@ -419,9 +420,9 @@ Json coupling(const DeviceLimits& limits, const CouplingGains& gains) {
           {"device_delay_s", limits.delay_s}};
 }
 
-Json parameters(const DualArmFile& file) {
+Json parameters(const device::DualArmFile& file) {
   Json out = Json::object();
-  for (const ParameterNote& note : file.notes) {
+  for (const device::ParameterNote& note : file.notes) {
     const Json value = note.value.size() == 1 ? Json(note.value[0]) : Json(note.value);
     const char* origin = note.words.empty() ? "given" : note.is_sourced ? "sourced" : "assumed";
     out[note.section][note.key] = {{"value", value}, {origin, note.words}};
@@ -431,7 +432,7 @@ Json parameters(const DualArmFile& file) {
 
 }  // namespace
 
-std::string toJson(const DualArmCharacter& c, const DualArmFile& file) {
+std::string toJson(const device::DualArmCharacter& c, const device::DualArmFile& file) {
   Json json;
   json["device"] = "dual_arm";
   json["workspace"] = {{"size_m", list(c.workspace_m)},
@@ -476,4 +477,4 @@ std::string toJson(const DualArmCharacter& c, const DualArmFile& file) {
   return text(json);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

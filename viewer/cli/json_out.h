@@ -15,12 +15,17 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps {
-
+namespace vps::scenes {
 struct FidelityChoice;
-struct TradeResult;       // vps_scenes/trade.h
-struct DualArmCharacter;  // vps_device/dual_arm_character.h
+struct TradeResult;
+}  // namespace vps::scenes
+
+namespace vps::device {
+struct DualArmCharacter;
 struct DualArmFile;
+}  // namespace vps::device
+
+namespace vps::viewer {
 
 /// What `vps query` found at one pose.
 struct PoseAnswer {
@@ -42,7 +47,7 @@ struct QueryAnswer {
   std::size_t points_total = 0, memory_bytes = 0;
   double voxel_m = 0, point_spacing_m = 0;
   bool has_budget = false;
-  TickTimes time;
+  scenes::TickTimes time;
   double build_wall_s = 0;
 };
 
@@ -70,19 +75,19 @@ struct SnapshotAnswer {
 
 /// What `vps explain` found, beside what everything would cost if that was asked.
 struct ExplainAnswer {
-  Scene scene;
-  ExplainedPlan chosen;
-  std::optional<ExplainedPlan> everything;
+  scenes::Scene scene;
+  scenes::ExplainedPlan chosen;
+  std::optional<scenes::ExplainedPlan> everything;
 };
 
-std::string toJson(const AssembleResult& result);
-std::string toJson(const std::string& scene, double seconds, const SimulateResult& result);
+std::string toJson(const scenes::AssembleResult& result);
+std::string toJson(const std::string& scene, double seconds, const scenes::SimulateResult& result);
 std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const ExplainAnswer& answer);
-std::string toJson(const TradeResult& result);
-std::string toJson(const std::string& scene, const FidelityChoice& choice);
-std::string toJson(const DualArmCharacter& character, const DualArmFile& file);
+std::string toJson(const scenes::TradeResult& result);
+std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice);
+std::string toJson(const device::DualArmCharacter& character, const device::DualArmFile& file);
 
-}  // namespace vps
+}  // namespace vps::viewer

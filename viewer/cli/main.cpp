@@ -10,7 +10,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -320,8 +320,8 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-}  // namespace vps
+}  // namespace vps::viewer
 
 int main(int argc, char** argv) {
-  return vps::run(argc, argv);
+  return vps::viewer::run(argc, argv);
 }

@@ -11,7 +11,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -141,4 +141,4 @@ void OutputFolder::commit() {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vps {
+namespace vps::viewer {
 
 /// Throws LoadError when `output` is one of the files that a command reads, under whatever name.
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
@@ -59,4 +59,4 @@ class OutputFolder {
 /// Writes a file; throws std::runtime_error with its name and the reason.
 void writeWhole(const std::string& file, std::string_view bytes);
 
-}  // namespace vps
+}  // namespace vps::viewer

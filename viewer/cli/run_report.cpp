@@ -8,14 +8,14 @@
 #include "terminal.h"
 #include "vps_viewer/report.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
-std::string tableOf(const std::vector<StepResult>& steps) {
+std::string tableOf(const std::vector<scenes::StepResult>& steps) {
   Table table({"<step", "<completed", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
                "drift [um]"});
-  for (const StepResult& step : steps)
+  for (const scenes::StepResult& step : steps)
     table.add({step.part, step.completed ? "yes" : "no", fixed(step.duration_s, 2),
                fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
                fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
@@ -23,12 +23,12 @@ std::string tableOf(const std::vector<StepResult>& steps) {
   return table.text();
 }
 
-std::string csvOf(const std::vector<StepResult>& steps) {
+std::string csvOf(const std::vector<scenes::StepResult>& steps) {
   std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
                              "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
                              "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
                              "rest_drift_m", "rest_s", "is_placed", "index_points", "failure_reason"});
-  for (const StepResult& step : steps)
+  for (const scenes::StepResult& step : steps)
     out += csvLine(
         {step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
          csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
@@ -41,8 +41,8 @@ std::string csvOf(const std::vector<StepResult>& steps) {
 
 }  // namespace
 
-std::vector<std::string> fillFolder(const OutputFolder& out, const Scene& scene, const AssembleResult& result,
-                                    const RunFiles& files) {
+std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
+                                    const scenes::AssembleResult& result, const RunFiles& files) {
   ReportOptions report;
   report.command = files.command;
   report.has_pictures = files.has_pictures;
@@ -53,21 +53,21 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const Scene& scene,
   return std::move(outcome.notes);
 }
 
-bool printSteps(const AssembleResult& result) {
+bool printSteps(const scenes::AssembleResult& result) {
   std::fputs(tableOf(result.steps).c_str(), stdout);
   bool is_good = result.completed;
-  for (const StepResult& step : result.steps) {
+  for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
     if (!step.completed) std::printf("%s: %s\n", name, step.failure_reason.c_str());
     if (step.index_points > 0)
       std::printf("%s: taken anew %s on the way, which is longer than the device's workspace\n", name,
                   step.index_points == 1 ? "once" : (std::to_string(step.index_points) + " times").c_str());
     if (step.is_placed) std::printf("%s: put on its target all the same, for the next step\n", name);
-    if (!isWithinLimit(step))
+    if (!scenes::isWithinLimit(step))
       std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());
-    if (!isAtRest(step))
-      std::printf("%s: drifted more than %g um after it was let go\n", name, kRestDriftLimit_m * 1e6);
-    is_good = is_good && isGood(step);
+    if (!scenes::isAtRest(step))
+      std::printf("%s: drifted more than %g um after it was let go\n", name, scenes::kRestDriftLimit_m * 1e6);
+    is_good = is_good && scenes::isGood(step);
   }
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
@@ -75,4 +75,4 @@ bool printSteps(const AssembleResult& result) {
   return is_good;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

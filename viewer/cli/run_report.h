@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// Fills the folder (not yet committed): report.html with pictures and plots, trace.csv, steps.csv,
 /// assemble.json. Notes on what could not be drawn go to stderr at the end, by the caller.
@@ -17,10 +17,10 @@ struct RunFiles {
   std::string command;  ///< how to repeat it
   bool has_pictures = true;
 };
-std::vector<std::string> fillFolder(const OutputFolder& out, const Scene& scene, const AssembleResult& result,
-                                    const RunFiles& files);
+std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
+                                    const scenes::AssembleResult& result, const RunFiles& files);
 
 /// Prints the table of steps, and a line for each step that is not good. Returns whether all are.
-bool printSteps(const AssembleResult& result);
+bool printSteps(const scenes::AssembleResult& result);
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -6,13 +6,13 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
 void readLength(const std::string& text, const std::string& option, double& out_m) {
   if (text.empty()) return;
-  out_m = lengthFromText(text, option);
+  out_m = scenes::lengthFromText(text, option);
   if (!(out_m > 0)) throw LoadError("", "", option + " is " + text + "; expected more than 0");
 }
 
@@ -35,7 +35,7 @@ std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   return VoxMapCache(folder, warn);
 }
 
-void fill(ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+void fill(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
           bool models_everything) {
   options.progress = bar.progress();
   options.cache = cache ? &*cache : nullptr;
@@ -43,11 +43,11 @@ void fill(ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCac
   options.models_everything = models_everything;
 }
 
-Scene sceneFrom(const std::string& file, const FidelityArguments& given,
-                const std::vector<std::string>& outputs) {
-  Scene scene = loadScene(file);
+scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
+                        const std::vector<std::string>& outputs) {
+  scenes::Scene scene = scenes::loadScene(file);
   std::vector<std::string> read;
-  for (const ScenePart& part : scene.parts) read.push_back(part.file);
+  for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
@@ -60,11 +60,11 @@ Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   }
   // What was chosen at load has been overruled, and its models with it.
   scene.fidelity_choice.clear();
-  for (ScenePart& part : scene.parts) {
+  for (scenes::ScenePart& part : scene.parts) {
     part.part.map.reset();
     part.part.shell.reset();
   }
   return scene;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::string csvNumber(double value) {
   return {text, end};
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vps {
+namespace vps::viewer {
 
 class Table {
  public:
@@ -27,4 +27,4 @@ std::string csvLine(const std::vector<std::string>& cells);
 /// A number for CSV: the shortest text that reads back as the same value.
 std::string csvNumber(double value);
 
-}  // namespace vps
+}  // namespace vps::viewer

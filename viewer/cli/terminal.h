@@ -7,7 +7,7 @@
 #include <exception>
 #include <string>
 
-namespace vps {
+namespace vps::viewer {
 
 /// Is stderr a terminal?
 bool isTerminal();
@@ -33,4 +33,4 @@ struct Stopped : std::exception {
 };
 void throwIfStopped();
 
-}  // namespace vps
+}  // namespace vps::viewer

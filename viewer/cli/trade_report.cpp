@@ -5,7 +5,7 @@
 
 #include "table.h"
 
-namespace vps {
+namespace vps::viewer {
 
 namespace {
 
@@ -19,17 +19,17 @@ std::string given(bool is_there, double value) {
 }
 
 /// Which line of the plot a row belongs to.
-std::string family(TradeKnob knob) {
+std::string family(scenes::TradeKnob knob) {
   switch (knob) {
-    case TradeKnob::Own:
+    case scenes::TradeKnob::Own:
       return "as it is";
-    case TradeKnob::Voxel:
+    case scenes::TradeKnob::Voxel:
       return "voxel size";
-    case TradeKnob::Spacing:
+    case scenes::TradeKnob::Spacing:
       return "point spacing";
-    case TradeKnob::Together:
+    case scenes::TradeKnob::Together:
       return "together";
-    case TradeKnob::Reference:
+    case scenes::TradeKnob::Reference:
       return "reference";
     default:
       return "other knobs";
@@ -38,10 +38,10 @@ std::string family(TradeKnob knob) {
 
 }  // namespace
 
-std::string tradeTable(const TradeResult& result) {
+std::string tradeTable(const scenes::TradeResult& result) {
   Table table({"<setting", "points", "MB", "query [us]", "no tree", "step [us]", "p99", "tick [us]", "p99",
                "depth off [um]", "force off [%]", "deepest [um]", "end off [um]", "<front"});
-  for (const TradeRow& row : result.rows) {
+  for (const scenes::TradeRow& row : result.rows) {
     const auto run = [&](double value, int digits) { return row.has_run ? fixed(value, digits) : "-"; };
     const auto probe = [&](double value, int digits) { return row.has_probe ? fixed(value, digits) : "-"; };
     table.add({row.what.name, std::to_string(row.points), fixed(1e-6 * static_cast<double>(row.bytes), 1),
@@ -55,7 +55,7 @@ std::string tradeTable(const TradeResult& result) {
   return table.text();
 }
 
-std::string tradeCsv(const TradeResult& result) {
+std::string tradeCsv(const scenes::TradeResult& result) {
   std::string text = csvLine({"setting",
                               "knob",
                               "voxel_m",
@@ -90,7 +90,7 @@ std::string tradeCsv(const TradeResult& result) {
                               "to_hand_off_reference_J",
                               "injected_J",
                               "on_front"});
-  for (const TradeRow& row : result.rows) {
+  for (const scenes::TradeRow& row : result.rows) {
     const Fidelity& f = row.what.fidelity;
     const bool p = row.has_probe, r = row.has_run, o = row.has_reference;
     text += csvLine({row.what.name,
@@ -131,16 +131,16 @@ std::string tradeCsv(const TradeResult& result) {
   return text;
 }
 
-PlotOutcome plotTrade(const TradeResult& result, const std::string& file) {
+PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file) {
   Plot plot;
   plot.title = result.scene + ", " + result.excerpt;
   plot.x_label = "physics step, 99th percentile of processor time [µs]";
   plot.y_label = "error of depth [µm]";
   plot.is_log_x = plot.is_log_y = true;
   Series front{"front", {}, false};
-  for (const TradeRow& row : result.rows) {
+  for (const scenes::TradeRow& row : result.rows) {
     if (!row.has_run || !row.has_probe) continue;
-    const std::pair<double, double> point = {row.run.physics.cpu_p99_us, 1e6 * errorOf(row)};
+    const std::pair<double, double> point = {row.run.physics.cpu_p99_us, 1e6 * scenes::errorOf(row)};
     if (row.is_on_front) front.points.push_back(point);
     const std::string name = family(row.what.knob);
     auto series =
@@ -153,4 +153,4 @@ PlotOutcome plotTrade(const TradeResult& result, const std::string& file) {
   return plotSeries(plot, file);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

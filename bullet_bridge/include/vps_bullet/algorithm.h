@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bullet's narrow phase for pairs with a VpsShape: candidates from the voxmaps, a few contacts for the
+// Bullet's narrow phase for pairs with a Shape: candidates from the voxmaps, a few contacts for the
 // solver.
 #pragma once
 
@@ -10,13 +10,13 @@
 
 #include "vps_bullet/install.h"
 
-namespace vps {
+namespace vps::bullet {
 
-struct VpsPairState;
-struct VpsContext;
+struct PairState;
+struct Context;
 
 /// A pair whose contacts can be chosen beside those of others.
-class VpsPair : public btActivatingCollisionAlgorithm {
+class PairAlgorithm : public btActivatingCollisionAlgorithm {
  public:
   /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
   /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
@@ -33,7 +33,7 @@ class VpsPair : public btActivatingCollisionAlgorithm {
   using btActivatingCollisionAlgorithm::btActivatingCollisionAlgorithm;
 };
 
-/// Contact of two VpsShapes, or of a VpsShape and one of Bullet's plane, box, sphere, capsule and cylinder.
+/// Contact of two VpsShapes, or of a Shape and one of Bullet's plane, box, sphere, capsule and cylinder.
 ///
 ///   1. query: crossings of edges, and points of each side that can touch the other within the step
 ///   (speculative contact: distance may be > 0)
@@ -45,11 +45,11 @@ class VpsPair : public btActivatingCollisionAlgorithm {
 /// threshold. gContactAddedCallback and the contact-stiffness flags are served all the same.
 /// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map), or,
 /// where edges cross, each body's edge.
-class VpsAlgorithm final : public VpsPair {
+class Algorithm final : public PairAlgorithm {
  public:
-  VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
-               const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context);
-  ~VpsAlgorithm() override;
+  Algorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+            const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context);
+  ~Algorithm() override;
 
   void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                const btDispatcherInfo& info) override;
@@ -59,7 +59,7 @@ class VpsAlgorithm final : public VpsPair {
 
  private:
   // Behind a pointer: Bullet's algorithm pool has elements of a fixed size that it does not check in Release.
-  std::unique_ptr<VpsPairState> state_;
+  std::unique_ptr<PairState> state_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

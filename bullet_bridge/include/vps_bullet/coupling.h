@@ -10,7 +10,7 @@
 class btConstraintSolver;
 class btRigidBody;
 
-namespace vps {
+namespace vps::bullet {
 
 /// A 6-DOF spring-damper between a target (the device's proxy at the end of the step) and a point of a
 /// dynamic body. Implicit: the wrench is that of the law at the end of the step, found together with the
@@ -20,19 +20,19 @@ namespace vps {
 /// Zero solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
 /// world.addConstraint(&coupling, true): `true` also tells the contact filter to look at the coupling's pull.
 /// Same inputs give the same bits: no state passes from step to step.
-class VpsCoupling : public btTypedConstraint {
+class CouplingConstraint : public btTypedConstraint {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
   /// @param X_BG  the grasp frame G in the part's body frame.
   /// Without setTarget() the coupling is open (no wrench). Throws std::invalid_argument for a body without
   /// mass, or gains that are negative or not finite.
-  VpsCoupling(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains);
+  CouplingConstraint(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains);
   /// Follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. The proxy no longer
   /// collides (CF_NO_CONTACT_RESPONSE is set on it). Throws std::invalid_argument also for a proxy that is
   /// not kinematic or static.
-  VpsCoupling(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part, const Pose& X_BG,
-              const CouplingGains& gains);
+  CouplingConstraint(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part, const Pose& X_BG,
+                     const CouplingGains& gains);
 
   /// The proxy's grasp frame at the END of the coming step, in W, and its velocity. Held until the next call.
   /// Not finite or not is_coupled: the coupling is open. Takes precedence over the proxy body.
@@ -53,7 +53,7 @@ class VpsCoupling : public btTypedConstraint {
   [[nodiscard]] Twist freeVelocity(double dt_s) const;
 
   /// Why this coupling would not act with that solver, or nullptr when it does: only solvers that call
-  /// solveConstraintObsolete (btSequentialImpulseConstraintSolver and our VpsSolver) do.
+  /// solveConstraintObsolete (btSequentialImpulseConstraintSolver and our Solver) do.
   [[nodiscard]] static const char* whyUnsupported(const btConstraintSolver& solver);
 
   void buildJacobian() override;
@@ -64,7 +64,7 @@ class VpsCoupling : public btTypedConstraint {
   [[nodiscard]] btScalar getParam(int num, int axis = -1) const override;
 
  private:
-  friend class VpsSolver;
+  friend class Solver;
   using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; at the grasp point, in W
   using Mat6 = Eigen::Matrix<double, 6, 6>;
 
@@ -102,4 +102,4 @@ class VpsCoupling : public btTypedConstraint {
   Wrench F_PG_W_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,18 +6,18 @@
 
 #include <memory>
 
-namespace vps {
+namespace vps::bullet {
 
 /// Drop-in for btCollisionDispatcher: before Bullet goes through the pairs one by one, the contacts of those
 /// of two bodies with VpsAlgorithms are chosen by several threads. The same bits as with the stock
 /// dispatcher, for any number of threads, and nothing in Bullet need be thread-safe: manifolds and callbacks
 /// are served in Bullet's own order, by the calling thread. A pair that is new in this step, and children of
 /// compounds, wait for their turn.
-class VpsDispatcher : public btCollisionDispatcher {
+class Dispatcher : public btCollisionDispatcher {
  public:
   /// @param threads  at least 1; 0: one for each core
-  explicit VpsDispatcher(btCollisionConfiguration* config, int threads = 0);
-  ~VpsDispatcher() override;
+  explicit Dispatcher(btCollisionConfiguration* config, int threads = 0);
+  ~Dispatcher() override;
 
   void dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
                                  btDispatcher* dispatcher) override;
@@ -27,4 +27,4 @@ class VpsDispatcher : public btCollisionDispatcher {
   std::unique_ptr<Arena> arena_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -8,17 +8,10 @@
 
 class btCollisionDispatcher;
 
-namespace vps {
+namespace vps::bullet {
 
-/// How contact is turned into motion.
-enum class ContactMethod {
-  Constraint,  ///< rigid: a few contacts for the solver, friction as a cone
-  /// Compliant: every touching point presses with stiffness times area times depth and rubs by a bristle,
-  /// solved implicitly. Needs VpsSolver: other solvers get the rigid contacts. No restitution.
-  Penalty,
-};
-
-struct VpsBulletSettings {
+struct Settings {
+  /// Penalty needs Solver: other solvers get the contacts of Constraint. Penalty has no restitution.
   ContactMethod mode = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< of penalty contact, per area; assumed: steel, 0.2 m thick
   int contact_limit = 64;            ///< contacts given to the solver for each pair, >= 4
@@ -28,14 +21,14 @@ struct VpsBulletSettings {
   double contact_margin_m = 20e-6;
   Sides sides = Sides::Both;
   Gradient gradient = Gradient::Continuous;
-  bool use_surfaces = true;  ///< correct contacts by VpsModels::surfaces where there are any
+  bool use_surfaces = true;  ///< correct contacts by ShapeModels::surfaces where there are any
   /// Near points of one side of a pair, and crossings of edges, looked at, lowest ids first; 0: all. Bounds a
   /// step's time, and leaves a patch without contact where points are left out. At least contact_limit.
   int candidate_limit = 0;
 };
 
 /// Counters since installation, over all pairs of a dispatcher.
-struct VpsBulletStats {
+struct Stats {
   std::size_t pair_updates = 0;  ///< pairs whose points were queried
   std::size_t points_tested = 0;
   /// Points and crossings that could touch within the step; of very many points on a map those that lead.
@@ -52,15 +45,15 @@ struct VpsBulletStats {
 /// Contact and closest-point queries, both orders, every shape type; README.md lists them. Installing again
 /// replaces the settings. Call before bodies meet: a pair that exists keeps the algorithm it has. See
 /// tuneWorld for the world's own parameters. Throws std::invalid_argument for settings out of range.
-void installVps(btCollisionDispatcher& dispatcher, const VpsBulletSettings& settings = {});
+void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
 
 /// Puts back the functions that were registered before, where nobody has registered others since. Pairs that
 /// exist keep VPS contact until their bodies part or are removed; that is said on stderr.
 /// Without an installation: nothing. A dispatcher may also die without it; one that comes to lie at the same
 /// address starts without an installation.
-void uninstallVps(btCollisionDispatcher& dispatcher);
+void uninstall(btCollisionDispatcher& dispatcher);
 
-[[nodiscard]] bool isVpsInstalled(const btCollisionDispatcher& dispatcher);
-[[nodiscard]] VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher);
+[[nodiscard]] bool isInstalled(const btCollisionDispatcher& dispatcher);
+[[nodiscard]] Stats stats(const btCollisionDispatcher& dispatcher);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -16,7 +16,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// A body's mass and the frame Bullet wants it in: origin at the centre of mass, axes principal.
 struct BodyFrame {
@@ -31,7 +31,7 @@ BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3
 class SheetBorder;
 
 /// The exact surface of one part in the models' frame M.
-struct VpsSurface {
+struct Surface {
   std::shared_ptr<const MeshDistance> distance;
   Pose X_MP;
   /// Of an open surface without an inside, met on the side that a point faces; null for a solid.
@@ -41,39 +41,39 @@ struct VpsSurface {
 /// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against
 /// its surfaces (exact, and slower), or, if there are none, cannot be; without a shell it cannot be tested
 /// against others, without triangles rays miss it.
-struct VpsModels {
+struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Mesh> mesh;
   /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts;
   /// these correct the distance and normal of the few that reach the solver, which removes the field's
   /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: the field's word is taken.
-  std::vector<VpsSurface> surfaces;
+  std::vector<Surface> surfaces;
 };
 
 /// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
-VpsModels makeModels(const Part& part);
+ShapeModels makeModels(const Part& part);
 
 /// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
 /// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;
 /// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. May be dynamic, unlike Bullet's mesh
 /// shapes. Shared by any number of bodies, and bound to no dispatcher: may outlive them all. Its margin is 0.
-class VpsShape : public btConcaveShape {
+class Shape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
   /// @param X_SM  the models' frame in the shape's; for a dynamic body of a part it is
   /// BodyFrame::X_PB.inverse().
   /// Throws std::invalid_argument for models without map, shell and mesh, and for a pose that is not finite.
-  explicit VpsShape(VpsModels models, const Pose& X_SM = {});
-  ~VpsShape() override;
+  explicit Shape(ShapeModels models, const Pose& X_SM = {});
+  ~Shape() override;
 
   /// Replaces the models (a cooked body that got one more part). Only between steps; if the box grew, follow
   /// it with btCollisionWorld::updateSingleAabb for each static body of this shape. They are scaled as the
   /// shape is. Throws as the constructor; the shape then is as it was.
-  void setModels(VpsModels models);
+  void setModels(ShapeModels models);
   /// The models in use, scaled.
-  [[nodiscard]] const VpsModels& models() const { return models_; }
+  [[nodiscard]] const ShapeModels& models() const { return models_; }
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
   /// Grows with every change of the models, so that nobody keeps an impulse of a point that is gone.
   [[nodiscard]] unsigned revision() const { return revision_; }
@@ -89,7 +89,7 @@ class VpsShape : public btConcaveShape {
   }
   /// The triangle that a shell point on a face lies on.
   struct PointFace {
-    std::uint32_t surface = 0;  ///< index of VpsModels::surfaces
+    std::uint32_t surface = 0;  ///< index of ShapeModels::surfaces
     std::uint32_t triangle = 0;
   };
   /// Of a point that isEdgePoint() denies, where there are surfaces.
@@ -123,15 +123,15 @@ class VpsShape : public btConcaveShape {
   /// Throws std::invalid_argument for a margin that is negative or not a number.
   void setMargin(btScalar margin) override;
   btScalar getMargin() const override { return 0; }
-  const char* getName() const override { return "VpsShape"; }
+  const char* getName() const override { return "Shape"; }
   /// Throws std::invalid_argument: Bullet's importer has no reader for a voxmap, and would fail later.
   [[nodiscard]] int calculateSerializeBufferSize() const override;
 
  private:
   class TriangleTree;
-  void use(VpsModels models, const Pose& X_SM);
+  void use(ShapeModels models, const Pose& X_SM);
 
-  VpsModels unscaled_, models_;
+  ShapeModels unscaled_, models_;
   Pose X_SM_unscaled_, X_SM_;
   btVector3 scaling_;
   Box bounds_S_;
@@ -144,4 +144,4 @@ class VpsShape : public btConcaveShape {
   std::unique_ptr<const TriangleTree> triangles_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,9 +6,9 @@
 
 #include <memory>
 
-namespace vps {
+namespace vps::bullet {
 
-struct VpsSolverSettings {
+struct SolverSettings {
   double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
   /// Sweeps over rigid contacts, a step of Newton's method counting as ten; below 40 it is sweeps alone. Of
   /// compliant contacts: Newton's steps. >= 1
@@ -19,11 +19,11 @@ struct VpsSolverSettings {
 /// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
 /// spinning friction, or bodies with linear or angular factors or no inertia go to the stock solver
 /// unchanged.
-class VpsSolver : public btSequentialImpulseConstraintSolver {
+class Solver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
-  explicit VpsSolver(const VpsSolverSettings& settings = {});
-  ~VpsSolver() override;
+  explicit Solver(const SolverSettings& settings = {});
+  ~Solver() override;
 
   btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
@@ -37,10 +37,10 @@ class VpsSolver : public btSequentialImpulseConstraintSolver {
 
  private:
   struct Work;
-  VpsSolverSettings settings_;
+  SolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
   bool is_settled_ = true;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

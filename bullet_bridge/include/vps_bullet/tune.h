@@ -11,7 +11,7 @@
 class btDiscreteDynamicsWorld;
 class btRigidBody;
 
-namespace vps {
+namespace vps::bullet {
 
 /// What tuneWorld changed, for its reader and for restoreWorld.
 struct WorldTuning {
@@ -43,4 +43,4 @@ inline constexpr double kSleepSpin_rad_s = 0.1;
 /// Sets a body's sleeping thresholds to those.
 void tuneBody(btRigidBody& body);
 
-}  // namespace vps
+}  // namespace vps::bullet

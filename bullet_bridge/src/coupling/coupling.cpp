@@ -11,7 +11,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -20,52 +20,53 @@ constexpr btTypedConstraintType kNoStockType = MAX_CONSTRAINT_TYPE;
 
 void requireDynamic(const btRigidBody& part) {
   if (!(part.getInvMass() > 0))
-    throw std::invalid_argument("VpsCoupling: the part in hand has no mass; give it one");
+    throw std::invalid_argument("CouplingConstraint: the part in hand has no mass; give it one");
 }
 
 void requireUsable(const CouplingGains& g) {
   for (const double value :
        {g.k_N_per_m, g.b_Ns_per_m, g.k_Nm_per_rad, g.b_Nms_per_rad, g.max_force_N, g.max_torque_Nm})
     if (!(value >= 0) || !std::isfinite(value))
-      throw std::invalid_argument("VpsCoupling: every gain and limit must be finite and not negative");
+      throw std::invalid_argument("CouplingConstraint: every gain and limit must be finite and not negative");
 }
 
 }  // namespace
 
-VpsCoupling::VpsCoupling(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains)
+CouplingConstraint::CouplingConstraint(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains)
     : btTypedConstraint(kNoStockType, part), part_(part), X_BG_(X_BG) {
   requireDynamic(part);
   setGains(gains);
 }
 
-VpsCoupling::VpsCoupling(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part, const Pose& X_BG,
-                         const CouplingGains& gains)
+CouplingConstraint::CouplingConstraint(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part,
+                                       const Pose& X_BG, const CouplingGains& gains)
     : btTypedConstraint(kNoStockType, part, proxy), part_(part), proxy_(&proxy), X_AG_(X_AG), X_BG_(X_BG) {
   requireDynamic(part);
   if (!proxy.isStaticOrKinematicObject())
-    throw std::invalid_argument("VpsCoupling: the proxy must be kinematic; set CF_KINEMATIC_OBJECT on it");
+    throw std::invalid_argument(
+        "CouplingConstraint: the proxy must be kinematic; set CF_KINEMATIC_OBJECT on it");
   // It stands for the hand, which goes where walls stop the part; only the part collides.
   proxy.setCollisionFlags(proxy.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
   setGains(gains);
 }
 
-void VpsCoupling::setGains(const CouplingGains& gains) {
+void CouplingConstraint::setGains(const CouplingGains& gains) {
   requireUsable(gains);
   gains_ = gains;
 }
 
-void VpsCoupling::setTarget(const CouplingState& target) {
+void CouplingConstraint::setTarget(const CouplingState& target) {
   target_ = target;
   if (target_.is_coupled) part_.activate();
 }
 
-void VpsCoupling::release() {
+void CouplingConstraint::release() {
   target_.is_coupled = false;
   proxy_ = nullptr;
   F_PG_W_ = Wrench();
 }
 
-CouplingState VpsCoupling::partState() const {
+CouplingState CouplingConstraint::partState() const {
   CouplingState state;
   const Pose X_WB = fromBt(part_.getWorldTransform());
   state.X_W = X_WB * X_BG_;
@@ -76,7 +77,7 @@ CouplingState VpsCoupling::partState() const {
   return state;
 }
 
-CouplingState VpsCoupling::currentTarget() const {
+CouplingState CouplingConstraint::currentTarget() const {
   if (target_.is_coupled || !proxy_) return target_;
   // A kinematic body's world transform is already that of the end of the step
   // (btRigidBody::saveKinematicState).
@@ -89,7 +90,7 @@ CouplingState VpsCoupling::currentTarget() const {
   return target;
 }
 
-VpsCoupling::Step VpsCoupling::makeStep(double dt_s) const {
+CouplingConstraint::Step CouplingConstraint::makeStep(double dt_s) const {
   Step step;
   const CouplingState target = currentTarget();
   const CouplingState part = partState();
@@ -111,7 +112,7 @@ VpsCoupling::Step VpsCoupling::makeStep(double dt_s) const {
   return step;
 }
 
-VpsCoupling::Law VpsCoupling::lawAt(const Step& step, const Vec6& V_G, bool unlimited) const {
+CouplingConstraint::Law CouplingConstraint::lawAt(const Step& step, const Vec6& V_G, bool unlimited) const {
   // At the end of the step the error is e - dt V (the target is already that of the end), so the law gives
   //   impulse = dt k (e - dt V) + dt b (V_target - V)
   // with the first term, the spring, cut to its limit.
@@ -133,7 +134,7 @@ VpsCoupling::Law VpsCoupling::lawAt(const Step& step, const Vec6& V_G, bool unli
   return law;
 }
 
-VpsCoupling::Vec6 VpsCoupling::solveImpulse(const Step& step, const Vec6& V_without) const {
+CouplingConstraint::Vec6 CouplingConstraint::solveImpulse(const Step& step, const Vec6& V_without) const {
   // V = V_without + A (c - D V). A limit makes the law depend on V; its direction settles in a few rounds,
   // and a fixed number of them keeps the cost bounded.
   constexpr int kRounds = 4;  // assumed; the direction turns by less than dt * velocity / error a round
@@ -149,7 +150,7 @@ VpsCoupling::Vec6 VpsCoupling::solveImpulse(const Step& step, const Vec6& V_with
   return law.c - law.D.cwiseProduct(V);
 }
 
-Twist VpsCoupling::freeVelocity(double dt_s) const {
+Twist CouplingConstraint::freeVelocity(double dt_s) const {
   const Step step = makeStep(dt_s);
   if (step.is_open) return {};
   const Vec3 w = fromBt(part_.getAngularVelocity() +
@@ -164,31 +165,31 @@ Twist VpsCoupling::freeVelocity(double dt_s) const {
           part_.getInvMass() * Vec3(impulse.tail<3>())};
 }
 
-const char* VpsCoupling::whyUnsupported(const btConstraintSolver& solver) {
+const char* CouplingConstraint::whyUnsupported(const btConstraintSolver& solver) {
   if (solver.getSolverType() == BT_SEQUENTIAL_IMPULSE_SOLVER) return nullptr;
-  return "VpsCoupling needs btSequentialImpulseConstraintSolver or VpsSolver: this solver never calls "
+  return "CouplingConstraint needs btSequentialImpulseConstraintSolver or Solver: this solver never calls "
          "solveConstraintObsolete, so the coupling would give no force";
 }
 
-void VpsCoupling::buildJacobian() {
+void CouplingConstraint::buildJacobian() {
   is_prepared_ = false;  // dt is known only at the first iteration
   impulse_.setZero();
   F_PG_W_ = Wrench();
 }
 
-void VpsCoupling::getInfo1(btConstraintInfo1* info) {
+void CouplingConstraint::getInfo1(btConstraintInfo1* info) {
   info->m_numConstraintRows = 0;
   info->nub = 0;
 }
 
-void VpsCoupling::getInfo2(btConstraintInfo2*) {}
+void CouplingConstraint::getInfo2(btConstraintInfo2*) {}
 
-void VpsCoupling::setImpulse(const Vec6& impulse, double dt_s) {
+void CouplingConstraint::setImpulse(const Vec6& impulse, double dt_s) {
   impulse_ = impulse;
   F_PG_W_ = {impulse.head<3>() / dt_s, impulse.tail<3>() / dt_s};
 }
 
-void VpsCoupling::solveConstraintObsolete(btSolverBody& part, btSolverBody&, btScalar dt_s) {
+void CouplingConstraint::solveConstraintObsolete(btSolverBody& part, btSolverBody&, btScalar dt_s) {
   if (!is_prepared_) {
     step_ = makeStep(dt_s);
     is_prepared_ = true;
@@ -208,9 +209,9 @@ void VpsCoupling::solveConstraintObsolete(btSolverBody& part, btSolverBody&, btS
 }
 
 // Gains are set by setGains; Bullet's numbered parameters (ERP, CFM) have no meaning here.
-void VpsCoupling::setParam(int, btScalar, int) {}
-btScalar VpsCoupling::getParam(int, int) const {
+void CouplingConstraint::setParam(int, btScalar, int) {}
+btScalar CouplingConstraint::getParam(int, int) const {
   return 0;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

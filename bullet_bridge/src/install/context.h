@@ -12,10 +12,10 @@
 
 class btDispatcher;
 
-namespace vps {
+namespace vps::bullet {
 
-struct VpsContext {
-  VpsBulletSettings settings;
+struct Context {
+  Settings settings;
   NativeShapeCache partners;
   // Atomic: a thread-safe Bullet runs pairs side by side.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0},
@@ -25,6 +25,6 @@ struct VpsContext {
 };
 
 /// Of the installation on a dispatcher; null without one.
-std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher);
+std::shared_ptr<Context> contextOf(const btDispatcher* dispatcher);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -19,7 +19,7 @@
 #include "native_shapes/primitive.h"
 #include "vps_bullet/algorithm.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -37,11 +37,11 @@ struct Tables : btCollisionDispatcher {
   }
 };
 
-const VpsShape* vpsOf(const btCollisionObjectWrapper& body) {
-  return dynamic_cast<const VpsShape*>(body.getCollisionShape());
+const Shape* vpsOf(const btCollisionObjectWrapper& body) {
+  return dynamic_cast<const Shape*>(body.getCollisionShape());
 }
 
-bool hasSurface(const VpsShape& shape) {
+bool hasSurface(const Shape& shape) {
   return shape.models().map || !shape.models().surfaces.empty();
 }
 
@@ -49,7 +49,7 @@ bool hasSurface(const VpsShape& shape) {
 void requireContact(bool is_possible) {
   if (!is_possible)
     throw std::invalid_argument(
-        "a VpsShape's models cannot touch what it met: one side needs a shell, the other a map or surfaces");
+        "a Shape's models cannot touch what it met: one side needs a shell, the other a map or surfaces");
 }
 
 template <typename Algorithm, typename... Arguments>
@@ -63,9 +63,9 @@ btCollisionAlgorithm* make(btCollisionAlgorithmConstructionInfo& info, Arguments
   }
 }
 
-// For every pair of a VpsShape with anything but a compound, whose parts Bullet hands in one by one.
+// For every pair of a Shape with anything but a compound, whose parts Bullet hands in one by one.
 struct VpsCreate : btCollisionAlgorithmCreateFunc {
-  std::shared_ptr<VpsContext> context;
+  std::shared_ptr<Context> context;
 
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                  const btCollisionObjectWrapper* body0,
@@ -76,9 +76,9 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
     try {
       for (const int side : {0, 1})
         if (!vpsOf(*bodies[side])) return withNativeShape(info, bodies, side);
-      const VpsShape &a = *vpsOf(*body0), &b = *vpsOf(*body1);
+      const Shape &a = *vpsOf(*body0), &b = *vpsOf(*body1);
       requireContact((a.models().shell && hasSurface(b)) || (b.models().shell && hasSurface(a)));
-      return make<VpsAlgorithm>(info, body0, body1, context);
+      return make<Algorithm>(info, body0, body1, context);
     } catch (const std::exception& why) {  // Bullet's dispatch is no place to throw through
       say(why.what());
       return make<btEmptyAlgorithm>(info);
@@ -87,15 +87,15 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
 
  private:
   btCollisionAlgorithm* withNativeShape(btCollisionAlgorithmConstructionInfo& info,
-                                    const btCollisionObjectWrapper* const (&bodies)[2], int side) {
+                                        const btCollisionObjectWrapper* const (&bodies)[2], int side) {
     const btCollisionShape& shape = *bodies[side]->getCollisionShape();
-    const VpsShape* vps = vpsOf(*bodies[1 - side]);
+    const Shape* vps = vpsOf(*bodies[1 - side]);
     if (!vps)
       throw std::invalid_argument(std::string(shape.getName()) +
-                                  " has the shape type of VpsShape, which is taken; it does not collide");
+                                  " has the shape type of Shape, which is taken; it does not collide");
     const bool is_smooth = isPrimitive(shape) && !hasCorners(shape);
     requireContact(vps->models().shell || (!is_smooth && hasSurface(*vps)));
-    if (is_smooth) return make<VpsAlgorithm>(info, bodies[0], bodies[1], context);
+    if (is_smooth) return make<Algorithm>(info, bodies[0], bodies[1], context);
     return make<NativeShapeAlgorithm>(info, bodies[0], bodies[1], context, side);
   }
 
@@ -120,7 +120,7 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
 };
 
 struct Installation {
-  std::shared_ptr<VpsContext> context = std::make_shared<VpsContext>();
+  std::shared_ptr<Context> context = std::make_shared<Context>();
   VpsCreate create;
   /// What was registered before, contact and closest, by type, in both orders.
   std::map<std::pair<int, int>, std::pair<btCollisionAlgorithmCreateFunc*, btCollisionAlgorithmCreateFunc*>>
@@ -134,7 +134,7 @@ std::map<const btCollisionDispatcher*, std::unique_ptr<Installation>>& installat
   return all;
 }
 
-// A dispatcher that died without uninstallVps leaves an entry that says nothing about one that has come to
+// A dispatcher that died without uninstall leaves an entry that says nothing about one that has come to
 // lie at its place.
 Installation* find(const btCollisionDispatcher& dispatcher) {
   const auto it = installations().find(&dispatcher);
@@ -160,19 +160,19 @@ void registerBoth(btCollisionDispatcher& dispatcher, int a, int b, btCollisionAl
   dispatcher.registerClosestPointsCreateFunc(a, b, closest);
 }
 
-void requireUsable(const VpsBulletSettings& s) {
-  if (s.contact_limit < 4) throw std::invalid_argument("installVps: contact_limit must be at least 4");
+void requireUsable(const Settings& s) {
+  if (s.contact_limit < 4) throw std::invalid_argument("install: contact_limit must be at least 4");
   if (s.candidate_limit != 0 && s.candidate_limit < s.contact_limit)
-    throw std::invalid_argument("installVps: candidate_limit must be 0 (all) or at least contact_limit");
+    throw std::invalid_argument("install: candidate_limit must be 0 (all) or at least contact_limit");
   if (!(s.stiffness_N_per_m3 > 0) || !std::isfinite(s.stiffness_N_per_m3))
-    throw std::invalid_argument("installVps: stiffness_N_per_m3 must be positive and finite");
+    throw std::invalid_argument("install: stiffness_N_per_m3 must be positive and finite");
   if (!(s.contact_margin_m > 0) || !(s.contact_margin_m < 1e-2))
-    throw std::invalid_argument("installVps: contact_margin_m must be positive and below 10 mm");
+    throw std::invalid_argument("install: contact_margin_m must be positive and below 10 mm");
 }
 
 }  // namespace
 
-void installVps(btCollisionDispatcher& dispatcher, const VpsBulletSettings& settings) {
+void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
   requireUsable(settings);
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
@@ -192,7 +192,7 @@ void installVps(btCollisionDispatcher& dispatcher, const VpsBulletSettings& sett
   });
 }
 
-void uninstallVps(btCollisionDispatcher& dispatcher) {
+void uninstall(btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
   constexpr long kOurs = 2;  // the installation's and its create function's; all others are pairs'
@@ -206,24 +206,24 @@ void uninstallVps(btCollisionDispatcher& dispatcher) {
   installations().erase(&dispatcher);
 }
 
-bool isVpsInstalled(const btCollisionDispatcher& dispatcher) {
+bool isInstalled(const btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   return find(dispatcher) != nullptr;
 }
 
-std::shared_ptr<VpsContext> contextOf(const btDispatcher* dispatcher) {
+std::shared_ptr<Context> contextOf(const btDispatcher* dispatcher) {
   const std::lock_guard lock(g_mutex);
   if (!dispatcher) return nullptr;
   const Installation* installation = find(*static_cast<const btCollisionDispatcher*>(dispatcher));
   return installation ? installation->context : nullptr;
 }
 
-VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher) {
+Stats stats(const btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
-  VpsBulletStats stats;
+  Stats stats;
   const Installation* installation = find(dispatcher);
   if (!installation) return stats;
-  const VpsContext& c = *installation->context;
+  const Context& c = *installation->context;
   stats.pair_updates = c.pair_updates;
   stats.points_tested = c.points_tested;
   stats.candidates = c.candidates;
@@ -234,4 +234,4 @@ VpsBulletStats vpsStats(const btCollisionDispatcher& dispatcher) {
   return stats;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

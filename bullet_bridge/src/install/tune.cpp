@@ -12,7 +12,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -29,7 +29,7 @@ int wantedMode(int mode) {
 template <typename Visit>
 void forEachParameter(btDiscreteDynamicsWorld& world, int solver_iterations, const Visit& visit) {
   btContactSolverInfo& info = world.getSolverInfo();
-  // The stock solver's residual falls with them (Bullet: 10); VpsSolver stops by settings of its own.
+  // The stock solver's residual falls with them (Bullet: 10); Solver stops by settings of its own.
   visit(info.m_numIterations, solver_iterations, "solver iterations");
   // Position errors are pushed out without leaving velocity behind, from the first micrometre on: Bullet's
   // threshold of 40 mm never acts on a part.
@@ -114,4 +114,4 @@ void tuneBody(btRigidBody& body) {
   body.setSleepingThresholds(toBt(kSleepSpeed_m_s), toBt(kSleepSpin_rad_s));
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

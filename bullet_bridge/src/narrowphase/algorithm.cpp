@@ -11,15 +11,15 @@
 
 #include "narrowphase/contact_selection.h"
 
-namespace vps {
+namespace vps::bullet {
 
 // Bullet's pool hands out elements as large as its own largest algorithm, whatever is asked for.
-static_assert(sizeof(VpsAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
+static_assert(sizeof(Algorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
 namespace {
 
 // Point ids do not outlive the models they belong to.
-void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
+void forgetReplacedModels(PairState& state, const PairView& pair) {
   for (int i = 0; i < 2; ++i) {
     const unsigned revision = pair.vps[i] ? pair.vps[i]->revision() : 0;
     if (state.revision[i] == revision) continue;
@@ -34,12 +34,12 @@ void forgetReplacedModels(VpsPairState& state, const PairView& pair) {
 
 // Bodies that meet for the first time where their motion cannot have brought them were put into each other:
 // by mistake, more often than not.
-void noteStart(const PairView& pair, VpsPairState& state) {
+void noteStart(const PairView& pair, PairState& state) {
   if (std::exchange(state.has_met, true)) return;
   double overlap_m = 0;
   for (const Candidate& c : state.contacts) overlap_m = std::max(overlap_m, -c.distance_m);
   if (overlap_m <= state.motion.contact_margin_m + state.motion.speed_m_s * state.motion.dt_s) return;
-  VpsContext& context = *state.context;
+  Context& context = *state.context;
   double deepest_m = context.deepest_start_m;
   while (overlap_m > deepest_m && !context.deepest_start_m.compare_exchange_weak(deepest_m, overlap_m)) {
   }
@@ -47,12 +47,12 @@ void noteStart(const PairView& pair, VpsPairState& state) {
   const Vec3 at = pair.center_W();
   std::fprintf(stderr,
                "vps: two bodies begin %.3g mm inside each other, near (%.4g, %.4g, %.4g) m; they are moved "
-               "apart at 0.05 m/s. Others are counted in vpsStats().\n",
+               "apart at 0.05 m/s. Others are counted in stats().\n",
                1e3 * overlap_m, at.x(), at.y(), at.z());
 }
 
 // Points now rather than contacts for a step.
-void answerQuery(const PairView& pair, VpsContext& context, btManifoldResult& result) {
+void answerQuery(const PairView& pair, Context& context, btManifoldResult& result) {
   RelativeMotion still;
   still.contact_margin_m =
       std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), query_range_m(pair));
@@ -64,47 +64,46 @@ void answerQuery(const PairView& pair, VpsContext& context, btManifoldResult& re
 
 }  // namespace
 
-VpsAlgorithm::VpsAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
-                           const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
-                           std::shared_ptr<VpsContext> context)
-    : VpsPair(info, body0, body1), state_(std::make_unique<VpsPairState>()) {
+Algorithm::Algorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+                     const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context)
+    : PairAlgorithm(info, body0, body1), state_(std::make_unique<PairState>()) {
   state_->context = std::move(context);
   state_->writer = std::make_unique<ManifoldWriter>(*m_dispatcher, body0->getCollisionObject(),
                                                     body1->getCollisionObject());
 }
 
-VpsAlgorithm::~VpsAlgorithm() {
+Algorithm::~Algorithm() {
   state_->context->penalty.remove(&state_->penalty);
 }
 
-void VpsAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+void Algorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   state_->writer->append(manifolds);
 }
 
-void VpsAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
-                           const btDispatcherInfo& info) {
-  VpsPairState& state = *state_;
+void Algorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                        const btDispatcherInfo& info) {
+  PairState& state = *state_;
   const PairView pair(body0, body1);
   state.contacts.clear();
   state.motion = {};
   state.is_prepared = true;
   forgetReplacedModels(state, pair);
-  const VpsBulletSettings& settings = state.context->settings;
+  const Settings& settings = state.context->settings;
   const bool is_penalty = settings.mode == ContactMethod::Penalty;
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
   // Springs push from the first touch on, and only then: what is farther than the step's travel need not be
   // there.
   constexpr double kPenaltyMargin_m = 2e-6;  // assumed: contact turns the motion within the step
-  const double contact_margin_m = is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
+  const double contact_margin_m =
+      is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
   state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m);
   is_penalty ? choosePenalty(pair, state) : chooseRigid(pair, state);
 }
 
-void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
-                                    const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
-                                    btManifoldResult* result) {
-  VpsContext& context = *state_->context;
+void Algorithm::processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                                 const btDispatcherInfo& info, btManifoldResult* result) {
+  Context& context = *state_->context;
   const PairView pair(body0, body1);
   // A contactTest hands in a result of its own type.
   if (typeid(*result) != typeid(btManifoldResult)) {
@@ -125,4 +124,4 @@ void VpsAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
       context.penalty.add(manifold, &state_->penalty);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

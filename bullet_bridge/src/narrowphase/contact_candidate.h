@@ -13,7 +13,7 @@
 
 class btCollisionShape;
 
-namespace vps {
+namespace vps::bullet {
 
 struct QueryState;
 
@@ -65,8 +65,8 @@ struct Carry {
 
 /// One side of a pair: its shell's points against the other's field.
 struct SideView {
-  const VpsShape* shape = nullptr;  ///< the side with the shell
-  Pose X_WM;                        ///< its models' frame
+  const Shape* shape = nullptr;  ///< the side with the shell
+  Pose X_WM;                     ///< its models' frame
   std::uint8_t side = 0;
 };
 
@@ -77,37 +77,37 @@ struct SideQuery {
   std::span<const std::uint32_t> always;  ///< ids, ascending: of last step's contacts
 };
 
-/// Points of `side` near the other VpsShape's map (of `other`, at its X_WM). With a memory and far more of
+/// Points of `side` near the other Shape's map (of `other`, at its X_WM). With a memory and far more of
 /// them than the solver is given, those that lead: what thinOut() would leave, not the same to the point.
 /// @param cutoff_m   distance to look at, below the map's band
 /// Appends to out. Returns how many did not fit into settings.candidate_limit.
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, const SideQuery& ask, std::vector<Candidate>& out,
+                           const Settings& settings, const SideQuery& ask, std::vector<Candidate>& out,
                            std::size_t& points_tested);
 
 /// The same against one of Bullet's primitives at X_WS.
 std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
-                                 double cutoff_m, const VpsBulletSettings& settings,
-                                 std::vector<Candidate>& out, std::size_t& points_tested);
+                                 double cutoff_m, const Settings& settings, std::vector<Candidate>& out,
+                                 std::size_t& points_tested);
 
-/// The same against the exact surfaces of a VpsShape without a map. A point that has gone through a sheet
+/// The same against the exact surfaces of a Shape without a map. A point that has gone through a sheet
 /// counts if its part's field says that the sheet is nearer to the point's own face than to any other.
 std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
-                                const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                                const Settings& settings, std::vector<Candidate>& out,
                                 std::size_t& points_tested);
 
 /// Where edges of two VpsShapes cross, nearer than the cutoff or overlapping by no more than the depth; their
 /// distance and normal are exact. Appends to out. Returns how many did not fit into settings.candidate_limit,
 /// after all that are there.
 std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
-                             const VpsBulletSettings& settings, std::vector<Candidate>& out);
+                             const Settings& settings, std::vector<Candidate>& out);
 
 /// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction
 /// of contact survive, and what has survived once is preferred, so that the set does not flicker.
 /// @param cell_m  edge of a cell, a fraction of the smaller body's size
 void thinOut(std::vector<Candidate>& candidates, double cell_m);
 
-/// Replaces distance and normal of the candidates of `side` by the exact ones: of the other VpsShape's
+/// Replaces distance and normal of the candidates of `side` by the exact ones: of the other Shape's
 /// surfaces (if it has any) or of the primitive `theirs`. What meets flush on curved faces, or a primitive's
 /// round side, moves to where they are nearest. The field still decides where no surface is near.
 /// @param is_answered  the other side's points are looked at too: a contact that one of them has is left to
@@ -130,6 +130,7 @@ void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side);
 /// Chooses at most `limit`: those that carried load, then the deepest, then the farthest from all chosen so
 /// far, in position (in units of length_m) and direction. Ends in ascending key order, so that equal sets are
 /// equal to the bit.
-void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double contact_margin_m);
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m,
+                  double contact_margin_m);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -3,28 +3,28 @@
 #include <span>
 
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/query_state.h"
+#include "narrowphase/round_contact.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
-#include "narrowphase/round_contact.h"
-#include "narrowphase/query_state.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
-std::size_t limitOf(const VpsBulletSettings& settings, const PointShell& shell) {
+std::size_t limitOf(const Settings& settings, const PointShell& shell) {
   return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
 }
 
 // A spring per area must stay where its area is.
-bool movesToRounds(const VpsBulletSettings& settings) {
+bool movesToRounds(const Settings& settings) {
   return settings.use_surfaces && settings.mode == ContactMethod::Constraint;
 }
 
 // A shell's points against anything that has a distance: walks the shell's spheres.
 template <typename CanBeNear, typename At>
 std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cutoff_m,
-                              const VpsBulletSettings& settings, const CanBeNear& canBeNear, const At& at,
+                              const Settings& settings, const CanBeNear& canBeNear, const At& at,
                               std::vector<Candidate>& out, std::size_t& points_tested) {
   const PointShell& shell = *side.shape->models().shell;
   const double sign = side.side == 0 ? 1 : -1;
@@ -109,7 +109,7 @@ class SurfaceView {
   /// A value that the distance of p is not below; max_m if it is farther, or deep behind a sheet.
   [[nodiscard]] double leastDistance(const Vec3& p_M, double max_m) const {
     double least_m = max_m;
-    for (const VpsSurface& surface : surfaces_) {
+    for (const Surface& surface : surfaces_) {
       const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
       // Of a solid all depths count: its sign is needed however far it is.
       const double d = surface.sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
@@ -121,7 +121,7 @@ class SurfaceView {
   /// Distance and normal in N of the nearest surface; kNever_m beyond cutoff_m.
   [[nodiscard]] SurfaceDistance at(const Vec3& p_M, const Vec3& inward_M, double cutoff_m) const {
     SurfaceDistance nearest{kNever_m, Vec3::Zero()};
-    for (const VpsSurface& surface : surfaces_) {
+    for (const Surface& surface : surfaces_) {
       const SurfaceDistance d =
           surface.sheet ? atSheet(surface, p_M, inward_M, cutoff_m) : atSolid(surface, p_M);
       if (d.distance_m < nearest.distance_m) nearest = d;
@@ -138,14 +138,14 @@ class SurfaceView {
     return map ? 2 * map->band_m() : 0.5 * side_.shape->models().shell->spacing_m;
   }
 
-  [[nodiscard]] double sheetBound(const VpsSurface& surface, const Vec3& p, double max_m) const {
+  [[nodiscard]] double sheetBound(const Surface& surface, const Vec3& p, double max_m) const {
     const double reach_m = max_m + depthBehindSheets_m();
     const MeshDistance::Closest closest = surface.distance->closest(p, reach_m);
     return closest.found ? closest.distance_m - depthBehindSheets_m() : max_m;
   }
 
   static SurfaceDistance make(const MeshDistance::Closest& closest, const Vec3& p, const Vec3& normal,
-                              const VpsSurface& surface) {
+                              const Surface& surface) {
     const double sign = normal.dot(p - closest.q) < 0 ? -1 : 1;
     constexpr double kTouching_m = 1e-9;  // too short to be a direction
     const Vec3 n =
@@ -153,13 +153,13 @@ class SurfaceView {
     return {sign * closest.distance_m, surface.X_MP.R * n};
   }
 
-  [[nodiscard]] SurfaceDistance atSolid(const VpsSurface& surface, const Vec3& p_M) const {
+  [[nodiscard]] SurfaceDistance atSolid(const Surface& surface, const Vec3& p_M) const {
     const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
     const MeshDistance::Closest closest = surface.distance->closest(p);
     return make(closest, p, closest.normal, surface);
   }
 
-  [[nodiscard]] SurfaceDistance atSheet(const VpsSurface& surface, const Vec3& p_M, const Vec3& inward_M,
+  [[nodiscard]] SurfaceDistance atSheet(const Surface& surface, const Vec3& p_M, const Vec3& inward_M,
                                         double cutoff_m) const {
     const SurfaceDistance never{kNever_m, Vec3::Zero()};
     const Pose X_PM = surface.X_MP.inverse() * X_NM_;
@@ -185,7 +185,7 @@ class SurfaceView {
   }
 
   const SideView& side_;
-  const std::vector<VpsSurface>& surfaces_;
+  const std::vector<Surface>& surfaces_;
   Pose X_NM_;
 };
 
@@ -202,9 +202,9 @@ bool RelativeMotion::canTouch(Candidate& c) const {
 }
 
 std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const VpsBulletSettings& settings, const SideQuery& ask, std::vector<Candidate>& out,
+                           const Settings& settings, const SideQuery& ask, std::vector<Candidate>& out,
                            std::size_t& points_tested) {
-  const VpsModels& theirs = other.shape->models();
+  const ShapeModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
   // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
   thread_local ContactSet near(0);
@@ -237,8 +237,8 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
 }
 
 std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
-                                 double cutoff_m, const VpsBulletSettings& settings,
-                                 std::vector<Candidate>& out, std::size_t& points_tested) {
+                                 double cutoff_m, const Settings& settings, std::vector<Candidate>& out,
+                                 std::size_t& points_tested) {
   const btCollisionShape& exact = withoutStandIn(primitive);
   const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
   const Pose X_SM = X_WS.inverse() * side.X_WM;
@@ -256,7 +256,7 @@ std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& p
 }
 
 std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
-                                const VpsBulletSettings& settings, std::vector<Candidate>& out,
+                                const Settings& settings, std::vector<Candidate>& out,
                                 std::size_t& points_tested) {
   if (other.shape->models().surfaces.empty()) return 0;
   const SurfaceView view(side, other);
@@ -268,4 +268,4 @@ std::size_t collectFromSurfaces(const SideView& side, const SideView& other, dou
   return collectByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

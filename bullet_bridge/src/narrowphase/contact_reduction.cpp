@@ -6,7 +6,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -105,7 +105,7 @@ struct Spread {
         place(i, k) = static_cast<float>(p[k]);
         place(i, 3 + k) = static_cast<float>(c.n_W[k]);
       }
-      urgency[i] = static_cast<float>(std::clamp(vps::urgency(c) / contact_margin_m, -1.0, 1.0));
+      urgency[i] = static_cast<float>(std::clamp(vps::bullet::urgency(c) / contact_margin_m, -1.0, 1.0));
     }
   }
 
@@ -158,7 +158,8 @@ void thinOut(std::vector<Candidate>& candidates, double cell_m) {
   candidates.swap(kept);
 }
 
-void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m, double contact_margin_m) {
+void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m,
+                  double contact_margin_m) {
   const std::size_t count = candidates.size();
   if (count > limit) {
     thread_local Spread spread;
@@ -187,4 +188,4 @@ void chooseSpread(std::vector<Candidate>& candidates, std::size_t limit, double 
             [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

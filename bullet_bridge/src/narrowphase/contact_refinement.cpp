@@ -5,11 +5,11 @@
 
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/curved_contact.h"
+#include "narrowphase/round_contact.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
-#include "narrowphase/round_contact.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -71,9 +71,9 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of its faces'
   Vec3 smooth = Vec3::Zero();  ///< the normal of the curved surface that the mesh stands for
   bool is_edge = false;
-  bool is_sheet = false;                ///< whose edges may be wound either way: crossings do not cover them
-  const VpsSurface* surface = nullptr;  ///< null: a primitive
-  Mat3 R_WP = Mat3::Identity();         ///< of the surface's part
+  bool is_sheet = false;             ///< whose edges may be wound either way: crossings do not cover them
+  const Surface* surface = nullptr;  ///< null: a primitive
+  Mat3 R_WP = Mat3::Identity();      ///< of the surface's part
   std::uint32_t triangle = 0;
 };
 
@@ -87,7 +87,7 @@ struct Exact {
   FacePoint face;          ///< then: the other's
 };
 
-Foot footOn(const VpsSurface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
+Foot footOn(const Surface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
   const Pose X_WP = X_WM * surface.X_MP;
   const Vec3 p = X_WP.inverse() * own.p_W;
   const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
@@ -166,7 +166,7 @@ struct Corrector {
     if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
-    for (const VpsSurface& surface : other.shape->models().surfaces) {
+    for (const Surface& surface : other.shape->models().surfaces) {
       const Exact exact = contactAt(footOn(surface, other.X_WM, own, max_m), own);
       nearest.found |= exact.found;
       if (exact.meets && (!nearest.meets || exact.distance_m < nearest.distance_m)) nearest = exact;
@@ -251,7 +251,8 @@ void correctEdges(std::vector<Candidate>& candidates, const SideView& side, cons
     const double field_m = map.distance(X_MW * p_then_W);
     if (field_m > kFieldError * map.voxel_m()) continue;
     Exact exact = nearFieldDistance(then, p_then_W, way[i].R * inward, field_m, map.voxel_m());
-    if (exact.found && exact.meets && exact.distance_m >= std::min(0.0, c.distance_m) - motion.contact_margin_m) {
+    if (exact.found && exact.meets &&
+        exact.distance_m >= std::min(0.0, c.distance_m) - motion.contact_margin_m) {
       exact.distance_m -= exact.n.dot((p_then_W - c.p_W) - (way[j] * c.p_W - c.p_W));
     } else {
       exact = nearFieldDistance(now, c.p_W, inward, c.distance_m, map.voxel_m());
@@ -275,4 +276,4 @@ void takeOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
   });
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

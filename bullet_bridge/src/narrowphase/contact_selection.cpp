@@ -6,7 +6,7 @@
 
 #include "native_shapes/primitive.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -24,14 +24,14 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * query_range_m(pair)) : cutoff_m;
 }
 
-QueryState& memoryOf(const PairView& pair, int i, VpsPairState& state) {
+QueryState& memoryOf(const PairView& pair, int i, PairState& state) {
   std::optional<QueryState>& own = state.memory[i];
   return own ? *own
              : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
                            state.context->settings);
 }
 
-SideQuery askOf(const PairView& pair, int i, VpsPairState& state) {
+SideQuery askOf(const PairView& pair, int i, PairState& state) {
   std::vector<std::uint32_t>& always = state.always[i];
   always.clear();
   for (const Candidate& c : state.selection.chosen)  // ascending
@@ -41,16 +41,15 @@ SideQuery askOf(const PairView& pair, int i, VpsPairState& state) {
 }
 
 // In penalty mode the points of faces press along their own normals.
-void takeSpringNormals(const PairView& pair, const VpsBulletSettings& settings,
-                       std::vector<Candidate>& candidates) {
+void takeSpringNormals(const PairView& pair, const Settings& settings, std::vector<Candidate>& candidates) {
   for (int i = 0; i < 2; ++i)
     if (settings.mode == ContactMethod::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
 }
 
 }  // namespace
 
-void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
-             VpsPairState* state) {
+void collect(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+             PairState* state) {
   std::size_t tested = 0, left_out = 0;
   for (int i = 0; i < 2; ++i) {
     if (!asksPoints(pair, i, context.settings.sides)) continue;
@@ -75,9 +74,9 @@ void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::ve
   context.left_out += left_out;
 }
 
-void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
+void collectForStep(const PairView& pair, const RelativeMotion& motion, PairState& state,
                     std::vector<Candidate>& out) {
-  VpsContext& context = *state.context;
+  Context& context = *state.context;
   const double sight = query_range_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   if (motion.contact_margin_m + travel_m <= sight) {
@@ -107,7 +106,7 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairS
   }
 }
 
-void correctAll(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+void correctAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                 std::vector<Candidate>& candidates) {
   if (!settings.use_surfaces) return;
   for (int i = 0; i < 2; ++i)
@@ -120,7 +119,7 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
   std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
 }
 
-void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+void choose(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
             ManifoldWriter* writer, std::vector<Candidate>& candidates) {
   dropUnreachable(motion, candidates);
   if (writer) writer->recall(candidates);
@@ -171,4 +170,4 @@ Carry carryOf(const Selection& selection, const PairView& pair) {
   return {body0_W, body1_W};
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

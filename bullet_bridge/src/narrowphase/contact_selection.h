@@ -8,30 +8,30 @@
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps {
+namespace vps::bullet {
 
 // What both need.
 
 /// Adds all points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
 /// memory at least those: what the last steps' distances exclude is not read.
-void collect(const PairView& pair, double cutoff_m, VpsContext& context, std::vector<Candidate>& out,
-             VpsPairState* state = nullptr);
+void collect(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+             PairState* state = nullptr);
 
 /// Adds the candidates of the step. A body that moves less than the fields can see is looked at once, where
 /// it is. A faster one is looked at along its way, so that it cannot pass through; the plane it first meets
 /// then holds for the whole step.
-void collectForStep(const PairView& pair, const RelativeMotion& motion, VpsPairState& state,
+void collectForStep(const PairView& pair, const RelativeMotion& motion, PairState& state,
                     std::vector<Candidate>& out);
 
 /// The candidates' planes from the exact surfaces, where the settings want them.
-void correctAll(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+void correctAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                 std::vector<Candidate>& candidates);
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates);
 
 /// From thousands of near points to the few that hold the part.
 /// @param writer  knows last step's contacts; may be null
-void choose(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+void choose(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
             ManifoldWriter* writer, std::vector<Candidate>& candidates);
 
 void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
@@ -50,7 +50,7 @@ Carry carryOf(const Selection& selection, const PairView& pair);
 
 // The two modes: state.contacts of the coming step, with springs state.penalty as well.
 
-void chooseRigid(const PairView& pair, VpsPairState& state);
-void choosePenalty(const PairView& pair, VpsPairState& state);
+void chooseRigid(const PairView& pair, PairState& state);
+void choosePenalty(const PairView& pair, PairState& state);
 
-}  // namespace vps
+}  // namespace vps::bullet

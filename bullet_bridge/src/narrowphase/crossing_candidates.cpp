@@ -5,15 +5,15 @@
 #include "narrowphase/contact_candidate.h"
 #include "vps/edge_crossing.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
 // A cooked body is the union of its parts: an edge that another part covers is no edge of the body's.
 // @param out_M  the way from the edge's place p_M out of the body
-bool isCovered(const VpsShape& shape, std::uint16_t owner, const Vec3& p_M, const Vec3& out_M) {
+bool isCovered(const Shape& shape, std::uint16_t owner, const Vec3& p_M, const Vec3& out_M) {
   constexpr double kOff_m = 10e-6;  // assumed: seams of parts that are mounted on each other are flatter
-  const std::vector<VpsSurface>& surfaces = shape.models().surfaces;
+  const std::vector<Surface>& surfaces = shape.models().surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (i == owner || surfaces[i].sheet) continue;
     const Vec3 p = surfaces[i].X_MP.inverse() * (p_M + kOff_m * out_M);
@@ -33,7 +33,7 @@ bool isCovered(const EdgeCrossing& at, const SideView& body0, const SideView& bo
 }  // namespace
 
 std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
-                             const VpsBulletSettings& settings, std::vector<Candidate>& out) {
+                             const Settings& settings, std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();
@@ -58,4 +58,4 @@ std::size_t collectCrossings(const SideView& body0, const SideView& body1, doubl
   return crossings.size() - room;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

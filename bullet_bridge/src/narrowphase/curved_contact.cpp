@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -17,7 +17,7 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
   std::optional<FacePoint> nearest;
   MeshDistance::Closest best;
   best.distance_m = max_m;
-  for (const VpsSurface& surface : side.shape->models().surfaces) {
+  for (const Surface& surface : side.shape->models().surfaces) {
     const Pose X_WP = side.X_WM * surface.X_MP;
     const MeshDistance::Closest closest = surface.distance->closest(X_WP.inverse() * p_W, best.distance_m);
     if (!closest.found) continue;
@@ -34,8 +34,8 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
 
 // The shell's point on its own face.
 FacePoint ownFace(const Candidate& c, const SideView& side) {
-  const VpsShape::PointFace face = side.shape->faceAt(c.id);
-  const VpsSurface& surface = side.shape->models().surfaces[face.surface];
+  const Shape::PointFace face = side.shape->faceAt(c.id);
+  const Surface& surface = side.shape->models().surfaces[face.surface];
   return {c.p_W, -(side.X_WM.R * side.shape->smoothInward(c.id)), &surface, side.X_WM.R * surface.X_MP.R,
           face.triangle};
 }
@@ -95,4 +95,4 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   return true;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// Faces whose normals are within 20 degrees of opposite touch flush.
 inline constexpr double kCosFlush = 0.94;
@@ -12,7 +12,7 @@ inline constexpr double kCosFlush = 0.94;
 /// A point of a face, as the curved surface that the facets stand for.
 struct FacePoint {
   Vec3 q_W = Vec3::Zero(), outward_W = Vec3::Zero();
-  const VpsSurface* surface = nullptr;
+  const Surface* surface = nullptr;
   Mat3 R_WP = Mat3::Identity();
   std::uint32_t triangle = 0;
 
@@ -36,4 +36,4 @@ struct FacePoint {
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& their,
                    double most_gain_m);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -12,31 +12,30 @@
 
 #include "vps_bullet/algorithm.h"
 
-namespace vps {
+namespace vps::bullet {
 
-struct VpsDispatcher::Arena {
+struct Dispatcher::Arena {
   tbb::task_arena arena;
   std::vector<btBroadphasePair*> pairs;
 };
 
-VpsDispatcher::VpsDispatcher(btCollisionConfiguration* config, int threads)
+Dispatcher::Dispatcher(btCollisionConfiguration* config, int threads)
     : btCollisionDispatcher(config), arena_(std::make_unique<Arena>()) {
-  if (threads < 0)
-    throw std::invalid_argument("VpsDispatcher: threads must be 0 (one for each core) or more");
+  if (threads < 0) throw std::invalid_argument("Dispatcher: threads must be 0 (one for each core) or more");
   arena_->arena.initialize(threads == 0 ? tbb::task_arena::automatic : threads);
 }
 
-VpsDispatcher::~VpsDispatcher() = default;
+Dispatcher::~Dispatcher() = default;
 
-void VpsDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
-                                              btDispatcher* dispatcher) {
+void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const btDispatcherInfo& info,
+                                           btDispatcher* dispatcher) {
   const auto objectOf = [](const btBroadphaseProxy* proxy) {
     return static_cast<btCollisionObject*>(proxy->m_clientObject);
   };
   arena_->pairs.clear();
   for (int i = 0; i < pairs->getNumOverlappingPairs(); ++i) {
     btBroadphasePair& pair = pairs->getOverlappingPairArrayPtr()[i];
-    if (dynamic_cast<VpsPair*>(pair.m_algorithm) == nullptr) continue;
+    if (dynamic_cast<PairAlgorithm*>(pair.m_algorithm) == nullptr) continue;
     if (needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) arena_->pairs.push_back(&pair);
   }
   const bool is_step = info.m_dispatchFunc == btDispatcherInfo::DISPATCH_DISCRETE;
@@ -48,10 +47,10 @@ void VpsDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, con
         const btCollisionObjectWrapper body0(nullptr, a->getCollisionShape(), a, a->getWorldTransform(), -1,
                                              -1),
             body1(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
-        dynamic_cast<VpsPair*>(pair.m_algorithm)->prepare(&body0, &body1, info);
+        dynamic_cast<PairAlgorithm*>(pair.m_algorithm)->prepare(&body0, &body1, info);
       });
     });
   btCollisionDispatcher::dispatchAllCollisionPairs(pairs, info, dispatcher);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

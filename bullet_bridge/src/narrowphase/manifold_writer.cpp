@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -201,4 +201,4 @@ void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectW
   result.setPersistentManifold(before);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

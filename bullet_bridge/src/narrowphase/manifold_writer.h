@@ -15,7 +15,7 @@ class btCollisionObject;
 class btManifoldResult;
 struct btCollisionObjectWrapper;
 
-namespace vps {
+namespace vps::bullet {
 
 /// Candidate::key() of a contact we wrote: the side with the shell has the point's id as its index, the other
 /// -1; of a crossing each has its edge's.
@@ -56,4 +56,4 @@ class ManifoldWriter {
 void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
                    btManifoldResult& result);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps {
+namespace vps::bullet {
 
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings) {
   Twist V;
@@ -20,7 +20,7 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
     // The reference list holds the constraints added with world.addConstraint(coupling, true).
     for (int i = 0; with_couplings && i < const_cast<btRigidBody*>(body)->getNumConstraintRefs(); ++i) {
       const auto* coupling =
-          dynamic_cast<const VpsCoupling*>(const_cast<btRigidBody*>(body)->getConstraintRef(i));
+          dynamic_cast<const CouplingConstraint*>(const_cast<btRigidBody*>(body)->getConstraintRef(i));
       if (coupling && coupling->isEnabled()) {
         const Twist pull = coupling->freeVelocity(dt_s);
         V.w += pull.w;
@@ -32,4 +32,4 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
   return V;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

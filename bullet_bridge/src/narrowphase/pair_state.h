@@ -6,15 +6,15 @@
 #include <optional>
 #include <vector>
 
-#include "narrowphase/contact_candidate.h"
 #include "install/context.h"
+#include "narrowphase/contact_candidate.h"
 #include "narrowphase/manifold_writer.h"
 #include "narrowphase/motion.h"
+#include "narrowphase/query_state.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "solver/penalty_pair.h"
-#include "narrowphase/query_state.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// The points chosen in a full query, and where that was.
 struct Selection {
@@ -24,12 +24,12 @@ struct Selection {
   double reach_m = 0;              ///< how far the query looked
   Pose X_W0;                       ///< of body 0
   Twist V;                         ///< RelativeMotion::V
-  ShapeKey key[2];                 ///< of sides that are no VpsShape
+  ShapeKey key[2];                 ///< of sides that are no Shape
   std::vector<Candidate> springs;  ///< in penalty mode: all that were
 };
 
-struct VpsPairState {
-  std::shared_ptr<VpsContext> context;
+struct PairState {
+  std::shared_ptr<Context> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
   std::vector<Candidate> contacts;  ///< of the coming step
@@ -43,4 +43,4 @@ struct VpsPairState {
   unsigned revision[2] = {0, 0};         ///< of the shapes that writer's and selection's ids belong to
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

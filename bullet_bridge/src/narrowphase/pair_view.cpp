@@ -3,7 +3,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
-namespace vps {
+namespace vps::bullet {
 
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m) {
   RelativeMotion motion;
@@ -26,8 +26,9 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_
 
 double query_range_m(const PairView& pair) {
   double query_range_m = 1e30;
-  for (const VpsShape* shape : pair.vps)
-    if (shape && shape->models().map) query_range_m = std::min(query_range_m, 0.95 * shape->models().map->band_m());
+  for (const Shape* shape : pair.vps)
+    if (shape && shape->models().map)
+      query_range_m = std::min(query_range_m, 0.95 * shape->models().map->band_m());
   return query_range_m;
 }
 
@@ -60,4 +61,4 @@ void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

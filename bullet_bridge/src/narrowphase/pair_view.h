@@ -12,25 +12,25 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// Both bodies of a pair at one instant.
 struct PairView {
   const btCollisionObjectWrapper* wrapper[2];
-  const VpsShape* vps[2];  // null: a primitive
+  const Shape* vps[2];  // null: a primitive
   Pose X_WS[2];
 
   PairView(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
       : wrapper{body0, body1} {
     for (int i = 0; i < 2; ++i) {
-      vps[i] = dynamic_cast<const VpsShape*>(wrapper[i]->getCollisionShape());
+      vps[i] = dynamic_cast<const Shape*>(wrapper[i]->getCollisionShape());
       X_WS[i] = fromBt(wrapper[i]->getWorldTransform());
     }
   }
   [[nodiscard]] SideView side(int i) const {
     return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
-  /// Changes when the size of a side does that is no VpsShape.
+  /// Changes when the size of a side does that is no Shape.
   [[nodiscard]] ShapeKey key(int i) const {
     return vps[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
   }
@@ -40,11 +40,11 @@ struct PairView {
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
     double radius_m = 1e30;
-    for (const VpsShape* shape : vps)
+    for (const Shape* shape : vps)
       if (shape) radius_m = std::min(radius_m, 0.5 * shape->bounds().size().norm());
     return std::max(radius_m, 1e-6);
   }
-  /// Centre of the smaller VpsShape, in W.
+  /// Centre of the smaller Shape, in W.
   [[nodiscard]] Vec3 center_W() const {
     const bool second =
         !vps[0] || (vps[1] && vps[1]->bounds().size().norm() < vps[0]->bounds().size().norm());
@@ -72,4 +72,4 @@ void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 /// Where the bodies go in the step if they keep their velocities: what takes each from its place to that one.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 
-}  // namespace vps
+}  // namespace vps::bullet

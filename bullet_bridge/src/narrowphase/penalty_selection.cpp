@@ -4,17 +4,19 @@
 
 #include "narrowphase/contact_selection.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
 // A point on an edge has no normal of its own, and the field is worst near the other side's edges: 14 um at
 // the root of an M10 thread with voxels of 0.2 mm, and normals that follow the grid. A nut that stood on such
 // points lost 21 % of its acceleration.
-void correctSprings(const PairView& pair, const RelativeMotion& motion, const VpsBulletSettings& settings,
+void correctSprings(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     std::vector<Candidate>& candidates) {
   // Of a body that was looked at along its way, the places are elsewhere.
-  if (!settings.use_surfaces || motion.contact_margin_m + motion.speed_m_s * motion.dt_s > query_range_m(pair)) return;
+  if (!settings.use_surfaces ||
+      motion.contact_margin_m + motion.speed_m_s * motion.dt_s > query_range_m(pair))
+    return;
   Pose way[2];
   coast(pair, motion.dt_s, way);
   for (int i = 0; i < 2; ++i)
@@ -26,8 +28,8 @@ void correctSprings(const PairView& pair, const RelativeMotion& motion, const Vp
 
 // All that can touch, and the few of them that stand in the manifolds, to be seen and for solvers that know
 // nothing of springs.
-void chooseSprings(const PairView& pair, VpsPairState& state) {
-  VpsContext& context = *state.context;
+void chooseSprings(const PairView& pair, PairState& state) {
+  Context& context = *state.context;
   const RelativeMotion& motion = state.motion;
   Selection& selection = state.selection;
   std::vector<Candidate>& candidates = state.contacts;
@@ -37,7 +39,7 @@ void chooseSprings(const PairView& pair, VpsPairState& state) {
   dropUnreachable(motion, candidates);
   correctSprings(pair, motion, context.settings, candidates);
   selection.springs = candidates;
-  VpsBulletSettings seen = context.settings;
+  Settings seen = context.settings;
   seen.use_surfaces = false;
   choose(pair, motion, seen, state.writer.get(), candidates);
   keepSelection(candidates, pair, motion, selection);
@@ -45,7 +47,7 @@ void chooseSprings(const PairView& pair, VpsPairState& state) {
 
 // What recallSelection() does for thousands of points: within kStill_m their planes are as good as a look.
 // The points that could be left out as the motion was are those that can be left out now.
-bool recallSprings(const PairView& pair, VpsPairState& state, Carry& carry) {
+bool recallSprings(const PairView& pair, PairState& state, Carry& carry) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
   if (!(motionChange_m(selection, pair, motion) <= kStill_m) || !isWhereItWas(selection, pair, motion))
@@ -58,8 +60,8 @@ bool recallSprings(const PairView& pair, VpsPairState& state, Carry& carry) {
 
 }  // namespace
 
-void choosePenalty(const PairView& pair, VpsPairState& state) {
-  const VpsContext& context = *state.context;
+void choosePenalty(const PairView& pair, PairState& state) {
+  const Context& context = *state.context;
   Carry carry;
   if (!recallSprings(pair, state, carry)) chooseSprings(pair, state);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
@@ -69,4 +71,4 @@ void choosePenalty(const PairView& pair, VpsPairState& state) {
   renewPoints(state.penalty, state.selection.springs, stiffness, state.motion, carry);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

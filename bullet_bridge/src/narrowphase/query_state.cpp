@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr std::size_t kTilePoints = 64;
 constexpr double kTileSpacings = 12;  // from corner to corner, and a little more
 constexpr double kMostTiles = 16;
 
-double tileSize_m(const PointShell& shell, const VpsBulletSettings& settings) {
+double tileSize_m(const PointShell& shell, const Settings& settings) {
   const double area_m2 = std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0);
   return std::max(kTileSpacings * shell.spacing_m,
                   std::sqrt(2 * area_m2 / (kMostTiles * settings.contact_limit)));
@@ -23,7 +23,7 @@ double tileSize_m(const PointShell& shell, const VpsBulletSettings& settings) {
 
 }  // namespace
 
-QueryState::QueryState(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings)
+QueryState::QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings)
     : query(map, shell) {
   // Each spring counts; of rigid contact's points few do.
   if (settings.mode == ContactMethod::Constraint && shell.size() > mayAllBeNear(settings) &&
@@ -31,8 +31,8 @@ QueryState::QueryState(const VoxMap& map, const PointShell& shell, const VpsBull
     leading.emplace(shell, tileSize_m(shell, settings));
 }
 
-std::size_t mayAllBeNear(const VpsBulletSettings& settings) {
+std::size_t mayAllBeNear(const Settings& settings) {
   return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -7,11 +7,11 @@
 #include "vps/leading_points.h"
 #include "vps_bullet/install.h"
 
-namespace vps {
+namespace vps::bullet {
 
 struct QueryState {
   /// O(points). The shell must outlive it.
-  QueryState(const VoxMap& map, const PointShell& shell, const VpsBulletSettings& settings);
+  QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings);
 
   QueryMemory query;  ///< for cutoffs that stay the same
   std::optional<LeadingPoints>
@@ -19,6 +19,6 @@ struct QueryState {
 };
 
 /// So many near points of a side or fewer are all looked at.
-std::size_t mayAllBeNear(const VpsBulletSettings& settings);
+std::size_t mayAllBeNear(const Settings& settings);
 
-}  // namespace vps
+}  // namespace vps::bullet

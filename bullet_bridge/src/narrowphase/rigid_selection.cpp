@@ -4,14 +4,14 @@
 
 #include "narrowphase/contact_selection.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
 // A part that has not moved since its points were chosen keeps them, and their planes go with it: at rest
 // that is all the work there is. Planes that were found anew each step would turn within a hair where an edge
 // lies on an edge, and let the part fall for a step: then a heap never sleeps. False: choose anew.
-bool recallSelection(const PairView& pair, VpsPairState& state) {
+bool recallSelection(const PairView& pair, PairState& state) {
   if (!isWhereItWas(state.selection, pair, state.motion)) return false;
   // Points that could not be reached as the motion was had more than the slack to go.
   if (motionChange_m(state.selection, pair, state.motion) > state.motion.contact_margin_m) return false;
@@ -34,8 +34,8 @@ void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion
 
 }  // namespace
 
-void chooseRigid(const PairView& pair, VpsPairState& state) {
-  VpsContext& context = *state.context;
+void chooseRigid(const PairView& pair, PairState& state) {
+  Context& context = *state.context;
   if (!recallSelection(pair, state)) {
     collectForStep(pair, state.motion, state, state.contacts);
     ++context.pair_updates;
@@ -47,4 +47,4 @@ void chooseRigid(const PairView& pair, VpsPairState& state) {
                      pair.wrapper[1]->getCollisionObject());
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

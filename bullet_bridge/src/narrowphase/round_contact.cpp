@@ -15,7 +15,7 @@
 #include "native_shapes/primitive.h"
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -136,9 +136,9 @@ struct OwnFoot {
   Vec3 q = Vec3::Zero(), outward = Vec3::Zero();
 };
 
-OwnFoot footOnOwn(const VpsModels& models, const Vec3& x_M, double max_m) {
+OwnFoot footOnOwn(const ShapeModels& models, const Vec3& x_M, double max_m) {
   OwnFoot nearest;
-  for (const VpsSurface& surface : models.surfaces) {
+  for (const Surface& surface : models.surfaces) {
     const Vec3 x = surface.X_MP.inverse() * x_M;
     const MeshDistance::Closest closest = surface.distance->closest(x, max_m);
     if (!closest.found) continue;
@@ -157,7 +157,7 @@ double roundReach_m(const btCollisionShape& primitive, double spacing_m) {
 
 bool touchRound(Candidate& c, const SideView& side, const SideView& other,
                 const btCollisionShape& primitive) {
-  const VpsModels& models = side.shape->models();
+  const ShapeModels& models = side.shape->models();
   if (models.surfaces.empty() || side.shape->isEdgePoint(c.id)) return false;
   const Pose X_SM = other.X_WM.inverse() * side.X_WM;
   const Vec3 &p_M = models.shell->points[c.id], &inward_M = models.shell->inward[c.id];
@@ -182,4 +182,4 @@ bool touchRound(Candidate& c, const SideView& side, const SideView& other,
   return true;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

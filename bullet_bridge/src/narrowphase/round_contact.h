@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// How much farther from a primitive's round side than the contact itself the nearest of a face's points can
 /// be: s^2 / (2 r) for points s apart on a ball of radius r, at most s. 0 for primitives without a round
@@ -18,4 +18,4 @@ double roundReach_m(const btCollisionShape& primitive, double spacing_m);
 /// exact surfaces, flat sides of primitives, and where nothing is gained.
 bool touchRound(Candidate& c, const SideView& side, const SideView& other, const btCollisionShape& primitive);
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 #include "native_shapes/primitive.h"
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -94,8 +94,8 @@ PointShell shellOf(const Corners& corners) {
   return mergedShells(pointers, std::vector<Pose>(leaves.size()));
 }
 
-VpsModels modelsOf(const NativeShapeMesh& partner) {
-  VpsModels models;
+ShapeModels modelsOf(const NativeShapeMesh& partner) {
+  ShapeModels models;
   const auto surface = std::make_shared<const MeshDistance>(partner.mesh);
   models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, partner.is_sheet)));
   models.surfaces = {
@@ -119,7 +119,7 @@ std::uint64_t hashOf(const Mesh& mesh) {
 }  // namespace
 
 NativeShape::NativeShape(const btCollisionShape& shape)
-    : VpsShape(modelsOf(partnerMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
+    : Shape(modelsOf(partnerMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
 
 const btCollisionShape* primitiveBehind(const btCollisionShape& shape) {
   const auto* adapter = dynamic_cast<const NativeShape*>(&shape);
@@ -201,4 +201,4 @@ std::shared_ptr<const NativeShape> NativeShapeCache::get(const btCollisionShape&
   return adapter;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

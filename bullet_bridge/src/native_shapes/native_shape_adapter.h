@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands in for one of Bullet's own shapes in a pair with a VpsShape, and where such are kept.
+// What stands in for one of Bullet's own shapes in a pair with a Shape, and where such are kept.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 #include "vps_bullet/shape.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// A shape's surface as models without a map: its triangles' exact distance, and its corners as a shell, so
-/// that both are looked up in each other: the VpsShape's points on the surface, the corners in the VpsShape's
+/// that both are looked up in each other: the Shape's points on the surface, the corners in the Shape's
 /// map. Of a primitive with corners only the corners are used; its distance is the primitive's own.
 /// Refers to the shape it stands for; holds its geometry as it was.
-class NativeShape : public VpsShape {
+class NativeShape : public Shape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   /// Throws as partnerMesh().
@@ -67,7 +67,7 @@ struct ShapeKey {
 };
 ShapeKey keyOf(const btCollisionShape& shape);
 
-/// The stand-ins of an installation: built when a shape first meets a VpsShape, shared by its pairs.
+/// The stand-ins of an installation: built when a shape first meets a Shape, shared by its pairs.
 /// A shape is known by its address, and checked: by its key always, and by a hash of its triangles' corners
 /// when no pair uses it any more, since another shape may have come to lie there. Thread-safe.
 class NativeShapeCache {
@@ -85,4 +85,4 @@ class NativeShapeCache {
   std::map<const btCollisionShape*, Entry> entries_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

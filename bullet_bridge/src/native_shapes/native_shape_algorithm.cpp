@@ -10,7 +10,7 @@
 #include "install/context.h"
 #include "native_shapes/native_shape_adapter.h"
 
-namespace vps {
+namespace vps::bullet {
 
 static_assert(sizeof(NativeShapeAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
@@ -37,11 +37,11 @@ struct StandIns {
 }  // namespace
 
 struct NativeShapeAlgorithm::State {
-  std::shared_ptr<VpsContext> context;
+  std::shared_ptr<Context> context;
   int native_side = 0;
   ShapeKey key;
   std::shared_ptr<const NativeShape> adapter;  // null: the shape has become one that cannot be met
-  std::unique_ptr<VpsAlgorithm> inner;
+  std::unique_ptr<Algorithm> inner;
 
   void renew(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
     const btCollisionShape& shape = *bodies[native_side]->getCollisionShape();
@@ -49,7 +49,7 @@ struct NativeShapeAlgorithm::State {
     inner.reset();
     adapter = context->partners.get(shape);
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
-    inner = std::make_unique<VpsAlgorithm>(info, bodies[0], bodies[1], context);
+    inner = std::make_unique<Algorithm>(info, bodies[0], bodies[1], context);
   }
   // In the middle of a step there is nobody to throw to.
   void renewOrSay(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
@@ -64,10 +64,10 @@ struct NativeShapeAlgorithm::State {
 };
 
 NativeShapeAlgorithm::NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
-                                   const btCollisionObjectWrapper* body0,
-                                   const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
-                                   int native_side)
-    : VpsPair(info, body0, body1), state_(std::make_unique<State>()) {
+                                           const btCollisionObjectWrapper* body0,
+                                           const btCollisionObjectWrapper* body1,
+                                           std::shared_ptr<Context> context, int native_side)
+    : PairAlgorithm(info, body0, body1), state_(std::make_unique<State>()) {
   state_->context = std::move(context);
   state_->native_side = native_side;
   state_->renew(*m_dispatcher, {body0, body1});
@@ -79,8 +79,8 @@ void NativeShapeAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   if (state_->inner) state_->inner->getAllContactManifolds(manifolds);
 }
 
-void NativeShapeAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
-                               const btDispatcherInfo& info) {
+void NativeShapeAlgorithm::prepare(const btCollisionObjectWrapper* body0,
+                                   const btCollisionObjectWrapper* body1, const btDispatcherInfo& info) {
   const btCollisionObjectWrapper* partner = state_->native_side == 0 ? body0 : body1;
   if (!state_->adapter || state_->key != keyOf(*partner->getCollisionShape())) return;
   const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
@@ -88,12 +88,12 @@ void NativeShapeAlgorithm::prepare(const btCollisionObjectWrapper* body0, const 
 }
 
 void NativeShapeAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
-                                        const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
-                                        btManifoldResult* result) {
+                                            const btCollisionObjectWrapper* body1,
+                                            const btDispatcherInfo& info, btManifoldResult* result) {
   state_->renewOrSay(*m_dispatcher, {body0, body1});
   if (!state_->adapter) return;
   const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
   state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Narrow phase for pairs of a VpsShape with a shape that a NativeShape stands in for.
+// Narrow phase for pairs of a Shape with a shape that a NativeShape stands in for.
 #pragma once
 
 #include <memory>
 
 #include "vps_bullet/algorithm.h"
 
-namespace vps {
+namespace vps::bullet {
 
 class NativeShape;
 
-/// VpsAlgorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
+/// Algorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
 /// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
-class NativeShapeAlgorithm final : public VpsPair {
+class NativeShapeAlgorithm final : public PairAlgorithm {
  public:
   /// @param native_side  0 or 1: whose shape is replaced. Throws as NativeShapeCache::get().
-  NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
-                   const btCollisionObjectWrapper* body1, std::shared_ptr<VpsContext> context,
-                   int native_side);
+  NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+                       const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                       std::shared_ptr<Context> context, int native_side);
   ~NativeShapeAlgorithm() override;
 
   /// Does nothing where the stand-in must be renewed: that is left to processCollision(), one pair at a time.
@@ -33,4 +33,4 @@ class NativeShapeAlgorithm final : public VpsPair {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -24,7 +24,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -32,7 +32,7 @@ namespace {
 constexpr double kFlat = 1e-6;
 
 [[noreturn]] void refuse(const btCollisionShape& shape, const std::string& why) {
-  throw std::invalid_argument(std::string("VpsShape and ") + shape.getName() + " do not collide: " + why);
+  throw std::invalid_argument(std::string("Shape and ") + shape.getName() + " do not collide: " + why);
 }
 
 // So many vertices on a circle that its chords are within a micrometre of it.
@@ -184,7 +184,7 @@ Mesh allTriangles(const btConcaveShape& shape) {
     if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
   Mesh mesh = welded(all.mesh);
   if (mesh.triangles.empty() || !(area(mesh) > 0))
-    refuse(shape, "it names no triangles; build a VpsShape from its mesh");
+    refuse(shape, "it names no triangles; build a Shape from its mesh");
   return mesh;
 }
 
@@ -312,4 +312,4 @@ NativeShapeMesh partnerMesh(const btCollisionShape& shape) {
   refuse(shape, "it is neither convex nor a mesh");
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btCollisionShape;
 
-namespace vps {
+namespace vps::bullet {
 
 /// Triangles in the shape's frame, as large as the shape is scaled, without Bullet's collision margin.
 struct NativeShapeMesh {
@@ -23,4 +23,4 @@ inline constexpr std::size_t kMaxNativeTriangles = 4'000'000;
 /// says which and what would do.
 NativeShapeMesh partnerMesh(const btCollisionShape& shape);
 
-}  // namespace vps
+}  // namespace vps::bullet

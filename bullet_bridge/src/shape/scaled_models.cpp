@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -40,9 +40,9 @@ std::shared_ptr<const PointShell> scaled(const PointShell& shell, double factor)
   return larger;
 }
 
-std::vector<VpsSurface> scaled(const std::vector<VpsSurface>& surfaces, double factor) {
-  std::vector<VpsSurface> larger;
-  for (const VpsSurface& surface : surfaces)
+std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor) {
+  std::vector<Surface> larger;
+  for (const Surface& surface : surfaces)
     larger.push_back({std::make_shared<const MeshDistance>(*scaled(surface.distance->mesh(), factor)),
                       Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet});
   return larger;
@@ -50,26 +50,26 @@ std::vector<VpsSurface> scaled(const std::vector<VpsSurface>& surfaces, double f
 
 // `larger`: what has been scaled already. One part's sign is found as buildVoxMap() finds it, also for open
 // meshes.
-std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const VpsModels& larger, double factor) {
+std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& larger, double factor) {
   VoxMapSettings settings;
   settings.voxel_m = factor * map.voxel_m();
   settings.band_voxels = map.band_m() / map.voxel_m();
-  const std::vector<VpsSurface>& parts = larger.surfaces;
+  const std::vector<Surface>& parts = larger.surfaces;
   if (parts.empty() && !larger.mesh)
     throw std::invalid_argument(
-        "VpsShape: a map cannot be scaled without the mesh it was built from; give its models a mesh");
+        "Shape: a map cannot be scaled without the mesh it was built from; give its models a mesh");
   if (parts.size() == 1 && parts[0].X_MP.R.isIdentity(0) && parts[0].X_MP.p.isZero(0))
     return std::make_shared<const VoxMap>(buildVoxMap(parts[0].distance->mesh(), settings));
   if (parts.empty()) return std::make_shared<const VoxMap>(buildVoxMap(*larger.mesh, settings));
   std::vector<PlacedMesh> placed;
-  for (const VpsSurface& part : parts) placed.push_back({&part.distance->mesh(), part.X_MP});
+  for (const Surface& part : parts) placed.push_back({&part.distance->mesh(), part.X_MP});
   return std::make_shared<const VoxMap>(cookVoxMap(placed, settings));
 }
 
 }  // namespace
 
-VpsModels scaledModels(const VpsModels& models, double factor) {
-  VpsModels larger;
+ShapeModels scaledModels(const ShapeModels& models, double factor) {
+  ShapeModels larger;
   if (models.mesh) larger.mesh = scaled(*models.mesh, factor);
   if (models.shell) larger.shell = scaled(*models.shell, factor);
   larger.surfaces = scaled(models.surfaces, factor);
@@ -77,4 +77,4 @@ VpsModels scaledModels(const VpsModels& models, double factor) {
   return larger;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -17,7 +17,7 @@
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 
 namespace {
 
@@ -35,9 +35,9 @@ Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
   return about_com + mass_kg * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
 }
 
-void requireModels(const VpsModels& models) {
+void requireModels(const ShapeModels& models) {
   if (!models.map && !models.shell && !models.mesh)
-    throw std::invalid_argument("VpsShape: it has no models; give it a map, a shell or a mesh (makeModels)");
+    throw std::invalid_argument("Shape: it has no models; give it a map, a shell or a mesh (makeModels)");
 }
 
 Box boxOf(const PointShell& shell) {
@@ -49,21 +49,21 @@ Box boxOf(const PointShell& shell) {
 struct PointNormals {
   std::vector<std::uint8_t> is_edge;  // by point
   std::vector<Vec3> smooth_inward;
-  std::vector<VpsShape::PointFace> faces;
+  std::vector<Shape::PointFace> faces;
 };
 
 constexpr double kOnSurface_m = 1e-6;
 
 // A point on a face has that face's normal; one on an edge has the mean of several.
-PointNormals findNormals(const VpsModels& models) {
+PointNormals findNormals(const ShapeModels& models) {
   constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
   if (!models.shell || models.surfaces.empty()) return {};
   const std::size_t count = models.shell->size();
   PointNormals normals{std::vector<std::uint8_t>(count, 1), models.shell->inward,
-                       std::vector<VpsShape::PointFace>(count)};
+                       std::vector<Shape::PointFace>(count)};
   for (std::size_t i = 0; i < count; ++i)
     for (std::uint32_t s = 0; s < models.surfaces.size(); ++s) {
-      const VpsSurface& surface = models.surfaces[s];
+      const Surface& surface = models.surfaces[s];
       const Pose X_PM = surface.X_MP.inverse();
       const MeshDistance::Closest closest =
           surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
@@ -78,7 +78,7 @@ PointNormals findNormals(const VpsModels& models) {
   return normals;
 }
 
-EdgeSet edgesOf(const std::vector<VpsSurface>& surfaces) {
+EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   std::vector<EdgeSegment> segments;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
     appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
@@ -101,8 +101,8 @@ BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3
   return frame;
 }
 
-VpsModels makeModels(const Part& part) {
-  VpsModels models;
+ShapeModels makeModels(const Part& part) {
+  ShapeModels models;
   models.map = part.map;
   models.shell = part.shell;
   if (!part.mesh.triangles.empty()) {
@@ -114,7 +114,7 @@ VpsModels makeModels(const Part& part) {
 
 /// Boxes over the mesh's triangles, in the shape's frame. Split at the median of the longest axis, four to a
 /// leaf.
-class VpsShape::TriangleTree {
+class Shape::TriangleTree {
  public:
   TriangleTree(const Mesh& mesh, const Pose& X_SM) : triangles_(mesh.triangles) {
     vertices_.reserve(mesh.vertices.size());
@@ -195,24 +195,24 @@ class VpsShape::TriangleTree {
   std::vector<Node> nodes_;
 };
 
-VpsShape::VpsShape(VpsModels models, const Pose& X_SM) : X_SM_unscaled_(X_SM), scaling_(1, 1, 1) {
+Shape::Shape(ShapeModels models, const Pose& X_SM) : X_SM_unscaled_(X_SM), scaling_(1, 1, 1) {
   m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
   m_collisionMargin = 0;
-  if (!X_SM.isFinite()) throw std::invalid_argument("VpsShape: the models' pose X_SM is not finite");
+  if (!X_SM.isFinite()) throw std::invalid_argument("Shape: the models' pose X_SM is not finite");
   setModels(std::move(models));
 }
 
-VpsShape::~VpsShape() = default;
+Shape::~Shape() = default;
 
-void VpsShape::setModels(VpsModels models) {
+void Shape::setModels(ShapeModels models) {
   requireModels(models);
   const double scale = scaling_.x();
-  VpsModels scaled = scale == 1 ? models : scaledModels(models, scale);
+  ShapeModels scaled = scale == 1 ? models : scaledModels(models, scale);
   unscaled_ = std::move(models);
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }
 
-void VpsShape::use(VpsModels models, const Pose& X_SM) {
+void Shape::use(ShapeModels models, const Pose& X_SM) {
   models_ = std::move(models);
   X_SM_ = X_SM;
   ++revision_;
@@ -251,7 +251,7 @@ void VpsShape::use(VpsModels models, const Pose& X_SM) {
   triangles_ = models_.mesh ? std::make_unique<const TriangleTree>(*models_.mesh, X_SM_) : nullptr;
 }
 
-void VpsShape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
+void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
   const Pose X = fromBt(X_WS);
   const Vec3 center = X * bounds_S_.center();
   const Vec3 half = X.R.cwiseAbs() * (0.5 * bounds_S_.size());
@@ -259,9 +259,9 @@ void VpsShape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) 
   max = toBt(Vec3(center + half));
 }
 
-void VpsShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
+void Shape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
   if (!(mass >= 0) || !std::isfinite(mass))
-    throw std::invalid_argument("VpsShape: a mass of " + std::to_string(mass) +
+    throw std::invalid_argument("Shape: a mass of " + std::to_string(mass) +
                                 " kg; give a positive one, or 0 for a fixed body");
   if (models_.mesh) {
     const MassProperties unit = massProperties(*models_.mesh);
@@ -276,8 +276,8 @@ void VpsShape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
   inertia = toBt(Vec3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()));
 }
 
-void VpsShape::processAllTriangles(btTriangleCallback* callback, const btVector3& min,
-                                   const btVector3& max) const {
+void Shape::processAllTriangles(btTriangleCallback* callback, const btVector3& min,
+                                const btVector3& max) const {
   if (!triangles_) return;
   Box box;
   box.min = fromBt(min);
@@ -285,32 +285,31 @@ void VpsShape::processAllTriangles(btTriangleCallback* callback, const btVector3
   triangles_->visit(box, *callback);
 }
 
-void VpsShape::setLocalScaling(const btVector3& scaling) {
+void Shape::setLocalScaling(const btVector3& scaling) {
   const double scale = scaling.x();
   if (scaling.y() != scaling.x() || scaling.z() != scaling.x() || !(scale > 0) || !std::isfinite(scale)) {
     std::ostringstream words;
-    words << "VpsShape: cannot be scaled by (" << scaling.x() << ", " << scaling.y() << ", " << scaling.z()
+    words << "Shape: cannot be scaled by (" << scaling.x() << ", " << scaling.y() << ", " << scaling.z()
           << "), only by one positive number on all axes; scale the mesh and build its models again";
     throw std::invalid_argument(words.str());
   }
   if (scaling == scaling_) return;
-  VpsModels scaled = scale == 1 ? unscaled_ : scaledModels(unscaled_, scale);
+  ShapeModels scaled = scale == 1 ? unscaled_ : scaledModels(unscaled_, scale);
   scaling_ = scaling;
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }
 
-void VpsShape::setMargin(btScalar margin) {
-  if (!(margin >= 0)) throw std::invalid_argument("VpsShape: a margin must not be negative; it is always 0");
+void Shape::setMargin(btScalar margin) {
+  if (!(margin >= 0)) throw std::invalid_argument("Shape: a margin must not be negative; it is always 0");
   static std::atomic_flag said;
-  if (margin != 0)
-    sayOnce(said, "VpsShape has no margin: its contact distance is that of the part's surface");
+  if (margin != 0) sayOnce(said, "Shape has no margin: its contact distance is that of the part's surface");
 }
 
-int VpsShape::calculateSerializeBufferSize() const {
+int Shape::calculateSerializeBufferSize() const {
   throw std::invalid_argument(
-      "VpsShape cannot be written in Bullet's format, whose importer could not read it; save the part's "
+      "Shape cannot be written in Bullet's format, whose importer could not read it; save the part's "
       "mesh, "
       "map (saveVdb) and shell (savePly) instead");
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 // Impulses are far from the ends of a double's range; std::hypot guards those and took a sixth of a heap's
@@ -272,4 +272,4 @@ void ContactSweeps::finish(double dt_s) {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 // What initSolverBody and convertBodies of the stock solver take as external: forces, torques, gyroscopic
@@ -92,4 +92,4 @@ void Island::writeVelocities() const {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

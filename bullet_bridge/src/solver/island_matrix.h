@@ -10,7 +10,7 @@
 
 #include "solver/island.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// Dense for a few bodies. For many, sparse, its pattern kept as long as the same bodies touch: finding one
 /// and ordering its columns takes several times as long as factoring it.
@@ -38,4 +38,4 @@ class IslandMatrix {
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_factor_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

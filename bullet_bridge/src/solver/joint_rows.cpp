@@ -10,7 +10,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 /// A row as getInfo2() fills it.
@@ -103,4 +103,4 @@ void JointRows::finish(double dt_s) {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

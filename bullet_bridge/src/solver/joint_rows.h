@@ -9,7 +9,7 @@
 class btTypedConstraint;
 struct btContactSolverInfo;
 
-namespace vps {
+namespace vps::bullet {
 
 /// One degree of freedom that a joint takes or drives: J u = target - softness times impulse, as far as the
 /// impulse's limits go.
@@ -49,4 +49,4 @@ class JointRows {
   std::vector<JointRow> rows;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 /// A twist about `from` as one about `to`.
@@ -227,4 +227,4 @@ void PenaltyNewton::finish() {
   for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

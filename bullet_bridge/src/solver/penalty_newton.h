@@ -19,7 +19,7 @@
 #include "solver/joint_rows.h"
 #include "solver/penalty_patch.h"
 
-namespace vps {
+namespace vps::bullet {
 
 class PenaltyNewton {
  public:
@@ -76,4 +76,4 @@ class PenaltyNewton {
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 #include "narrowphase/manifold_writer.h"
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 /// A point that stands for no area: a steel corner of a millimetre. Assumed.
@@ -116,4 +116,4 @@ void leaveImpulses(std::span<const PenaltyManifold> manifolds, double dt_s) {
   });
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

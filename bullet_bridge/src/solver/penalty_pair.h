@@ -13,7 +13,7 @@
 class btCollisionObject;
 class btPersistentManifold;
 
-namespace vps {
+namespace vps::bullet {
 
 struct Candidate;
 struct Carry;
@@ -85,4 +85,4 @@ class PenaltyRegistry {
   std::map<const btPersistentManifold*, PenaltyPair*> pairs_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

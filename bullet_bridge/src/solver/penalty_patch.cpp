@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 inline Vec6 wrenchOf(const Vec3& r, const Vec3& f) {
@@ -185,4 +185,4 @@ void PenaltyPatch::finish(const Vec6& twist) const {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 #include "solver/island.h"
 #include "solver/penalty_pair.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// Twists are of body 0 against body 1, about center, in W. Most points of a pair are near and do not press:
 /// what tells them apart is kept in columns, so that looking at them costs little.
@@ -68,4 +68,4 @@ class PenaltyPatch {
   mutable Columns bent_m_;
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps {
+namespace vps::bullet {
 namespace {
 
 // What a spring gives, as a share of what a free body would: at first, and at least. A stiff one leaves
@@ -114,4 +114,4 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
   return outcome;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

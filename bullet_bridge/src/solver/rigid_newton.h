@@ -14,7 +14,7 @@
 #include "solver/contact_sweeps.h"
 #include "solver/penalty_newton.h"
 
-namespace vps {
+namespace vps::bullet {
 
 class RigidNewton {
  public:
@@ -44,4 +44,4 @@ class RigidNewton {
   std::vector<Vec6> before_, change_;  // velocities of the round before, and what became of them
 };
 
-}  // namespace vps
+}  // namespace vps::bullet

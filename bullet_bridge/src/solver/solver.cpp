@@ -19,24 +19,24 @@
 #include <unordered_set>
 #include <vector>
 
-#include "solver/contact_sweeps.h"
 #include "install/context.h"
+#include "solver/contact_sweeps.h"
 #include "solver/island.h"
 #include "solver/penalty_newton.h"
 #include "solver/rigid_newton.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps {
+namespace vps::bullet {
 
 /// What one island is solved with; kept from call to call for its memory.
-struct VpsSolver::Work {
+struct Solver::Work {
   /// A coupling whose part is in the island.
   struct Held {
-    VpsCoupling* coupling;
+    CouplingConstraint* coupling;
     int body;
     Mat6 J;  // body's twist -> grasp point's
-    VpsCoupling::Law law;
+    CouplingConstraint::Law law;
   };
   Island island;
   JointRows joints;
@@ -44,7 +44,7 @@ struct VpsSolver::Work {
   RigidNewton rigid_newton{island, joints};
   PenaltyNewton soft{island, joints};
   bool is_soft = false;
-  std::vector<VpsCoupling*> couplings;
+  std::vector<CouplingConstraint*> couplings;
   std::vector<Held> held;
   std::vector<PenaltyManifold> manifolds;  // of soft contacts
   std::deque<PenaltyPair> made;            // of manifolds that are nobody's pair
@@ -52,13 +52,13 @@ struct VpsSolver::Work {
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
-  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const VpsContext* context,
+  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const Context* context,
                       const btContactSolverInfo& info);
   void holdCouplings(double dt_s);
   void applyLaws();
   bool renewLaws();
-  SolveOutcome solveContacts(const VpsSolverSettings& settings, double dt_s);
-  SolveOutcome solveRigid(const VpsSolverSettings& settings, double dt_s);
+  SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
+  SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
 };
 
 namespace {
@@ -83,7 +83,7 @@ bool isPlain(const btManifoldPoint& point) {
 
 }  // namespace
 
-bool VpsSolver::Work::gatherBodies(std::span<btCollisionObject*> objects, double dt_s) {
+bool Solver::Work::gatherBodies(std::span<btCollisionObject*> objects, double dt_s) {
   island.clear();
   for (btCollisionObject* object : objects) {
     btRigidBody* rigid = btRigidBody::upcast(object);
@@ -93,21 +93,21 @@ bool VpsSolver::Work::gatherBodies(std::span<btCollisionObject*> objects, double
   return true;
 }
 
-void VpsSolver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints,
-                                        const btContactSolverInfo& info) {
+void Solver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints,
+                                     const btContactSolverInfo& info) {
   couplings.clear();
   joints.clear();
   for (btTypedConstraint* constraint : constraints) {
     if (!constraint->isEnabled()) continue;
-    if (auto* coupling = dynamic_cast<VpsCoupling*>(constraint))
+    if (auto* coupling = dynamic_cast<CouplingConstraint*>(constraint))
       couplings.push_back(coupling);
     else
       joints.add(*constraint, island, info);
   }
 }
 
-bool VpsSolver::Work::gatherContacts(std::span<btPersistentManifold*> from, const VpsContext* context,
-                                     const btContactSolverInfo& info) {
+bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const Context* context,
+                                  const btContactSolverInfo& info) {
   rigid.clear();
   soft.clear(info.m_timeStep);
   manifolds.clear();
@@ -132,9 +132,9 @@ bool VpsSolver::Work::gatherContacts(std::span<btPersistentManifold*> from, cons
   return true;
 }
 
-void VpsSolver::Work::holdCouplings(double dt_s) {
+void Solver::Work::holdCouplings(double dt_s) {
   held.clear();
-  for (VpsCoupling* coupling : couplings) {
+  for (CouplingConstraint* coupling : couplings) {
     coupling->buildJacobian();
     coupling->step_ = coupling->makeStep(dt_s);
     const int index = island.indexOf(&coupling->part_);
@@ -145,7 +145,7 @@ void VpsSolver::Work::holdCouplings(double dt_s) {
   }
 }
 
-void VpsSolver::Work::applyLaws() {
+void Solver::Work::applyLaws() {
   for (IslandBody& b : island.bodies) {
     b.held = b.mass;
     b.drive.setZero();
@@ -159,11 +159,11 @@ void VpsSolver::Work::applyLaws() {
 }
 
 // True if the laws hold as they stand; else those that do not are replaced.
-bool VpsSolver::Work::renewLaws() {
+bool Solver::Work::renewLaws() {
   bool is_settled = true;
   for (Held& h : held) {
     const Vec6 V_G = h.J * island.bodies[static_cast<std::size_t>(h.body)].u;
-    const VpsCoupling::Law law = h.coupling->lawAt(h.coupling->step_, V_G);
+    const CouplingConstraint::Law law = h.coupling->lawAt(h.coupling->step_, V_G);
     const double change = (law.c - h.law.c).norm();
     if (law.limited != h.law.limited || change > 1e-6 * law.c.norm()) is_settled = false;
     if (!is_settled) h.law = law;
@@ -173,7 +173,7 @@ bool VpsSolver::Work::renewLaws() {
 
 // Sweeps settle what is nearly settled, such as parts at rest, in a few microseconds; Newton's method settles
 // the rest.
-SolveOutcome VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, double dt_s) {
+SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_s) {
   constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: what each costs
   constexpr double kShareOfSpeed = 1e-5;                       // assumed: a micron on the way of a decimetre
   const int newton_limit = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
@@ -193,24 +193,22 @@ SolveOutcome VpsSolver::Work::solveRigid(const VpsSolverSettings& settings, doub
   return {outcome.steps + end.steps, end.is_settled};
 }
 
-SolveOutcome VpsSolver::Work::solveContacts(const VpsSolverSettings& settings, double dt_s) {
+SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings, double dt_s) {
   return is_soft ? soft.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings, dt_s);
 }
 
-VpsSolver::VpsSolver(const VpsSolverSettings& settings)
-    : settings_(settings), work_(std::make_unique<Work>()) {}
-VpsSolver::~VpsSolver() = default;
+Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
+Solver::~Solver() = default;
 
-btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-                               int manifold_count, btTypedConstraint** constraints, int constraint_count,
-                               const btContactSolverInfo& info, btIDebugDraw* draw,
-                               btDispatcher* dispatcher) {
+btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                            int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                            const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) {
   const auto spanOf = [](auto** first, int count) {
     return std::span(first, static_cast<std::size_t>(count));
   };
   const double dt_s = info.m_timeStep;
   Work& work = *work_;
-  const std::shared_ptr<const VpsContext> context = contextOf(dispatcher);
+  const std::shared_ptr<const Context> context = contextOf(dispatcher);
   if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
       !work.gatherContacts(spanOf(manifolds, manifold_count), context.get(), info))
     return btSequentialImpulseConstraintSolver::solveGroup(
@@ -251,4 +249,4 @@ btScalar VpsSolver::solveGroup(btCollisionObject** bodies, int body_count, btPer
   return 0;
 }
 
-}  // namespace vps
+}  // namespace vps::bullet

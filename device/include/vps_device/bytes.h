@@ -10,7 +10,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace vps {
+namespace vps::device {
 
 /// Appends to a string. Length prefixes are what the caller's format says: a type of his choice.
 class ByteWriter {
@@ -79,4 +79,4 @@ class ByteReader {
   bool is_good_ = true;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -16,7 +16,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps {
+namespace vps::device {
 
 class Clutch {
  public:
@@ -53,4 +53,4 @@ class Clutch {
   bool is_closing_ = true;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace vps {
+namespace vps::device {
 
 /// CRC-32 (reflected polynomial 0xedb88320, as ISO-HDLC), over bytes that come piece by piece. O(bytes).
 class Crc32 {
@@ -35,4 +35,4 @@ inline std::uint32_t crc32(std::string_view bytes) {
   return crc.value();
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -8,7 +8,7 @@
 #include "vps/status.h"
 #include "vps/wrench.h"
 
-namespace vps {
+namespace vps::device {
 
 /// The handle H in the device's base frame D at one instant. V_DH: velocity of H's origin, in D.
 struct DeviceSample {
@@ -73,4 +73,4 @@ class Device {
   Device& operator=(const Device&) = default;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vps {
+namespace vps::device {
 
 enum class DeviceEventKind : std::uint8_t {
   // Faults: no wrench until re-armed.
@@ -81,4 +81,4 @@ class DeviceEventQueue {
   std::atomic<std::uint64_t> lost_{0};
 };
 
-}  // namespace vps
+}  // namespace vps::device

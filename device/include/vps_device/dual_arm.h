@@ -16,7 +16,7 @@
 #include "vps/wrench.h"
 #include "vps_device/dual_arm_parameters.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Joints of one arm: t1, t2 [rad] of the plate and the prismatic d3 [m].
 struct ArmJoints {
@@ -138,4 +138,4 @@ double saturationScale(const JointVector& bias, const JointVector& wanted, const
 /// Motor limits; share 0 continuous, 1 peak, linear between.
 JointVector motorLimits(const DualArmParameters& parameters, double peak_share) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 struct BaseCalibration {
   /// Ok; Truncated: fewer than twelve readings; BadPose: a reading is not finite; Singular: the readings are
@@ -26,4 +26,4 @@ struct BaseCalibration {
 BaseCalibration calibrateBases(const DualArmParameters& parameters,
                                std::span<const DualArmJoints> readings) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 #include "vps_device/device.h"
 #include "vps_device/dual_arm_forces.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Of a figure over all places and attitudes that were visited.
 struct Extent {
@@ -72,4 +72,4 @@ struct VerticalForceAt {
 };
 std::vector<VerticalForceAt> verticalForces(const DualArmParameters& parameters, double peak_share = 0);
 
-}  // namespace vps
+}  // namespace vps::device

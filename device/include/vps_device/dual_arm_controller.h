@@ -11,7 +11,7 @@
 #include "vps_device/dual_arm_hardware.h"
 #include "vps_device/motor_heat.h"
 
-namespace vps {
+namespace vps::device {
 
 struct DualArmControllerSettings {
   DualArmParameters arms;
@@ -79,4 +79,4 @@ class DualArmController final : public Device {
 /// workspace with the handle within 30 deg of straight.
 DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz, bool has_quantised_encoders);
 
-}  // namespace vps
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
 struct VerticalForce {
@@ -35,4 +35,4 @@ double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts, const Joi
 double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
                       const JointVector& limits, const Vec3& direction) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 enum class DeviceFrame {
   Independent,  ///< D: origin at the workspace's centre
@@ -23,4 +23,4 @@ Twist inFrame(const DualArmParameters& parameters, const Twist& V, DeviceFrame f
 Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame from,
                DeviceFrame to) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

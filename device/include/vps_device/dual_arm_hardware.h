@@ -4,7 +4,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 /// The encoders at one instant.
 struct DualArmReading {
@@ -31,4 +31,4 @@ class DualArmHardware {
   DualArmHardware& operator=(const DualArmHardware&) = default;
 };
 
-}  // namespace vps
+}  // namespace vps::device

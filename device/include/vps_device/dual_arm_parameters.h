@@ -8,7 +8,7 @@
 
 #include "vps/pose.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Default: what data/dual_arm.toml says. Copies never allocate.
 struct DualArmParameters {
@@ -91,4 +91,4 @@ DualArmFile loadDualArm(const std::string& file);
 /// The same from text; `name` stands for the file in messages.
 DualArmFile parseDualArm(const std::string& text, const std::string& name);
 
-}  // namespace vps
+}  // namespace vps::device

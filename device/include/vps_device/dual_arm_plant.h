@@ -14,7 +14,7 @@
 #include "vps_device/motor_heat.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 
 struct DualArmPlantSettings {
   DualArmParameters arms;
@@ -87,4 +87,4 @@ class DualArmPlant final : public DualArmHardware {
   double kinetic_J_ = 0, structure_J_ = 0, friction_J_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::device

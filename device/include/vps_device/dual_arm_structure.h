@@ -4,7 +4,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Stiffness of each joint [N m/rad, N/m, N m/rad] with the arms at `joints`: capstan, tendon and link in
 /// series with the gimbal's and the handle's stiffness, which is the same in every direction and therefore,
@@ -16,4 +16,4 @@ JointVector structureStiffness(const DualArmParameters& parameters, const JointV
 JointVector structureDrift(const DualArmParameters& parameters, const JointVector& joints,
                            const JointVector& stretch) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 
 #include "vps_device/run_log.h"
 
-namespace vps {
+namespace vps::device {
 
 /// One writer, one reader; neither waits. A full ring refuses.
 class EntryRing {
@@ -51,4 +51,4 @@ class EntryRing {
   alignas(64) std::atomic<std::size_t> tail_{0};
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 #include "vps/coupling_law.h"
 #include "vps_device/device.h"
 
-namespace vps {
+namespace vps::device {
 
 struct CouplingTiming {
   double haptic_rate_hz = 1000;
@@ -31,4 +31,4 @@ CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timi
 /// they are stable on a device is another question: deriveGains() answers it.
 bool areUsable(const CouplingGains& gains) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

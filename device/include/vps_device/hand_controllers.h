@@ -6,7 +6,7 @@
 
 #include "vps_device/rate_control.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Each has a thread of its own that talks to the library, which may wait, allocate and look for hardware;
 /// the haptic thread takes the latest deflection from a TripleBuffer and never meets it. A device that is not
@@ -23,4 +23,4 @@ std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
 /// build lacks SDL2.
 std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
 
-}  // namespace vps
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Wrench of the hand on the handle about the handle's origin, in frame A (W from an operator, D for a
 /// device):
@@ -27,4 +27,4 @@ struct HandForce {
 /// The wrench of `hand` on a handle at X with velocity V, all in the hand's frame.
 Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -8,7 +8,7 @@
 #include "vps/coupling_law.h"
 #include "vps/query.h"
 
-namespace vps {
+namespace vps::device {
 
 struct LocalContactSettings {
   double hold_limit_s = 0.05;  ///< without a new snapshot for longer, the part stands still. assumed: five
@@ -76,4 +76,4 @@ class LocalContact {
   Report report_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -14,7 +14,7 @@
 #include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
 
-namespace vps {
+namespace vps::device {
 
 /// How the device's space lies in the scene: p_W = X_WD (scale p_D). Forces on the hand are force_scale times
 /// the scene's. Powers then differ by scale / force_scale; the ledger is kept at the hand.
@@ -197,4 +197,4 @@ class HapticLoop {
   std::array<std::uint64_t, kStatusCount> counts_{};
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -16,7 +16,7 @@
 
 #include "vps_device/crc32.h"
 
-namespace vps {
+namespace vps::device {
 
 struct McapSchema {
   std::uint16_t id = 0;  ///< 1 and up
@@ -132,4 +132,4 @@ class McapWriter {
   std::uint64_t message_count_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::device

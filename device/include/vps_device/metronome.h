@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace vps {
+namespace vps::device {
 
 /// A clock to wait by; another one in tests. Called by one thread at a time.
 class RealTimeClock {
@@ -47,4 +47,4 @@ class Metronome {
   std::int64_t due_ns_ = 0, seen_ns_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 
 #include "vps_device/dual_arm.h"
 
-namespace vps {
+namespace vps::device {
 
 class MotorHeat {
  public:
@@ -27,4 +27,4 @@ class MotorHeat {
   double thermal_s_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -11,7 +11,7 @@
 #include "vps_device/hand_force.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 
 /// The hand and its habits. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
 /// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values assumed within
@@ -180,4 +180,4 @@ class VirtualOperator {
   Seen seen_now_;  // the picture that has reached the mind by now
 };
 
-}  // namespace vps
+}  // namespace vps::device

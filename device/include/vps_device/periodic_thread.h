@@ -11,7 +11,7 @@
 
 #include "vps_device/metronome.h"
 
-namespace vps {
+namespace vps::device {
 
 struct PeriodicSettings {
   double rate_hz = 1000;
@@ -60,4 +60,4 @@ RealTimeReport askForRealTime(int priority, bool locks_memory);
 /// The calling thread goes on as any other.
 void leaveRealTime() noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 
 #include "vps/pose.h"
 
-namespace vps {
+namespace vps::device {
 
 /// SplitMix64 [Steele, Lea and Flood 2014] and Box-Muller on top.
 class Random {
@@ -22,4 +22,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

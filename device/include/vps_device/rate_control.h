@@ -5,7 +5,7 @@
 
 #include "vps_device/device.h"
 
-namespace vps {
+namespace vps::device {
 
 /// What the hand does to cap or sticks, in D (x towards the person, y to the right, z up); each -1 to 1.
 struct Deflection {
@@ -47,4 +47,4 @@ class RateControl {
 /// 1 at 1, odd.
 double rateShare(double deflection, const RateSettings& settings) noexcept;
 
-}  // namespace vps
+}  // namespace vps::device

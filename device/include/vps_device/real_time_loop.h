@@ -9,7 +9,7 @@
 #include "vps_device/periodic_thread.h"
 #include "vps_device/tick_statistics.h"
 
-namespace vps {
+namespace vps::device {
 
 /// Measures how long a device takes for read() and write().
 class TimedDevice final : public Device {
@@ -123,4 +123,4 @@ class RealTimeLoop {
   std::int64_t quiet_ticks_ = 0;  ///< still to go before misses are told again
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -11,7 +11,7 @@
 #include "vps_device/mcap.h"
 #include "vps_device/run_log.h"
 
-namespace vps {
+namespace vps::device {
 
 /// What stands at the head of a recording.
 struct RecordingHead {
@@ -57,4 +57,4 @@ class Recorder final : public RunLog {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

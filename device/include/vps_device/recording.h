@@ -8,7 +8,7 @@
 
 #include "vps_device/recorder.h"
 
-namespace vps {
+namespace vps::device {
 
 struct RecordedRun {
   std::string file;
@@ -74,4 +74,4 @@ class ReplayCheck final : public RunLog {
   std::string departure_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 
 #include "vps_device/device.h"
 
-namespace vps {
+namespace vps::device {
 
 /// A wrench that was written to the device, after safety: on the hand about H's origin, in D.
 struct WrittenWrench {
@@ -109,4 +109,4 @@ class TappedDevice final : public Device {
   double time_s_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -8,7 +8,7 @@
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 
-namespace vps {
+namespace vps::device {
 
 struct SafetyLimits {
   double force_N = 30;
@@ -70,4 +70,4 @@ class SafetyGuard {
   double ramp_ = 1;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/dual_arm_controller.h"
 #include "vps_device/dual_arm_plant.h"
 
-namespace vps {
+namespace vps::device {
 
 struct SimulatedDualArmSettings {
   DualArmParameters arms;
@@ -62,4 +62,4 @@ class SimulatedDualArm final : public Device {
   Wrench F_applied_;
 };
 
-}  // namespace vps
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vps {
+namespace vps::device {
 
 /// Counts times in buckets, 64 to the octave: a percentile is known to 1/64 of itself, from 1 ns to 18
 /// minutes (longer counts as that). One writer, any number of readers; neither waits. 18 kB.
@@ -96,4 +96,4 @@ class TickStatistics {
   std::array<std::atomic<std::int64_t>, 6> worst_{};
 };
 
-}  // namespace vps
+}  // namespace vps::device

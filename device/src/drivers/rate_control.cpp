@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 
 namespace {
 
@@ -61,4 +61,4 @@ DeviceLimits RateControl::limits() const noexcept {
   return limits;
 }
 
-}  // namespace vps
+}  // namespace vps::device

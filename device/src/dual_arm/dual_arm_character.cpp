@@ -12,7 +12,7 @@
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -360,4 +360,4 @@ std::vector<VerticalForceAt> verticalForces(const DualArmParameters& p, double p
   return out;
 }
 
-}  // namespace vps
+}  // namespace vps::device

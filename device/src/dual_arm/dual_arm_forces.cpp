@@ -7,7 +7,7 @@
 
 #include "dual_arm/gravity.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kNone = 1e-12;  // effort per newton below which a motor has no part in it
@@ -75,4 +75,4 @@ VerticalForce verticalForce(const DualArmParameters& p, const Vec3& p_DE,
   return force;
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 
 #include "vps_device/dual_arm_controller.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -59,4 +59,4 @@ DeviceLimits dualArmLimits(const DualArmParameters& p, double rate_hz, bool has_
   return limits;
 }
 
-}  // namespace vps
+}  // namespace vps::device

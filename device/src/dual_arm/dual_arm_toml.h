@@ -2,8 +2,8 @@
 // The text of data/dual_arm.toml, put into the library when it is built.
 #pragma once
 
-namespace vps {
+namespace vps::device {
 
 extern const char* const kDualArmToml;
 
-}  // namespace vps
+}  // namespace vps::device

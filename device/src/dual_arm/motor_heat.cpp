@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 // The peak fades over the last tenth of the budget, so that force does not fall at once.
@@ -37,4 +37,4 @@ double MotorHeat::peakShare() const noexcept {
   return shareOf(heat_.maxCoeff());
 }
 
-}  // namespace vps
+}  // namespace vps::device

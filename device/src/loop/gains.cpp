@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kMargin = 0.8;        // of the passive stiffness: the device's numbers are estimates
@@ -56,4 +56,4 @@ bool areUsable(const CouplingGains& gains) noexcept {
          isWithin(gains.max_force_N, 1e3) && isWithin(gains.max_torque_Nm, 1e3);
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr int kRounds = 6;           // of finding out who touches; two or three suffice
@@ -148,4 +148,4 @@ bool LocalContact::step(const CouplingGains& gains, const CouplingState& proxy, 
   return true;
 }
 
-}  // namespace vps
+}  // namespace vps::device

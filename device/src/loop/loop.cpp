@@ -6,7 +6,7 @@
 
 #include "vps_device/gains.h"
 
-namespace vps {
+namespace vps::device {
 
 Pose WorkspaceMap::toScene(const Pose& X_DH) const noexcept {
   return {Mat3(X_WD.R * X_DH.R), X_WD * Vec3(scale * X_DH.p)};
@@ -260,4 +260,4 @@ HandForce HapticLoop::toDevice(const HandForce& hand_W) const noexcept {
   return hand;
 }
 
-}  // namespace vps
+}  // namespace vps::device

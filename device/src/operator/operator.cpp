@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr double kLeastSegment_s = 0.3;  // no aimed movement is faster
@@ -379,4 +379,4 @@ HandForce VirtualOperator::impedance() const noexcept {
   return hand;
 }
 
-}  // namespace vps
+}  // namespace vps::device

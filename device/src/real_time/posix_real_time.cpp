@@ -13,7 +13,7 @@
 #include "vps_device/device_events.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -72,4 +72,4 @@ RealTimeReport askForRealTime(int priority, bool locks_memory) {
   return report;
 }
 
-}  // namespace vps
+}  // namespace vps::device

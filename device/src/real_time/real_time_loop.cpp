@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr std::int64_t kQuietTicks = 1000;  // misses are told once, and again after so many good ticks
@@ -175,4 +175,4 @@ void RealTimeLoop::answerRequests() noexcept {
   if (energies.is_told) loop_.observeStoredEnergy(energies.stored_J, energies.actuator_J);
 }
 
-}  // namespace vps
+}  // namespace vps::device

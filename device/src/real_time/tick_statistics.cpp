@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace vps {
+namespace vps::device {
 namespace {
 
 constexpr int kSplitBits = 6;
@@ -136,4 +136,4 @@ TickStatistics::Summary TickStatistics::summary() const noexcept {
   return all;
 }
 
-}  // namespace vps
+}  // namespace vps::device

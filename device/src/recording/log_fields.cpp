@@ -8,7 +8,7 @@
 
 #include "vps_device/bytes.h"
 
-namespace vps::log {
+namespace vps::device::log {
 
 namespace {
 
@@ -217,4 +217,4 @@ std::string difference(const LogEntry& recorded, const LogEntry& now) {
   return "the payload of a NaN";  // prints the same, and is not
 }
 
-}  // namespace vps::log
+}  // namespace vps::device::log

@@ -7,7 +7,7 @@
 
 #include "vps_device/run_log.h"
 
-namespace vps::log {
+namespace vps::device::log {
 
 /// visit(name, field) for each field: double, Vec3, Mat3 (row by row), int32, uint8-sized enums and numbers,
 /// and the event's text. Doubles stand first, so that no byte of a message is padding.
@@ -98,4 +98,4 @@ std::string csvRow(const LogEntry& entry);
 /// bit.
 std::string difference(const LogEntry& recorded, const LogEntry& now);
 
-}  // namespace vps::log
+}  // namespace vps::device::log

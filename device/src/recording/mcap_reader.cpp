@@ -3,7 +3,7 @@
 #include "vps_device/bytes.h"
 #include "vps_device/mcap.h"
 
-namespace vps {
+namespace vps::device {
 
 using namespace mcap;
 
@@ -232,4 +232,4 @@ McapContent readMcap(std::string_view bytes) {
   return Parser(bytes).parse();
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 #include "vps_device/bytes.h"
 #include "vps_device/mcap.h"
 
-namespace vps {
+namespace vps::device {
 
 using namespace mcap;
 
@@ -264,4 +264,4 @@ std::string McapWriter::metadataBytes(const Indexed& entry) {
   });
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -22,7 +22,7 @@
 #include "vps_device/bytes.h"
 #include "vps_device/entry_ring.h"
 
-namespace vps {
+namespace vps::device {
 
 namespace {
 
@@ -284,4 +284,4 @@ const std::string& Recorder::unfinished() const noexcept {
   return work_->partial;
 }
 
-}  // namespace vps
+}  // namespace vps::device

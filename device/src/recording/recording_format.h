@@ -7,7 +7,7 @@
 
 #include "vps_device/device.h"
 
-namespace vps::recording {
+namespace vps::device::recording {
 
 inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as ours
 inline constexpr const char* kProfile = "ros2";
@@ -41,4 +41,4 @@ void eachLimit(Limits& limits, Visit&& visit) {
   visit("resolution_rad", turn_resolution);
 }
 
-}  // namespace vps::recording
+}  // namespace vps::device::recording

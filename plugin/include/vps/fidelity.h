@@ -10,6 +10,27 @@ namespace vps {
 
 enum class Sides { One, Both };
 
+/// How contacts become motion.
+enum class ContactMethod {
+  Constraint,  ///< a few rigid contacts with a friction cone, for the solver
+  Penalty,     ///< every touching point presses with stiffness times area times depth, solved implicitly
+};
+
+/// As scene files and reports spell them.
+inline const char* toText(Sides sides) {
+  return sides == Sides::One ? "one" : "both";
+}
+/// As people are told.
+inline const char* inWords(Sides sides) {
+  return sides == Sides::One ? "one side" : "both sides";
+}
+inline const char* toText(Gradient gradient) {
+  return gradient == Gradient::Continuous ? "continuous" : "trilinear";
+}
+inline const char* toText(ContactMethod method) {
+  return method == ContactMethod::Constraint ? "constraint" : "penalty";
+}
+
 struct Fidelity {
   double voxel_m = 0.25e-3;   ///< grid step of voxmaps
   double spacing_m = 0.5e-3;  ///< distance between shell points

@@ -13,8 +13,8 @@
 #include <string>
 #include <string_view>
 
-#include "pointshell/shell_hierarchy.h"
 #include "core/unfinished_file.h"
+#include "pointshell/shell_hierarchy.h"
 #include "vps/load_error.h"
 #include "vps/pointshell.h"
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "query/coherent_walk.h"
-#include "vps/query.h"
 #include "query/wrench_collector.h"
+#include "vps/query.h"
 
 namespace vps {
 namespace {

@@ -27,7 +27,8 @@ struct SplatRegion {
   int low[3], high[3];           ///< first and last node
   double origin[3] = {0, 0, 0};  ///< where node 0 lies in the coordinates that planes are given in
 
-  /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kContactMargin scale is added.
+  /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kContactMargin scale is
+  /// added.
   void add(double a, double b, double c, double d, double scale);
 
   /// In voxels: what rounding to float may cost, and more. The rows are a superset; who takes them decides.

@@ -20,14 +20,14 @@
 #include <cstdio>
 
 #include "voxelise/brick_assembly.h"
+#include "voxelise/splat.h"
+#include "voxelise/winding_signs.h"
 #include "voxmap/center_bounds.h"
 #include "voxmap/coarse_nodes.h"
 #include "voxmap/map_limits.h"
-#include "voxelise/splat.h"
 #include "vps/load_error.h"
 #include "vps/map_estimate.h"
 #include "vps/mesh_repair.h"
-#include "voxelise/winding_signs.h"
 
 namespace vps {
 

@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "voxelise/brick_assembly.h"
 #include "mesh/mesh_edges.h"
+#include "voxelise/brick_assembly.h"
 #include "voxmap/node_steps.h"
 
 namespace vps {

@@ -72,7 +72,8 @@ class Merger {
     requireMemory((static_cast<double>(kept) + static_cast<double>(sync_events_.size())) * VoxPool::kBytes,
                   " for its bricks", "larger voxels would do");
     const std::uint32_t first = takeBricks(*out_, sync_events_.size());
-    if (first != 0) out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, sync_events_.size()));
+    if (first != 0)
+      out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, sync_events_.size()));
     return first;
   }
 

@@ -8,7 +8,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< place a part that failed at its target and go on with the next step
@@ -43,4 +43,4 @@ struct AssembleOptions : ModelOptions {
 /// reach its target is a result, not an error.
 AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/result.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// A time during which the part in the hand touches something.
 struct ContactEpisode {
@@ -25,4 +25,4 @@ inline constexpr double kSlideTravel_m = 1e-3;
 /// The episodes of a trace in order of time, while the hand holds the part (not in phase 3, rest). O(rows).
 std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "vps_scenes/plan.h"
 #include "vps_scenes/result.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct PartCost {
   std::size_t map_bytes = 0, shell_bytes = 0, points = 0;  ///< 0 where it has none, or shares another's
@@ -40,4 +40,4 @@ ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options)
 enum class PartUse { Absent, Moves, Cooked, LeftOut };
 PartUse useOf(const Plan& plan, std::size_t part, std::size_t step);
 
-}  // namespace vps
+}  // namespace vps::scenes

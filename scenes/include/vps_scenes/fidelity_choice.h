@@ -8,7 +8,7 @@
 #include "vps/fidelity.h"
 #include "vps/progress.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct Scene;
 
@@ -32,7 +32,7 @@ struct FidelityChoice {
   Fidelity fidelity;
   bool is_met = false;
   std::string failure_reason;  ///< empty when met: which wish nobody can meet, and what would help
-  double error_m = 0;   ///< as FidelityWish::tolerance_m, measured
+  double error_m = 0;          ///< as FidelityWish::tolerance_m, measured
   std::size_t points = 0, points_near = 0, bytes = 0;  ///< as built; bytes with the cooked field
   double step_us = 0;                                  ///< by the cost model
 };
@@ -51,4 +51,4 @@ std::string toToml(const Fidelity& fidelity);
 /// "voxel 0.18 mm, spacing 0.35 mm, both sides: depth to 0.9 um, 12,345 points, 8.1 MB, a step of ..."
 std::string describe(const FidelityChoice& choice);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps/mesh.h"
 #include "vps/progress.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct ImportSettings {
   /// Metres per file unit, for formats that do not say (STL, OBJ, PLY, ...); empty: such a file is refused,
@@ -53,4 +53,4 @@ std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
 double lengthFromText(const std::string& text, const std::string& what);
 
-}  // namespace vps
+}  // namespace vps::scenes

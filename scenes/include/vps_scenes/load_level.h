@@ -8,7 +8,7 @@
 
 #include "vps/fidelity.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// How a run goes, by what its scene asks. Force limits, passivity control and watchdogs are no part of it:
 /// they are given up by none.
@@ -55,4 +55,4 @@ struct LoadLevelChange {
 /// What a change costs: known beforehand, and measured where it was made.
 std::string inWords(const LoadLevelChange& change);
 
-}  // namespace vps
+}  // namespace vps::scenes

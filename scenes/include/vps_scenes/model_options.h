@@ -8,7 +8,7 @@
 #include "vps/progress.h"
 #include "vps/voxmap_cache.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct ModelOptions {
   Progress progress;
@@ -18,4 +18,4 @@ struct ModelOptions {
   std::function<void(const std::string&)> warn;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 enum class PlanFor {
   Assemble,  ///< one part moves at a time, along its step's path, and a judge measures it against all others
@@ -50,4 +50,4 @@ Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything = fals
 /// Everything to assemble with, but equal geometry once: models that any question can be put to.
 Plan makeSharingPlan(const Scene& scene);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct ReplayOptions : ModelOptions {
   const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
@@ -25,11 +25,11 @@ struct ReplayResult {
 };
 
 /// The scene of a recorded run. Throws LoadError where the recording has none (of a device alone, say).
-Scene recordedScene(const RecordedRun& run);
+Scene recordedScene(const device::RecordedRun& run);
 
 /// The device is the recording, the rest is run anew and compared as it goes. A run that departs goes on to
 /// its end all the same, to show where it leads. A cut recording ends the run where it ends. Throws as
 /// recordedScene() and assemble().
-ReplayResult replay(const RecordedRun& run, const ReplayOptions& options = {});
+ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Wall-clock statistics of something that repeats [microseconds].
 struct TickTimes {
@@ -75,8 +75,8 @@ struct TraceRow {
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;  ///< DESIGN.md section 7, by what the encoders show
-  double quantisation_error_bound_J = 0;    ///< what they may have kept from it at the most (PassivityObserver)
+  double injected_J = 0;                  ///< DESIGN.md section 7, by what the encoders show
+  double quantisation_error_bound_J = 0;  ///< what they may have kept from it at the most (PassivityObserver)
 };
 
 struct ModelledCost {
@@ -99,8 +99,9 @@ struct RealTimeResult {
   std::string worst_cause;
   std::uint64_t physics_missed = 0;  ///< physics periods, as asked, without a step of their own
   double behind_s = 0;  ///< by how much less simulated time went by than the clock's while physics ran
-  std::vector<LoadLevelChange> load_changes;  ///< what was given up to hold the rate, and taken back, in order
-  std::uint64_t faults = 0;       ///< of safety
+  std::vector<LoadLevelChange>
+      load_changes;          ///< what was given up to hold the rate, and taken back, in order
+  std::uint64_t faults = 0;  ///< of safety
 };
 
 struct AssembleResult {
@@ -124,4 +125,4 @@ struct AssembleResult {
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

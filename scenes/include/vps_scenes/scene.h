@@ -11,7 +11,7 @@
 #include "vps/fidelity.h"
 #include "vps/part.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct ScenePart {
   Part part;
@@ -58,27 +58,6 @@ struct CouplingWishes {
   std::optional<double> k_N_per_m, b_Ns_per_m, k_Nm_per_rad, b_Nms_per_rad, max_force_N, max_torque_Nm;
 };
 
-/// How contact is turned into motion: DESIGN.md section 8.
-enum class ContactMethod {
-  Rigid,      ///< a few contacts for the solver
-  Compliant,  ///< every touching point presses with the softest part's stiffness times area times depth
-};
-
-/// As scene files and reports spell them.
-inline const char* toText(Sides sides) {
-  return sides == Sides::One ? "one" : "both";
-}
-/// As people are told.
-inline const char* inWords(Sides sides) {
-  return sides == Sides::One ? "one side" : "both sides";
-}
-inline const char* toText(Gradient gradient) {
-  return gradient == Gradient::Continuous ? "continuous" : "trilinear";
-}
-inline const char* toText(ContactMethod contact) {
-  return contact == ContactMethod::Constraint ? "rigid" : "compliant";
-}
-
 struct RecordSettings {
   double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };
@@ -103,4 +82,4 @@ struct Scene {
 /// Reads a scene file and the CAD it names. Throws LoadError with file, line and key, and what would help.
 Scene loadScene(const std::string& file);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct BodyState {
   std::string name;
@@ -48,4 +48,4 @@ struct SimulateResult {
 /// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.
 SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps {
+namespace vps::scenes {
 
 enum class BodyRole {
   Waiting,   ///< not yet in the procedure: drawn only in the overview of the finished assembly
@@ -43,4 +43,4 @@ struct Snapshot {
   std::vector<ContactMark> contacts;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

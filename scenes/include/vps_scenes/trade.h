@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// What a row changes against the scene's own fidelity.
 enum class TradeKnob {
@@ -110,4 +110,4 @@ std::vector<std::string> tradeAnswers(const TradeResult& result);
 /// Which knob buys what, against the scene's own setting, a line for each row.
 std::vector<std::string> tradeKnobs(const TradeResult& result);
 
-}  // namespace vps
+}  // namespace vps::scenes

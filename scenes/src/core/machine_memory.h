@@ -2,9 +2,9 @@
 // How much memory this machine has.
 #pragma once
 
-namespace vps {
+namespace vps::scenes {
 
 /// Bytes, all in all; 0 where the system does not say.
 double machineMemoryBytes() noexcept;
 
-}  // namespace vps
+}  // namespace vps::scenes

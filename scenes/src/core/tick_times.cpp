@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -47,4 +47,4 @@ TickTimes TickClock::summary() const {
   return times;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

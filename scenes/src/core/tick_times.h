@@ -7,7 +7,7 @@
 
 #include "vps_scenes/result.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Collects durations in a buffer sized once, and sums them up at the end. Not part of any result that must
 /// repeat.
@@ -35,4 +35,4 @@ class TickClock {
   std::vector<double> us_, cpu_us_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

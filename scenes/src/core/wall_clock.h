@@ -4,11 +4,11 @@
 
 #include <chrono>
 
-namespace vps {
+namespace vps::scenes {
 
 /// Of a clock that never goes back, from a start of its own.
 inline double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

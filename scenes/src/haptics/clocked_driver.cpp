@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/clocked_driver.h"
 
-namespace vps {
+namespace vps::scenes {
 
-LoopView LoopView::of(const HapticLoop& loop, OperatorPhase phase) noexcept {
-  const TickReport& report = loop.last();
+LoopView LoopView::of(const device::HapticLoop& loop, device::OperatorPhase phase) noexcept {
+  const device::TickReport& report = loop.last();
   return {static_cast<std::int32_t>(loop.ticks()),
           {report.X_WG, report.V_WG, report.time_s, loop.isHolding()},
           report,
@@ -17,35 +17,36 @@ void ClockedDriver::publish(const CouplingState& part, std::optional<double> sto
   store({part, stored_J.value_or(0), stored_J.has_value(), ++published_});
 }
 
-void ClockedDriver::obey(HapticLoop& loop, SyncEventKind what) noexcept {
+void ClockedDriver::obey(device::HapticLoop& loop, device::SyncEventKind what) noexcept {
   switch (what) {
-    case SyncEventKind::Begin:
+    case device::SyncEventKind::Begin:
       return hand_.begin();
-    case SyncEventKind::GoBack:
+    case device::SyncEventKind::GoBack:
       return hand_.goBack(next_step_);
-    case SyncEventKind::Recentre:
+    case device::SyncEventKind::Recentre:
       return hand_.recentre();
-    case SyncEventKind::GoOn:
+    case device::SyncEventKind::GoOn:
       return hand_.goOn();
-    case SyncEventKind::HandOver:
+    case device::SyncEventKind::HandOver:
       return loop.handOver(X_WG_);
-    case SyncEventKind::OpenClutch:
+    case device::SyncEventKind::OpenClutch:
       return loop.disengage();
-    case SyncEventKind::CloseClutch:
+    case device::SyncEventKind::CloseClutch:
       return loop.engage();
-    case SyncEventKind::LetGo:
+    case device::SyncEventKind::LetGo:
       return loop.release();
-    case SyncEventKind::Rearm:
+    case device::SyncEventKind::Rearm:
       return loop.rearm();
-    case SyncEventKind::Tick:
-    case SyncEventKind::Step:
-    case SyncEventKind::Settled:
-    case SyncEventKind::Paused:
+    case device::SyncEventKind::Tick:
+    case device::SyncEventKind::Step:
+    case device::SyncEventKind::Settled:
+    case device::SyncEventKind::Paused:
       return;
   }
 }
 
-void ClockedDriver::show(HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept {
+void ClockedDriver::show(device::HapticLoop& loop, CouplingPort& port,
+                         const PhysicsSnapshot& snapshot) noexcept {
   if (snapshot.number == shown_) return;
   shown_ = snapshot.number;
   port.part.write(snapshot.part);
@@ -53,9 +54,9 @@ void ClockedDriver::show(HapticLoop& loop, CouplingPort& port, const PhysicsSnap
 }
 
 void ClockedDriver::rearmIfFaulted() {
-  if (view_.safety.fault == SafetyFault::None) return;
-  order(SyncEventKind::Rearm);
-  view_.safety.fault = SafetyFault::None;
+  if (view_.safety.fault == device::SafetyFault::None) return;
+  order(device::SyncEventKind::Rearm);
+  view_.safety.fault = device::SafetyFault::None;
 }
 
 void ClockedDriver::look(const LoopView& view) {
@@ -65,4 +66,4 @@ void ClockedDriver::look(const LoopView& view) {
   tell_(toText(view.safety.fault));
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "haptics/haptic_driver.h"
 #include "vps_device/run_log.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// What physics publishes after a step.
 struct PhysicsSnapshot {
@@ -20,62 +20,62 @@ struct PhysicsSnapshot {
 struct LoopView {
   std::int32_t tick = 0;
   CouplingState proxy;
-  TickReport report;
-  SafetyState safety;
-  PassivityObserver ledger;
-  OperatorPhase phase = OperatorPhase::Idle;
+  device::TickReport report;
+  device::SafetyState safety;
+  device::PassivityObserver ledger;
+  device::OperatorPhase phase = device::OperatorPhase::Idle;
 
-  static LoopView of(const HapticLoop& loop, OperatorPhase phase) noexcept;
+  static LoopView of(const device::HapticLoop& loop, device::OperatorPhase phase) noexcept;
 };
 
 /// Physics looks at the loop once a step, in advance(), and asks for one thing at a time. So all that the two
 /// know of each other is a list of sync_events, and who has the list can do it again.
 class ClockedDriver : public HapticDriver {
  public:
-  [[nodiscard]] const LoopSettings& settings() const final { return settings_; }
+  [[nodiscard]] const device::LoopSettings& settings() const final { return settings_; }
   [[nodiscard]] bool isByClock() const final { return true; }
 
   void handOver(const Pose& X_WG) final {
     X_WG_ = X_WG;
-    order(SyncEventKind::HandOver);
+    order(device::SyncEventKind::HandOver);
   }
-  void openClutch() final { order(SyncEventKind::OpenClutch); }
-  void closeClutch() final { order(SyncEventKind::CloseClutch); }
-  void begin(const OperatorTask& task, std::size_t step, double now_s) final {
+  void openClutch() final { order(device::SyncEventKind::OpenClutch); }
+  void closeClutch() final { order(device::SyncEventKind::CloseClutch); }
+  void begin(const device::OperatorTask& task, std::size_t step, double now_s) final {
     hand_.prepare(task, step, now_s);
-    order(SyncEventKind::Begin);
+    order(device::SyncEventKind::Begin);
   }
-  void letGo() final { order(SyncEventKind::LetGo); }
+  void letGo() final { order(device::SyncEventKind::LetGo); }
   void goBack(std::size_t next) final {
     next_step_ = next;
-    order(SyncEventKind::GoBack);
+    order(device::SyncEventKind::GoBack);
   }
-  void recentre() final { order(SyncEventKind::Recentre); }
-  void goOn() final { order(SyncEventKind::GoOn); }
+  void recentre() final { order(device::SyncEventKind::Recentre); }
+  void goOn() final { order(device::SyncEventKind::GoOn); }
 
   void publish(const CouplingState& part, std::optional<double> stored_J) final;
   const CouplingState& proxy() final { return view_.proxy; }
-  const TickReport& last() final { return view_.report; }
-  PassivityObserver ledger() final { return view_.ledger; }
+  const device::TickReport& last() final { return view_.report; }
+  device::PassivityObserver ledger() final { return view_.ledger; }
 
  protected:
-  ClockedDriver(Hand& hand, const LoopSettings& settings, const TellFault& tell)
+  ClockedDriver(Hand& hand, const device::LoopSettings& settings, const TellFault& tell)
       : hand_(hand), settings_(settings), tell_(tell) {}
 
   /// Returns when it is done.
-  virtual void order(SyncEventKind what) = 0;
+  virtual void order(device::SyncEventKind what) = 0;
   virtual void store(const PhysicsSnapshot& snapshot) = 0;
 
   /// Does what was asked for, by whoever runs the loop. Never allocates.
-  void obey(HapticLoop& loop, SyncEventKind what) noexcept;
+  void obey(device::HapticLoop& loop, device::SyncEventKind what) noexcept;
   /// Before a tick: the loop gets the snapshot, once.
-  void show(HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept;
+  void show(device::HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept;
   /// As a person does between steps.
   void rearmIfFaulted();
   void look(const LoopView& view);
 
   Hand& hand_;
-  LoopSettings settings_;
+  device::LoopSettings settings_;
   LoopView view_;
 
  private:
@@ -86,4 +86,4 @@ class ClockedDriver : public HapticDriver {
   std::uint64_t told_faults_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include "haptics/hand.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -64,4 +64,4 @@ bool ClutchWork::index_point(const std::function<bool()>& go_on) const {
   return true;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

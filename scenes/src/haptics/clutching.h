@@ -7,7 +7,7 @@
 
 #include "haptics/haptic_driver.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Each waits in physics steps: all that a step asks for is in go_on, which is false where the run cannot go
 /// on; so are they then. The part stands meanwhile, held by the proxy.
@@ -15,7 +15,8 @@ class ClutchWork {
  public:
   /// side outlives it.
   /// @param step_s  what a step of physics takes of the hand's time, which is the clock's; asked before each
-  ClutchWork(HapticDriver& side, std::function<double()> step_s) : driver_(side), step_s_(std::move(step_s)) {}
+  ClutchWork(HapticDriver& side, std::function<double()> step_s)
+      : driver_(side), step_s_(std::move(step_s)) {}
 
   /// After handOver(): until the hand has all of the part.
   bool takeHold(const std::function<bool()>& go_on) const;
@@ -36,4 +37,4 @@ class ClutchWork {
   std::function<double()> step_s_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

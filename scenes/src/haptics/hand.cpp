@@ -9,12 +9,12 @@
 #include "vps/load_error.h"
 #include "vps_device/simulated_dual_arm.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
-OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
-  OperatorHabits habits;
+device::OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
+  device::OperatorHabits habits;
   habits.seed = hand.seed + step;  // each step aims anew, and does not depend on how long the last one took
   habits.aim_error_m = hand.aim_error_m;
   habits.aim_error_rad = hand.aim_error_rad;
@@ -24,15 +24,16 @@ OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
   return habits;
 }
 
-DualArmParameters armsOf(const Scene& scene) {
-  return scene.device.data.empty() ? DualArmParameters{} : loadDualArm(scene.device.data).parameters;
+device::DualArmParameters armsOf(const Scene& scene) {
+  return scene.device.data.empty() ? device::DualArmParameters{}
+                                   : device::loadDualArm(scene.device.data).parameters;
 }
 
-SimulatedDualArmSettings plantSettings(const Scene& scene) {
+device::SimulatedDualArmSettings plantSettings(const Scene& scene) {
   if (scene.device.kind != "dual_arm")
     throw LoadError(scene.file, "",
                     "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
-  SimulatedDualArmSettings settings;
+  device::SimulatedDualArmSettings settings;
   settings.arms = armsOf(scene);
   settings.has_quantised_encoders = scene.device.has_quantised_encoders;
   settings.rate_hz = scene.fidelity.haptic_rate_hz;
@@ -45,7 +46,8 @@ std::vector<PathSegments> allSegments(const Scene& scene, const Vec3& workspace_
   return all;
 }
 
-SimulatedDualArmSettings startingAt(SimulatedDualArmSettings settings, const std::vector<PathSegments>& segments) {
+device::SimulatedDualArmSettings startingAt(device::SimulatedDualArmSettings settings,
+                                            const std::vector<PathSegments>& segments) {
   settings.X_DH_start = segments.front().X_DH_start.front();
   return settings;
 }
@@ -60,11 +62,11 @@ class SimulatedHand final : public Hand {
     X_DH_from_ = X_DH_back_ = plant_.truePose();
   }
 
-  Device& device() override { return plant_; }
+  device::Device& device() override { return plant_; }
 
-  void prepare(const OperatorTask& task, std::size_t step, double now_s) override {
-    next_ = VirtualOperator(habitsOf(scene_.hand, step));
-    OperatorTask reachable = task;
+  void prepare(const device::OperatorTask& task, std::size_t step, double now_s) override {
+    next_ = device::VirtualOperator(habitsOf(scene_.hand, step));
+    device::OperatorTask reachable = task;
     reachable.way_points = segments_[step].way_points;
     reachable.index_points = segments_[step].index_points;
     next_.begin(reachable, now_s);
@@ -93,11 +95,11 @@ class SimulatedHand final : public Hand {
     is_at_work_ = true;
   }
 
-  void step(const HeldPart& part, const HapticLoop& loop, double dt_s) override {
+  void step(const HeldPart& part, const device::HapticLoop& loop, double dt_s) override {
     plant_.step(dt_s, is_at_work_ ? atWork(part, loop, dt_s) : returning(part, loop, dt_s));
   }
 
-  [[nodiscard]] OperatorPhase phase() const override { return operator_.phase(); }
+  [[nodiscard]] device::OperatorPhase phase() const override { return operator_.phase(); }
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
@@ -109,8 +111,8 @@ class SimulatedHand final : public Hand {
     is_at_work_ = false;
   }
 
-  HandForce atWork(const HeldPart& part, const HapticLoop& loop, double dt_s) {
-    OperatorView view;
+  device::HandForce atWork(const HeldPart& part, const device::HapticLoop& loop, double dt_s) {
+    device::OperatorView view;
     view.time_s = time_s_;
     view.X_WG_hand = loop.toGrasp(plant_.truePose());
     view.V_WG_hand = loop.settings().map.toScene(plant_.trueTwist());
@@ -118,17 +120,17 @@ class SimulatedHand final : public Hand {
     view.V_WP = part.V_WP;
     view.F_hand_W = loop.last().F_hand_W;
     time_s_ += dt_s;
-    HandForce hand = operator_.step(view, dt_s);
+    device::HandForce hand = operator_.step(view, dt_s);
     hand.F = hand.F * loop.clutch().ratio();  // it carries what it feels
     return loop.toDevice(hand);
   }
 
   /// On its way back, or there; where it has a part in hand it carries what the clutch lets it feel.
-  HandForce returning(const HeldPart& part, const HapticLoop& loop, double dt_s) {
+  device::HandForce returning(const HeldPart& part, const device::HapticLoop& loop, double dt_s) {
     time_s_ += dt_s;
     back_s_ += dt_s;
-    const double share = minimumJerk(back_s_ / kHandReturn_s);
-    HandForce hand = evenHand(habitsOf(scene_.hand, 0));
+    const double share = device::minimumJerk(back_s_ / kHandReturn_s);
+    device::HandForce hand = device::evenHand(habitsOf(scene_.hand, 0));
     hand.X_eq = Pose(Mat3(rotationFromVector(share * turn_rad_) * X_DH_from_.R),
                      X_DH_from_.p + share * (X_DH_back_.p - X_DH_from_.p));
     if (loop.isHolding())
@@ -137,10 +139,10 @@ class SimulatedHand final : public Hand {
   }
 
   const Scene& scene_;
-  SimulatedDualArmSettings settings_;
+  device::SimulatedDualArmSettings settings_;
   std::vector<PathSegments> segments_;  ///< of each step
-  SimulatedDualArm plant_;
-  VirtualOperator operator_, next_;
+  device::SimulatedDualArm plant_;
+  device::VirtualOperator operator_, next_;
   double next_s_ = 0;
   std::size_t next_step_ = 0, step_ = 0, segment_ = 0;
   double time_s_ = 0;              ///< of the run
@@ -153,21 +155,21 @@ class SimulatedHand final : public Hand {
 /// Does what was recorded: the samples carry the motion, the events what the hand was about.
 class RecordedHand final : public Hand {
  public:
-  explicit RecordedHand(Recording& recording) : recording_(recording) {}
-  Device& device() override { return recording_; }
-  void prepare(const OperatorTask&, std::size_t, double) override {}
+  explicit RecordedHand(device::Recording& recording) : recording_(recording) {}
+  device::Device& device() override { return recording_; }
+  void prepare(const device::OperatorTask&, std::size_t, double) override {}
   void begin() override {}
   void goBack(std::size_t) override {}
   void recentre() override {}
   void goOn() override {}
-  void step(const HeldPart&, const HapticLoop&, double) override {}
-  [[nodiscard]] OperatorPhase phase() const override {
-    return static_cast<OperatorPhase>(recording_.phase().value_or(0));
+  void step(const HeldPart&, const device::HapticLoop&, double) override {}
+  [[nodiscard]] device::OperatorPhase phase() const override {
+    return static_cast<device::OperatorPhase>(recording_.phase().value_or(0));
   }
-  [[nodiscard]] std::vector<SyncEvent> sync_events() const override {
-    std::vector<SyncEvent> all;
-    for (const LogEntry& entry : recording_.run().entries)
-      if (const auto* sync_event = std::get_if<SyncEvent>(&entry)) all.push_back(*sync_event);
+  [[nodiscard]] std::vector<device::SyncEvent> sync_events() const override {
+    std::vector<device::SyncEvent> all;
+    for (const device::LogEntry& entry : recording_.run().entries)
+      if (const auto* sync_event = std::get_if<device::SyncEvent>(&entry)) all.push_back(*sync_event);
     return all;
   }
   [[nodiscard]] bool canGoOn(int ticks) const override {
@@ -175,7 +177,7 @@ class RecordedHand final : public Hand {
   }
 
  private:
-  Recording& recording_;
+  device::Recording& recording_;
 };
 
 }  // namespace
@@ -184,8 +186,8 @@ std::unique_ptr<Hand> simulatedHand(const Scene& scene) {
   return std::make_unique<SimulatedHand>(scene);
 }
 
-std::unique_ptr<Hand> recordedHand(Recording& recording) {
+std::unique_ptr<Hand> recordedHand(device::Recording& recording) {
   return std::make_unique<RecordedHand>(recording);
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_device/recording.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The part in hand as it is now, in W.
 struct HeldPart {
@@ -25,9 +25,9 @@ struct HeldPart {
 class Hand {
  public:
   virtual ~Hand() = default;
-  virtual Device& device() = 0;
+  virtual device::Device& device() = 0;
   /// Makes up its mind how to do a step from time now_s on. May allocate; beside step(), by another thread.
-  virtual void prepare(const OperatorTask& task, std::size_t step, double now_s) = 0;
+  virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   /// Starts what was prepared. As step(), never allocates.
   virtual void begin() = 0;
   /// Empty, goes back to where that step starts, in kHandReturn_s; beyond the last: to the middle. Never
@@ -39,10 +39,10 @@ class Hand {
   /// Has the part again, where it was: goes on.
   virtual void goOn() = 0;
   /// One tick of the hand, after the loop's own.
-  virtual void step(const HeldPart& part, const HapticLoop& loop, double dt_s) = 0;
-  [[nodiscard]] virtual OperatorPhase phase() const = 0;
+  virtual void step(const HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
+  [[nodiscard]] virtual device::OperatorPhase phase() const = 0;
   /// Of a run by the clock that is done again; empty: of none.
-  [[nodiscard]] virtual std::vector<SyncEvent> sync_events() const { return {}; }
+  [[nodiscard]] virtual std::vector<device::SyncEvent> sync_events() const { return {}; }
   /// Has it so many ticks left?
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };
@@ -54,6 +54,6 @@ inline constexpr double kHandReturn_s = 1.5;  ///< the hand's way back to the ne
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);
 
 /// A recording, of whatever device and hand; it outlives the hand.
-std::unique_ptr<Hand> recordedHand(Recording& recording);
+std::unique_ptr<Hand> recordedHand(device::Recording& recording);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/haptic_log.h"
 
-namespace vps {
+namespace vps::scenes {
 
-void HapticLog::add(const LogEntry& entry) noexcept {
+void HapticLog::add(const device::LogEntry& entry) noexcept {
   if (log_ != nullptr) ring_.push(number_++, entry);  // one that finds no room leaves its number out
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -7,33 +7,33 @@
 #include "vps_device/entry_ring.h"
 #include "vps_device/run_log.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The haptic thread adds; it neither waits nor allocates. The physics thread passes on, in the order in
 /// which things were done, what it has come to: so the run's log has one writer, and its order is a replay's.
-class HapticLog final : public RunLog {
+class HapticLog final : public device::RunLog {
  public:
   /// @param log  null: nobody listens
-  explicit HapticLog(RunLog* log) : log_(log), ring_(log != nullptr ? kEntries : 1) {}
+  explicit HapticLog(device::RunLog* log) : log_(log), ring_(log != nullptr ? kEntries : 1) {}
 
   /// Haptic thread.
-  void add(const LogEntry& entry) noexcept override;
+  void add(const device::LogEntry& entry) noexcept override;
 
   /// Physics thread: all of the ticks up to this one.
   void passUpTo(std::int32_t tick) {
     pass(
-        [tick](const SyncEvent* met) {
-          return met != nullptr && met->kind == SyncEventKind::Tick && met->tick > tick;
+        [tick](const device::SyncEvent* met) {
+          return met != nullptr && met->kind == device::SyncEventKind::Tick && met->tick > tick;
         },
-        [](const SyncEvent*) { return false; });
+        [](const device::SyncEvent*) { return false; });
   }
   /// Up to the next sync_event of a kind, with it.
-  void passThrough(SyncEventKind kind) {
-    pass([](const SyncEvent*) { return false; },
-         [kind](const SyncEvent* met) { return met != nullptr && met->kind == kind; });
+  void passThrough(device::SyncEventKind kind) {
+    pass([](const device::SyncEvent*) { return false; },
+         [kind](const device::SyncEvent* met) { return met != nullptr && met->kind == kind; });
   }
   /// Physics thread's own.
-  void tell(const SyncEvent& sync_event) {
+  void tell(const device::SyncEvent& sync_event) {
     if (log_ != nullptr) log_->add(sync_event);
   }
 
@@ -44,8 +44,8 @@ class HapticLog final : public RunLog {
   template <typename Before, typename After>
   void pass(const Before& stops_before, const After& stops_after) {
     if (log_ == nullptr) return;
-    while (const EntryRing::Slot* slot = ring_.front()) {
-      const auto* met = std::get_if<SyncEvent>(&slot->entry);
+    while (const device::EntryRing::Slot* slot = ring_.front()) {
+      const auto* met = std::get_if<device::SyncEvent>(&slot->entry);
       if (stops_before(met)) return;
       if (slot->number != passed_) log_->lose(slot->number - passed_);
       passed_ = slot->number + 1;
@@ -56,10 +56,10 @@ class HapticLog final : public RunLog {
     }
   }
 
-  RunLog* log_;
-  EntryRing ring_;
+  device::RunLog* log_;
+  device::EntryRing ring_;
   std::uint32_t number_ = 0;  ///< haptic thread's
   std::uint32_t passed_ = 0;  ///< physics thread's
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

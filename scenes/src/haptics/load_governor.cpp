@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -75,4 +75,4 @@ void LoadGovernor::moveTo(int level) noexcept {
   calm_ = 0;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace vps {
+namespace vps::scenes {
 
 struct GovernorSettings {
   double window_s = 0.25;    ///< a decision looks at so much time. assumed: a person waits no longer
@@ -72,4 +72,4 @@ class LoadGovernor {
   bool has_risen_ = false;  ///< the next fall is a relapse
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-namespace vps {
+namespace vps::scenes {
 
 double dearerBefore(std::size_t level) {
   const LoadLevel &now = kLoadLevels[level], &before = kLoadLevels[level - 1];
@@ -28,4 +28,4 @@ std::string inWords(const LoadLevelChange& change) {
   return change.cost + text;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "vps_device/periodic_thread.h"
 #include "core/wall_clock.h"
+#include "vps_device/periodic_thread.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -75,7 +75,7 @@ std::string costWords(const LoadLevelChange& change, const CouplingGains& asked,
 }  // namespace
 
 LoadShedder::LoadShedder(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
-                       HapticDriver& side, const LoadLimits& limits, GainsAt gains_at)
+                         HapticDriver& side, const LoadLimits& limits, GainsAt gains_at)
     : scene_(scene),
       plan_(plan),
       simulation_(simulation),
@@ -123,17 +123,17 @@ LoadLevelChange LoadShedder::changeTo(int level, double time_s) const {
 void LoadShedder::order(LoadLevelChange change, std::size_t part) {
   const double coarser = loadLevelOf(change.to).coarser;
   ordered_ = std::move(change);
-  under_way_ =
-      std::async(std::launch::async, [this, coarser, known = shells_[coarser],
-                                      order = simulation_.orderResampling(part), stop = limits_.stop]() mutable {
-        leaveRealTime();  // threads are born with their maker's priority
-        const double begun_s = wallSeconds();
-        order.field.stop = stop;
-        if (coarser > 1 && !known) known = coarserShells(scene_, plan_, coarser, stop);
-        Made made{resampleShells(std::move(order), std::move(known)), 0};
-        made.wall_s = wallSeconds() - begun_s;
-        return made;
-      });
+  under_way_ = std::async(std::launch::async,
+                          [this, coarser, known = shells_[coarser], order = simulation_.orderResampling(part),
+                           stop = limits_.stop]() mutable {
+                            device::leaveRealTime();  // threads are born with their maker's priority
+                            const double begun_s = wallSeconds();
+                            order.field.stop = stop;
+                            if (coarser > 1 && !known) known = coarserShells(scene_, plan_, coarser, stop);
+                            Made made{resampleShells(std::move(order), std::move(known)), 0};
+                            made.wall_s = wallSeconds() - begun_s;
+                            return made;
+                          });
 }
 
 bool LoadShedder::isReady() const {
@@ -205,4 +205,4 @@ void LoadShedder::tellEnd(double time_s) {
   changes_.push_back(std::move(change));
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "haptics/haptic_driver.h"
-#include "procedure/placed_parts.h"
 #include "haptics/load_governor.h"
+#include "procedure/placed_parts.h"
 #include "vps_scenes/load_level.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct LoadLimits {
   bool may_slow = true;                     ///< simulated time may go slower than the clock's
@@ -32,7 +32,7 @@ class LoadShedder {
 
   /// All but gains_at outlive it.
   LoadShedder(const Scene& scene, const Plan& plan, Simulation& simulation, PlacedParts& placed,
-             HapticDriver& side, const LoadLimits& limits, GainsAt gains_at);
+              HapticDriver& side, const LoadLimits& limits, GainsAt gains_at);
 
   /// After a step by the clock.
   /// @param busy_s  what the physics thread did since the last
@@ -83,4 +83,4 @@ class LoadShedder {
   std::vector<LoadLevelChange> changes_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

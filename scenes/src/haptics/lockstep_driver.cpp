@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "haptics/haptic_driver.h"
 #include "core/tick_times.h"
+#include "haptics/haptic_driver.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 class LockstepDriver final : public HapticDriver {
  public:
-  LockstepDriver(Hand& hand, Device& device, CouplingPort& port, const LoopSettings& settings,
-               int ticks_per_step, const TellFault& tell)
+  LockstepDriver(Hand& hand, device::Device& device, CouplingPort& port, const device::LoopSettings& settings,
+                 int ticks_per_step, const TellFault& tell)
       : hand_(hand),
         port_(port),
         loop_(device, port, settings),
@@ -18,14 +18,14 @@ class LockstepDriver final : public HapticDriver {
 
   void pause() override {}
   void resume() override {}
-  [[nodiscard]] const LoopSettings& settings() const override { return loop_.settings(); }
+  [[nodiscard]] const device::LoopSettings& settings() const override { return loop_.settings(); }
   [[nodiscard]] bool isByClock() const override { return false; }
   std::uint64_t missed() override { return 0; }
 
   void handOver(const Pose& X_WG) override { loop_.handOver(X_WG); }
   void openClutch() override { loop_.disengage(); }
   void closeClutch() override { loop_.engage(); }
-  void begin(const OperatorTask& task, std::size_t step, double now_s) override {
+  void begin(const device::OperatorTask& task, std::size_t step, double now_s) override {
     hand_.prepare(task, step, now_s);
     hand_.begin();
   }
@@ -50,15 +50,15 @@ class LockstepDriver final : public HapticDriver {
     port_.part.write(part);
     if (stored_J) loop_.observeStoredEnergy(*stored_J, 0);
   }
-  OperatorPhase phase() override { return hand_.phase(); }
-  const TickReport& last() override { return loop_.last(); }
-  PassivityObserver ledger() override { return loop_.ledger(); }
+  device::OperatorPhase phase() override { return hand_.phase(); }
+  const device::TickReport& last() override { return loop_.last(); }
+  device::PassivityObserver ledger() override { return loop_.ledger(); }
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }
 
  private:
   void tellFaults() {
-    const SafetyState& safety = loop_.safety();
+    const device::SafetyState& safety = loop_.safety();
     if (safety.faults == told_faults_) return;
     told_faults_ = safety.faults;
     tell_(toText(safety.fault));
@@ -66,7 +66,7 @@ class LockstepDriver final : public HapticDriver {
 
   Hand& hand_;
   CouplingPort& port_;
-  HapticLoop loop_;
+  device::HapticLoop loop_;
   int ticks_per_step_;
   TellFault tell_;
   TickClock clock_;
@@ -75,10 +75,10 @@ class LockstepDriver final : public HapticDriver {
 
 }  // namespace
 
-std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, Device& device, CouplingPort& port,
-                                         const LoopSettings& settings, int ticks_per_step,
-                                         const TellFault& tell) {
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device, CouplingPort& port,
+                                                 const device::LoopSettings& settings, int ticks_per_step,
+                                                 const TellFault& tell) {
   return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, tell);
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

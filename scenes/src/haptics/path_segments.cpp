@@ -7,7 +7,7 @@
 #include "vps/load_error.h"
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -122,4 +122,4 @@ PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& ro
   return one;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

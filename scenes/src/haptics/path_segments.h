@@ -7,7 +7,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Between two segments the clutch opens, the handle goes back and takes the part anew.
 ///
@@ -15,9 +15,9 @@ namespace vps {
 ///   handle    |---------------|  room
 ///                       |---------------|
 struct PathSegments {
-  std::vector<Pose> way_points;       ///< X_WP: the step's own and the re-grasps, in order
+  std::vector<Pose> way_points;           ///< X_WP: the step's own and the re-grasps, in order
   std::vector<std::size_t> index_points;  ///< which of way_points are re-grasps
-  std::vector<Pose> X_DH_start;       ///< handle at each segment's start; one more than index_points
+  std::vector<Pose> X_DH_start;           ///< handle at each segment's start; one more than index_points
 };
 
 /// The fewest segments, each of which lies around the middle of a workspace of this size. A way that fits has
@@ -25,4 +25,4 @@ struct PathSegments {
 /// LoadError for a way that does not fit where the scene's device has no ratchet.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
 
-}  // namespace vps
+}  // namespace vps::scenes

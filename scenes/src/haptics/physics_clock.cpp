@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -12,19 +12,21 @@ constexpr int kPriority = 70;  // assumed: below the haptic loop's 80
 }  // namespace
 
 PhysicsClock::PhysicsClock(double period_s)
-    : metronome_(std::llround(1e9 * period_s), monotonicClock()), period_s_(period_s), step_s_(period_s) {}
+    : metronome_(std::llround(1e9 * period_s), device::monotonicClock()),
+      period_s_(period_s),
+      step_s_(period_s) {}
 
-RealTimeReport PhysicsClock::start(bool locks_memory) {
-  RealTimeReport report = askForRealTime(kPriority, locks_memory);
+device::RealTimeReport PhysicsClock::start(bool locks_memory) {
+  device::RealTimeReport report = device::askForRealTime(kPriority, locks_memory);
   metronome_.start();
   woke_ns_ = 0;
   return report;
 }
 
-Beat PhysicsClock::wait() noexcept {
-  const std::int64_t asked_ns = monotonicClock().now_ns();
+device::Beat PhysicsClock::wait() noexcept {
+  const std::int64_t asked_ns = device::monotonicClock().now_ns();
   busy_s_ = woke_ns_ > 0 ? 1e-9 * static_cast<double>(asked_ns - woke_ns_) : 0;
-  const Beat beat = metronome_.wait();
+  const device::Beat beat = metronome_.wait();
   woke_ns_ = beat.woke_ns;
   const double passed_s = 1e-9 * static_cast<double>(beat.periods * metronome_.period_ns());
   missed_ += static_cast<std::uint64_t>(std::llround(passed_s / period_s_)) - 1;
@@ -34,12 +36,12 @@ Beat PhysicsClock::wait() noexcept {
 
 void PhysicsClock::setLoadLevel(double step_s, double period_s) {
   step_s_ = step_s;
-  metronome_ = Metronome(std::llround(1e9 * period_s), monotonicClock());
+  metronome_ = device::Metronome(std::llround(1e9 * period_s), device::monotonicClock());
   metronome_.start();
 }
 
 void PhysicsClock::stop() noexcept {
-  leaveRealTime();
+  device::leaveRealTime();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "vps_device/periodic_thread.h"
 #include "vps_scenes/result.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Used by the thread that steps physics, which is also the one whose priority it asks for.
 class PhysicsClock {
@@ -15,9 +15,9 @@ class PhysicsClock {
 
   /// The first step is due a period from now. @param locks_memory  ask for that too
   /// @return what the system refused
-  RealTimeReport start(bool locks_memory);
+  device::RealTimeReport start(bool locks_memory);
   /// Until the next step is due; at once where it is late.
-  Beat wait() noexcept;
+  device::Beat wait() noexcept;
   /// Gives the priority back.
   void stop() noexcept;
   /// From the next wait() on: steps of step_s of simulated time, one each period_s of the clock's.
@@ -31,7 +31,7 @@ class PhysicsClock {
   [[nodiscard]] double busy_s() const noexcept { return busy_s_; }
 
  private:
-  Metronome metronome_;
+  device::Metronome metronome_;
   double period_s_;  ///< as first asked for
   double step_s_;
   std::uint64_t missed_ = 0;
@@ -39,4 +39,4 @@ class PhysicsClock {
   std::int64_t woke_ns_ = 0;  ///< from the last wait; 0: not yet
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "haptics/physics_clock.h"
 #include "vps_device/real_time_loop.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 constexpr double kCatchUp =
@@ -22,7 +22,7 @@ double microseconds(std::int64_t ns) {
   return 1e-3 * static_cast<double>(ns);
 }
 
-TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
+TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t missed) {
   return {all.count,
           missed,
           microseconds(all.p50_ns),
@@ -34,8 +34,8 @@ TickTimes timesOf(const TickHistogram::Summary& all, std::uint64_t missed) {
 
 class RealTimeDriver final : public ClockedDriver {
  public:
-  RealTimeDriver(Hand& hand, CouplingPort& port, const LoopSettings& settings, double physics_s,
-               const TellFault& tell, RunLog* log)
+  RealTimeDriver(Hand& hand, CouplingPort& port, const device::LoopSettings& settings, double physics_s,
+                 const TellFault& tell, device::RunLog* log)
       : ClockedDriver(hand, settings, tell),
         port_(port),
         physics_s_(physics_s),
@@ -48,8 +48,8 @@ class RealTimeDriver final : public ClockedDriver {
   void pause() override {
     if (loop_.isRunning()) {
       loop_.stop();
-      meet(loop_.loop(), SyncEventKind::Paused);
-      haptic_log_.passThrough(SyncEventKind::Paused);
+      meet(loop_.loop(), device::SyncEventKind::Paused);
+      haptic_log_.passThrough(device::SyncEventKind::Paused);
       look(LoopView::of(loop_.loop(), hand_.phase()));
     }
     clock_.stop();
@@ -58,7 +58,7 @@ class RealTimeDriver final : public ClockedDriver {
     rearmIfFaulted();
     if (loop_.isRunning()) return;
     phase_.store(hand_.phase());
-    const RealTimeReport report = loop_.start();
+    const device::RealTimeReport report = loop_.start();
     result_.has_priority = report.has_priority;
     result_.has_locked_memory = report.has_locked_memory;
     result_.warnings = report.warnings;
@@ -73,15 +73,15 @@ class RealTimeDriver final : public ClockedDriver {
     const LoopView& view = views_.read();
     if (view.tick > ordered_tick_) known_phase_ = view.phase;  // else it is of before the order
     haptic_log_.passUpTo(view.tick);
-    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, SyncEventKind::Step});
+    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, device::SyncEventKind::Step});
     look(view);
     return true;
   }
   bool hasSettled(bool is_ready) override {
-    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, SyncEventKind::Settled});
+    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
     return is_ready;
   }
-  OperatorPhase phase() override { return known_phase_; }
+  device::OperatorPhase phase() override { return known_phase_; }
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
   void setLoadLevel(double step_s, double period_s, const CouplingGains& gains) override {
     clock_.setLoadLevel(step_s, period_s);
@@ -89,13 +89,13 @@ class RealTimeDriver final : public ClockedDriver {
     while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kOrderWait);
   }
   TickTimes times() override {
-    const TickStatistics::Summary all = loop_.statistics().summary();
+    const device::TickStatistics::Summary all = loop_.statistics().summary();
     return timesOf(all.tick, all.missed);
   }
   std::optional<RealTimeResult> realTime() override;
 
  protected:
-  void order(SyncEventKind what) override {
+  void order(device::SyncEventKind what) override {
     order_.store(what, std::memory_order_release);
     while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
       std::this_thread::sleep_for(kOrderWait);
@@ -106,15 +106,16 @@ class RealTimeDriver final : public ClockedDriver {
   void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
 
  private:
-  static constexpr SyncEventKind kNoOrder = SyncEventKind::Tick;
+  static constexpr device::SyncEventKind kNoOrder = device::SyncEventKind::Tick;
 
   // The loop's thread from here on, while it runs.
-  void meet(const HapticLoop& loop, SyncEventKind kind, std::int64_t periods = 1, std::int32_t snapshot = 0) {
-    haptic_log_.add(SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
-                            static_cast<std::int32_t>(periods), snapshot, kind});
+  void meet(const device::HapticLoop& loop, device::SyncEventKind kind, std::int64_t periods = 1,
+            std::int32_t snapshot = 0) {
+    haptic_log_.add(device::SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
+                                      static_cast<std::int32_t>(periods), snapshot, kind});
   }
-  void obeyOrder(HapticLoop& loop) {
-    const SyncEventKind what = order_.load(std::memory_order_acquire);
+  void obeyOrder(device::HapticLoop& loop) {
+    const device::SyncEventKind what = order_.load(std::memory_order_acquire);
     if (what == kNoOrder) return;
     obey(loop, what);
     meet(loop, what);
@@ -123,30 +124,30 @@ class RealTimeDriver final : public ClockedDriver {
     ordered_tick_ = static_cast<std::int32_t>(loop.ticks());
     order_.store(kNoOrder, std::memory_order_release);
   }
-  void beforeTick(HapticLoop& loop, std::int64_t periods) {
+  void beforeTick(device::HapticLoop& loop, std::int64_t periods) {
     obeyOrder(loop);
     const PhysicsSnapshot& snapshot = snapshots_.read();
     show(loop, port_, snapshot);
     const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
-    haptic_log_.add(SyncEvent{loop.last().time_s, tick, static_cast<std::int32_t>(periods), snapshot.number,
-                            SyncEventKind::Tick});
+    haptic_log_.add(device::SyncEvent{loop.last().time_s, tick, static_cast<std::int32_t>(periods),
+                                      snapshot.number, device::SyncEventKind::Tick});
   }
 
-  LoopSettings told(LoopSettings settings) {
+  device::LoopSettings told(device::LoopSettings settings) {
     settings.events = &events_;
     return settings;
   }
-  RealTimeSettings realTimeSettings() {
-    RealTimeSettings settings;
+  device::RealTimeSettings realTimeSettings() {
+    device::RealTimeSettings settings;
     settings.stale_s = 2 * physics_s_;
     settings.physics_limit_s = physicsLimit_s(physics_s_);
-    settings.before = [this](HapticLoop& loop, std::int64_t periods) { beforeTick(loop, periods); };
-    settings.beside = [this](HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
+    settings.before = [this](device::HapticLoop& loop, std::int64_t periods) { beforeTick(loop, periods); };
+    settings.beside = [this](device::HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
     return settings;
   }
 
   // The simulated device and hand go on as far as time did, in steps they are made for.
-  void moveHand(HapticLoop& loop, double dt_s) {
+  void moveHand(device::HapticLoop& loop, double dt_s) {
     const HeldPart& part = part_.read();
     const double period_s = loop.settings().period_s;
     const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
@@ -157,38 +158,39 @@ class RealTimeDriver final : public ClockedDriver {
 
   // The physics thread.
   void countFaults() {
-    for (DeviceEvent event; events_.pop(event);) result_.faults += severityOf(event.kind) == Severity::Fault;
+    for (device::DeviceEvent event; events_.pop(event);)
+      result_.faults += device::severityOf(event.kind) == device::Severity::Fault;
   }
 
   CouplingPort& port_;
   double physics_s_;
-  DeviceEventQueue events_;
+  device::DeviceEventQueue events_;
   HapticLog haptic_log_;
-  TappedDevice tapped_;
+  device::TappedDevice tapped_;
   TripleBuffer<HeldPart> part_;
   TripleBuffer<PhysicsSnapshot> snapshots_;
   TripleBuffer<LoopView> views_;
-  std::atomic<OperatorPhase> phase_{OperatorPhase::Idle};
-  OperatorPhase known_phase_ = OperatorPhase::Idle;  ///< as of the last look or order
-  std::atomic<SyncEventKind> order_{kNoOrder};
+  std::atomic<device::OperatorPhase> phase_{device::OperatorPhase::Idle};
+  device::OperatorPhase known_phase_ = device::OperatorPhase::Idle;  ///< as of the last look or order
+  std::atomic<device::SyncEventKind> order_{kNoOrder};
   std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
-  OperatorPhase ordered_phase_ = OperatorPhase::Idle;  ///< after it, likewise
+  device::OperatorPhase ordered_phase_ = device::OperatorPhase::Idle;  ///< after it, likewise
   RealTimeResult result_;
-  RealTimeLoop loop_;
+  device::RealTimeLoop loop_;
   PhysicsClock clock_;
 };
 
 std::optional<RealTimeResult> RealTimeDriver::realTime() {
   countFaults();
-  const TickStatistics::Summary all = loop_.statistics().summary();
+  const device::TickStatistics::Summary all = loop_.statistics().summary();
   RealTimeResult result = result_;
   result.physics_missed = clock_.missed();
   result.behind_s = clock_.behind_s();
   result.late = timesOf(all.late, 0);
   result.response = timesOf(all.response, 0);
-  for (int i = 0; i < kTickCauses; ++i)
+  for (int i = 0; i < device::kTickCauses; ++i)
     result.missed_by.push_back(
-        {toText(static_cast<TickCause>(i)), all.missed_by[static_cast<std::size_t>(i)]});
+        {toText(static_cast<device::TickCause>(i)), all.missed_by[static_cast<std::size_t>(i)]});
   result.stale_ticks = all.stale;
   result.worst_tick = all.worst.tick;
   result.worst_us = microseconds(all.worst.response_ns());
@@ -199,12 +201,13 @@ std::optional<RealTimeResult> RealTimeDriver::realTime() {
 }  // namespace
 
 double physicsLimit_s(double physics_s) {
-  return std::max(RealTimeSettings{}.physics_limit_s, 10 * physics_s);
+  return std::max(device::RealTimeSettings{}.physics_limit_s, 10 * physics_s);
 }
 
-std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port, const LoopSettings& settings,
-                                         double physics_s, const TellFault& tell, RunLog* log) {
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port,
+                                                 const device::LoopSettings& settings, double physics_s,
+                                                 const TellFault& tell, device::RunLog* log) {
   return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, tell, log);
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 namespace {
 
 void flip(Mesh& mesh) {
@@ -196,4 +196,4 @@ void finish(RawCad raw, ImportedCad& cad) {
   }
 }
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

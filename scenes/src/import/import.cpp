@@ -3,7 +3,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::scenes {
 namespace {
 
 struct Reader {
@@ -39,4 +39,4 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   return cad;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

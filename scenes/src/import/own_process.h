@@ -7,7 +7,7 @@
 
 #include "import/readers.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 
 /// Runs read() in a child process and returns what it returns, bit for bit. Its progress reaches `progress`,
 /// in this process and thread; its LoadError is thrown here in the same words. Throws LoadError too if the
@@ -22,4 +22,4 @@ namespace vps::import {
 RawCad inOwnProcess(const std::string& file, const std::string& library, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read);
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

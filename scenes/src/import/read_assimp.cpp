@@ -13,7 +13,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Metres per unit of what assimp hands over. It applies Collada's unit itself, in the root's transform; it
@@ -167,4 +167,4 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   return cad;
 }
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

@@ -10,7 +10,7 @@
 #include "vps/progress.h"
 #include "vps_scenes/import.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 
 /// A part as its file says it: triangles not yet welded, lengths in file units; the name may be empty or
 /// repeat.
@@ -56,4 +56,4 @@ std::string stem(const std::string& file);
 /// Display colour (sRGB) to linear. Source: IEC 61966-2-1.
 std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb);
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

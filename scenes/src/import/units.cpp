@@ -5,7 +5,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps {
+namespace vps::scenes {
 
 std::optional<double> unitFromText(const std::string& text) {
   if (text == "m") return 1.0;
@@ -32,4 +32,4 @@ double lengthFromText(const std::string& text, const std::string& what) {
   return value * *unit_m;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps/query.h"
 #include "vps/sharp_edges.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -145,4 +145,4 @@ double OverlapJudge::fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) co
   return -least_m;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps/mesh_distance.h"
 #include "vps/part.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// A sharp edge of a part, in its frame.
 struct FitEdge {
@@ -62,4 +62,4 @@ class OverlapJudge {
   std::vector<Mounted> mounted_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

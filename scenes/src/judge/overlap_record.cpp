@@ -7,7 +7,7 @@
 
 #include "judge/box_motion.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -15,8 +15,9 @@ constexpr std::size_t kSuspects = 50;
 
 }  // namespace
 
-OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving, const std::vector<OverlapSample>& samples,
-                 std::size_t stride, const std::atomic<bool>* stop) {
+OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
+                     const std::vector<OverlapSample>& samples, std::size_t stride,
+                     const std::atomic<bool>* stop) {
   std::set<std::size_t> judged;
   for (std::size_t i = 0; i < samples.size(); i += stride) judged.insert(i);
 
@@ -49,4 +50,4 @@ OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving, const st
   return verdict;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

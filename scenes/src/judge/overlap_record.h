@@ -7,7 +7,7 @@
 
 #include "judge/overlap_judge.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// A pose of the part that moves, and how deep its contacts were in that pose as the solver saw them.
 struct OverlapSample {
@@ -23,10 +23,11 @@ struct OverlapVerdict {
 };
 
 /// Judges every `stride`-th pose, the last, and, whatever the stride, the kSuspects poses whose contacts were
-/// deepest. A pose within OverlapJudge::kCertain_m of the last one judged (greatest motion of any point) is that
-/// one.
+/// deepest. A pose within OverlapJudge::kCertain_m of the last one judged (greatest motion of any point) is
+/// that one.
 /// @param stop  ends it early when set, with what was found by then; may be null
-OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving, const std::vector<OverlapSample>& samples,
-                 std::size_t stride, const std::atomic<bool>* stop = nullptr);
+OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
+                     const std::vector<OverlapSample>& samples, std::size_t stride,
+                     const std::atomic<bool>* stop = nullptr);
 
-}  // namespace vps
+}  // namespace vps::scenes

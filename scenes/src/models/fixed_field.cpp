@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "core/wall_clock.h"
 #include "models/scene_models.h"
 #include "vps/crop.h"
-#include "core/wall_clock.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -64,7 +64,7 @@ std::shared_ptr<const Mesh> meshOf(const FieldOrder& order) {
 
 std::size_t CookedField::memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const {
   if (!shape) return 0;
-  const VpsModels& models = shape->models();
+  const bullet::ShapeModels& models = shape->models();
   std::size_t bytes = models.map->memoryBytes();
   for (const auto& map : own)
     if (map) bytes = std::min(bytes, models.map->memoryBytesBeside(*map));
@@ -75,7 +75,7 @@ CookedField cookField(const FieldOrder& order) {
   const double begun_s = wallSeconds();
   CookedField field;
   field.region_W = order.region_W;
-  VpsModels models;
+  bullet::ShapeModels models;
   models.map = mapOf(order);
   if (isStopped(order)) return field;
   if (order.has_shell) models.shell = shellOf(order);
@@ -84,9 +84,9 @@ CookedField cookField(const FieldOrder& order) {
     field.parts.push_back(part.placed);
     models.surfaces.push_back({part.surface, part.placed.X_WP});
   }
-  field.shape = std::make_unique<VpsShape>(std::move(models));
+  field.shape = std::make_unique<bullet::Shape>(std::move(models));
   field.wall_s = wallSeconds() - begun_s;
   return field;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 #include "vps/part.h"
 #include "vps_bullet/shape.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// A part in place.
 struct FixedPart {
@@ -46,7 +46,7 @@ struct FieldOrder {
 struct CookedField {
   std::vector<FixedPart> parts;
   std::optional<Box> region_W;
-  std::unique_ptr<VpsShape> shape;
+  std::unique_ptr<bullet::Shape> shape;
   double wall_s = 0;  ///< what it took
 
   /// Beside the parts' own models.
@@ -58,4 +58,4 @@ struct CookedField {
 /// cookVoxMap(). Stopped, it may come without a shape.
 CookedField cookField(const FieldOrder& order);
 
-}  // namespace vps
+}  // namespace vps::scenes

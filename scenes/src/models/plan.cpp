@@ -8,7 +8,7 @@
 #include "models/scene_models.h"
 #include "vps/crop.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -203,4 +203,4 @@ Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything) {
   return models_everything ? planner.everything() : planner.spared();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

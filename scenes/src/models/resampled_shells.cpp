@@ -8,7 +8,7 @@
 #include "vps/crop.h"
 #include "vps/query.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -25,7 +25,8 @@ struct Side {
 };
 
 /// Least distance of a part to the field, which lies in W; none beyond the band.
-std::optional<double> leastDistance(const Side& field, const Side& part, const Pose& X_WP, Sides sides) {
+std::optional<double> leastDistance(const Side& field, const Side& part, const Pose& X_WP,
+                                    Sides sides) {
   std::optional<double> least_m;
   const auto ask = [&](const Side& of, const Side& to, const Pose& X) {
     if (to.map == nullptr || of.shell == nullptr) return;
@@ -77,9 +78,9 @@ ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellS
   if (before_m && after_m) out.misread_m = *after_m - *before_m;
 
   out.part = order.part;
-  out.shape = std::make_unique<VpsShape>(std::move(order.models), order.X_SM);
+  out.shape = std::make_unique<bullet::Shape>(std::move(order.models), order.X_SM);
   out.shells = std::move(shells);
   return out;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_scenes/plan.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Points that stand in for the parts' own, by part; null: its own.
 using ShellSet = std::vector<std::shared_ptr<const PointShell>>;
@@ -26,8 +26,8 @@ std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& pl
 struct ResampleOrder {
   FieldOrder field;  ///< with the map in place as `below`, and the parts' own points; without parts: none
   std::size_t part = 0;
-  VpsModels models;                                             ///< with its own points
-  Pose X_SM;                                                    ///< VpsShape's
+  bullet::ShapeModels models;                                   ///< with its own points
+  Pose X_SM;                                                    ///< Shape's
   std::shared_ptr<const PointShell> field_before, part_before;  ///< in use; the field's may be null
   Pose X_WP;                                                    ///< of the part, to compare readings at
   Sides sides = Sides::Both;
@@ -37,7 +37,7 @@ struct ResampledShells {
   std::shared_ptr<const ShellSet> shells;  ///< null: the parts' own
   std::optional<CookedField> field;
   std::size_t part = 0;
-  std::unique_ptr<VpsShape> shape;
+  std::unique_ptr<bullet::Shape> shape;
   /// Least distance as they read it at ResampleOrder::X_WP, less that of the points before; none where either
   /// is beyond the map's band.
   std::optional<double> misread_m;
@@ -47,4 +47,4 @@ struct ResampledShells {
 /// where that was stopped.
 ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellSet> shells);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -3,12 +3,12 @@
 
 #include <set>
 
+#include "core/wall_clock.h"
 #include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
-#include "core/wall_clock.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -134,4 +134,4 @@ ModelledCost modelledCost(const Scene& scene) {
   return cost;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

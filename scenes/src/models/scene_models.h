@@ -7,7 +7,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity);
 PointShellSettings pointShellSettings(const Fidelity& fidelity);
@@ -34,4 +34,4 @@ void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options);
 /// What the models cost; shared ones count once.
 ModelledCost modelledCost(const Scene& scene);
 
-}  // namespace vps
+}  // namespace vps::scenes

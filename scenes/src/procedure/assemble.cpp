@@ -9,24 +9,24 @@
 #include <optional>
 #include <thread>
 
-#include "judge/box_motion.h"
+#include "core/tick_times.h"
+#include "core/wall_clock.h"
 #include "haptics/clutching.h"
-#include "judge/overlap_record.h"
 #include "haptics/haptic_driver.h"
 #include "haptics/load_shedder.h"
+#include "judge/box_motion.h"
+#include "judge/overlap_record.h"
+#include "models/scene_models.h"
 #include "procedure/placed_parts.h"
 #include "procedure/procedure.h"
 #include "record/run_record.h"
-#include "models/scene_models.h"
 #include "simulation/simulation.h"
-#include "core/tick_times.h"
 #include "vps/load_error.h"
 #include "vps_device/gains.h"
 #include "vps_device/periodic_thread.h"
 #include "vps_scenes/contact_episodes.h"
-#include "core/wall_clock.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -71,8 +71,8 @@ bool isReady(const std::future<T>& future) {
   return !future.valid() || future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-RunTrace logged(const TraceRow& row) {
-  RunTrace trace;
+device::RunTrace logged(const TraceRow& row) {
+  device::RunTrace trace;
   trace.time_s = row.time_s;
   trace.step = row.step;
   trace.phase = static_cast<std::uint8_t>(row.phase);
@@ -89,19 +89,19 @@ Twist scaled(const Twist& V, double by) {
 }
 
 /// What a device is passive with in a scene, at a physics rate.
-CouplingGains gainsFor(const Scene& scene, const DeviceLimits& limits, double physics_rate_hz) {
-  CouplingTiming timing;
+CouplingGains gainsFor(const Scene& scene, const device::DeviceLimits& limits, double physics_rate_hz) {
+  device::CouplingTiming timing;
   timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
   timing.physics_rate_hz = physics_rate_hz;
   timing.scale = scene.device.scale;
-  return deriveGains(limits, timing);
+  return device::deriveGains(limits, timing);
 }
 
 /// One run of a procedure. Lives as long as the run.
 class Procedure {
  public:
-  Procedure(Scene& scene, const Plan& plan, Hand& hand, RunLog* log, const LoopSettings& settings,
-            const AssembleOptions& options)
+  Procedure(Scene& scene, const Plan& plan, Hand& hand, device::RunLog* log,
+            const device::LoopSettings& settings, const AssembleOptions& options)
       : scene_(scene),
         plan_(plan),
         log_(log),
@@ -115,8 +115,10 @@ class Procedure {
         poses_(scene.parts.size()),
         roles_(scene.parts.size(), BodyRole::Waiting) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i) poses_[i] = scene.parts[i].X_WP;
-    const auto tell = [this](const std::string& words) { tellEvent(RunEventKind::Note, "safety: " + words); };
-    LoopSettings loop_settings = settings;
+    const auto tell = [this](const std::string& words) {
+      tellEvent(device::RunEventKind::Note, "safety: " + words);
+    };
+    device::LoopSettings loop_settings = settings;
     if (options.has_local_contact) loop_settings.local = &local_;
     driver_ = sideFor(scene, hand, loop_settings, tell);
     LoadLimits limits_of_pace;
@@ -124,9 +126,9 @@ class Procedure {
     // What the loop foretells by itself moves as the clock does.
     limits_of_pace.may_slow = !options.has_local_contact;
     shedder_.emplace(scene_, plan_, simulation_, placed_, *driver_, limits_of_pace,
-                  [limits = hand.device().limits(), &scene](double rate_hz) {
-                    return gainsFor(scene, limits, rate_hz);
-                  });
+                     [limits = hand.device().limits(), &scene](double rate_hz) {
+                       return gainsFor(scene, limits, rate_hz);
+                     });
     mountFixed();
   }
 
@@ -142,12 +144,12 @@ class Procedure {
     double held_energy_J = 0;  ///< mechanical energy when it was taken, so that a hand-over stores nothing
   };
 
-  std::unique_ptr<HapticDriver> sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
-                                      const TellFault& tell);
+  std::unique_ptr<HapticDriver> sideFor(const Scene& scene, Hand& hand, device::LoopSettings settings,
+                                        const TellFault& tell);
   void mountFixed();
   void runStep(std::size_t index);
   void work(StepResult& result, const SceneStep& step, std::size_t index);
-  [[nodiscard]] OperatorTask taskOf(const SceneStep& step) const;
+  [[nodiscard]] device::OperatorTask taskOf(const SceneStep& step) const;
   void take(const SceneStep& step);
   void takeLocally(const ScenePart& scene_part);
   void letGo();
@@ -174,7 +176,7 @@ class Procedure {
   [[nodiscard]] bool advance();
   void record(int phase);
   void tellPhase();
-  void tellEvent(RunEventKind kind, const std::string& words);
+  void tellEvent(device::RunEventKind kind, const std::string& words);
   [[nodiscard]] Snapshot snapshot() const;
   void tell(std::size_t index, double share) const;
   [[nodiscard]] bool isStopped() const {
@@ -182,19 +184,19 @@ class Procedure {
   }
 
   /// Where nobody listens.
-  class DeafLog final : public RunLog {
-    void add(const LogEntry&) noexcept override {}
+  class DeafLog final : public device::RunLog {
+    void add(const device::LogEntry&) noexcept override {}
   };
 
   Scene& scene_;
   Plan plan_;
-  RunLog* log_;
+  device::RunLog* log_;
   const AssembleOptions& options_;
   Simulation simulation_;
   DeafLog deaf_;
-  TappedDevice tapped_;
+  device::TappedDevice tapped_;
   CouplingPort port_;
-  LocalContact local_;
+  device::LocalContact local_;
   std::unique_ptr<HapticDriver> driver_;
   PlacedParts placed_;
   std::optional<LoadShedder> shedder_;  ///< of driver_
@@ -209,7 +211,7 @@ class Procedure {
   bool is_holding_ = false;
   bool is_over_ = false;      ///< the hand cannot go on
   bool is_settling_ = false;  ///< the part is judged and cooked: what it does no longer counts
-  std::optional<OperatorPhase> told_phase_;
+  std::optional<device::OperatorPhase> told_phase_;
   int step_ = -1;
   double stored_before_J_ = 0;  ///< stored energy of parts handed over so far
   std::size_t first_row_ = 0;   ///< of the step, in the trace
@@ -236,23 +238,25 @@ AssembleResult Procedure::run() {
   result_.real_time = driver_->realTime();
   if (result_.real_time) result_.real_time->load_changes = shedder_->changes();
   result_.physics = physics_clock_.summary();
-  const PassivityObserver ledger = driver_->ledger();
-  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J, ledger.quantisation_error_bound_J};
+  const device::PassivityObserver ledger = driver_->ledger();
+  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J,
+                    ledger.quantisation_error_bound_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = placed_.modelled();
   result_.widened = placed_.widened();
-  const LocalContact::Report& local = local_.report();
+  const device::LocalContact::Report& local = local_.report();
   result_.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
   result_.simulated_s = time_s_;
   result_.run_wall_s = wallSeconds() - begun_s;
   return std::move(result_);
 }
 
-std::unique_ptr<HapticDriver> Procedure::sideFor(const Scene& scene, Hand& hand, LoopSettings settings,
-                                               const TellFault& tell) {
+std::unique_ptr<HapticDriver> Procedure::sideFor(const Scene& scene, Hand& hand,
+                                                 device::LoopSettings settings, const TellFault& tell) {
   if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, tell, log_);
-  Device& device = log_ != nullptr ? tapped_ : hand.device();
-  if (std::vector<SyncEvent> sync_events = hand.sync_events(); !sync_events.empty() && log_ != nullptr) {
+  device::Device& device = log_ != nullptr ? tapped_ : hand.device();
+  if (std::vector<device::SyncEvent> sync_events = hand.sync_events();
+      !sync_events.empty() && log_ != nullptr) {
     settings.physics_limit_s = physicsLimit_s(dt_s_);
     return makeReplayedDriver(hand, std::move(sync_events), device, port_, settings, tell, *log_);
   }
@@ -321,7 +325,7 @@ void Procedure::take(const SceneStep& step) {
 void Procedure::takeLocally(const ScenePart& scene_part) {
   local_.letGo();
   if (!simulation_.hasFixed()) return;
-  LocalPart part;
+  device::LocalPart part;
   part.map = simulation_.fixedMap();
   part.shell = scene_part.part.shell.get();
   part.X_PG = held_.X_PG;
@@ -383,22 +387,22 @@ void Procedure::shedLoad() {
   if (grip_ < 1) simulation_.setGains(faded(shedder_->gains(), grip_));  // other gains may have come
 }
 
-void Procedure::tellEvent(RunEventKind kind, const std::string& words) {
+void Procedure::tellEvent(device::RunEventKind kind, const std::string& words) {
   if (log_ == nullptr) return;
-  RunEvent event;
+  device::RunEvent event;
   event.time_s = time_s_;
   event.step = step_;
   event.kind = kind;
-  if (kind == RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(driver_->phase());
+  if (kind == device::RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(driver_->phase());
   event.say(words);
   log_->add(event);
 }
 
 void Procedure::tellPhase() {
-  const OperatorPhase phase = driver_->phase();
+  const device::OperatorPhase phase = driver_->phase();
   if (told_phase_ == phase) return;
   told_phase_ = phase;
-  tellEvent(RunEventKind::Phase, toText(phase));
+  tellEvent(device::RunEventKind::Phase, toText(phase));
 }
 
 void Procedure::record(int phase) {
@@ -429,8 +433,8 @@ void Procedure::record(int phase) {
   }
 }
 
-OperatorTask Procedure::taskOf(const SceneStep& step) const {
-  OperatorTask task;
+device::OperatorTask Procedure::taskOf(const SceneStep& step) const {
+  device::OperatorTask task;
   task.X_WP_start = step.X_WP_start;
   task.way_points = step.way_points;
   task.X_WP_target = step.X_WP_target;
@@ -460,7 +464,7 @@ void Procedure::runStep(std::size_t index) {
   take(step);
   result_.start.push_back(snapshot());
   result_.contact.push_back(snapshot());
-  tellEvent(RunEventKind::Take, "takes '" + name + "'");
+  tellEvent(device::RunEventKind::Take, "takes '" + name + "'");
   work(result, step, index);
   if (options_.has_local_contact) driver_->pause();
   for (const ContactEpisode& episode : contactEpisodes(std::span(result_.trace).subspan(first_row_)))
@@ -469,7 +473,7 @@ void Procedure::runStep(std::size_t index) {
   result_.end.push_back(snapshot());
 
   letGo();
-  tellEvent(RunEventKind::LetGo, "lets go of '" + name + "'");
+  tellEvent(device::RunEventKind::LetGo, "lets go of '" + name + "'");
   rest(result, step);
   tell(index, 0.9);
   findWhetherCompleted(result, step);
@@ -496,17 +500,17 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   told_phase_.reset();
   tellPhase();
   const auto is_busy = [&] {
-    const OperatorPhase phase = driver_->phase();
-    return phase != OperatorPhase::Done && phase != OperatorPhase::Failed;
+    const device::OperatorPhase phase = driver_->phase();
+    return phase != device::OperatorPhase::Done && phase != device::OperatorPhase::Failed;
   };
   while (is_busy() && !isStopped() && advance()) {
-    const OperatorPhase phase = driver_->phase();
+    const device::OperatorPhase phase = driver_->phase();
     tellPhase();
-    record(phase == OperatorPhase::Press || phase == OperatorPhase::Done ? 2
-           : phase == OperatorPhase::Insert                              ? 1
-                                                                         : 0);
+    record(phase == device::OperatorPhase::Press || phase == device::OperatorPhase::Done ? 2
+           : phase == device::OperatorPhase::Insert                                      ? 1
+                                                                                         : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
-    if (phase != OperatorPhase::Regrasp) continue;
+    if (phase != device::OperatorPhase::Regrasp) continue;
     ++result.index_points;
     if (!clutch.index_point(reaching)) return;
     tellPhase();
@@ -525,22 +529,22 @@ void Procedure::findWhetherCompleted(StepResult& result, const SceneStep& step) 
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
   const bool is_on_target =
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
-  const bool is_done = driver_->phase() == OperatorPhase::Done;
+  const bool is_done = driver_->phase() == device::OperatorPhase::Done;
   result.completed = is_done && is_on_target;
   if (!result.completed)
     result.failure_reason = is_over_      ? "the recording ends here"
-                     : isStopped() ? "stopped"
-                     : is_done     ? "moved off its target after it was let go"
-                     : time_s_ - result.start_s > step.timeout_s
-                         ? "the hand gave up: target not reached in time"
-                         : "the hand gave up: target not reached";
+                            : isStopped() ? "stopped"
+                            : is_done     ? "moved off its target after it was let go"
+                            : time_s_ - result.start_s > step.timeout_s
+                                ? "the hand gave up: target not reached in time"
+                                : "the hand gave up: target not reached";
 }
 
 std::future<OverlapVerdict> Procedure::judgeAsync() {
   samples_.push_back({time_s_, poses_[held_.part], 0});
   const JudgedBody& body = placed_.judgedBody(held_.part);
   return std::async(std::launch::async, [this, &body] {
-    leaveRealTime();  // threads are born with their maker's priority
+    device::leaveRealTime();  // threads are born with their maker's priority
     // Contacts of one side's points are blind to the other's edges, and cannot say when the part was deepest.
     if (scene_.fidelity.sides == Sides::One)
       for (OverlapSample& sample : samples_)
@@ -554,7 +558,7 @@ std::future<CookedField> Procedure::cookAsync(std::size_t step) {
   if (!order) return {};
   order->stop = options_.stop;
   return std::async(std::launch::async, [order = std::move(*order)] {
-    leaveRealTime();
+    device::leaveRealTime();
     return cookField(order);
   });
 }
@@ -576,7 +580,8 @@ void Procedure::settle(StepResult& result, std::size_t index) {
   placed_.add(part, X_WP);
   std::future<CookedField> field = cookAsync(index + 1);
   const std::uint64_t missed_before = driver_->missed();
-  if (driver_->isByClock()) goOnUntil([&] { return driver_->hasSettled(isReady(verdict) && isReady(field)); });
+  if (driver_->isByClock())
+    goOnUntil([&] { return driver_->hasSettled(isReady(verdict) && isReady(field)); });
   while (!isReady(verdict) || !isReady(field)) {
     std::this_thread::sleep_for(kLook);
     tell(index, 0.95);  // who listens may stop the run
@@ -652,9 +657,9 @@ void Procedure::tell(std::size_t index, double share) const {
 
 }  // namespace
 
-LoopSettings loopSettings(const Scene& scene, const Device& device) {
-  const DeviceLimits limits = device.limits();
-  LoopSettings settings;
+device::LoopSettings loopSettings(const Scene& scene, const device::Device& device) {
+  const device::DeviceLimits limits = device.limits();
+  device::LoopSettings settings;
   settings.gains = gainsFor(scene, limits, scene.fidelity.physics_rate_hz);
   const CouplingWishes& wishes = scene.coupling;
   settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
@@ -673,8 +678,8 @@ LoopSettings loopSettings(const Scene& scene, const Device& device) {
   return settings;
 }
 
-AssembleResult runProcedure(Scene& scene, Hand& hand, RunLog* log, const LoopSettings& settings,
-                            const AssembleOptions& options) {
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options) {
   const double begun_s = wallSeconds();
   const Plan plan = makePlan(scene, PlanFor::Assemble, options.models_everything);
   buildModels(scene, plan, options);
@@ -697,7 +702,7 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
                     "a run with local contact cannot be replayed bit for bit; record it without "
                     "--local-contact");
   const std::unique_ptr<Hand> hand = simulatedHand(scene);
-  const LoopSettings settings = loopSettings(scene, hand->device());
+  const device::LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);
   RunRecord record(options.record, scene, hand->device(), settings.gains, options);
   AssembleResult result = runProcedure(scene, *hand, &record, settings, options);
@@ -705,4 +710,4 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   return result;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

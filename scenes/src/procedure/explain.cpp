@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/wall_clock.h"
 #include "models/scene_models.h"
 #include "simulation/simulation.h"
-#include "core/wall_clock.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -93,4 +93,4 @@ PartUse useOf(const Plan& plan, std::size_t part, std::size_t step) {
   return PartUse::Absent;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "models/scene_models.h"
 #include "vps/crop.h"
 
-namespace vps {
+namespace vps::scenes {
 
 PlacedParts::PlacedParts(Scene& scene, Plan& plan, Simulation& simulation, const ModelOptions& options)
     : scene_(scene),
@@ -73,4 +73,4 @@ void PlacedParts::widen(std::size_t step) {
   setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "simulation/simulation.h"
 #include "vps_scenes/model_options.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Not thread-safe, but for fit(), which may be read elsewhere until the next call of another.
 class PlacedParts {
@@ -55,4 +55,4 @@ class PlacedParts {
   int widened_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

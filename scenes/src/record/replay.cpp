@@ -6,19 +6,19 @@
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
-std::string about(const RecordedRun& run, const std::string& key) {
+std::string about(const device::RecordedRun& run, const std::string& key) {
   const auto found = run.head.about.find(key);
   return found != run.head.about.end() ? found->second : "";
 }
 
 }  // namespace
 
-Scene recordedScene(const RecordedRun& run) {
-  const McapAttachment* scene = run.attachment(kSceneAttachment);
+Scene recordedScene(const device::RecordedRun& run) {
+  const device::McapAttachment* scene = run.attachment(kSceneAttachment);
   if (scene == nullptr)
     throw LoadError(run.file, "",
                     "holds no scene" + (run.damage.empty() ? std::string(", only a device; --csv shows it")
@@ -26,7 +26,7 @@ Scene recordedScene(const RecordedRun& run) {
   return sceneFromBytes(scene->data, run.file);
 }
 
-ReplayResult replay(const RecordedRun& run, const ReplayOptions& options) {
+ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options) {
   ReplayResult replayed;
   replayed.scene = recordedScene(run);
   if (replayed.scene.steps.empty()) throw LoadError(run.file, "", "holds a scene without a step");
@@ -38,10 +38,10 @@ ReplayResult replay(const RecordedRun& run, const ReplayOptions& options) {
   assembling.stop = options.stop;
   assembling.models_everything = about(run, "models_everything") == "1";
   assembling.keep_going = about(run, "keeps_going") != "0";
-  Recording recording(run);
-  ReplayCheck check(run);
+  device::Recording recording(run);
+  device::ReplayCheck check(run);
   const std::unique_ptr<Hand> hand = recordedHand(recording);
-  const LoopSettings settings = loopSettings(replayed.scene, hand->device());
+  const device::LoopSettings settings = loopSettings(replayed.scene, hand->device());
   replayed.result = runProcedure(replayed.scene, *hand, &check, settings, assembling);
   replayed.departure = check.departure();
   replayed.equal = check.equal();
@@ -51,4 +51,4 @@ ReplayResult replay(const RecordedRun& run, const ReplayOptions& options) {
   return replayed;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

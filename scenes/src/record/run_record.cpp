@@ -5,7 +5,7 @@
 
 #include "record/scene_archive.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -51,12 +51,12 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
   return about;
 }
 
-RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGains& gains,
-                     const AssembleOptions& options) {
+device::RecordingHead headOf(const Scene& scene, const device::Device& device, const CouplingGains& gains,
+                             const AssembleOptions& options) {
   Scene chosen = scene;
   chosen.coupling = {gains.k_N_per_m,     gains.b_Ns_per_m,  gains.k_Nm_per_rad,
                      gains.b_Nms_per_rad, gains.max_force_N, gains.max_torque_Nm};
-  RecordingHead head;
+  device::RecordingHead head;
   head.device = device.name();
   head.limits = device.limits();
   head.attachments = {{kSceneAttachment, "application/octet-stream", sceneToBytes(chosen)}};
@@ -66,7 +66,7 @@ RecordingHead headOf(const Scene& scene, const Device& device, const CouplingGai
 
 }  // namespace
 
-RunRecord::RunRecord(const std::string& file, const Scene& scene, const Device& device,
+RunRecord::RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
                      const CouplingGains& gains, const AssembleOptions& options)
     : recorder_(file, headOf(scene, device, gains, options), kRingEntries),
       warn_(options.warn),
@@ -77,8 +77,8 @@ RunRecord::~RunRecord() {
   warn_("the recording was not finished; up to here it stands in " + recorder_.unfinished());
 }
 
-void RunRecord::add(const LogEntry& entry) noexcept {
-  has_read_ = has_read_ || std::holds_alternative<DeviceSample>(entry);
+void RunRecord::add(const device::LogEntry& entry) noexcept {
+  has_read_ = has_read_ || std::holds_alternative<device::DeviceSample>(entry);
   if (waits_) recorder_.waitForRoom();
   recorder_.add(entry);
 }
@@ -97,4 +97,4 @@ std::string programVersion() {
   return std::string(VPS_VERSION) + ", compiler " + __VERSION__ + ", Bullet " + precision;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

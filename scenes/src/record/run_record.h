@@ -10,28 +10,28 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The names of a recording's attachments.
 inline constexpr const char* kSceneAttachment = "scene.vps";
 
 /// In simulated time a run waits where the recorder's ring is full. By the clock it does not: the recording
 /// then says that it ends there.
-class RunRecord final : public RunLog {
+class RunRecord final : public device::RunLog {
  public:
   /// The head says which program, scene, seeds, fidelity and choices. The scene in it wishes for the gains
   /// that were chosen, so that a replay does not choose again. Throws as Recorder.
-  RunRecord(const std::string& file, const Scene& scene, const Device& device, const CouplingGains& gains,
-            const AssembleOptions& options);
+  RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
+            const CouplingGains& gains, const AssembleOptions& options);
   /// Without finish(): says by options.warn where the unfinished recording is.
   ~RunRecord() override;
 
-  void add(const LogEntry& entry) noexcept override;
+  void add(const device::LogEntry& entry) noexcept override;
   void lose(std::uint64_t count) noexcept override { recorder_.lose(count); }
   void finish();
 
  private:
-  Recorder recorder_;
+  device::Recorder recorder_;
   std::function<void(const std::string&)> warn_;
   bool waits_, has_read_ = false, is_finished_ = false;
 };
@@ -39,4 +39,4 @@ class RunRecord final : public RunLog {
 /// "0.1.0, GCC 12.2.0, double": what a recording was made with, and what this program is.
 std::string programVersion();
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "vps/load_error.h"
 #include "vps_device/bytes.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -66,7 +66,7 @@ class Writer {
   requires requires(Writer& w, const T& x) { fields(w, x); }
   void put(const T& x) { fields(*this, x); }
 
-  ByteWriter bytes_;
+  device::ByteWriter bytes_;
 };
 
 class Reader {
@@ -120,7 +120,7 @@ class Reader {
   requires requires(Reader& r, T& x) { fields(r, x); }
   void get(T& x) { fields(*this, x); }
 
-  ByteReader bytes_;
+  device::ByteReader bytes_;
   bool is_good_ = true;
 };
 
@@ -258,4 +258,4 @@ std::string contentHash(const Mesh& mesh) {
   return contentHash(bytes);
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

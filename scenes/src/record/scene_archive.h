@@ -7,7 +7,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// All of the scene but its models, which follow from the rest; numbers to the bit. Of file names only the
 /// last piece is kept: folders are nobody else's business.
@@ -20,4 +20,4 @@ Scene sceneFromBytes(std::string_view bytes, const std::string& file);
 std::string contentHash(const Mesh& mesh);
 std::string contentHash(std::string_view bytes);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -320,7 +320,7 @@ class SceneReader {
   void readDeviceFile(const SceneKeys& keys, const std::string& file) {
     if (scene_.device.kind != "dual_arm") keys.fail("parameters", "only a dual_arm has");
     try {
-      loadDualArm(path(file));
+      device::loadDualArm(path(file));
     } catch (const LoadError& error) {
       keys.fail("parameters", std::string("cannot be used: ") + error.what());
     }
@@ -379,7 +379,7 @@ class SceneReader {
     if (keys.word("sides", {"one", "both"}, index)) fidelity.sides = index == 0 ? Sides::One : Sides::Both;
     if (keys.word("gradient", {"continuous", "trilinear"}, index))
       fidelity.gradient = index == 0 ? Gradient::Continuous : Gradient::Trilinear;
-    if (keys.word("contact", {"rigid", "compliant"}, index))
+    if (keys.word("contact", {"constraint", "penalty"}, index))
       scene_.contact = index == 0 ? ContactMethod::Constraint : ContactMethod::Penalty;
     constexpr Range kCount{.min = 1, .max = 1e6};
     std::int64_t count = 0;
@@ -456,4 +456,4 @@ Scene loadScene(const std::string& file) {
   return SceneReader(root, file).read();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -290,4 +290,4 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
   return from;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -21,7 +21,7 @@
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace vps {
+namespace vps::scenes {
 
 /// What all tables of one scene file share.
 struct SceneFileContext {
@@ -97,4 +97,4 @@ class SceneKeys {
   std::string place_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -4,14 +4,14 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/tick_times.h"
+#include "core/wall_clock.h"
 #include "haptics/physics_clock.h"
 #include "models/scene_models.h"
 #include "simulation/simulation.h"
-#include "core/tick_times.h"
 #include "vps/load_error.h"
-#include "core/wall_clock.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -31,7 +31,7 @@ class ByTheClock {
  public:
   ByTheClock(double period_s, bool is_wanted) : clock_(period_s), begun_s_(wallSeconds()) {
     if (!is_wanted) return;
-    const RealTimeReport report = clock_.start(true);
+    const device::RealTimeReport report = clock_.start(true);
     kept_ = {0, report.has_priority, report.has_locked_memory, report.warnings, 0};
   }
   ~ByTheClock() {
@@ -109,4 +109,4 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   return result;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -16,20 +16,21 @@
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
 struct DynamicBody {
-  std::unique_ptr<VpsShape> shape;
+  std::unique_ptr<bullet::Shape> shape;
   std::unique_ptr<btRigidBody> body;
-  BodyFrame frame;
+  bullet::BodyFrame frame;
 };
 
-VpsBulletSettings bulletSettings(const Scene& scene) {
+bullet::Settings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
-  VpsBulletSettings settings;
-  settings.mode = scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
+  bullet::Settings settings;
+  settings.mode =
+      scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
     // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
@@ -41,8 +42,8 @@ VpsBulletSettings bulletSettings(const Scene& scene) {
   return settings;
 }
 
-VpsSolverSettings solverSettings(const Fidelity& fidelity) {
-  VpsSolverSettings settings;
+bullet::SolverSettings solverSettings(const Fidelity& fidelity) {
+  bullet::SolverSettings settings;
   settings.iteration_limit = fidelity.solver_iterations;
   return settings;
 }
@@ -55,37 +56,38 @@ struct Simulation::World {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
-  VpsSolver solver;
+  bullet::Solver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
 
-  std::map<std::size_t, VpsModels> models;  // by part; the exact surface is built once
+  std::map<std::size_t, bullet::ShapeModels> models;  // by part; the exact surface is built once
   std::map<std::size_t, DynamicBody> bodies;
   std::shared_ptr<const ShellSet> shells;  // in place of the parts' own; null: none
   double dt_s;                             // of the last step
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
-  std::unique_ptr<VpsCoupling> coupling;
+  std::unique_ptr<bullet::CouplingConstraint> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
 
   World(const Scene& s, const Plan& p)
       : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
-    installVps(dispatcher, bulletSettings(scene));
-    tuneWorld(world, scene.fidelity.solver_iterations);
-    world.setGravity(toBt(scene.gravity_W));
+    bullet::install(dispatcher, bulletSettings(scene));
+    bullet::tuneWorld(world, scene.fidelity.solver_iterations);
+    world.setGravity(bullet::toBt(scene.gravity_W));
   }
   ~World() {
     letGo();
     while (!bodies.empty()) remove(bodies.begin()->first);
     if (fixed_body) world.removeRigidBody(fixed_body.get());
-    uninstallVps(dispatcher);
+    bullet::uninstall(dispatcher);
   }
 
-  const VpsModels& modelsOf(std::size_t part) {
+  const bullet::ShapeModels& modelsOf(std::size_t part) {
     const std::size_t own = plan.parts[part].same_as.value_or(part);
     const auto found = models.find(own);
-    return found != models.end() ? found->second
-                                 : models.emplace(own, makeModels(scene.parts[own].part)).first->second;
+    return found != models.end()
+               ? found->second
+               : models.emplace(own, bullet::makeModels(scene.parts[own].part)).first->second;
   }
 
   /// The points that a part goes by now.
@@ -212,14 +214,14 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
         scene_part.file, scene_part.part.name,
         "its volume is not positive, so it has no mass: the mesh is open or inside out; mend it, or mark the "
         "part as fixed");
-  added.frame = makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
-  VpsModels models = w.modelsOf(part);
+  added.frame = bullet::makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
+  bullet::ShapeModels models = w.modelsOf(part);
   models.shell = w.shellOf(part);
-  added.shape = std::make_unique<VpsShape>(std::move(models), added.frame.X_PB.inverse());
+  added.shape = std::make_unique<bullet::Shape>(std::move(models), added.frame.X_PB.inverse());
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
-                                               added.shape.get(), toBt(added.frame.inertia_kg_m2)));
-  added.body->setWorldTransform(toBt(X_WP * added.frame.X_PB));
+                                               added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
+  added.body->setWorldTransform(bullet::toBt(X_WP * added.frame.X_PB));
   added.body->setInterpolationWorldTransform(added.body->getWorldTransform());
   added.body->setActivationState(DISABLE_DEACTIVATION);
   w.setMaterial(*added.body, part);
@@ -235,7 +237,8 @@ void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& 
   World& w = *world_;
   w.letGo();
   DynamicBody& held = w.bodies.at(part);
-  w.coupling = std::make_unique<VpsCoupling>(*held.body, held.frame.X_PB.inverse() * X_PG, gains);
+  w.coupling =
+      std::make_unique<bullet::CouplingConstraint>(*held.body, held.frame.X_PB.inverse() * X_PG, gains);
   w.world.addConstraint(w.coupling.get(), true);
   w.grasped = part;
   w.X_PG = X_PG;
@@ -262,30 +265,31 @@ void Simulation::step(double dt_s) {
   // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
   world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
   for (const auto& [part, b] : world_->bodies)
-    if (!fromBt(b.body->getWorldTransform()).isFinite())
+    if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
       throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
                       "its pose is no longer a number; check its mass and size, or take a finer fidelity");
 }
 
 Pose Simulation::pose(std::size_t part) const {
   const DynamicBody& b = world_->bodies.at(part);
-  return fromBt(b.body->getWorldTransform()) * b.frame.X_PB.inverse();
+  return bullet::fromBt(b.body->getWorldTransform()) * b.frame.X_PB.inverse();
 }
 
 Twist Simulation::twist(std::size_t part) const {
   const DynamicBody& b = world_->bodies.at(part);
   Twist V;
-  V.w = fromBt(b.body->getAngularVelocity());
-  const Vec3 p_BP_W = fromBt(b.body->getWorldTransform()).R * b.frame.X_PB.inverse().p;
-  V.v = fromBt(b.body->getLinearVelocity()) + V.w.cross(p_BP_W);
+  V.w = bullet::fromBt(b.body->getAngularVelocity());
+  const Vec3 p_BP_W = bullet::fromBt(b.body->getWorldTransform()).R * b.frame.X_PB.inverse().p;
+  V.v = bullet::fromBt(b.body->getLinearVelocity()) + V.w.cross(p_BP_W);
   return V;
 }
 
 double Simulation::kineticEnergy() const {
   double energy_J = 0;
   for (const auto& [part, b] : world_->bodies) {
-    const Vec3 w_B = fromBt(b.body->getWorldTransform()).R.transpose() * fromBt(b.body->getAngularVelocity());
-    energy_J += 0.5 * b.frame.mass_kg * fromBt(b.body->getLinearVelocity()).squaredNorm() +
+    const Vec3 w_B = bullet::fromBt(b.body->getWorldTransform()).R.transpose() *
+                     bullet::fromBt(b.body->getAngularVelocity());
+    energy_J += 0.5 * b.frame.mass_kg * bullet::fromBt(b.body->getLinearVelocity()).squaredNorm() +
                 0.5 * w_B.cwiseProduct(b.frame.inertia_kg_m2).dot(w_B);
   }
   return energy_J;
@@ -294,7 +298,7 @@ double Simulation::kineticEnergy() const {
 double Simulation::mechanicalEnergy() const {
   double energy_J = kineticEnergy();
   for (const auto& [part, b] : world_->bodies)
-    energy_J -= b.frame.mass_kg * world_->scene.gravity_W.dot(fromBt(b.body->getWorldTransform()).p);
+    energy_J -= b.frame.mass_kg * world_->scene.gravity_W.dot(bullet::fromBt(b.body->getWorldTransform()).p);
   return energy_J;
 }
 
@@ -307,7 +311,7 @@ Vec3 Simulation::centreOfMass(std::size_t part) const {
 }
 
 Mat3 Simulation::inertia(std::size_t part) const {
-  const BodyFrame& frame = world_->bodies.at(part).frame;
+  const bullet::BodyFrame& frame = world_->bodies.at(part).frame;
   return frame.X_PB.R * frame.inertia_kg_m2.asDiagonal() * frame.X_PB.R.transpose();
 }
 
@@ -352,13 +356,13 @@ void Simulation::contactMarks(std::vector<ContactMark>& marks) const {
   marks.clear();
   forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
     if (point.getAppliedImpulse() <= 0) return;
-    marks.push_back({fromBt(point.getPositionWorldOnB()), fromBt(point.m_normalWorldOnB),
+    marks.push_back({bullet::fromBt(point.getPositionWorldOnB()), bullet::fromBt(point.m_normalWorldOnB),
                      std::max(0.0, -static_cast<double>(point.getDistance()))});
   });
 }
 
 std::size_t Simulation::contactsLeftOut() const {
-  return vpsStats(world_->dispatcher).left_out;
+  return bullet::stats(world_->dispatcher).left_out;
 }
 
 void Simulation::addField(ModelledCost& cost) const {
@@ -373,4 +377,4 @@ void Simulation::addField(ModelledCost& cost) const {
   cost.field_points = shell != nullptr ? shell->size() : 0;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

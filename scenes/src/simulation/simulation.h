@@ -14,7 +14,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// What touched in the last step.
 struct TouchState {
@@ -98,4 +98,4 @@ class Simulation {
   std::unique_ptr<World> world_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

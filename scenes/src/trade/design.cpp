@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -71,7 +71,8 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
   const auto add = [&](const std::string& name, TradeKnob knob, const auto& change) {
     all.push_back(changed(scene, name, knob, change));
   };
-  const bool has_both = scene.fidelity.sides == Sides::Both, is_rigid = scene.contact == ContactMethod::Constraint,
+  const bool has_both = scene.fidelity.sides == Sides::Both,
+             is_rigid = scene.contact == ContactMethod::Constraint,
              is_continuous = scene.fidelity.gradient == Gradient::Continuous;
   add("as it is", TradeKnob::Own, [](TradeTry&) {});
   add("all coarser", TradeKnob::Together, coarsen);
@@ -87,7 +88,7 @@ std::vector<TradeTry> tradeDesign(const Scene& scene) {
       [](TradeTry& t) { t.fidelity.contact_limit = std::max(4, t.fidelity.contact_limit / 4); });
   add(is_continuous ? "trilinear" : "continuous", TradeKnob::Gradient,
       [=](TradeTry& t) { t.fidelity.gradient = is_continuous ? Gradient::Trilinear : Gradient::Continuous; });
-  add(is_rigid ? "compliant" : "rigid", TradeKnob::Contact,
+  add(is_rigid ? "penalty" : "constraint", TradeKnob::Contact,
       [=](TradeTry& t) { t.contact = is_rigid ? ContactMethod::Penalty : ContactMethod::Constraint; });
   add("haptic rate x2", TradeKnob::HapticRate, [](TradeTry& t) { t.fidelity.haptic_rate_hz *= 2; });
   add("spacing /2", TradeKnob::Spacing, [](TradeTry& t) { t.fidelity.spacing_m /= 2; });
@@ -149,4 +150,4 @@ TradeTry tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows) 
   return best;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The scene's own, each knob by itself coarser and finer (most telling first), all together coarser and
 /// finer.
@@ -20,4 +20,4 @@ std::vector<TradeTry> tradeReferences(const Scene& scene);
 /// name where that is the scene's own.
 TradeTry tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::scenes {
 
 Touch exactTouch(const JudgedBody& solid, const std::vector<SurfaceSample>& samples, const Pose& X_SB,
                  const Vec3& p_SO) {
@@ -35,4 +35,4 @@ Touch exactTouch(const JudgedBody& solid, const std::vector<SurfaceSample>& samp
   return touch;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -4,10 +4,10 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The step with all that is in place by then: fixed parts, and those of earlier steps, fixed on their
 /// targets. Parts of later steps are left out. The hand aims as it does in the whole scene.
 Scene excerptOf(const Scene& scene, std::size_t step);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include "vps/mesh_distance.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -243,4 +243,4 @@ std::string describe(const FidelityChoice& choice) {
   return words;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

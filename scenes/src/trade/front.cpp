@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -34,4 +34,4 @@ void markFront(std::vector<TradeRow>& rows) {
                       });
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "trade/exact_touch.h"
 #include "vps/pair_query.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -78,4 +78,4 @@ TickTimes timeQueries(const Scene& scene, std::size_t moving, const std::vector<
   return clock.summary();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

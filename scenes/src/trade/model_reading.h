@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 struct Reading {
   Wrench F_W;  ///< penalty wrench on the moving part about its origin, at kProbeStiffness_N_per_m3
@@ -27,4 +27,4 @@ double leastDistance(const Scene& scene, std::size_t moving, const Pose& X_WP);
 TickTimes timeQueries(const Scene& scene, std::size_t moving, const std::vector<Pose>& poses,
                       bool is_exhaustive);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade/model_store.h"
 
-#include "models/scene_models.h"
 #include "core/wall_clock.h"
+#include "models/scene_models.h"
 
-namespace vps {
+namespace vps::scenes {
 
 double ModelStore::fill(Scene& scene, const ModelOptions& options) {
   const double voxel_m = scene.fidelity.voxel_m, spacing_m = scene.fidelity.spacing_m;
@@ -23,4 +23,4 @@ double ModelStore::fill(Scene& scene, const ModelOptions& options) {
   return wall_s;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

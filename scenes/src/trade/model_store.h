@@ -9,7 +9,7 @@
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// A part's map by voxel size, its shell by spacing. Of one scene: parts go by their index.
 class ModelStore {
@@ -23,4 +23,4 @@ class ModelStore {
   std::map<Key, std::shared_ptr<const PointShell>> shells_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -64,4 +64,4 @@ void TradePlan::runTook(const TradeTry& what, double wall_s) {
     run_scale_ = 0.5 * (run_scale_ + wall_s / (own_run_s_ * runShare(what)));
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// Expects what a setting will take from what the scene's own took, and keeps the time that is left. Planning
 /// is by the clock: which rows there are depends on it, what they hold does not.
@@ -48,4 +48,4 @@ class TradePlan {
   bool is_last_ = false;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

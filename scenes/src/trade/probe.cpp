@@ -8,7 +8,7 @@
 #include "trade/exact_touch.h"
 #include "trade/model_reading.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -118,4 +118,4 @@ void Probe::measure(const Scene& scene, TradeRow& row) const {
   row.has_probe = true;
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -9,11 +9,11 @@
 #include "trade/surface_samples.h"
 #include "vps_scenes/trade.h"
 
-namespace vps {
+namespace vps::scenes {
 
 /// The part that a scene's first step moves, at poses near contact, against all fixed parts. The truth comes
-/// from the meshes alone: depth by OverlapJudge (certain to half a micrometre), distance and penalty wrench by
-/// samples of the surfaces that no pointshell has a hand in, each at its exact distance.
+/// from the meshes alone: depth by OverlapJudge (certain to half a micrometre), distance and penalty wrench
+/// by samples of the surfaces that no pointshell has a hand in, each at its exact distance.
 class Probe {
  public:
   /// Works out the truth at every pose. `scene` has its models: they say what is surely far away. Takes
@@ -54,4 +54,4 @@ class Probe {
 /// aside by up to its clearance and 20 um, so that it is inside. Seeded: the same run gives the same poses.
 std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count);
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-namespace vps {
+namespace vps::scenes {
 
 /// Draws from 0 (included) to 1. Not std::uniform_real_distribution: its numbers are the library's own
 /// affair.
@@ -18,4 +18,4 @@ class SeededDraw {
   std::mt19937_64 random_;
 };
 
-}  // namespace vps
+}  // namespace vps::scenes

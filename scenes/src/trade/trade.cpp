@@ -17,7 +17,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps {
+namespace vps::scenes {
 
 namespace {
 
@@ -290,4 +290,4 @@ TradeResult trade(const Scene& scene, const TradeOptions& options) {
   return Trade(scene, options).run();
 }
 
-}  // namespace vps
+}  // namespace vps::scenes

@@ -16,25 +16,25 @@ using dynamics::Mode;
 using dynamics::PartMesh;
 using dynamics::Placed;
 
-struct Device {
+struct device::Device {
   const char* name;
-  SimulatedDualArmSettings settings;
+  device::SimulatedDualArmSettings settings;
   bool is_judged;
 };
 
-std::vector<Device> devices() {
-  return {{"ideal", idealDualArm(), true}, {"real", realDualArm(), false}};
+std::vector<device::Device> devices() {
+  return {{"ideal", device::idealDualArm(), true}, {"real", realDualArm(), false}};
 }
 
 // Real encoders and structure are reported, not judged.
-Figure judged(const Device& device, const std::string& what, double value, double bar, double scale,
+Figure judged(const device::Device& device, const std::string& what, double value, double bar, double scale,
               const std::string& unit) {
   return device.is_judged ? atMost(what, value, bar, scale, unit) : reported(what, value, scale, unit);
 }
 
-RigSettings rigFor(const Device& device, Mode mode, double stiffness_N_per_m3 = 1e12,
+RigSettings rigFor(const device::Device& device, Mode mode, double stiffness_N_per_m3 = 1e12,
                    double spacing_m = 0.5e-3) {
-  VpsBulletSettings bullet;
+  bullet::Settings bullet;
   bullet.stiffness_N_per_m3 = stiffness_N_per_m3;
   RigSettings settings;
   settings.scene.mode = mode;
@@ -89,7 +89,7 @@ Press pressBlock(const RigSettings& settings, double stiffness_N_per_m3, double 
 
 void pressRow(const HapticOptions& options, Table& table) {
   const double speed_m_s = options.is_short ? 5e-3 : 2e-3;
-  for (const Device& device : devices())
+  for (const device::Device& device : devices())
     for (const auto& [mode, k, name] :
          {std::tuple{Mode::Constraint, 1e12, "rigid"}, std::tuple{Mode::Penalty, 1e12, "penalty, 1e12 N/m3"},
           std::tuple{Mode::Penalty, 1e8, "penalty, 1e8 N/m3"}}) {
@@ -153,7 +153,7 @@ Slide slideOver(const RigSettings& settings, const Surface& surface, double leng
   std::vector<double> jumps;
   Vec3 before_N = Vec3::Zero(), place = begin;
   for (int i = 0; i < down + ticks; ++i) {
-    const double height_m = start_m - (press_m + 0.5e-3) * minimumJerk(static_cast<double>(i) / down);
+    const double height_m = start_m - (press_m + 0.5e-3) * device::minimumJerk(static_cast<double>(i) / down);
     const double along_m = -length_m / 2 + speed_m_s * HapticRig::kStep_s * std::max(0, i - down);
     const Vec3 next = placeAt(along_m, height_m);
     rig.lead(next, Vec3::Zero(), {Vec3::Zero(), (next - place) / HapticRig::kStep_s});
@@ -175,7 +175,7 @@ Slide slideOver(const RigSettings& settings, const Surface& surface, double leng
 
 void slideRow(const HapticOptions& options, Table& table) {
   const double length_m = options.is_short ? 10e-3 : 20e-3;
-  for (const Device& device : devices())
+  for (const device::Device& device : devices())
     for (const Surface& surface : surfaces())
       for (const auto& [mode, spacing_m] :
            {std::pair{Mode::Constraint, 0.5e-3}, std::pair{Mode::Penalty, 0.5e-3},
@@ -202,8 +202,9 @@ double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
   Vec3 v_before = Vec3::Zero(), a = Vec3::Zero();
   for (int i = 0; i < 1500; ++i) {
     const double s = i * HapticRig::kStep_s / duration_s;
-    rig.lead(minimumJerk(s) * way_m, minimumJerk(s) * turn_rad,
-             {minimumJerkRate(s) / duration_s * turn_rad, minimumJerkRate(s) / duration_s * way_m});
+    rig.lead(device::minimumJerk(s) * way_m, device::minimumJerk(s) * turn_rad,
+             {device::minimumJerkRate(s) / duration_s * turn_rad,
+              device::minimumJerkRate(s) / duration_s * way_m});
     // The part's weight and inertia are what the hand should feel: device on hand, m (g - a) of the last
     // step.
     if (i > 300) worst_N = std::max(worst_N, (rig.felt().f - (weight_N - mass_kg * a)).norm());
@@ -218,7 +219,7 @@ double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
 }  // namespace
 
 void freeMotionRow(const HapticOptions&, Table& table) {
-  for (const Device& device : devices()) {
+  for (const device::Device& device : devices()) {
     RigSettings settings = rigFor(device, Mode::Constraint);
     settings.has_gravity = true;
     double speed_m_s = 0;

@@ -7,10 +7,11 @@ namespace vps::bench {
 
 namespace {
 
-LoopSettings settingsFor(const SimulatedDualArm& arm) {
-  LoopSettings settings;
+device::LoopSettings settingsFor(const device::SimulatedDualArm& arm) {
+  device::LoopSettings settings;
   settings.period_s = HapticRig::kStep_s;
-  settings.gains = deriveGains(arm.limits(), {1 / HapticRig::kStep_s, 1 / HapticRig::kStep_s, 0, 1, 1});
+  settings.gains =
+      device::deriveGains(arm.limits(), {1 / HapticRig::kStep_s, 1 / HapticRig::kStep_s, 0, 1, 1});
   settings.extrapolates_part = true;  // as scenes do
   return settings;
 }
@@ -23,10 +24,10 @@ HapticRig::HapticRig(const RigSettings& settings)
 }
 
 void HapticRig::take(const dynamics::Placed& held) {
-  auto coupling = std::make_unique<VpsCoupling>(*held.body, Pose{}, gains());
+  auto coupling = std::make_unique<bullet::CouplingConstraint>(*held.body, Pose{}, gains());
   coupling_ = coupling.get();
   world_.addConstraint(std::move(coupling));
-  loop_.grasp(fromBt(held.body->getWorldTransform()));
+  loop_.grasp(bullet::fromBt(held.body->getWorldTransform()));
   part_ = coupling_->partState();
   part_.is_coupled = true;
   R_WG_taken_ = part_.X_W.R;
@@ -35,7 +36,7 @@ void HapticRig::take(const dynamics::Placed& held) {
 void HapticRig::lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG) {
   port_.part.write(part_);
   loop_.tick();
-  HandForce hand;
+  device::HandForce hand;
   hand.X_eq = Pose(Mat3(rotationFromVector(turn_rad) * R_WG_taken_), p_WG);
   hand.V_eq = V_WG;
   hand.mass_kg = 1.5;  // as the virtual operator's, vps_device/operator.h

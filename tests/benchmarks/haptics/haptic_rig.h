@@ -12,12 +12,12 @@ namespace vps::bench {
 
 struct RigSettings {
   dynamics::SceneSettings scene;
-  SimulatedDualArmSettings device = idealDualArm();
+  device::SimulatedDualArmSettings device = device::idealDualArm();
   bool has_gravity = false;
 };
 
 /// The real arm: encoders, structure, delay.
-inline SimulatedDualArmSettings realDualArm() {
+inline device::SimulatedDualArmSettings realDualArm() {
   return {};
 }
 
@@ -33,8 +33,8 @@ class HapticRig {
   /// much of a turn from where it was taken.
   void lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG);
 
-  [[nodiscard]] const SimulatedDualArm& arm() const { return arm_; }
-  [[nodiscard]] const HapticLoop& loop() const { return loop_; }
+  [[nodiscard]] const device::SimulatedDualArm& arm() const { return arm_; }
+  [[nodiscard]] const device::HapticLoop& loop() const { return loop_; }
   [[nodiscard]] const CouplingGains& gains() const { return loop_.settings().gains; }
   /// Where the hand truly holds the grasp frame, and the part's.
   [[nodiscard]] Pose trueGrasp() const { return loop_.toGrasp(arm_.truePose()); }
@@ -46,10 +46,10 @@ class HapticRig {
 
  private:
   dynamics::World world_;
-  SimulatedDualArm arm_;
+  device::SimulatedDualArm arm_;
   CouplingPort port_;
-  HapticLoop loop_;
-  VpsCoupling* coupling_ = nullptr;  // the world's
+  device::HapticLoop loop_;
+  bullet::CouplingConstraint* coupling_ = nullptr;  // the world's
   CouplingState part_;
   Mat3 R_WG_taken_ = Mat3::Identity();
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr double kTilt_rad =
     0.785;  // of the handle, about any axis; the workspace's corners are reachable so
 
-Pose anyPose(Random& random, const DualArmParameters& p) {
+Pose anyPose(device::Random& random, const device::DualArmParameters& p) {
   const Vec3 place(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
   const Vec3 axis = random.normal3().normalized();
   return {rotationFromVector(kTilt_rad * random.uniform() * axis), Vec3(p.workspace_m.cwiseProduct(place))};
@@ -25,8 +25,8 @@ int poses(const HapticOptions& options) {
 
 // Poses all over the workspace; at(pose, random) says whether the device takes one.
 template <typename At>
-int countRefused(const HapticOptions& options, unsigned seed, const DualArmParameters& p, At&& at) {
-  Random random(seed);
+int countRefused(const HapticOptions& options, unsigned seed, const device::DualArmParameters& p, At&& at) {
+  device::Random random(seed);
   int refused = 0;
   for (int i = 0; i < poses(options); ++i)
     if (!at(anyPose(random, p), random)) ++refused;
@@ -36,12 +36,13 @@ int countRefused(const HapticOptions& options, unsigned seed, const DualArmParam
 }  // namespace
 
 void kinematicsRow(const HapticOptions& options, Table& table) {
-  const DualArmParameters p;
+  const device::DualArmParameters p;
   double worst_m = 0, worst_rad = 0;
-  const int refused = countRefused(options, 1, p, [&](const Pose& X_DH, Random&) {
-    DualArmJoints joints;
+  const int refused = countRefused(options, 1, p, [&](const Pose& X_DH, device::Random&) {
+    device::DualArmJoints joints;
     Pose back;
-    if (handleJoints(p, X_DH, joints) != Status::Ok || handlePose(p, joints, back) != Status::Ok)
+    if (device::handleJoints(p, X_DH, joints) != Status::Ok ||
+        device::handlePose(p, joints, back) != Status::Ok)
       return false;
     worst_m = std::max(worst_m, (back.p - X_DH.p).norm());
     worst_rad = std::max(worst_rad, rotationVector(back.R * X_DH.R.transpose()).norm());
@@ -55,20 +56,21 @@ void kinematicsRow(const HapticOptions& options, Table& table) {
 }
 
 void staticsRow(const HapticOptions& options, Table& table) {
-  const DualArmParameters p;
+  const device::DualArmParameters p;
   double worst_power = 0, worst_wrench = 0;
-  const int refused = countRefused(options, 2, p, [&](const Pose& X_DH, Random& random) {
+  const int refused = countRefused(options, 2, p, [&](const Pose& X_DH, device::Random& random) {
     const Wrench F{random.normal3(), 10 * random.normal3()};
     const Twist V{random.normal3(), 0.1 * random.normal3()};
     Eigen::Matrix<double, 6, 1> v;
     v << V.w, V.v;
-    JointVector efforts;
-    JointMatrix J;
+    device::JointVector efforts;
+    device::JointMatrix J;
     Wrench back;
-    if (motorEfforts(p, X_DH, F, efforts) != Status::Ok || handleJacobian(p, X_DH, J) != Status::Ok ||
-        handleWrench(p, X_DH, efforts, back) != Status::Ok)
+    if (device::motorEfforts(p, X_DH, F, efforts) != Status::Ok ||
+        device::handleJacobian(p, X_DH, J) != Status::Ok ||
+        device::handleWrench(p, X_DH, efforts, back) != Status::Ok)
       return false;
-    const JointVector powers = efforts.cwiseProduct(J * v);
+    const device::JointVector powers = efforts.cwiseProduct(J * v);
     worst_power = std::max(worst_power, std::abs(powers.sum() - power(F, V)) / powers.cwiseAbs().sum());
     worst_wrench = std::max(
         {worst_wrench, (back.f - F.f).norm() / F.f.norm(), (back.tau - F.tau).norm() / F.tau.norm()});

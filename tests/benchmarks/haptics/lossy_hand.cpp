@@ -10,8 +10,8 @@
 
 namespace vps::bench {
 
-DeviceSample LossyDevice::read() noexcept {
-  const DeviceSample sample = inner_->read();
+device::DeviceSample LossyDevice::read() noexcept {
+  const device::DeviceSample sample = inner_->read();
   if (!has_sample_ || random_.uniform() >= line_.lost || sample.status != Status::Ok) arrived_ = sample;
   has_sample_ = true;
   return arrived_;
@@ -24,8 +24,8 @@ void LossyDevice::write(const Wrench& F) noexcept {
   inner_->write(held_);
 }
 
-DeviceLimits LossyDevice::limits() const noexcept {
-  DeviceLimits limits = inner_->limits();
+device::DeviceLimits LossyDevice::limits() const noexcept {
+  device::DeviceLimits limits = inner_->limits();
   limits.delay_s += line_.delay_ticks / limits.rate_hz;
   return limits;
 }
@@ -36,18 +36,18 @@ void TrueLedger::draw(double now_J) {
   injected_J = std::max(injected_J, balance_J - least_J);
 }
 
-LossyHand::LossyHand(const Scene& scene, const Line& line)
+LossyHand::LossyHand(const scenes::Scene& scene, const Line& line)
     : scene_(scene),
-      hand_(simulatedHand(scene)),
-      arm_(dynamic_cast<SimulatedDualArm&>(hand_->device())),
+      hand_(scenes::simulatedHand(scene)),
+      arm_(dynamic_cast<device::SimulatedDualArm&>(hand_->device())),
       device_(arm_, line),
       limits_(arm_.limits()),
       ticks_per_step_(std::lround(scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz)) {}
 
-void LossyHand::prepare(const OperatorTask& task, std::size_t step, double now_s) {
+void LossyHand::prepare(const device::OperatorTask& task, std::size_t step, double now_s) {
   hand_->prepare(task, step, now_s);
   const Part& part = scene_.parts[scene_.steps[step].part].part;
-  next_ = {task.X_PG, makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3)};
+  next_ = {task.X_PG, bullet::makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3)};
 }
 
 void LossyHand::begin() {
@@ -62,7 +62,7 @@ void LossyHand::goBack(std::size_t next) {
   is_holding_ = false;  // what the springs hold then goes to nobody
 }
 
-double LossyHand::stored_J(const HeldPart& part, const HapticLoop& loop) const {
+double LossyHand::stored_J(const scenes::HeldPart& part, const device::HapticLoop& loop) const {
   const Pose X_WB = part.X_WP * held_.body.X_PB;
   const Vec3 v = part.V_WP.v + part.V_WP.w.cross(X_WB.p - part.X_WP.p),
              w_B = X_WB.R.transpose() * part.V_WP.w;
@@ -83,30 +83,32 @@ double LossyHand::stored_J(const HeldPart& part, const HapticLoop& loop) const {
 // Where the encoders see the handle: the arms bend between them by what the motors give beyond the handle's
 // weight.
 Pose LossyHand::atTheMotors() const {
-  const DualArmParameters& p = arm_.plant().settings().arms;
+  const device::DualArmParameters& p = arm_.plant().settings().arms;
   const Pose& X_DH = arm_.truePose();
-  DualArmJoints joints;
-  JointVector carry;
+  device::DualArmJoints joints;
+  device::JointVector carry;
   Pose X_seen;
-  if (handleJoints(p, X_DH, joints) != Status::Ok ||
-      motorEfforts(p, X_DH, -handleWeight(p), carry) != Status::Ok)
+  if (device::handleJoints(p, X_DH, joints) != Status::Ok ||
+      device::motorEfforts(p, X_DH, -device::handleWeight(p), carry) != Status::Ok)
     return X_DH;
-  const JointVector bend =
-      (arm_.plant().efforts() - carry).cwiseQuotient(structureStiffness(p, toVector(joints)));
-  return handlePose(p, fromVector(toVector(joints) + bend), X_seen) == Status::Ok ? X_seen : X_DH;
+  const device::JointVector bend =
+      (arm_.plant().efforts() - carry).cwiseQuotient(device::structureStiffness(p, device::toVector(joints)));
+  return device::handlePose(p, device::fromVector(device::toVector(joints) + bend), X_seen) == Status::Ok
+             ? X_seen
+             : X_DH;
 }
 
 // Of the motors on the hand now, less the handle's weight, in D.
 Wrench LossyHand::acting() const {
-  const DualArmParameters& p = arm_.plant().settings().arms;
+  const device::DualArmParameters& p = arm_.plant().settings().arms;
   Wrench F;
-  if (handleWrench(p, arm_.truePose(), arm_.plant().efforts(), F) != Status::Ok) return {};
-  F += handleWeight(p);
+  if (device::handleWrench(p, arm_.truePose(), arm_.plant().efforts(), F) != Status::Ok) return {};
+  F += device::handleWeight(p);
   return F;
 }
 
-void LossyHand::step(const HeldPart& part, const HapticLoop& loop, double dt_s) {
-  const WorkspaceMap& map = loop.settings().map;
+void LossyHand::step(const scenes::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
+  const device::WorkspaceMap& map = loop.settings().map;
   if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part is of this instant
     const double now_J = work_J_ - dissipated_J_ * map.scale / map.force_scale + stored_J(part, loop);
     if (is_new_) start_J_ = now_J - ledger_.balance_J;

@@ -18,13 +18,13 @@ struct Case {
 };
 
 Row runScene(const std::string& name, const Case& c) {
-  Scene scene = loadScene(std::string(VPS_SCENE_FOLDER) + "/" + name + "/scene.toml");
+  scenes::Scene scene = scenes::loadScene(std::string(VPS_SCENE_FOLDER) + "/" + name + "/scene.toml");
   scene.fidelity.physics_rate_hz = c.physics_rate_hz;
   LossyHand hand(scene, {c.delay_ticks, c.lost, 1});
-  const LoopSettings settings = loopSettings(scene, hand.device());
-  const AssembleResult result = runProcedure(scene, hand, nullptr, settings, {});
+  const device::LoopSettings settings = scenes::loopSettings(scene, hand.device());
+  const scenes::AssembleResult result = scenes::runProcedure(scene, hand, nullptr, settings, {});
   const auto done = std::count_if(result.steps.begin(), result.steps.end(),
-                                  [](const StepResult& s) { return s.completed; });
+                                  [](const scenes::StepResult& s) { return s.completed; });
   return {text("injected_J, %s, physics %.0f Hz, %d ticks, %.0f%% lost", name.c_str(), c.physics_rate_hz,
                c.delay_ticks, 100 * c.lost),
           text("%.2f kN/m, real encoders", settings.gains.k_N_per_m / 1000),

@@ -14,8 +14,8 @@ namespace vps::bench {
 
 namespace {
 
-Scene shipped(const std::string& name) {
-  return loadScene(std::string(VPS_SCENE_FOLDER) + "/" + name + "/scene.toml");
+scenes::Scene shipped(const std::string& name) {
+  return scenes::loadScene(std::string(VPS_SCENE_FOLDER) + "/" + name + "/scene.toml");
 }
 
 std::size_t pointsAt(double spacing_m, const Mesh& mesh) {
@@ -43,10 +43,10 @@ double mostMemory_bytes() {
 void tickRow(const HapticOptions& options, Table& table) {
   for (const std::string name : {"peg_in_hole", "bearing_block"}) {
     if (options.is_short && name != "peg_in_hole") continue;
-    Scene scene = shipped(name);
-    AssembleOptions run;
+    scenes::Scene scene = shipped(name);
+    scenes::AssembleOptions run;
     run.is_real_time = true;
-    const AssembleResult result = assemble(scene, run);
+    const scenes::AssembleResult result = scenes::assemble(scene, run);
     Row row{"haptic tick in real time, " + name,
             text("%.0f Hz", result.haptic_rate_hz),
             {atMost("p99", 1e-6 * result.haptic.p99_us, 250e-6, 1e6, "us"),
@@ -66,13 +66,13 @@ void pointsRow(const HapticOptions& options, Table& table) {
   constexpr std::size_t kPaperPoints = 185'030;
   constexpr double kPaperRate_hz = 1600, kPaperMemory_bytes = 2e9;
   if (options.is_short) return;
-  Scene scene = shipped("peg_in_hole");
-  const ScenePart& held = scene.parts[scene.steps.front().part];
+  scenes::Scene scene = shipped("peg_in_hole");
+  const scenes::ScenePart& held = scene.parts[scene.steps.front().part];
   scene.fidelity.spacing_m = spacingFor(held.part.mesh, kPaperPoints);
   const std::size_t points = pointsAt(scene.fidelity.spacing_m, held.part.mesh);
   scene.fidelity.physics_rate_hz = scene.fidelity.haptic_rate_hz = kPaperRate_hz;
   scene.fidelity.sides = Sides::One;  // the points of the part in hand, as the paper's
-  const AssembleResult result = assemble(scene);
+  const scenes::AssembleResult result = scenes::assemble(scene);
   table.add({"physics step, query of 185,030 points",
              text("%.0f Hz", kPaperRate_hz),
              {holds(text("%zu points in hand", points), points >= kPaperPoints),

@@ -60,11 +60,11 @@ void ringingRow(const HapticOptions& options, Table& table) {
 // Abbott and Okamura's number is that of a device whose least friction and worst encoder error meet.
 void stiffestWallRow(const HapticOptions& options, Table& table) {
   for (const double rate_hz : {1000.0, 4000.0}) {
-    SimulatedDualArmSettings device;
+    device::SimulatedDualArmSettings device;
     device.rate_hz = rate_hz;
-    const DeviceLimits limits = dualArmLimits(device.arms, rate_hz, true);
-    const CouplingGains gains = deriveGains(limits, {rate_hz, 1e9, 0, 1, 1});
-    const auto stiffest = [&](const SimulatedDualArmSettings& d) {
+    const device::DeviceLimits limits = device::dualArmLimits(device.arms, rate_hz, true);
+    const CouplingGains gains = device::deriveGains(limits, {rate_hz, 1e9, 0, 1, 1});
+    const auto stiffest = [&](const device::SimulatedDualArmSettings& d) {
       double least = 1e9;
       for (const Vec3& along_D : {Vec3(0, 0, -1), Vec3(0, 1, 0), Vec3(1, 0, 0)}) {
         test::WallPress press;

@@ -17,11 +17,11 @@ struct GimpactShape {
   std::unique_ptr<btGImpactMeshShape> shape;
 
   GimpactShape(const Mesh& mesh, double margin_m) {
-    for (const Vec3& p : mesh.vertices) triangles.findOrAddVertex(toBt(p), false);
+    for (const Vec3& p : mesh.vertices) triangles.findOrAddVertex(bullet::toBt(p), false);
     for (const auto& t : mesh.triangles)
       triangles.addTriangleIndices(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]));
     shape = std::make_unique<btGImpactMeshShape>(&triangles);
-    shape->setMargin(toBt(margin_m));
+    shape->setMargin(bullet::toBt(margin_m));
     shape->updateBound();
   }
 };
@@ -60,7 +60,7 @@ PairQuery bulletQuery(const dynamics::Engine& engine, const dynamics::PartMesh& 
     world->bullet().getDispatcher()->freeCollisionAlgorithm(dead);
   });
   return {engine.name, [world, body_a, body_b, kept](const Pose& X_AB) {
-            body_b.body->setWorldTransform(toBt(X_AB * body_b.part.frame.X_PB));
+            body_b.body->setWorldTransform(bullet::toBt(X_AB * body_b.part.frame.X_PB));
             const btCollisionObjectWrapper wrapped_a(nullptr, body_a.body->getCollisionShape(), body_a.body,
                                                      body_a.body->getWorldTransform(), -1, -1);
             const btCollisionObjectWrapper wrapped_b(nullptr, body_b.body->getCollisionShape(), body_b.body,

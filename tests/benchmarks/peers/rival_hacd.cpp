@@ -51,7 +51,7 @@ std::shared_ptr<Hulls> cut(const Mesh& mesh, double concavity_m) {
     std::vector<HACD::Vec3<long>> hull_triangles(hacd.GetNTrianglesCH(k));
     hacd.GetCH(k, hull_points.data(), hull_triangles.data());
     auto hull = std::make_unique<btConvexHullShape>();
-    for (const auto& p : hull_points) hull->addPoint(toBt(Vec3(p.X(), p.Y(), p.Z())), false);
+    for (const auto& p : hull_points) hull->addPoint(bullet::toBt(Vec3(p.X(), p.Y(), p.Z())), false);
     hull->setMargin(0);
     hull->recalcLocalAabb();
     shape->compound.addChildShape(btTransform::getIdentity(), hull.get());

@@ -23,11 +23,11 @@ int main() {
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-  vps::installVps(dispatcher);
-  vps::tuneWorld(world);
+  vps::bullet::install(dispatcher);
+  vps::bullet::tuneWorld(world);
   world.setGravity(btVector3(0, 0, btScalar(-9.81)));
 
-  vps::VpsShape shape(vps::makeModels(part));
+  vps::bullet::Shape shape(vps::bullet::makeModels(part));
   btVector3 inertia;
   shape.calculateLocalInertia(btScalar(0.03), inertia);
   btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape));
@@ -39,7 +39,7 @@ int main() {
   const double height_m = block.getWorldTransform().getOrigin().z();
   world.removeRigidBody(&block);
   world.removeRigidBody(&floor);
-  vps::uninstallVps(dispatcher);
+  vps::bullet::uninstall(dispatcher);
 
   std::printf("the block rests at %.4f mm (10 mm by geometry)\n", height_m * 1e3);
   return std::abs(height_m - 0.01) < 5e-6 ? 0

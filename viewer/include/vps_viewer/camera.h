@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// A perspective camera that looks from eye to target. Near and far planes follow from what is drawn.
 struct Camera {
@@ -29,4 +29,4 @@ struct Camera {
 Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad = 0.5, double aspect = 4.0 / 3,
                   double margin = 0.12);
 
-}  // namespace vps
+}  // namespace vps::viewer

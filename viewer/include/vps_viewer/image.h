@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vps {
+namespace vps::viewer {
 
 /// sRGB, 8 bits a channel, rows from the top; rgb.size() == 3 * width * height.
 struct Image {
@@ -48,4 +48,4 @@ Image differenceImage(const Image& a, const Image& b, int tolerance);
 /// savePng(differenceImage(...)).
 void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
 
-}  // namespace vps
+}  // namespace vps::viewer

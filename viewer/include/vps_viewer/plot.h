@@ -9,7 +9,7 @@
 #include "vps_scenes/contact_episodes.h"
 #include "vps_scenes/result.h"
 
-namespace vps {
+namespace vps::viewer {
 
 struct Series {
   std::string name;
@@ -38,10 +38,10 @@ bool hasGnuplot();
 /// named. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
 /// @param step_names by index of step; missing ones are numbered
 /// @param step       plot only this step; -1: all
-PlotOutcome plotForces(const std::vector<TraceRow>& trace, const std::string& file,
+PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
                        const std::vector<std::string>& step_names = {}, int step = -1);
 
 /// Any lines over a common axis; file + ".png" and file + ".svg".
 PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -18,7 +18,7 @@
 #include "vps_viewer/camera.h"
 #include "vps_viewer/image.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// One thing that can be drawn; BodySnapshot::part counts these.
 struct DrawnMesh {
@@ -31,7 +31,7 @@ using RenderScene = std::vector<DrawnMesh>;
 
 /// What there is to draw of a scene: its parts, in order. Parts that bring no colour of their own get one
 /// each from a muted palette, so that neighbours can be told apart.
-RenderScene drawnMeshes(const Scene& scene);
+RenderScene drawnMeshes(const scenes::Scene& scene);
 
 /// A section: what lies beyond the plane, on the side n_W points to, is cut away.
 struct CutPlane {
@@ -60,7 +60,7 @@ struct DrawOptions {
 };
 
 /// Bounds of all that the snapshot shows, in W. With show_waiting, of waiting parts too.
-Box snapshotBounds(const RenderScene& scene, const Snapshot& snapshot, bool show_waiting = false);
+Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot, bool show_waiting = false);
 
 /// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W,
 /// faces the viewer, and lies along two of W's axes where d_W does along one, as sections are drawn.
@@ -78,7 +78,7 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// One picture. Half a million triangles take about a second on two cores of llvmpipe at 1280x960.
-  Image render(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
+  Image render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
 
   /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".
   [[nodiscard]] std::string description() const;
@@ -89,4 +89,4 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps {
+namespace vps::viewer {
 
 struct ReportOptions {
   std::string command;       ///< how to repeat the run: "vps assemble scene.toml --out out"
@@ -27,14 +27,14 @@ struct ReportOutcome {
 /// need be). Pictures or plots that cannot be made become notes, in the page too. Everything repeats byte for
 /// byte but what the page marks as measured on the wall clock. Throws std::runtime_error when dir cannot be
 /// written.
-ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, const std::string& dir,
-                          const ReportOptions& options = {});
+ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                          const std::string& dir, const ReportOptions& options = {});
 
 /// The time series as CSV: a header line, then one row a sample, SI units in the column names.
 /// Throws std::runtime_error when the file cannot be written.
-void writeTraceCsv(const std::vector<TraceRow>& trace, const std::string& file);
+void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
 
 /// Text made safe to stand in HTML, in elements and in quoted attributes.
 std::string escapeHtml(const std::string& text);
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::viewer {
 
 Pose Camera::pose() const {
   const Vec3 z = (eye_W - target_W).normalized();
@@ -48,4 +48,4 @@ Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad, doubl
   return camera;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

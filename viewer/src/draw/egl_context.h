@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps {
+namespace vps::viewer {
 
 class EglContext {
  public:
@@ -33,4 +33,4 @@ class EglContext {
   void* context_ = nullptr;
 };
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 
 #include "draw/gl_objects.h"
 
-namespace vps {
+namespace vps::viewer {
 
 struct FrameTargets {
   int width, height;  ///< of the finished picture
@@ -39,4 +39,4 @@ struct ShadowTargets {
   ShadowTargets();
 };
 
-}  // namespace vps
+}  // namespace vps::viewer

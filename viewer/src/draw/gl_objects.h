@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace vps::gl {
+namespace vps::viewer::gl {
 
 /// A name and the call that frees it; movable.
 template <void (*Delete)(GLuint)>
@@ -90,4 +90,4 @@ class Program {
   Object<deleteProgram> program_;
 };
 
-}  // namespace vps::gl
+}  // namespace vps::viewer::gl

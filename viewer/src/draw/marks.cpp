@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 std::array<float, 3> toFloat(const Vec3& v) {
@@ -34,7 +34,8 @@ Eigen::Vector3f depthColor(double share) {
   return (1 - f) * kStops[i] + f * kStops[i + 1];
 }
 
-MarkList listMarks(const Snapshot& snapshot, const Pose& X_CW, double size_m, const DrawOptions& options) {
+MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double size_m,
+                   const DrawOptions& options) {
   MarkList marks;
   if (options.show_contacts) {
     // Deepest first: beyond a few dozen, arrows hide each other and the part.
@@ -46,7 +47,7 @@ MarkList listMarks(const Snapshot& snapshot, const Pose& X_CW, double size_m, co
     constexpr std::size_t kMaxArrows = 40, kMaxDiscs = 4000;
     order.resize(std::min(order.size(), kMaxDiscs));
     for (std::size_t i = 0; i < order.size(); ++i) {
-      const ContactMark& c = snapshot.contacts[order[i]];
+      const scenes::ContactMark& c = snapshot.contacts[order[i]];
       const double share = c.depth_m / options.contact_full_scale_m;
       const Eigen::Vector3f color = depthColor(share);
       const Vec3 base_C = X_CW * c.p_W, axis_C = X_CW.R * c.n_W.normalized();
@@ -116,4 +117,4 @@ void MarkShape::draw(const std::vector<Mark>& marks) const {
   glDrawArraysInstanced(GL_TRIANGLES, 0, vertex_count_, static_cast<GLsizei>(marks.size()));
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

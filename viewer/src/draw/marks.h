@@ -8,7 +8,7 @@
 #include "draw/gl_objects.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// Linear RGB of a contact as deep as `share` of full scale (0 to 1): yellow, orange, red, dark red.
 Eigen::Vector3f depthColor(double share);
@@ -26,7 +26,8 @@ struct Mark {
 struct MarkList {
   std::vector<Mark> arrows, discs;
 };
-MarkList listMarks(const Snapshot& snapshot, const Pose& X_CW, double size_m, const DrawOptions& options);
+MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double size_m,
+                   const DrawOptions& options);
 
 /// A unit shape along +z that is drawn once for each mark.
 class MarkShape {
@@ -46,4 +47,4 @@ class MarkShape {
   GLsizei vertex_count_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "draw/marks.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 std::uint8_t toSrgb(float linear) {
@@ -84,7 +84,7 @@ class Legend {
 
 }  // namespace
 
-void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& options,
+void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptions& options,
                  const LegendColors& colors, const Lettering& lettering) {
   if (!lettering.isReady()) return;
   const double scale = std::clamp(image.height / 960.0, 0.6, 3.0);
@@ -109,8 +109,9 @@ void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& opti
   }
   if (!options.show_legend) return;
 
-  const bool has_hand_part = std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
-                                         [](const BodySnapshot& b) { return b.role == BodyRole::InHand; });
+  const bool has_hand_part =
+      std::any_of(snapshot.bodies.begin(), snapshot.bodies.end(),
+                  [](const scenes::BodySnapshot& b) { return b.role == scenes::BodyRole::InHand; });
   const bool has_target = snapshot.has_target && options.show_target;
   const bool has_force = snapshot.has_hand && options.show_force;
   const bool has_contacts = !snapshot.contacts.empty() && options.show_contacts;
@@ -127,4 +128,4 @@ void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& opti
   if (has_contacts) legend.depthScale(options.contact_full_scale_m);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

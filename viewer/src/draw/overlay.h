@@ -5,13 +5,13 @@
 #include "draw/text.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 
 struct LegendColors {
   Eigen::Vector3f hand, target;  ///< linear RGB
 };
 
-void drawOverlay(Image& image, const Snapshot& snapshot, const DrawOptions& options,
+void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptions& options,
                  const LegendColors& colors, const Lettering& lettering);
 
-}  // namespace vps
+}  // namespace vps::viewer

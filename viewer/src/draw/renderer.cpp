@@ -12,7 +12,7 @@
 #include "draw/scene_buffers.h"
 #include "draw/shaders.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Matrix4f;
@@ -68,8 +68,8 @@ Matrix4f halfAndShift() {  // [-1, 1] to [0, 1], for lookups
   return m;
 }
 
-bool isDrawn(BodyRole role, bool show_waiting) {
-  return show_waiting || role != BodyRole::Waiting;
+bool isDrawn(scenes::BodyRole role, bool show_waiting) {
+  return show_waiting || role != scenes::BodyRole::Waiting;
 }
 
 Box movedBounds(const Box& box_P, const Pose& X_WP) {
@@ -90,15 +90,15 @@ void grow(Box& box, const Box& other) {
 /// Calls visit(part, X_WP, role) for each part to draw; fixed parts need not be listed in the snapshot.
 template <class Visit>
 void forEachBody(std::size_t part_count, const std::vector<std::pair<bool, Pose>>& fixed,
-                 const Snapshot& snapshot, bool show_waiting, Visit visit) {
+                 const scenes::Snapshot& snapshot, bool show_waiting, Visit visit) {
   std::vector<bool> is_listed(part_count, false);
-  for (const BodySnapshot& body : snapshot.bodies) {
+  for (const scenes::BodySnapshot& body : snapshot.bodies) {
     if (body.part >= part_count || !body.X_WP.isFinite()) continue;
     is_listed[body.part] = true;
     if (fixed[body.part].first || isDrawn(body.role, show_waiting)) visit(body.part, body.X_WP, body.role);
   }
   for (std::size_t i = 0; i < part_count; ++i)
-    if (!is_listed[i] && fixed[i].first) visit(i, fixed[i].second, BodyRole::Mounted);
+    if (!is_listed[i] && fixed[i].first) visit(i, fixed[i].second, scenes::BodyRole::Mounted);
 }
 
 std::vector<std::pair<bool, Pose>> fixedPoses(const RenderScene& scene) {
@@ -191,16 +191,17 @@ struct Renderer::Impl {
     gl.reset();
   }
 
-  View makeView(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options) const;
-  std::vector<DrawnBody> place(const Snapshot& snapshot, const View& view, const DrawOptions& options) const;
-  Box drawnBounds(const Snapshot& snapshot, bool show_waiting, bool show_target) const;
+  View makeView(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options) const;
+  std::vector<DrawnBody> place(const scenes::Snapshot& snapshot, const View& view,
+                               const DrawOptions& options) const;
+  Box drawnBounds(const scenes::Snapshot& snapshot, bool show_waiting, bool show_target) const;
 
   // The passes, in order; each leaves depth test on and blending, clipping and stencil off.
   void drawKeyShadow(const std::vector<DrawnBody>& bodies, const View& view) const;
   void drawFloor(const std::vector<DrawnBody>& bodies, const View& view) const;
   void drawGeometry(const std::vector<DrawnBody>& bodies, const View& view) const;
   void drawOcclusion(const View& view) const;
-  void drawColor(const std::vector<DrawnBody>& bodies, const Snapshot& snapshot, const View& view,
+  void drawColor(const std::vector<DrawnBody>& bodies, const scenes::Snapshot& snapshot, const View& view,
                  const DrawOptions& options) const;
   Image finish() const;
 
@@ -212,7 +213,7 @@ struct Renderer::Impl {
   void drawLines(const GpuLines& lines, const DrawnBody& body, const View& view, float width_px,
                  const Vector4f& color) const;
   void drawGhost(const DrawnBody& ghost, const View& view, const DrawOptions& options) const;
-  void drawMarks(const Snapshot& snapshot, const View& view, const DrawOptions& options) const;
+  void drawMarks(const scenes::Snapshot& snapshot, const View& view, const DrawOptions& options) const;
   void setStudio(const gl::Program& program, const View& view) const;
   void fullScreen(const gl::Program& program) const {
     program.use();
@@ -243,18 +244,19 @@ Renderer::Impl::Impl(const RenderScene& parts) : scene(parts), fixed(fixedPoses(
                 reinterpret_cast<const char*>(glGetString(GL_VERSION));
 }
 
-Box Renderer::Impl::drawnBounds(const Snapshot& snapshot, bool show_waiting, bool show_target) const {
+Box Renderer::Impl::drawnBounds(const scenes::Snapshot& snapshot, bool show_waiting, bool show_target) const {
   Box box;
-  forEachBody(scene.size(), fixed, snapshot, show_waiting, [&](std::size_t part, const Pose& X_WP, BodyRole) {
-    grow(box, movedBounds(part_bounds[part], X_WP));
-  });
+  forEachBody(scene.size(), fixed, snapshot, show_waiting,
+              [&](std::size_t part, const Pose& X_WP, scenes::BodyRole) {
+                grow(box, movedBounds(part_bounds[part], X_WP));
+              });
   if (show_target && snapshot.has_target && snapshot.target_part < scene.size())
     grow(box, movedBounds(part_bounds[snapshot.target_part], snapshot.X_WP_target));
   if (box.isEmpty()) box = {Vec3::Constant(-1), Vec3::Constant(1)};
   return box;
 }
 
-View Renderer::Impl::makeView(const Snapshot& snapshot, const Camera& camera,
+View Renderer::Impl::makeView(const scenes::Snapshot& snapshot, const Camera& camera,
                               const DrawOptions& options) const {
   View view;
   view.X_CW = camera.pose().inverse();
@@ -294,17 +296,17 @@ View Renderer::Impl::makeView(const Snapshot& snapshot, const Camera& camera,
   return view;
 }
 
-std::vector<DrawnBody> Renderer::Impl::place(const Snapshot& snapshot, const View& view,
+std::vector<DrawnBody> Renderer::Impl::place(const scenes::Snapshot& snapshot, const View& view,
                                              const DrawOptions& options) const {
   std::vector<DrawnBody> bodies;
   forEachBody(scene.size(), fixed, snapshot, options.show_waiting,
-              [&](std::size_t part, const Pose& X_WP, BodyRole role) {
+              [&](std::size_t part, const Pose& X_WP, scenes::BodyRole role) {
                 DrawnBody body;
                 body.mesh = part_meshes[part];
                 body.part = part;
                 body.X_CP = view.X_CW * X_WP * Pose::translation(body.mesh->shading.center);
                 body.color = Eigen::Map<const Vector3f>(scene[part].color.data());
-                const bool is_in_hand = role == BodyRole::InHand;
+                const bool is_in_hand = role == scenes::BodyRole::InHand;
                 if (is_in_hand && options.highlight_hand) body.color = kHandColor;
                 body.is_cut = options.cut && (!is_in_hand || options.cut->cuts_hand);
                 bodies.push_back(body);
@@ -555,7 +557,8 @@ void Renderer::Impl::drawGhost(const DrawnBody& ghost, const View& view, const D
   glDisable(GL_BLEND);
 }
 
-void Renderer::Impl::drawMarks(const Snapshot& snapshot, const View& view, const DrawOptions& options) const {
+void Renderer::Impl::drawMarks(const scenes::Snapshot& snapshot, const View& view,
+                               const DrawOptions& options) const {
   const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, options);
   const gl::Program& program = gl->programs.mark;
   program.use();
@@ -576,7 +579,7 @@ void Renderer::Impl::drawMarks(const Snapshot& snapshot, const View& view, const
   gl->arrow.draw(marks.arrows);
 }
 
-void Renderer::Impl::drawColor(const std::vector<DrawnBody>& bodies, const Snapshot& snapshot,
+void Renderer::Impl::drawColor(const std::vector<DrawnBody>& bodies, const scenes::Snapshot& snapshot,
                                const View& view, const DrawOptions& options) const {
   const FrameTargets& f = *gl->frame;
   glBindFramebuffer(GL_FRAMEBUFFER, f.color_target.id());
@@ -636,7 +639,7 @@ std::string Renderer::description() const {
   return impl_->description;
 }
 
-Image Renderer::render(const Snapshot& snapshot, const Camera& camera, const DrawOptions& options) {
+Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options) {
   Impl& r = *impl_;
   const EglContext::Current current(r.context);
   const int width = std::clamp(options.width, 16, 8192), height = std::clamp(options.height, 16, 8192);
@@ -665,10 +668,10 @@ Image Renderer::render(const Snapshot& snapshot, const Camera& camera, const Dra
   return image;
 }
 
-Box snapshotBounds(const RenderScene& scene, const Snapshot& snapshot, bool show_waiting) {
+Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot, bool show_waiting) {
   Box box;
   forEachBody(scene.size(), fixedPoses(scene), snapshot, show_waiting,
-              [&](std::size_t part, const Pose& X_WP, BodyRole) {
+              [&](std::size_t part, const Pose& X_WP, scenes::BodyRole) {
                 grow(box, movedBounds(bounds(*scene[part].mesh), X_WP));
               });
   if (snapshot.has_target && snapshot.target_part < scene.size())
@@ -676,4 +679,4 @@ Box snapshotBounds(const RenderScene& scene, const Snapshot& snapshot, bool show
   return box;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace vps {
+namespace vps::viewer {
 
 GpuLines::GpuLines(std::span<const ShadingEdge> segments)
     : buffer(gl::makeBuffer(segments)),
@@ -49,4 +49,4 @@ std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye) {
   return edges;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

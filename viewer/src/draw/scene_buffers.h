@@ -9,7 +9,7 @@
 #include "draw/shading_mesh.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// Line segments to draw as strips.
 struct GpuLines {
@@ -43,4 +43,4 @@ Eigen::Matrix4f toMatrix(const Pose& X);
 /// Edges where the surface turns away from the eye.
 std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye);
 
-}  // namespace vps
+}  // namespace vps::viewer

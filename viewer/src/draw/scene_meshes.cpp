@@ -5,9 +5,9 @@
 
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 
-RenderScene drawnMeshes(const Scene& scene) {
+RenderScene drawnMeshes(const scenes::Scene& scene) {
   // Linear RGB of muted steel, brass, sage, clay, slate and sand; no blue, which is the hand's.
   static constexpr std::array<std::array<float, 3>, 6> kPalette = {{{0.55f, 0.57f, 0.60f},
                                                                     {0.60f, 0.43f, 0.17f},
@@ -17,7 +17,7 @@ RenderScene drawnMeshes(const Scene& scene) {
                                                                     {0.66f, 0.58f, 0.45f}}};
   RenderScene drawn;
   std::size_t next = 0;
-  for (const ScenePart& part : scene.parts) {
+  for (const scenes::ScenePart& part : scene.parts) {
     const bool has_color = part.part.color != Part().color;
     drawn.push_back({&part.part.mesh, has_color ? part.part.color : kPalette[next++ % kPalette.size()],
                      part.is_fixed, part.X_WP});
@@ -46,4 +46,4 @@ CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W)
   return cut;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

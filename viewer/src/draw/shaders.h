@@ -3,7 +3,7 @@
 // that floats stay exact far from the world's origin. Colours are linear.
 #pragma once
 
-namespace vps::glsl {
+namespace vps::viewer::glsl {
 
 // --- solid surfaces
 // -------------------------------------------------------------------------------------------
@@ -354,4 +354,4 @@ void main() {
 }
 )";
 
-}  // namespace vps::glsl
+}  // namespace vps::viewer::glsl

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -147,4 +147,4 @@ std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n,
   return segments;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

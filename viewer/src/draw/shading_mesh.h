@@ -9,7 +9,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::viewer {
 
 struct ShadingVertex {
   std::array<float, 3> p;  ///< relative to ShadingMesh::center
@@ -46,4 +46,4 @@ ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_
 /// Where a plane n.p = offset (in the part's frame) cuts the mesh: unordered segments, relative to center.
 std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n, double offset);
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "vps_viewer/image.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 int pixelDifference(const std::uint8_t* a, const std::uint8_t* b) {
@@ -55,4 +55,4 @@ void writeDifference(const Image& a, const Image& b, int tolerance, const std::s
   savePng(differenceImage(a, b, tolerance), file);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -12,7 +12,7 @@
 #include "vps_viewer/image.h"
 #include "vps_viewer/write_file.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 // libpng's simplified interface: no setjmp, errors come back as text.
@@ -71,4 +71,4 @@ Image loadPng(const std::string& file) {
   return image;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

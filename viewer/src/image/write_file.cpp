@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace vps {
+namespace vps::viewer {
 
 void writeFileAtomically(const std::string& file, std::string_view bytes) {
   const auto fail = [&](const char* what) {
@@ -41,4 +41,4 @@ void writeFileAtomically(const std::string& file, std::string_view bytes) {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -21,7 +21,7 @@
 
 extern char** environ;
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install gnuplot-nox)";
@@ -152,4 +152,4 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
 }
 
 }  // namespace gnuplot
-}  // namespace vps
+}  // namespace vps::viewer

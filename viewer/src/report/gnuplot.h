@@ -8,7 +8,7 @@
 
 #include "vps_viewer/plot.h"
 
-namespace vps::gnuplot {
+namespace vps::viewer::gnuplot {
 
 /// A string literal of gnuplot's: quotes and backslashes escaped, control characters dropped. Scripts switch
 /// enhanced text off, so that an underscore in a part's name stays one.
@@ -27,4 +27,4 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
 /// Runs the body once for file.png and once for file.svg; files appear only when gnuplot is content.
 PlotOutcome draw(const std::string& body, const std::string& file, int width, int height);
 
-}  // namespace vps::gnuplot
+}  // namespace vps::viewer::gnuplot

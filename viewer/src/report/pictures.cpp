@@ -7,7 +7,7 @@
 #include "report/html.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using html::format;
@@ -16,7 +16,8 @@ const Vec3 kToViewer(0.75, -1.25, 0.85);  // from the front, the right and above
 
 class PictureSet {
  public:
-  PictureSet(const Scene& scene, const AssembleResult& result, std::string dir, const ReportOptions& options)
+  PictureSet(const scenes::Scene& scene, const scenes::AssembleResult& result, std::string dir,
+             const ReportOptions& options)
       : scene_(scene),
         result_(result),
         dir_(std::move(dir)),
@@ -45,7 +46,7 @@ class PictureSet {
   /// What the picture shows in place although no contact brought it there.
   [[nodiscard]] std::string placedOnes() const {
     std::string names;
-    for (const StepResult& step : result_.steps)
+    for (const scenes::StepResult& step : result_.steps)
       if (step.is_placed)
         names += (names.empty() ? "; drawn on target without having got there: " : ", ") + step.part;
     return names;
@@ -65,7 +66,7 @@ class PictureSet {
 
   StepPictures drawStep(std::size_t i) {
     StepPictures pictures;
-    const SceneStep* step = i < scene_.steps.size() ? &scene_.steps[i] : nullptr;
+    const scenes::SceneStep* step = i < scene_.steps.size() ? &scene_.steps[i] : nullptr;
     const std::string prefix = "step_" + std::to_string(i + 1) + "_";
     const std::string title = "Step " + std::to_string(i + 1) + " of " +
                               std::to_string(result_.steps.size()) + ": " + result_.steps[i].part;
@@ -84,7 +85,7 @@ class PictureSet {
       const Box target_W = bounds(transformed(scene_.parts[step->part].part.mesh, step->X_WP_target));
       Box close_W = target_W;
       if (i < result_.contact.size())
-        for (const BodySnapshot& body : result_.contact[i].bodies)
+        for (const scenes::BodySnapshot& body : result_.contact[i].bodies)
           if (body.part == step->part && body.X_WP.isFinite()) {
             const Box part_W = bounds(transformed(scene_.parts[step->part].part.mesh, body.X_WP));
             close_W.add(part_W.min);
@@ -101,21 +102,22 @@ class PictureSet {
       options.cut = sectionAlong(target_W.center(), step->X_WP_target.p - X_before.p, kToViewer);
     }
     if (i < result_.contact.size()) {
-      const Snapshot& s = result_.contact[i];
+      const scenes::Snapshot& s = result_.contact[i];
       double depth_m = 0;
-      for (const ContactMark& c : s.contacts) depth_m = std::max(depth_m, c.depth_m);
+      for (const scenes::ContactMark& c : s.contacts) depth_m = std::max(depth_m, c.depth_m);
       options.caption = "contact at " + format(s.time_s, "%.3f s") + ", depth " +
                         format(1e6 * depth_m, "%.2f µm") + ", force " + format(s.F_hand_W.f.norm(), "%.1f N");
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption = result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].failure_reason;
+      options.caption =
+          result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].failure_reason;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;
   }
 
-  std::string save(const std::string& name, const Snapshot& snapshot, const Camera& camera,
+  std::string save(const std::string& name, const scenes::Snapshot& snapshot, const Camera& camera,
                    const DrawOptions& options) {
     if (options_.progress)
       options_.progress("pictures", static_cast<double>(done_) / static_cast<double>(total_));
@@ -124,8 +126,8 @@ class PictureSet {
     return "pictures/" + name;
   }
 
-  const Scene& scene_;
-  const AssembleResult& result_;
+  const scenes::Scene& scene_;
+  const scenes::AssembleResult& result_;
   std::string dir_;
   const ReportOptions& options_;
   RenderScene drawn_;
@@ -135,8 +137,8 @@ class PictureSet {
 
 }  // namespace
 
-ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, const std::string& dir,
-                            const ReportOptions& options) {
+ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                            const std::string& dir, const ReportOptions& options) {
   ReportPictures none;
   none.steps.resize(result.steps.size());
   if (!options.has_pictures) return none;  // as asked for: nothing to explain
@@ -148,4 +150,4 @@ ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, co
   }
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "vps_viewer/report.h"
 
-namespace vps {
+namespace vps::viewer {
 
 /// File names relative to the report; empty where there is no picture.
 struct StepPictures {
@@ -19,7 +19,7 @@ struct ReportPictures {
   std::string failure_reason;  ///< said when no picture could be made
 };
 
-ReportPictures drawPictures(const Scene& scene, const AssembleResult& result, const std::string& dir,
-                            const ReportOptions& options);
+ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                            const std::string& dir, const ReportOptions& options);
 
-}  // namespace vps
+}  // namespace vps::viewer

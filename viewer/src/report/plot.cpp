@@ -7,7 +7,7 @@
 
 #include "report/gnuplot.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
@@ -66,9 +66,9 @@ struct Span {
   int step, phase;
 };
 
-std::vector<Span> spansOf(const std::vector<TraceRow>& trace, bool is_by_phase) {
+std::vector<Span> spansOf(const std::vector<scenes::TraceRow>& trace, bool is_by_phase) {
   std::vector<Span> spans;
-  for (const TraceRow& row : trace) {
+  for (const scenes::TraceRow& row : trace) {
     const int phase = is_by_phase ? row.phase : 0;
     if (!spans.empty()) spans.back().end_s = row.time_s;
     if (spans.empty() || spans.back().step != row.step || spans.back().phase != phase)
@@ -77,7 +77,7 @@ std::vector<Span> spansOf(const std::vector<TraceRow>& trace, bool is_by_phase) 
   return spans;
 }
 
-std::string shadePhases(const std::vector<TraceRow>& trace) {
+std::string shadePhases(const std::vector<scenes::TraceRow>& trace) {
   std::string out;
   for (const Span& s : spansOf(trace, true))
     if (s.phase >= 1 && s.phase <= 3)
@@ -88,7 +88,7 @@ std::string shadePhases(const std::vector<TraceRow>& trace) {
 }
 
 /// Step names over the first panel, cut to a number where there is no room, and a thin line between steps.
-std::string nameSteps(const std::vector<TraceRow>& trace, const std::vector<std::string>& names,
+std::string nameSteps(const std::vector<scenes::TraceRow>& trace, const std::vector<std::string>& names,
                       bool is_panel_top) {
   const double duration_s = std::max(1e-9, trace.back().time_s - trace.front().time_s);
   std::string out;
@@ -112,16 +112,16 @@ std::string nameSteps(const std::vector<TraceRow>& trace, const std::vector<std:
 
 }  // namespace
 
-PlotOutcome plotForces(const std::vector<TraceRow>& whole_trace, const std::string& file,
+PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const std::string& file,
                        const std::vector<std::string>& step_names, int step) {
-  std::vector<TraceRow> trace;
-  for (const TraceRow& row : whole_trace)
+  std::vector<scenes::TraceRow> trace;
+  for (const scenes::TraceRow& row : whole_trace)
     if (step < 0 || row.step == step) trace.push_back(row);
   if (trace.empty()) return {false, "the trace is empty: nothing to plot"};
 
   std::array<Curve, 8> curves;  // fx fy fz |f| tx ty tz |t|
   Curve depth;
-  for (const TraceRow& row : trace) {
+  for (const scenes::TraceRow& row : trace) {
     for (int k = 0; k < 3; ++k) {
       curves[k].emplace_back(row.time_s, row.F_hand_W.f[k]);
       curves[4 + k].emplace_back(row.time_s, row.F_hand_W.tau[k]);
@@ -145,7 +145,7 @@ PlotOutcome plotForces(const std::vector<TraceRow>& whole_trace, const std::stri
     }
   const double range_N = std::max(greatest_N - least_N, 0.1), mark_N = greatest_N + 0.1 * range_N;
   std::vector<std::vector<double>> impacts, slides;
-  for (const ContactEpisode& e : contactEpisodes(trace)) {
+  for (const scenes::ContactEpisode& e : scenes::contactEpisodes(trace)) {
     if (e.is_slide)
       slides.push_back({e.start_s, mark_N, e.end_s - e.start_s, 0});
     else
@@ -216,4 +216,4 @@ PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
   return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

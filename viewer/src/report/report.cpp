@@ -8,7 +8,7 @@
 #include "vps_viewer/plot.h"
 #include "vps_viewer/write_file.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using html::Cell;
@@ -19,10 +19,10 @@ std::string micrometres(double length_m, const char* form = "%.2f") {
 }
 
 /// The rows nearest after every 1 / rate_hz.
-std::vector<TraceRow> thinned(const std::vector<TraceRow>& trace, double rate_hz) {
-  std::vector<TraceRow> rows;
+std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {
+  std::vector<scenes::TraceRow> rows;
   double next_s = 0;
-  for (const TraceRow& row : trace) {
+  for (const scenes::TraceRow& row : trace) {
     // Half a microsecond: times are sums of steps, and their rounding must not drop a row.
     if (row.time_s < next_s - 0.5e-6) continue;
     rows.push_back(row);
@@ -31,11 +31,11 @@ std::vector<TraceRow> thinned(const std::vector<TraceRow>& trace, double rate_hz
   return rows;
 }
 
-std::string headline(const AssembleResult& result) {
+std::string headline(const scenes::AssembleResult& result) {
   const auto done = std::count_if(result.steps.begin(), result.steps.end(),
-                                  [](const StepResult& s) { return s.completed; });
-  const auto good =
-      std::count_if(result.steps.begin(), result.steps.end(), [](const StepResult& s) { return isGood(s); });
+                                  [](const scenes::StepResult& s) { return s.completed; });
+  const auto good = std::count_if(result.steps.begin(), result.steps.end(),
+                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
   const std::string count = std::to_string(done) + " of " + std::to_string(result.steps.size());
   const bool is_complete = result.completed && done == static_cast<std::ptrdiff_t>(result.steps.size());
   std::string text = is_complete
@@ -48,16 +48,16 @@ std::string headline(const AssembleResult& result) {
          "</p>\n";
 }
 
-std::string stepTable(const AssembleResult& result) {
+std::string stepTable(const scenes::AssembleResult& result) {
   std::vector<std::vector<Cell>> rows;
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
-    const StepResult& s = result.steps[i];
+    const scenes::StepResult& s = result.steps[i];
     const std::string number = std::to_string(i + 1);
     rows.push_back({{number, "n"},
                     {"<a href=\"#step-" + number + "\">" + escapeHtml(s.part) + "</a>", ""},
                     {s.completed ? "yes" : "no", s.completed ? "good" : "bad"},
                     {format(s.duration_s, "%.2f"), "n"},
-                    {micrometres(s.max_penetration_m), isWithinLimit(s) ? "n" : "n bad"},
+                    {micrometres(s.max_penetration_m), scenes::isWithinLimit(s) ? "n" : "n bad"},
                     {s.penetration_limit_m > 0 ? micrometres(s.penetration_limit_m) : "", "n"},
                     {escapeHtml(s.deepest_against), ""},
                     {format(s.peak_force_N, "%.2f"), "n"},
@@ -73,11 +73,11 @@ std::string stepTable(const AssembleResult& result) {
       rows);
 }
 
-std::string stepFacts(const StepResult& s) {
+std::string stepFacts(const scenes::StepResult& s) {
   const Vec3 at_mm = 1e3 * s.deepest_at_W;
   std::string deepest = micrometres(s.max_penetration_m) + " µm";
   if (s.penetration_limit_m > 0)
-    deepest += std::string(isWithinLimit(s) ? " (within" : " (<b class=\"bad\">beyond</b>") +
+    deepest += std::string(scenes::isWithinLimit(s) ? " (within" : " (<b class=\"bad\">beyond</b>") +
                " the limit of " + micrometres(s.penetration_limit_m) + " µm)";
   if (s.max_penetration_m > 0) {
     if (!s.deepest_against.empty()) deepest += " against " + escapeHtml(s.deepest_against);
@@ -104,7 +104,8 @@ std::string plotFigure(const std::string& name, const std::string& caption) {
                       "plots/" + name + ".svg");
 }
 
-std::string stepSection(std::size_t i, const StepResult& step, const StepPictures& pictures, bool has_plot) {
+std::string stepSection(std::size_t i, const scenes::StepResult& step, const StepPictures& pictures,
+                        bool has_plot) {
   const std::string number = std::to_string(i + 1);
   std::string out = "<h3 id=\"step-" + number + "\">" + number + ". " + escapeHtml(step.part) + "</h3>\n";
   if (!pictures.start.empty() || !pictures.contact.empty() || !pictures.end.empty()) {
@@ -120,25 +121,25 @@ std::string stepSection(std::size_t i, const StepResult& step, const StepPicture
 }
 
 /// What a run by the clock gave up to hold its rate.
-std::string load_changes(const AssembleResult& result) {
+std::string load_changes(const scenes::AssembleResult& result) {
   if (!result.real_time) return "";
-  const std::vector<LoadLevelChange>& changes = result.real_time->load_changes;
+  const std::vector<scenes::LoadLevelChange>& changes = result.real_time->load_changes;
   const std::string behind = format(result.real_time->behind_s, "%.2f") +
                              " s of the clock's time had no step of "
                              "physics";
   if (changes.empty()) return "<p>" + behind + "; nothing was given up to hold the rate.</p>\n";
   std::vector<std::vector<Cell>> rows;
-  for (const LoadLevelChange& change : changes)
+  for (const scenes::LoadLevelChange& change : changes)
     rows.push_back({{format(change.time_s, "%.2f"), "n"},
                     {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
                     {escapeHtml(change.why), ""},
-                    {escapeHtml(inWords(change)), ""}});
+                    {escapeHtml(scenes::inWords(change)), ""}});
   return "<p>" + behind + ". This is what was given up to hold the rate, and taken back:</p>\n" +
          html::table({"at [s]", "from then on", "why", "what it costs"}, rows);
 }
 
-std::string performance(const AssembleResult& result) {
-  const auto row = [](const char* name, double rate_hz, const TickTimes& t) -> std::vector<Cell> {
+std::string performance(const scenes::AssembleResult& result) {
+  const auto row = [](const char* name, double rate_hz, const scenes::TickTimes& t) -> std::vector<Cell> {
     return {{name, ""},
             {format(rate_hz, "%.0f"), "n"},
             {format(rate_hz > 0 ? 1e6 / rate_hz : 0, "%.0f"), "n"},
@@ -150,7 +151,7 @@ std::string performance(const AssembleResult& result) {
             {std::to_string(t.missed), "n"}};
   };
   double cook_s = 0;
-  for (const StepResult& s : result.steps) cook_s += s.cook_wall_s;
+  for (const scenes::StepResult& s : result.steps) cook_s += s.cook_wall_s;
   return "<h2 id=\"performance\">Time it took</h2>\n<p class=\"quiet\">Measured by the wall clock on the "
          "machine of this run; "
          "this section differs from run to run, all others repeat.</p>\n<div data-wall-clock>\n" +
@@ -163,7 +164,7 @@ std::string performance(const AssembleResult& result) {
          format(result.run_wall_s, "%.2f") + " s.</p>\n" + load_changes(result) + "</div>\n";
 }
 
-std::string method(const Scene& scene, const AssembleResult& result) {
+std::string method(const scenes::Scene& scene, const scenes::AssembleResult& result) {
   const double megabytes = static_cast<double>(result.modelled.bytes) / 1e6;
   return "<h2>Energy</h2>\n" +
          html::facts({{"Work done on the hand", format(1e3 * result.energy.to_hand_J, "%.3f") + " mJ"},
@@ -207,14 +208,14 @@ std::string method(const Scene& scene, const AssembleResult& result) {
 
 }  // namespace
 
-ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, const std::string& dir,
-                          const ReportOptions& options) {
+ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                          const std::string& dir, const ReportOptions& options) {
   ReportOutcome outcome;
   outcome.file = dir + "/report.html";
   writeTraceCsv(thinned(result.trace, scene.record.csv_rate_hz), dir + "/trace.csv");
 
   std::vector<std::string> step_names;
-  for (const StepResult& step : result.steps) step_names.push_back(step.part);
+  for (const scenes::StepResult& step : result.steps) step_names.push_back(step.part);
   if (options.progress) options.progress("plots", 0);
   const PlotOutcome forces = plotForces(result.trace, dir + "/plots/forces", step_names);
   std::vector<bool> has_plot(result.steps.size(), false);
@@ -234,7 +235,9 @@ ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, cons
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     if (!result.steps[i].completed)
       body += "<p class=\"note\">Step " + std::to_string(i + 1) + ", " + escapeHtml(result.steps[i].part) +
-              ": " + escapeHtml(result.steps[i].failure_reason.empty() ? "not completed" : result.steps[i].failure_reason) +
+              ": " +
+              escapeHtml(result.steps[i].failure_reason.empty() ? "not completed"
+                                                                : result.steps[i].failure_reason) +
               "</p>\n";
   for (const std::string& note : outcome.notes) body += "<p class=\"note\">" + escapeHtml(note) + "</p>\n";
   if (!pictures.overview.empty())
@@ -259,4 +262,4 @@ ReportOutcome writeReport(const Scene& scene, const AssembleResult& result, cons
   return outcome;
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 #include "vps_viewer/report.h"
 #include "vps_viewer/write_file.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 void addNumbers(std::string& line, const Vec3& v) {
@@ -18,13 +18,13 @@ void addPose(std::string& line, const Pose& X) {
 
 }  // namespace
 
-void writeTraceCsv(const std::vector<TraceRow>& trace, const std::string& file) {
+void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file) {
   std::string text =
       "time_s,step,phase,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
       "part_x_m,part_y_m,part_z_m,part_qx,part_qy,part_qz,part_qw,"
       "proxy_x_m,proxy_y_m,proxy_z_m,proxy_qx,proxy_qy,proxy_qz,proxy_qw,contacts,depth_m\n";
   text.reserve(text.size() + 350 * trace.size());
-  for (const TraceRow& row : trace) {
+  for (const scenes::TraceRow& row : trace) {
     text.append(gnuplot::number(row.time_s)).append(",").append(std::to_string(row.step));
     text.append(",").append(std::to_string(row.phase));
     addNumbers(text, row.F_hand_W.f);
@@ -40,4 +40,4 @@ void writeTraceCsv(const std::vector<TraceRow>& trace, const std::string& file) 
   writeFileAtomically(file, text);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "report/gnuplot.h"
 #include "vps_viewer/device_plot.h"
 
-namespace vps {
+namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
@@ -25,7 +25,7 @@ long micrometres(double m) {
 }
 
 template <typename Key>
-void add(Leasts<Key>& leasts, const Key& key, const VerticalForce& force) {
+void add(Leasts<Key>& leasts, const Key& key, const device::VerticalForce& force) {
   const Least values = {force.left_N, force.right_N, force.both_N, force.sum_N};
   const auto [at, is_new] = leasts.emplace(key, values);
   if (is_new) return;
@@ -133,11 +133,11 @@ std::string nameCurve(int tag, const Leasts<long>& along, std::size_t curve, dou
 
 }  // namespace
 
-PlotOutcome plotVerticalForces(const std::vector<VerticalForceAt>& forces, const std::string& file) {
+PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces, const std::string& file) {
   if (forces.empty()) return {false, "no places to plot"};
   Leasts<std::pair<long, long>> columns;
   Leasts<long> along;
-  for (const VerticalForceAt& at : forces) {
+  for (const device::VerticalForceAt& at : forces) {
     add(columns, {micrometres(at.p_DE.x()), micrometres(at.p_DE.y())}, at.force);
     add(along, micrometres(at.p_DE.y()), at.force);
   }
@@ -150,4 +150,4 @@ PlotOutcome plotVerticalForces(const std::vector<VerticalForceAt>& forces, const
       660);
 }
 
-}  // namespace vps
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "drivers/polled_device.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps {
+namespace vps::device {
 
 namespace {
 
@@ -88,4 +88,4 @@ std::unique_ptr<Device> openGameController(const RateSettings& settings) {
   return std::make_unique<PolledDevice<GameController>>(settings, "game_controller");
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -2,10 +2,10 @@
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps {
+namespace vps::device {
 
 std::unique_ptr<Device> openSpaceMouse(const RateSettings&) {
   throw LoadError("", "", "this build has no space mouse; install libspnav-dev and build again");
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -17,7 +17,7 @@
 // Last: it brings Xlib's macros (Status, Success, None) along.
 #include <spnav.h>
 
-namespace vps {
+namespace vps::device {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings) {
   return std::make_unique<PolledDevice<SpaceMouse>>(settings, "space_mouse");
 }
 
-}  // namespace vps
+}  // namespace vps::device

@@ -3,11 +3,11 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 
 RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
                   format + " needs Coin, which this build has not; install libcoin-dev and build again");
 }
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

@@ -5,7 +5,7 @@
 class SoCallbackAction;
 class SoNode;
 
-namespace vps::import {
+namespace vps::scenes::import {
 
 /// Takes out what only pictures need and Coin reads unchecked: normals, texture coordinates and their
 /// indices.
@@ -15,4 +15,4 @@ void dropNormals(SoNode* root);
 /// traversal.
 bool hasItsVertices(const SoCallbackAction& action, const SoNode& shape);
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

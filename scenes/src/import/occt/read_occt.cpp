@@ -27,11 +27,11 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
-#include "import/readers.h"
 #include "import/occt/shape_mesh.h"
+#include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::import {
+namespace vps::scenes::import {
 namespace {
 
 using Color = std::array<float, 3>;
@@ -314,4 +314,4 @@ RawCad readOcct(const std::string& file, const std::string& format, const Import
   }
 }
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import

@@ -16,7 +16,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 
-namespace vps::import {
+namespace vps::scenes::import {
 namespace {
 
 void appendFace(const TopoDS_Face& face, Mesh& mesh) {
@@ -74,4 +74,4 @@ Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double un
   return mesh;
 }
 
-}  // namespace vps::import
+}  // namespace vps::scenes::import
