@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .ci/install
-[ -f build/release/build.ninja ] || cmake --preset release -DVPS_TESTS=OFF >/dev/null
+# The same build as that of tests/run.sh: each command compiles only what the other has not compiled yet.
+[ -f build/release/build.ninja ] || cmake --preset release >/dev/null
 cmake --build build/release --target vps_program
 exec build/release/vps assemble scenes/bearing_block/scene.toml --out out/demo "$@"

@@ -13,6 +13,7 @@ if [[ $preset == fuzz ]]; then
   for reader in ply vdb mesh mcap recording scene device; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
   exit
 fi
-cmake --preset "$preset" -DVPS_TESTS=ON -DVPS_WERROR=ON >/dev/null
+# The same settings as those of scenes/demo.sh, so that both share one build; CI adds VPS_WERROR=ON.
+cmake --preset "$preset" -DVPS_TESTS=ON ${VPS_WERROR:+-DVPS_WERROR="$VPS_WERROR"} >/dev/null
 cmake --build "build/$preset"
 ctest --preset "$preset" -j "$(nproc)"
