@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -13,10 +12,10 @@
 #include <string>
 #include <string_view>
 
-#include "core/unfinished_file.h"
 #include "pointshell/shell_hierarchy.h"
 #include "vps/load_error.h"
 #include "vps/pointshell.h"
+#include "vps/write_file.h"
 
 namespace vps {
 namespace {
@@ -292,16 +291,7 @@ void savePly(const PointShell& shell, const std::string& file) {
     content.append(reinterpret_cast<const char*>(row.data()), sizeof row);
   }
 
-  const std::filesystem::path unfinished = unfinishedName(file);
-  std::ofstream out(unfinished, std::ios::binary);
-  out.write(content.data(), static_cast<std::streamsize>(content.size()));
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(unfinished, file, error);
-  if (!out || error) {
-    std::filesystem::remove(unfinished, error);
-    throw LoadError(file, "", "cannot be written; check the folder, its rights and the free space");
-  }
+  writeWholeFile(file, content);
 }
 
 PointShell loadPly(const std::string& file) {

@@ -3,14 +3,12 @@
 #include <openvdb/io/Stream.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
-#include "core/unfinished_file.h"
 #include "vdb/vdb_format.h"
 #include "voxelise/voxelise.h"
 #include "vps/load_error.h"
+#include "vps/write_file.h"
 
 namespace vps {
 namespace {
@@ -101,25 +99,17 @@ void addExactData(const VoxLayout& layout, double band_m, const Box& bounds, ope
   }
 }
 
-void writeWhole(const openvdb::GridPtrVec& grids, const std::string& file) {
-  const std::filesystem::path unfinished = unfinishedName(file);
+void writeGrids(const openvdb::GridPtrVec& grids, const std::string& file) {
+  std::string bytes;
   try {
     std::ostringstream stream;
     openvdb::io::Stream(stream).write(grids);
-    const std::string bytes = stream.str();
-    std::ofstream out(unfinished, std::ios::binary);
-    if (!out) throw LoadError(file, "", "cannot be written; does its folder exist, and may you write there?");
-    out.exceptions(std::ios::failbit | std::ios::badbit);
-    out << bytes << endOf(bytes);
-    out.close();
-    std::filesystem::rename(unfinished, file);
-  } catch (const LoadError&) {
-    throw;
+    bytes = std::move(stream).str();
+    bytes += endOf(bytes);
   } catch (const std::exception&) {
-    std::error_code ignored;
-    std::filesystem::remove(unfinished, ignored);
-    throw LoadError(file, "", "could not be written whole; is the disk full?");
+    throw LoadError(file, "", "could not be written; is there enough memory?");
   }
+  writeWholeFile(file, bytes);
 }
 
 }  // namespace
@@ -132,7 +122,7 @@ void VoxMapBuilder::save(const VoxMap& map, const std::string& file) {
   addExactData(layout, map.band_m_, map.bounds_, *surface);
   openvdb::GridPtrVec grids = {surface, centerGrid(layout, map.voxel_m_)};
   if (layout.parts.size() > 1) grids.push_back(ownerGrid(layout, map.voxel_m_));
-  writeWhole(grids, file);
+  writeGrids(grids, file);
 }
 
 void saveVdb(const VoxMap& map, const std::string& file) {

@@ -13,8 +13,8 @@
 #include <optional>
 #include <tuple>
 
-#include "core/unfinished_file.h"
 #include "voxelise/voxelise.h"
+#include "vps/write_file.h"
 
 namespace vps {
 namespace {
@@ -265,16 +265,9 @@ VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, cons
   const VoxMap map = buildVoxMap(mesh, settings, part, progress, &found);
   if (report != nullptr) *report = found;
   fs::create_directories(folder_, error);
-  const fs::path unfinished = unfinishedName(file);
-  if (!error && VoxMapCacheFile::write(map, found, unfinished, key))
-    fs::rename(unfinished, file, error);
-  else if (!error)
-    error = std::make_error_code(std::errc::io_error);
-  if (error) {
-    std::error_code ignored;
-    fs::remove(unfinished, ignored);
+  WholeFile whole(file);
+  if (error || !VoxMapCacheFile::write(map, found, whole.temporary(), key) || whole.commit())
     warn(folder_, "a voxmap could not be kept there; is it a folder, may you write to it, is the disk full?");
-  }
   return map;
 }
 

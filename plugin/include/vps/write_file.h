@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files that appear whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace vps {
+
+/// A file that is written under a temporary name in the target's folder and then renamed to the target, so
+/// that readers find the old content or the new, never a part of it.
+///
+///     WholeFile file("part.voxmap");
+///     std::ofstream out(file.temporary(), std::ios::binary);
+///     ...
+///     out.close();
+///     if (const std::error_code error = out ? file.commit() : std::make_error_code(std::errc::io_error)) ...
+class WholeFile {
+ public:
+  /// Chooses the temporary name: the target's, the process, and a count, so that no two writers share one.
+  /// Creates nothing. Thread-safe.
+  explicit WholeFile(std::filesystem::path target);
+  /// Removes the temporary file unless commit() has succeeded.
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
+  /// The file to write; close it before commit().
+  [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
+  /// Replaces the target by the temporary file. On an error the target is as it was.
+  [[nodiscard]] std::error_code commit() noexcept;
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool is_committed_ = false;
+};
+
+/// Writes `bytes` as the whole content of `file`. The folder must exist. Throws LoadError with the system's
+/// reason; `file` is then as it was.
+void writeWholeFile(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace vps
