@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_curves: data behind the pictures of plugin/README.md. `vps_curves time DIR`, `vps_curves accuracy DIR`
-// and `vps_curves budget DIR` write plain columns for gnuplot (plots/*.gp) and Markdown tables.
+// vps_curves: data behind the pictures of plugin/README.md. `vps_curves time DIR` and
+// `vps_curves accuracy DIR` write plain columns for gnuplot (plots/*.gp) and Markdown tables.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "accuracy.h"
-#include "budget.h"
 #include "measure.h"
 #include "scene_parts.h"
 
@@ -142,66 +141,18 @@ void accuracyCurves(const std::filesystem::path& dir) {
   }
 }
 
-std::string percent(double part) {
-  return number(100 * part) + " %";
-}
-
-/// The motions touch as lightly as they can; a hand presses.
-Motion moved(const Motion& motion, const Vec3& by_m) {
-  return [=](int step) {
-    const Pose X_MP = motion(step);
-    return Pose(X_MP.R, X_MP.p + by_m);
-  };
-}
-
-void budgetCurves(const std::filesystem::path& dir) {
-  constexpr int kPoses = 60;
-  std::vector<std::size_t> budgets;
-  for (std::size_t points = 500; points <= 256'000; points *= 2) budgets.push_back(points);
-  std::ofstream table(dir / "budget.md");
-  table << "| scene | budget [points] | read | error of the force, rms / most | of the torque, rms | bound | "
-           "complete | time [us] |\n|---|---|---|---|---|---|---|---|\n";
-  const struct {
-    const char* name;
-    Pair pair;
-    Motion motion;
-  } scenes[] = {{"peg", Pair::PegInPlate, pegMotion(0.1 * kMm)},
-                {"peg_pressed", Pair::PegInPlate, moved(pegMotion(0.1 * kMm), {30e-6, 0, 0})},
-                {"gears", Pair::PlanetInRing, gearMotion(0.1 * kMm)},
-                {"gears_pressed", Pair::PlanetInRing, moved(gearMotion(0.1 * kMm), {60e-6, 0, 0})},
-                {"screw", Pair::RodInNut, screwMotion(0.1 * kMm)},
-                {"screw_pressed", Pair::RodInNut, moved(screwMotion(0.1 * kMm), {0, 0, 20e-6})}};
-  for (const auto& [name, pair, motion] : scenes) {
-    std::ofstream data(dir / (std::string("budget_") + name + ".dat"));
-    data << "# max_points read force_rms force_most torque_rms bound complete median_us\n";
-    for (const BudgetPoint& p : budgetStudy(*sceneOf(pair, {}), motion, kPoses, budgets)) {
-      if (p.max_points > 0)
-        data << p.max_points << " " << number(p.points) << " " << number(p.force_rms) << " "
-             << number(p.force_most) << " " << number(p.torque_rms) << " " << number(p.bound_rms) << " "
-             << number(p.complete) << " " << number(p.median_us) << "\n";
-      table << "| " << name << " | "
-            << (p.max_points > 0 ? std::to_string(p.max_points) : "none: queryWrench()") << " | "
-            << number(p.points) << " | " << percent(p.force_rms) << " / " << percent(p.force_most) << " | "
-            << percent(p.torque_rms) << " | " << percent(p.bound_rms) << " | " << percent(p.complete) << " | "
-            << number(p.median_us) << " |\n";
-    }
-  }
-}
-
 }  // namespace
 }  // namespace vps::bench
 
 int main(int argc, char** argv) {
   const std::string what = argc == 3 ? argv[1] : "";
-  if (what != "time" && what != "accuracy" && what != "budget") {
-    std::cerr << "usage: vps_curves time|accuracy|budget FOLDER\n";
+  if (what != "time" && what != "accuracy") {
+    std::cerr << "usage: vps_curves time|accuracy FOLDER\n";
     return 2;
   }
   std::filesystem::create_directories(argv[2]);
   if (what == "time")
     vps::bench::timeCurves(argv[2]);
-  else if (what == "budget")
-    vps::bench::budgetCurves(argv[2]);
   else
     vps::bench::accuracyCurves(argv[2]);
   return 0;

@@ -275,30 +275,6 @@ TEST_F(Program, ACacheGivesTheSameAnswerAndADamagedOneAWarning) {
   EXPECT_NE(third.err.find("built again"), std::string::npos) << third.err;
 }
 
-TEST_F(Program, ABudgetSaysWhatItLeftOut) {
-  const std::string call =
-      "query plate.stl pin.stl --units mm --spacing 0.3mm --voxel 0.25mm --repeats 1 --json a.json "
-      "--pose 0,0,0.0085,0,0,0,1";
-  const auto answer = [&](const std::string& options) {
-    run(call + options);
-    return json::parse(slurp(folder_ / "a.json"))["poses"][0];
-  };
-  const json whole = answer(""), ample = answer(" --budget-points 1000000"),
-             tight = answer(" --budget-points 500");
-  EXPECT_FALSE(whole.contains("left_out"));
-  EXPECT_EQ(ample["force_N"], whole["force_N"]);
-  EXPECT_EQ(ample["left_out"]["clusters"], 0);
-  EXPECT_LE(tight["points_tested"], 2 * 500);  // a budget for each side
-  EXPECT_GT(tight["left_out"]["clusters"], 0);
-  double off2 = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double off = tight["force_N"][k].get<double>() - whole["force_N"][k].get<double>();
-    off2 += off * off;
-  }
-  EXPECT_LE(std::sqrt(off2), tight["left_out"]["force_error_bound_N"].get<double>());
-  EXPECT_EQ(tight["min_distance_m"], whole["min_distance_m"]);  // the distance has no budget
-}
-
 TEST_F(Program, APartFarAwayIsSaidToBeFar) {
   std::string far = "solid far\n";
   for (const char* facet :

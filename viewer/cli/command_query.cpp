@@ -15,7 +15,6 @@
 #include "progress_bar.h"
 #include "table.h"
 #include "terminal.h"
-#include "vps/budget_query.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps/pair_query.h"
@@ -112,50 +111,35 @@ VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string
 struct Side {
   VoxMap map;
   PointShell shell;
-  std::optional<BudgetQuery> within_budget;  ///< made when first asked for
 
   Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
-               const std::string& points_name, const std::optional<VoxMapCache>& cache,
-               const Progress& progress)
+       const std::string& points_name, const std::optional<VoxMapCache>& cache, const Progress& progress)
       : map(mapOf(field, {.voxel_m = fidelity.voxel_m}, field_name, cache, progress)),
         shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)) {}
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
 };
 
-/// How a wrench is asked for: all of it, or within a budget.
+/// The options of a query.
 struct Asking {
   Gradient gradient = Gradient::Continuous;
   double k_N_per_m3 = 0;
-  std::optional<QueryBudget> budget;
 
   Asking(const QueryArguments& given, const Fidelity& fidelity)
-      : gradient(fidelity.gradient), k_N_per_m3(given.stiffness_N_per_m3) {
-    if (given.budget_points == 0 && given.budget_us == 0) return;
-    budget.emplace();
-    if (given.budget_points > 0) budget->max_points = given.budget_points;
-    if (given.budget_us > 0) budget->max_us = given.budget_us;
-  }
+      : gradient(fidelity.gradient), k_N_per_m3(given.stiffness_N_per_m3) {}
 };
 
 struct SideResult {
   QueryResult distance;
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_M;  ///< on the shell's part about p_MO
-  BudgetReport left;
 };
 
 SideResult ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Asking& asking) {
   SideResult answer;
   TouchSummary sum;
   const QueryOptions options = {.gradient = asking.gradient};
-  if (asking.budget) {
-    if (!side.within_budget) side.within_budget.emplace(side.map, side.shell);
-    answer.left = side.within_budget->run(X_MP, options, asking.k_N_per_m3, p_MO, *asking.budget, sum);
-    answer.points_tested = answer.left.points_read;
-  } else {
-    answer.points_tested =
-        queryWrench(side.map, side.shell, X_MP, options, asking.k_N_per_m3, p_MO, sum).points_tested;
-  }
+  answer.points_tested =
+      queryWrench(side.map, side.shell, X_MP, options, asking.k_N_per_m3, p_MO, sum).points_tested;
   answer.contact_count = sum.count;
   answer.F_M = sum.F_O_M;
   answer.distance = queryDistance(side.map, side.shell, X_MP);
@@ -169,8 +153,7 @@ bool isSaturated(const QueryResult& found, const VoxMap& map) {
 
 /// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
 /// half.
-PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
-                    const Asking& asking) {
+PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Asking& asking) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
   const SideResult first = ask(b_in_a, X_AB, X_AB.p, asking);
@@ -180,9 +163,6 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   answer.contact_count = first.contact_count;
   answer.points_tested = first.points_tested;
   answer.F_Bo_A = first.F_M;
-  answer.clusters_left = first.left.clusters_left;
-  answer.area_left_m2 = first.left.area_left_m2;
-  answer.force_error_N = first.left.force_error_N;
   if (!a_in_b) return answer;
 
   const SideResult second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), asking);
@@ -192,9 +172,6 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   answer.contact_count += second.contact_count;
   answer.points_tested += second.points_tested;
   answer.F_Bo_A = bothWays(first.F_M, second.F_M, X_AB.R);
-  answer.clusters_left += second.left.clusters_left;
-  answer.area_left_m2 += second.left.area_left_m2;
-  answer.force_error_N = 0.5 * (first.left.force_error_N + second.left.force_error_N);
   return answer;
 }
 
@@ -216,23 +193,14 @@ double spacingFor(const Mesh& mesh, std::size_t points) {
 }
 
 std::string tableOf(const QueryAnswer& answer) {
-  std::vector<std::string> head = {"pose",   "distance [um]", "depth [um]",  "contacts",
-                                   "tested", "force [N]",     "torque [N m]"};
-  if (answer.has_budget) head.insert(head.end(), {"left coarse [mm2]", "force off by at most [N]"});
-  Table table(head);
+  Table table({"pose", "distance [um]", "depth [um]", "contacts", "tested", "force [N]", "torque [N m]"});
   for (std::size_t i = 0; i < answer.poses.size(); ++i) {
     const PoseAnswer& pose = answer.poses[i];
     const char* const bound = pose.is_beyond ? "> " : pose.is_saturated ? "< " : "";
-    std::vector<std::string> row = {std::to_string(i + 1),
-                                    bound + fixed(pose.min_distance_m * 1e6, 2),
-                                    (pose.is_saturated ? "> " : "") + fixed(pose.maxDepth_m() * 1e6, 2),
-                                    std::to_string(pose.contact_count),
-                                    std::to_string(pose.points_tested),
-                                    fixed(pose.F_Bo_A.f.norm(), 4),
-                                    fixed(pose.F_Bo_A.tau.norm(), 6)};
-    if (answer.has_budget)
-      row.insert(row.end(), {fixed(pose.area_left_m2 * 1e6, 2), fixed(pose.force_error_N, 2)});
-    table.add(row);
+    table.add({std::to_string(i + 1), bound + fixed(pose.min_distance_m * 1e6, 2),
+               (pose.is_saturated ? "> " : "") + fixed(pose.maxDepth_m() * 1e6, 2),
+               std::to_string(pose.contact_count), std::to_string(pose.points_tested),
+               fixed(pose.F_Bo_A.f.norm(), 4), fixed(pose.F_Bo_A.tau.norm(), 6)});
   }
   return table.text();
 }
@@ -257,7 +225,6 @@ int runQuery(const QueryArguments& given) {
   answer.voxel_m = fidelity.voxel_m;
   answer.point_spacing_m = fidelity.spacing_m;
   const Asking asking(given, fidelity);
-  answer.has_budget = asking.budget.has_value();
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   const auto begun = Clock::now();
   Side b_in_a(mesh_a, mesh_b, fidelity, given.mesh_a, given.mesh_b, cache, bar.progress());

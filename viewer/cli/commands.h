@@ -84,9 +84,7 @@ struct QueryArguments {
   std::string cache;  ///< as in AssembleArguments
   FidelityArguments fidelity;
   double stiffness_N_per_m3 = 1e12;
-  std::size_t budget_points = 0;  ///< readings a pose and side; 0: no limit
-  double budget_us = 0;           ///< 0: no limit
-  int repeats = 0;                ///< timed runs of each pose; 0: as many as make 100 in all
+  int repeats = 0;  ///< timed runs of each pose; 0: as many as make 100 in all
 };
 int runQuery(const QueryArguments& given);
 

@@ -191,10 +191,6 @@ std::string toJson(const QueryAnswer& answer) {
                   {"force_N", list(pose.F_Bo_A.f)},
                   {"torque_Nm", list(pose.F_Bo_A.tau)}};
     if (pose.is_beyond) entry["beyond_m"] = pose.min_distance_m;
-    if (answer.has_budget)
-      entry["left_out"] = {{"clusters", pose.clusters_left},
-                           {"area_m2", pose.area_left_m2},
-                           {"force_error_bound_N", pose.force_error_N}};
     poses.push_back(std::move(entry));
   }
   return text({{"wall", {{"build_s", answer.build_wall_s}, {"time_us", shortTimes(answer.time)}}},

@@ -35,9 +35,6 @@ struct PoseAnswer {
   bool is_saturated = false;  ///< as deep as the band is wide, or deeper
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_Bo_A;  ///< on B about its origin, in A
-  /// Within a budget: what was left coarse. Both sides together.
-  std::size_t clusters_left = 0;
-  double area_left_m2 = 0, force_error_N = 0;
   [[nodiscard]] double maxDepth_m() const { return min_distance_m < 0 ? -min_distance_m : 0; }
 };
 
@@ -46,7 +43,6 @@ struct QueryAnswer {
   std::vector<PoseAnswer> poses;
   std::size_t points_total = 0, memory_bytes = 0;
   double voxel_m = 0, point_spacing_m = 0;
-  bool has_budget = false;
   scenes::TickTimes time;
   double build_wall_s = 0;
 };

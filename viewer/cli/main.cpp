@@ -193,12 +193,6 @@ class CommandLine {
                                               "about so many shell points, instead of --spacing");
     command->add_option("--stiffness", query_.stiffness_N_per_m3, "penalty stiffness per area [N/m^3]")
         ->capture_default_str();
-    command
-        ->add_option("--budget-points", query_.budget_points,
-                     "read no more points a pose and side; says what was left coarse")
-        ->check(CLI::Range(1, 1000000000));
-    command->add_option("--budget-us", query_.budget_us, "stop refining after so many microseconds a side")
-        ->check(CLI::Range(1.0, 1e9));
     command->add_option("--repeats", query_.repeats, "timed runs of each pose (left out: 100 runs in all)")
         ->check(CLI::Range(1, 1000000));
     addFidelity(command, query_.fidelity);

@@ -5,4 +5,3 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 gnuplot -e "data='$1'; out='$2'; plots='$here'" "$here/accuracy.gp"
 gnuplot -e "data='$1'; out='$2/query_time.png'; plots='$here'" "$here/query_time.gp"
-gnuplot -e "data='$1'; out='$2/budget.png'; plots='$here'" "$here/budget.gp"
