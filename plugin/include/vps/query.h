@@ -8,7 +8,6 @@
 
 #include "vps/pointshell.h"
 #include "vps/query_memory.h"
-#include "vps/query_team.h"
 #include "vps/simd.h"
 #include "vps/status.h"
 #include "vps/voxmap.h"
@@ -31,7 +30,6 @@ struct QueryOptions {
   bool is_exhaustive = false;  ///< visit every point, without culling: the reference for tests
   Gradient gradient = Gradient::Continuous;
   Simd simd = Simd::Best;     ///< changes the time, not one bit of the answer
-  QueryTeam* team = nullptr;  ///< threads that share queryWrench(); the same bits for any number
 };
 
 /// Room for contacts, sized once. When full, further contacts are counted in `left_out` and Status is
