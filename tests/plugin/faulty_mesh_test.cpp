@@ -416,18 +416,6 @@ TEST(FaultyMesh, BeyondTheBandAllIsOutsideWhateverTheWindingNumberSays) {
   const VoxMap map = buildVoxMap(pipe, {0.25e-3, 4});
   expectOutsideBeyondTheBox(map, 0.25e-3);
   expectSameAnswers(map, shell);
-  // Where a coarse map stands for the fine one, its rim is nearer than the fine one's or farther.
-  for (const int coarsening : {2, 8}) {
-    FineRegions regions;
-    Box mouth;
-    mouth.add({0.005, -0.002, 0.018});
-    mouth.add({0.012, 0.002, 0.03});
-    regions.boxes_M = {mouth};
-    regions.coarsening = coarsening;
-    const VoxMap by_regions = buildVoxMapInRegions(pipe, {0.25e-3, 4}, regions);
-    expectOutsideBeyondTheBox(by_regions, coarsening * 0.25e-3);
-    expectSameAnswers(by_regions, shell);
-  }
 }
 
 TEST(FaultyMesh, AFreeSheetHasNoInside) {

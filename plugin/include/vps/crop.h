@@ -21,7 +21,7 @@ namespace vps {
 /// The map with its nodes in and around the boxes only, in memory of its own; to the bit the same there.
 /// Elsewhere it reads as saturated, with the right sign by cells, and none of its bounds holds: only for
 /// queries whose points, and the centres of their clusters, stay in one of the boxes. May be mounted upon.
-/// O(cells). Throws LoadError for a map that is fine in regions only.
+/// O(cells).
 VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
 /// The shell's points in the boxes only, in their order and in their clusters: a query of fields that stay in

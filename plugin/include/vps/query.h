@@ -29,7 +29,7 @@ struct QueryOptions {
   double cutoff_m = 0;  ///< report points with distance_m <= cutoff_m (> 0: also near ones, up to the band)
   bool is_exhaustive = false;  ///< visit every point, without culling: the reference for tests
   Gradient gradient = Gradient::Continuous;
-  Simd simd = Simd::Best;     ///< changes the time, not one bit of the answer
+  Simd simd = Simd::Best;  ///< changes the time, not one bit of the answer
 };
 
 /// Room for contacts, sized once. When full, further contacts are counted in `left_out` and Status is

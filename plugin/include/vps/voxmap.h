@@ -44,8 +44,6 @@ class VoxMap {
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
   [[nodiscard]] double band_m() const noexcept { return band_m_; }
-  /// The voxel size at a point: larger than voxel_m() where a map is coarse, see buildVoxMapInRegions().
-  [[nodiscard]] double voxelAt(const Vec3& p_M) const noexcept;
   /// The step in which nodes store distances: band_m() / 32767.
   [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
@@ -99,22 +97,6 @@ class VoxMap {
 /// positive, or a grid that would not fit in memory (says which voxel size would).
 VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                    const Progress& progress = {}, MeshReport* report = nullptr);
-
-/// Where a map is fine, and how much coarser it is elsewhere.
-struct FineRegions {
-  std::vector<Box> boxes_M;  ///< in the part's frame; each grows to whole bricks of 8 voxels
-  int coarsening = 4;        ///< 2, 4 or 8 times voxel_m outside
-};
-
-/// As buildVoxMap(), but fine only in regions, as where a path passes: memory and time follow what they hold
-/// of the surface. Elsewhere the field is that of a map with larger voxels; it meets the fine one without a
-/// jump. The band is at least 3 of the larger voxels wide. sampleError_m() and bounds hold for the larger
-/// voxels. Queries are as exact as on any map: culled is exhaustive. Points elsewhere cost more to read than
-/// fine ones. Such maps cannot be combined, resampled or saved: LoadError, which also refuses what is no
-/// region.
-VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
-                            const std::string& part = "", const Progress& progress = {},
-                            MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {

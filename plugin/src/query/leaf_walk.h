@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "voxmap/coarse_nodes.h"
+#include "voxmap/read_kernel.h"
 #include "vps/pointshell.h"
 
 namespace vps {
@@ -59,7 +59,6 @@ class LeafReader {
   void flush() noexcept {
     if (count_ == 0) return;
     reading_.kernels.read(reading_.field, reading_.motion, blocks_, count_, batch_);
-    if (reading_.field.layout != nullptr) readElsewhere(reading_.field, count_, batch_);
     points_ += countPoints();
     for (int i = 0; i < count_; ++i) consume_(ReadLeaf{*blocks_[i], leaves_[i], batch_, i});
     count_ = 0;

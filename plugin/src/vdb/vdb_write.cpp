@@ -116,7 +116,6 @@ void writeGrids(const openvdb::GridPtrVec& grids, const std::string& file) {
 
 void VoxMapBuilder::save(const VoxMap& map, const std::string& file) {
   if (map.layout_->bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
-  requireOneGrid(map, "written to one .vdb");
   const VoxLayout& layout = *map.layout_;
   const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_, map.quantum_m_);
   addExactData(layout, map.band_m_, map.bounds_, *surface);

@@ -7,7 +7,6 @@
 namespace vps {
 
 class AddedField;
-struct CoarseRest;
 struct RepairedMesh;
 enum class Combine;
 
@@ -16,8 +15,6 @@ class VoxMapBuilder {
  public:
   static VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                       const Progress& progress, MeshReport* report);
-  static VoxMap buildInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
-                               const std::string& part, const Progress& progress, MeshReport* report);
   /// Two fields with the same voxel and band. The second's parts get the next owner numbers.
   static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
   static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
@@ -29,14 +26,12 @@ class VoxMapBuilder {
                      const Box& bounds);
   /// An empty map on a grid, to which fields are added.
   static VoxMap empty(const VoxMapSettings& settings);
-  /// Throws LoadError for a map that is fine in regions only, which `what` cannot do with.
-  static void requireOneGrid(const VoxMap& map, const char* what);
 
  private:
   /// @param mesh      what was given
   /// @param repaired  what repairMesh() made of it; made anew if its signs contradict each other
   static VoxMap build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
-                      const Progress& progress, MeshReport* report, const CoarseRest* regions);
+                      const Progress& progress, MeshReport* report);
 };
 
 }  // namespace vps

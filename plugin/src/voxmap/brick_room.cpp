@@ -10,7 +10,6 @@ namespace {
 /// Visits each brick of its own that a layout names, by that name, which may be changed.
 template <typename Visit>
 void forNames(VoxLayout& layout, Visit visit) {
-  if (!isConstant(layout.elsewhere)) visit(layout.elsewhere);
   for (std::uint32_t& brick : layout.bricks)
     if (!isConstant(brick)) visit(brick);
 }

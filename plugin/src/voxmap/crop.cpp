@@ -86,7 +86,6 @@ Box moved(const Box& box, const Pose& X) noexcept {
 }
 
 VoxMap VoxMapBuilder::cropped(const VoxMap& map, const std::vector<Box>& boxes_M) {
-  requireOneGrid(map, "cropped");
   auto layout = std::make_shared<VoxLayout>(*map.layout_);
   for (std::size_t i = 0; i < layout->bricks.size(); ++i) {
     std::uint32_t& brick = layout->bricks[i];

@@ -41,7 +41,6 @@ FieldView::FieldView(const VoxMap& map) noexcept
   quantum = static_cast<float>(quantum_m / voxel_m);
   band = kFullBand * quantum;
   is_metric = layout.is_metric;
-  this->layout = layout.coarse != nullptr ? &layout : nullptr;
   error = 0.8661f + layout.node_error + quantum;
   diagonal = 1.7322f + 2 * layout.node_error + quantum;
   // Along each axis nodes differ by `steepest` at most, and each is rounded by half a quantum.

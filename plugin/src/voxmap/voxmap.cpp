@@ -93,35 +93,21 @@ std::size_t VoxMap::partCount() const noexcept {
 
 std::size_t VoxMap::brickCount() const noexcept {
   const auto& bricks = layout_->bricks;
-  return static_cast<std::size_t>(std::count_if(
-      bricks.begin(), bricks.end(), [&](std::uint32_t brick) { return layout_->hasOwnNodes(brick); }));
+  return static_cast<std::size_t>(
+      std::count_if(bricks.begin(), bricks.end(), [](std::uint32_t brick) { return !isConstant(brick); }));
 }
-
-namespace {
-
-std::size_t bytesOf(const VoxLayout& layout) {
-  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * VoxLayout::kCellBytes +
-                      layout.pool->size() * VoxPool::kBytes;
-  for (const auto& owners : layout.owners) bytes += owners->size() * sizeof(NodeOwners);
-  return layout.coarse != nullptr ? bytes + bytesOf(*layout.coarse) : bytes;
-}
-
-}  // namespace
 
 std::size_t VoxMap::memoryBytes() const noexcept {
-  return bytesOf(*layout_);
+  std::size_t bytes = sizeof(VoxLayout) + layout_->bricks.size() * VoxLayout::kCellBytes +
+                      layout_->pool->size() * VoxPool::kBytes;
+  for (const auto& owners : layout_->owners) bytes += owners->size() * sizeof(NodeOwners);
+  return bytes;
 }
 
 std::size_t VoxMap::memoryBytesBeside(const VoxMap& other) const noexcept {
   if (isSame(other)) return 0;
   const bool is_mounted_on_one = layout_->pool == other.layout_->pool;
   return memoryBytes() - (is_mounted_on_one ? layout_->pool->size() * VoxPool::kBytes : 0);
-}
-
-double VoxMap::voxelAt(const Vec3& p_M) const noexcept {
-  const VoxSampler::Place at = VoxSampler(*this).place(p_M);
-  const bool is_coarse = layout_->coarse != nullptr && !layout_->hasOwnNodes(at.brick);
-  return is_coarse ? voxel_m_ * (1 << layout_->coarse_shift) : voxel_m_;
 }
 
 double VoxMap::distance(const Vec3& p_M) const noexcept {

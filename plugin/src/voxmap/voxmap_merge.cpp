@@ -210,7 +210,6 @@ class AddedMap final : public AddedField {
 };
 
 void requireSameGrid(const VoxMap& a, const VoxMap& b) {
-  for (const VoxMap* map : {&a, &b}) VoxMapBuilder::requireOneGrid(*map, "combined");
   if (a.voxel_m() != b.voxel_m() || a.quantum_m() != b.quantum_m())
     throw LoadError("", "",
                     "two voxmaps of different voxel size or band cannot be combined; resample one onto the "
@@ -218,13 +217,6 @@ void requireSameGrid(const VoxMap& a, const VoxMap& b) {
 }
 
 }  // namespace
-
-void VoxMapBuilder::requireOneGrid(const VoxMap& map, const char* what) {
-  if (map.layout_->coarse == nullptr) return;
-  throw LoadError("", "",
-                  std::string("a voxmap that is fine in regions only cannot be ") + what +
-                      "; build it with one voxel size, or cook the meshes in regions");
-}
 
 VoxMap VoxMapBuilder::combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b,
                                Combine combine) {

@@ -174,8 +174,6 @@ VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
-  VoxMapBuilder::requireOneGrid(cooked, "combined");
-  VoxMapBuilder::requireOneGrid(*part.map, "resampled");
   if (!(cooked.voxel_m() > 0))
     throw LoadError("", "", "there is no voxmap to mount on, an empty one has no grid; cook one first");
   requirePose(part.X_MP);
