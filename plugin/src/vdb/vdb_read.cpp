@@ -10,8 +10,8 @@
 
 #include "vdb/vdb_level_set.h"
 #include "vdb/vdb_nodes.h"
-#include "voxelise/voxelise.h"
 #include "voxmap/field_proof.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/load_error.h"
 
 namespace vps {

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "vdb/vdb_format.h"
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 

@@ -10,7 +10,7 @@
 //
 // Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
 // every number of threads gives the same bits.
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>

@@ -9,7 +9,7 @@
 #include <new>
 
 #include "voxmap/voxmap_layout.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_sampler.h"
 
 namespace vps {
 

@@ -2,7 +2,7 @@
 // What can be merged into a map: another map on the same grid, or one that is resampled on the way.
 #pragma once
 
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 
 namespace vps {
 

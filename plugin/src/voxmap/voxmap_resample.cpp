@@ -10,7 +10,7 @@
 #include "voxmap/map_limits.h"
 #include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_merge.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_sampler.h"
 #include "vps/load_error.h"
 
 namespace vps {

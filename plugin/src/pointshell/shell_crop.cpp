@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pointshell/shell_hierarchy.h"
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 
 namespace vps {
 namespace {

@@ -13,7 +13,7 @@
 #include <optional>
 #include <tuple>
 
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/write_file.h"
 
 namespace vps {
