@@ -23,7 +23,7 @@ struct StepRow {
 
 /// Models and the case made of them; scenes are shared and only one is kept, so a row asks anew each time.
 struct Prepared {
-  std::shared_ptr<const scenes::Scene> scene;
+  std::shared_ptr<const Scene> scene;
   std::shared_ptr<const PointShell> patch;
   StepCase steps;
 };

@@ -16,6 +16,7 @@
 #include "support/same_map.h"
 #include "vps/load_error.h"
 #include "vps/query.h"
+#include "vps/vdb.h"
 
 namespace vps::test {
 namespace {

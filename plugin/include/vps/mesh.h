@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/box.h"
 #include "vps/pose.h"
 
 namespace vps {
@@ -15,18 +16,6 @@ namespace vps {
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-};
-
-struct Box {
-  Vec3 min = Vec3::Constant(1e300);
-  Vec3 max = Vec3::Constant(-1e300);
-  void add(const Vec3& p) {
-    min = min.cwiseMin(p);
-    max = max.cwiseMax(p);
-  }
-  [[nodiscard]] bool isEmpty() const { return (min.array() > max.array()).any(); }
-  [[nodiscard]] Vec3 center() const { return 0.5 * (min + max); }
-  [[nodiscard]] Vec3 size() const { return max - min; }
 };
 
 /// Of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in the mesh's

@@ -24,7 +24,6 @@ struct VoxMapSettings {
 enum class Gradient { Continuous, Trilinear };
 
 struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
-struct FieldView;  // what queries read: src/read_kernel.h
 
 /// Signed distance [m] to a part's surface in frame M, negative inside: at the grid's nodes within the band
 /// exact to half a quantum_m() (nodes are 16 bit), trilinear between them. Beyond the band the distance
@@ -81,10 +80,7 @@ class VoxMap {
   [[nodiscard]] std::uint16_t owner(const Vec3& p_M) const noexcept;
 
  private:
-  friend class VoxMapBuilder;
-  friend class VoxMapCacheFile;
-  friend class VoxSampler;
-  friend struct FieldView;
+  friend class VoxMapAccess;
   double voxel_m_ = 0, band_m_ = 0, quantum_m_ = 0;
   Box bounds_;
   std::shared_ptr<const VoxLayout> layout_;  // never null
@@ -129,34 +125,5 @@ VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 /// As mountVoxMap() for a mesh, from the part's own field: milliseconds where the mesh takes a tenth of a
 /// second or more, for the price of one resampling.
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
-
-/// Of two maps on one grid (same voxel and band; else LoadError): what is in either, and what is in a but not
-/// in b. The distance is min(a, b) and max(a, -b): exact outside a union and inside a difference, elsewhere a
-/// bound near edges that did not exist before. Owners: a's parts, then b's.
-VoxMap unionOf(const VoxMap& a, const VoxMap& b);
-VoxMap differenceOf(const VoxMap& a, const VoxMap& b);
-
-/// Writes an ordinary OpenVDB level set ("surface", float, narrow band) that opens in Houdini and Blender.
-/// Goes to a temporary name first: an existing file is replaced whole or not at all. Throws LoadError.
-void saveVdb(const VoxMap& map, const std::string& file);
-
-/// Reads a level set of any program: values of 16, 32 or 64 bit; cubes for voxels. Files of ours come back to
-/// the bit. Of others, `grid` names the one to read; unnamed, the only level set is taken, or the only grid
-/// that looks like one. Its band is kept up to 32 voxels; one thinner than 3 is extended by fast sweeping, a
-/// first-order solution that leaves what is there as it is. Values need not be true distances: how far they
-/// are from any function that changes by the way gone is measured, and widens sampleError_m() and what
-/// culling allows for. A grid that is turned or moved off the lattice through the origin is resampled (see
-/// resampledVoxMap()); loadPlacedVdb() leaves it as it is. Throws LoadError on a file that is missing or
-/// damaged, that holds no such grid or several, and on what would not fit in memory (before taking it).
-VoxMap loadVdb(const std::string& file, const std::string& grid = "");
-
-/// A level set on its own lattice, and where that lies in the file's frame F.
-struct PlacedVdb {
-  VoxMap map;
-  Pose X_FM;
-};
-
-/// As loadVdb(), but every node is a value of the file, rounded to the map's quantum.
-PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
 
 }  // namespace vps

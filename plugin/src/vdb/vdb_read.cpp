@@ -13,6 +13,7 @@
 #include "voxmap/field_proof.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/load_error.h"
+#include "vps/vdb.h"
 
 namespace vps {
 namespace {
@@ -54,7 +55,7 @@ class OwnFile {
     readCenters();
     readParts();
     markFarCells(*layout_);
-    return VoxMapBuilder::wrap(layout_, voxel_m, band_m, boxOf("vps_bounds_"));
+    return VoxMapAccess::make(layout_, voxel_m, band_m, boxOf("vps_bounds_"));
   }
 
  private:
@@ -134,7 +135,7 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
   if (bounds.isEmpty()) refuse(file, "has no surface: its values change sign nowhere; export it again");
   markFarCells(*layout);
-  return {VoxMapBuilder::wrap(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
+  return {VoxMapAccess::make(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
 }
 
 PlacedVdb read(const std::string& file, const std::string& name) {
@@ -174,7 +175,7 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   const VoxMap& map = placed.map;
   // Not resampledVoxMap(): a band that is 3 voxels but for the rounding of floats would be none.
   const VoxMapSettings settings = {map.voxel_m(), map.band_m() / map.voxel_m()};
-  return mountVoxMap(VoxMapBuilder::empty(settings), PlacedMap{&map, placed.X_FM});
+  return mountVoxMap(VoxMapAccess::empty(settings), PlacedMap{&map, placed.X_FM});
 }
 
 }  // namespace vps

@@ -10,22 +10,19 @@
 //
 // Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
 // every number of threads gives the same bits.
-#include "voxmap/voxmap_access.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <bit>
 #include <cmath>
-#include <cstdio>
 
 #include "voxelise/brick_assembly.h"
+#include "voxelise/map_estimate.h"
 #include "voxelise/splat.h"
 #include "voxelise/winding_signs.h"
 #include "voxmap/center_bounds.h"
-#include "voxmap/map_limits.h"
-#include "vps/load_error.h"
-#include "vps/map_estimate.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
 
 namespace vps {
@@ -65,7 +62,7 @@ class Voxeliser {
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
   /// False if pseudonormals turned out to contradict each other.
-  [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
+  [[nodiscard]] bool areSignsConsistent() const { return are_signs_consistent_; }
 
  private:
   void layOutDirectory();
@@ -95,7 +92,7 @@ class Voxeliser {
   const double h_, band_m_;
   const double reach_;  // of the nodes that are computed [voxels]
   WindingSigner* const signer_;
-  bool are_signs_sound_ = true;
+  bool are_signs_consistent_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
   std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
   std::vector<std::uint32_t> features_;  // by tile, ascending within each
@@ -294,7 +291,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   if (signer_ != nullptr)
     signer_->signBricks(*layout_, h_, quantumOf(band_m_));
   else
-    are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
+    are_signs_consistent_ = signsAgree(*layout_, h_, quantumOf(band_m_));
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   markFarCells(*layout_);
@@ -302,37 +299,6 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   boundCenters();
   tell(1);
   return layout_;
-}
-
-/// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
-/// the directory.
-double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
-  const double cell_m = VoxMap::kBrick * h;
-  const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
-  const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
-  constexpr double kOnTheWay = 15;  // bytes a cell, assumed: what is made beside the directory and dropped
-  return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kOnTheWay;
-}
-
-}  // namespace
-
-double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
-  return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
-}
-
-namespace {
-
-/// Before memory is taken: refuses what no map can be of, or none that fits.
-void requireFits(const Box& box, double area_m2, const VoxMapSettings& settings, const std::string& part) {
-  requireSettings(settings, part);
-  requireNear(box, settings.voxel_m, part);
-  const auto bytesAt = [&](double h) { return estimatedBytes(area_m2, box.size(), h, settings.band_voxels); };
-  double h = settings.voxel_m;
-  while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
-  char what_for[48], remedy[48];
-  std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
-  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
-  requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
 }
 
 /// Ready to be voxelised: signs need shared vertices.
@@ -344,22 +310,17 @@ RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
 
 }  // namespace
 
-VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                            const Progress& progress, MeshReport* report) {
+VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
+                   const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
-  requireFits(bounds(mesh), area(mesh), settings, part);
+  requireFits(mesh, settings, part);
   RepairedMesh repaired = prepared(mesh, part);
-  return build(mesh, repaired, settings, progress, report);
-}
-
-VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
-                            const Progress& progress, MeshReport* report) {
   const Box box = bounds(mesh);
   std::shared_ptr<const VoxLayout> layout;
   if (repaired.is_sound) {
     Voxeliser voxeliser(repaired.surface, box, settings, nullptr);
     layout = voxeliser.build(progress);
-    if (!voxeliser.areSignsSound()) {
+    if (!voxeliser.areSignsConsistent()) {
       layout = nullptr;
       repaired = repairMesh(welded(mesh), Crossing::Seen);
       repaired.is_sound = false;
@@ -372,27 +333,7 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxM
     repaired.report.sure = signer.sure();
   }
   if (report != nullptr) *report = repaired.report;
-  return wrap(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
-}
-
-VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
-                           const Box& bounds) {
-  VoxMap map;
-  map.voxel_m_ = voxel_m;
-  map.band_m_ = bandHeld(band_m);
-  map.quantum_m_ = quantumOf(band_m);
-  map.bounds_ = bounds;
-  map.layout_ = std::move(layout);
-  return map;
-}
-
-VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
-  return wrap(VoxMap().layout_, settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
-}
-
-VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                   const Progress& progress, MeshReport* report) {
-  return VoxMapBuilder::build(mesh, settings, part, progress, report);
+  return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
 }
 
 }  // namespace vps

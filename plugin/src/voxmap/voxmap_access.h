@@ -1,37 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Building and merging of voxmaps.
+// The inside of a VoxMap, for code that builds, merges, reads or stores maps.
 #pragma once
 
 #include "voxmap/voxmap_layout.h"
 
 namespace vps {
 
-class AddedField;
-struct RepairedMesh;
-enum class Combine;
-
-/// What may look into a VoxMap while it is being made.
-class VoxMapBuilder {
+/// Takes maps apart and puts them together. The only friend of VoxMap.
+class VoxMapAccess {
  public:
-  static VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                      const Progress& progress, MeshReport* report);
-  /// Two fields with the same voxel and band. The second's parts get the next owner numbers.
-  static VoxMap combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b, Combine combine);
-  static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
-  static VoxMap packed(const VoxMap& map);
-  static VoxMap cropped(const VoxMap& map, const std::vector<Box>& boxes_M);
-  static void save(const VoxMap& map, const std::string& file);
-  /// A layout as a map, whose box of the surface is known; the band as it was asked for or as nodes hold it.
-  static VoxMap wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+  [[nodiscard]] static const std::shared_ptr<const VoxLayout>& layout(const VoxMap& map) noexcept {
+    return map.layout_;
+  }
+  /// A layout as a map.
+  /// @param band_m  as it was asked for, or as nodes hold it; see bandHeld()
+  /// @param bounds  box of the surface, in M
+  static VoxMap make(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
                      const Box& bounds);
-  /// An empty map on a grid, to which fields are added.
+  /// A map without cells on a grid, to which fields can be added.
   static VoxMap empty(const VoxMapSettings& settings);
-
- private:
-  /// @param mesh      what was given
-  /// @param repaired  what repairMesh() made of it; made anew if its signs contradict each other
-  static VoxMap build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
-                      const Progress& progress, MeshReport* report);
 };
 
 }  // namespace vps

@@ -170,7 +170,7 @@ void requireBand(const VoxMap& map, double band_m) {
 
 VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
   requireSettings(settings);
-  return mountVoxMap(VoxMapBuilder::empty(settings), part);
+  return mountVoxMap(VoxMapAccess::empty(settings), part);
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
@@ -179,7 +179,7 @@ VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
   requirePose(part.X_MP);
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
-  return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);
+  return mergedVoxMap(cooked, field, field.bounds());
 }
 
 }  // namespace vps

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "voxmap/voxmap_layout.h"
+#include "voxmap/voxmap_access.h"
 
 namespace vps {
 
@@ -12,14 +12,14 @@ namespace vps {
 class VoxSampler {
  public:
   explicit VoxSampler(const VoxMap& map) noexcept
-      : layout_(*map.layout_),
+      : layout_(*VoxMapAccess::layout(map)),
         bricks_(layout_.bricks.data()),
         nodes_(layout_.pool->nodes(0)),
-        voxel_m_(map.voxel_m_),
-        band_m_(map.band_m_),
-        quantum_m_(map.quantum_m_),
-        bounds_(map.bounds_),
-        per_voxel_(map.voxel_m_ > 0 ? 1 / map.voxel_m_ : 0),
+        voxel_m_(map.voxel_m()),
+        band_m_(map.band_m()),
+        quantum_m_(map.quantum_m()),
+        bounds_(map.bounds()),
+        per_voxel_(map.voxel_m() > 0 ? 1 / map.voxel_m() : 0),
         low_((VoxMap::kBrick * layout_.low).cast<double>()),
         size_((VoxMap::kBrick * layout_.size).cast<double>()) {}
 
