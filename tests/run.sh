@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 preset=${1:-release}
 .ci/install
 if [[ $preset == fuzz ]]; then
-  cmake --preset core -B build/fuzz -DVPS_COMPONENTS="plugin;device" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVPS_SANITIZE=address,undefined -DVPS_TESTS=ON >/dev/null
+  cmake --preset core -B build/fuzz -DVPS_COMPONENTS="plugin;vdb;device" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVPS_SANITIZE=address,undefined -DVPS_TESTS=ON >/dev/null
   cmake --build build/fuzz --target fuzz_ply fuzz_vdb fuzz_mesh fuzz_mcap fuzz_recording fuzz_scene fuzz_device
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
   for reader in ply vdb mesh mcap recording scene device; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done

@@ -13,11 +13,11 @@
 #include "voxelise/voxelise.h"
 #include "voxmap/field_proof.h"
 #include "vps/load_error.h"
+#include "vps/vdb.h"
 
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 
 [[noreturn]] void refuse(const std::string& file, const std::string& found_and_remedy) {
   throw LoadError(file, "", found_and_remedy);

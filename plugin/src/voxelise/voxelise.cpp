@@ -40,7 +40,6 @@ struct CoarseRest {
 
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
 
 /// A feature that reaches a tile.
@@ -482,6 +481,8 @@ VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel
   map.layout_ = std::move(layout);
   return map;
 }
+
+const VoxLayout& VoxMapBuilder::layoutOf(const VoxMap& map) { return *map.layout_; }
 
 VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
   return wrap(VoxMap().layout_, settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());

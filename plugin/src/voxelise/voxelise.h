@@ -23,10 +23,11 @@ class VoxMapBuilder {
   static VoxMap combined(const VoxMap& a, const VoxMap& b, Combine combine);
   static VoxMap packed(const VoxMap& map);
   static VoxMap cropped(const VoxMap& map, const std::vector<Box>& boxes_M);
-  static void save(const VoxMap& map, const std::string& file);
   /// A layout as a map, whose box of the surface is known; the band as it was asked for or as nodes hold it.
   static VoxMap wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
                      const Box& bounds);
+  /// The cells and bricks of a map.
+  static const VoxLayout& layoutOf(const VoxMap& map);
   /// An empty map on a grid, to which fields are added.
   static VoxMap empty(const VoxMapSettings& settings);
   /// Throws LoadError for a map that is fine in regions only, which `what` cannot do with.

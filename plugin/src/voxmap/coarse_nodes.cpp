@@ -15,7 +15,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 
 float mix(float a, float b, float t) {
   return a + t * (b - a);
