@@ -25,10 +25,35 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   target_include_directories(vps_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(vps_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  vps_export_header(${name})
   vps_compile_options(vps_${name})
   vps_precompile(vps_${name} ${ARG_PRECOMPILE})
   vps_unite_rooms(vps_${name} "${ARG_SOURCES}")
   vps_install_library(${name} "${ARG_PUBLIC}" ${ARGN})
+endfunction()
+
+# The macro that marks what a library exports, VPS_API in vps/export.h for plugin and VPS_<NAME>_API in
+# vps_<name>/export.h for others: all else is hidden, and costs neither a symbol nor an indirect call.
+function(vps_export_header name)
+  string(TOUPPER ${name} upper)
+  set(macro VPS_${upper}_API)
+  set(header vps_${name}/export.h)
+  if(name STREQUAL "plugin")
+    set(macro VPS_API)
+    set(header vps/export.h)
+  elseif(name STREQUAL "vdb")
+    set(header vps/vdb_export.h)
+  endif()
+  include(GenerateExportHeader)
+  generate_export_header(vps_${name} BASE_NAME VPS_${upper} EXPORT_MACRO_NAME ${macro}
+    EXPORT_FILE_NAME ${PROJECT_BINARY_DIR}/include/${header})
+  target_include_directories(vps_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
+  if(NOT BUILD_SHARED_LIBS)
+    target_compile_definitions(vps_${name} PUBLIC VPS_${upper}_STATIC_DEFINE)
+  endif()
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_BINARY_DIR}/include/${header}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT ${name})
 endfunction()
 
 # Standard headers and Eigen take half of the time that one of our files takes to compile. The first library compiles
