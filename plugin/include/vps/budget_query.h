@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 
+#include "vps/export.h"
 #include "vps/query.h"
 
 namespace vps {
@@ -51,7 +52,7 @@ struct BudgetReport {
 /// A sample that touches may say far too much where little touches: watch force_error_N, which is honest but
 /// wide, and plugin/README.md for what to expect. No temporal coherence: where poses are near each other
 /// queryWrench() with a QueryMemory may cost less, and is exact.
-class BudgetQuery {
+class VPS_API BudgetQuery {
  public:
   /// Makes all the room it needs: about 130 bytes for each 16 points. The shell must outlive it and not
   /// change.

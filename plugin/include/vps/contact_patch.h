@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/query.h"
 
 namespace vps {
@@ -24,7 +25,7 @@ struct ContactPatch {
 };
 
 /// Room for patches, sized once. When it is full the wrench of the others is summed in `rest`.
-struct PatchSet {
+struct VPS_API PatchSet {
   std::vector<ContactPatch> patches;  ///< ascending id; capacity is the limit; never grown
   Wrench rest;                        ///< about M's origin, of patches that found no room
   std::size_t left_out = 0;           ///< how many those were
@@ -37,7 +38,7 @@ struct PatchSet {
 /// patches' wrenches are continuous in the pose, and sum to penaltyWrench() exactly but for rounding. Points
 /// that do not touch are left out. Never throws, allocates, locks. Truncated when the set is full.
 /// O(contacts).
-Status contactPatches(std::span<const Contact> contacts, const PointShell& shell, double k_N_per_m3,
-                      std::uint32_t points_per_patch, PatchSet& out) noexcept;
+VPS_API Status contactPatches(std::span<const Contact> contacts, const PointShell& shell, double k_N_per_m3,
+                              std::uint32_t points_per_patch, PatchSet& out) noexcept;
 
 }  // namespace vps

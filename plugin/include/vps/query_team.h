@@ -9,12 +9,14 @@
 #include <thread>
 #include <vector>
 
+#include "vps/export.h"
+
 namespace vps {
 
 /// A few threads that wait for queries to share, the caller being one of them. Made once; sharing a query
 /// does not allocate or lock: the others watch a counter, for some ten thousand turns busily (about 50 us),
 /// then asleep until they are called. Worth it above about 30 us a query; serves one query at a time.
-class QueryTeam {
+class VPS_API QueryTeam {
  public:
   /// Groups of 4096 points that one shared query can have; a larger shell is queried by the caller alone.
   static constexpr std::size_t kMostGroups = 8192;

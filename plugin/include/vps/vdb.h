@@ -5,13 +5,14 @@
 #include <string>
 
 #include "vps/pose.h"
+#include "vps/vdb_export.h"
 #include "vps/voxmap.h"
 
 namespace vps {
 
 /// Writes an ordinary OpenVDB level set ("surface", float, narrow band) that opens in Houdini and Blender.
 /// Goes to a temporary name first: an existing file is replaced whole or not at all. Throws LoadError.
-void saveVdb(const VoxMap& map, const std::string& file);
+VPS_VDB_API void saveVdb(const VoxMap& map, const std::string& file);
 
 /// Reads a level set of any program: values of 16, 32 or 64 bit; cubes for voxels. Files of ours come back to
 /// the bit. Of others, `grid` names the one to read; unnamed, the only level set is taken, or the only grid
@@ -21,7 +22,7 @@ void saveVdb(const VoxMap& map, const std::string& file);
 /// culling allows for. A grid that is turned or moved off the lattice through the origin is resampled (see
 /// resampledVoxMap()); loadPlacedVdb() leaves it as it is. Throws LoadError on a file that is missing or
 /// damaged, that holds no such grid or several, and on what would not fit in memory (before taking it).
-VoxMap loadVdb(const std::string& file, const std::string& grid = "");
+VPS_VDB_API VoxMap loadVdb(const std::string& file, const std::string& grid = "");
 
 /// A level set on its own lattice, and where that lies in the file's frame F.
 struct PlacedVdb {
@@ -30,6 +31,6 @@ struct PlacedVdb {
 };
 
 /// As loadVdb(), but every node is a value of the file, rounded to the map's quantum.
-PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
+VPS_VDB_API PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
 
 }  // namespace vps
