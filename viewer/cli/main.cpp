@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps/version.h"
 
 namespace vps::viewer {
 
@@ -26,7 +27,7 @@ using Run = std::function<int()>;
 class CommandLine {
  public:
   CommandLine() {
-    app_.set_version_flag("--version", std::string("vps ") + VPS_VERSION);
+    app_.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
     app_.require_subcommand(1);
     app_.footer(
         "Exit status: 0 done and good, 1 done but the parts do not fit or a bound was missed, 2 could not.\n"

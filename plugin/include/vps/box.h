@@ -2,6 +2,7 @@
 // Axis-aligned boxes.
 #pragma once
 
+#include "vps/export.h"
 #include "vps/pose.h"
 
 namespace vps {
@@ -20,12 +21,12 @@ struct Box {
 };
 
 /// True if the boxes share a point. An empty box shares none.
-[[nodiscard]] bool overlap(const Box& a, const Box& b) noexcept;
+[[nodiscard]] VPS_API bool overlap(const Box& a, const Box& b) noexcept;
 /// True if all of `inner` lies in `outer`. An empty box lies in every box.
-[[nodiscard]] bool isWithin(const Box& inner, const Box& outer) noexcept;
+[[nodiscard]] VPS_API bool isWithin(const Box& inner, const Box& outer) noexcept;
 /// The box grown by `by_m` on every side. An empty box stays empty.
-[[nodiscard]] Box grown(const Box& box, double by_m) noexcept;
+[[nodiscard]] VPS_API Box grown(const Box& box, double by_m) noexcept;
 /// The smallest box around a box that was moved by X. An empty box stays empty.
-[[nodiscard]] Box moved(const Box& box, const Pose& X) noexcept;
+[[nodiscard]] VPS_API Box moved(const Box& box, const Pose& X) noexcept;
 
 }  // namespace vps

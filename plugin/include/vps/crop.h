@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
@@ -13,10 +14,10 @@ namespace vps {
 /// Elsewhere it reads as saturated, with the right sign by cells, and none of its bounds holds: only for
 /// queries whose points, and the centres of their clusters, stay in one of the boxes. May be mounted upon.
 /// O(cells).
-VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
+VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
 /// The shell's points in the boxes only, in their order and in their clusters: a query of fields that stay in
 /// the boxes finds the same contacts, to the bit, under smaller ids. O(points).
-PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
+VPS_API PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
 
 }  // namespace vps

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "vps/pose.h"
+#include "vps/vdb_export.h"
 #include "vps/voxmap.h"
 
 namespace vps {
@@ -11,7 +13,7 @@ namespace vps {
 /// Writes an ordinary OpenVDB level set (grid "surface", float, narrow band) that opens in Houdini and
 /// Blender, with metadata from which loadVdb() restores the map to the bit. An existing file is replaced
 /// whole or not at all. Throws LoadError.
-void saveVdb(const VoxMap& map, const std::string& file);
+VPS_VDB_API void saveVdb(const VoxMap& map, const std::string& file);
 
 /// Reads a level set of any program: values of 16, 32 or 64 bit, cubic voxels.
 ///
@@ -25,7 +27,7 @@ void saveVdb(const VoxMap& map, const std::string& file);
 ///
 /// Throws LoadError for a file that is missing or damaged, that holds no such grid or several, or that would
 /// not fit in memory; the last is found before the memory is taken.
-VoxMap loadVdb(const std::string& file, const std::string& grid = "");
+VPS_VDB_API VoxMap loadVdb(const std::string& file, const std::string& grid = "");
 
 /// A level set on its own lattice, with that lattice's pose in the file's frame F.
 struct PlacedVdb {
@@ -34,6 +36,6 @@ struct PlacedVdb {
 };
 
 /// As loadVdb(), but without resampling: every node is a value of the file, rounded to the map's quantum.
-PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
+VPS_VDB_API PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
 
 }  // namespace vps

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 #include "vps/progress.h"
 
@@ -29,7 +30,7 @@ struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
 /// exact to half a quantum_m() (nodes are 16 bit), trilinear between them. Beyond the band the distance
 /// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse bound that still tells far
 /// from near. Immutable once built; sampling is thread-safe, and never allocates or throws.
-class VoxMap {
+class VPS_API VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
 
@@ -91,8 +92,8 @@ class VoxMap {
 /// of what repairMesh() makes of it, and `report`, if given, tells what was found and how sure the sign is.
 /// O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size that is not
 /// positive, or a grid that would not fit in memory (says which voxel size would).
-VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
-                   const Progress& progress = {}, MeshReport* report = nullptr);
+VPS_API VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
+                           const Progress& progress = {}, MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {
@@ -104,12 +105,12 @@ struct PlacedMesh {
 /// distances on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells
 /// the parts apart. Throws LoadError as buildVoxMap(), for a pose that is not finite, and for parts so far
 /// apart that one map of them would not fit in memory; so do mounting, resampling and uniting.
-VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
-                  const Progress& progress = {});
+VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
+                          const Progress& progress = {});
 
 /// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new
 /// part.
-VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
+VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 
 /// A map at its pose in another map's frame.
 struct PlacedMap {
@@ -120,10 +121,10 @@ struct PlacedMap {
 /// The field of a placed map on the grid of settings: every node is read from the map's own field, so it is
 /// off by that field's error and adds its own; sampleError_m() says how much. Much quicker than building
 /// anew. Throws LoadError if the map's band is narrower than the one asked for, or as buildVoxMap().
-VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
+VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
 /// As mountVoxMap() for a mesh, from the part's own field: milliseconds where the mesh takes a tenth of a
 /// second or more, for the price of one resampling.
-VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
+VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
 }  // namespace vps

@@ -18,22 +18,17 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
-
-[[noreturn]] void refuse(const std::string& file, const std::string& found_and_remedy) {
-  throw LoadError(file, "", found_and_remedy);
-}
 [[noreturn]] void refuseDamaged(const std::string& file) {
-  refuse(file, "is damaged or cut short; build it again");
+  refuseVdb(file, "is damaged or cut short; build it again");
 }
 
 std::string bytesOf(const std::string& file) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
   if (!unknown && static_cast<double>(size) > kMemoryLimit_bytes)
-    refuse(file, "is larger than the 4 GiB that are read; resample it with larger voxels");
+    refuseVdb(file, "is larger than the 4 GiB that are read; resample it with larger voxels");
   std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, "cannot be read; is the name right?");
+  if (!in) refuseVdb(file, "cannot be read; is the name right?");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -133,7 +128,7 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
   layOut(level_set.grid->tree(), quantum_m, file, *layout);
   readNodes(level_set.grid->tree(), quantum_m, file, *layout);
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
-  if (bounds.isEmpty()) refuse(file, "has no surface: its values change sign nowhere; export it again");
+  if (bounds.isEmpty()) refuseVdb(file, "has no surface: its values change sign nowhere; export it again");
   markFarCells(*layout);
   return {VoxMapAccess::make(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
 }
@@ -143,22 +138,23 @@ PlacedVdb read(const std::string& file, const std::string& name) {
     std::string bytes = bytesOf(file);
     const Origin origin = originOf(bytes);
     if (origin == Origin::Changed)
-      refuse(file,
-             "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
-             "build it again, or remove them");
+      refuseVdb(file,
+                "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
+                "build it again, or remove them");
     VdbArchive archive(std::move(bytes), kMemoryLimit_bytes);
     if (origin == Origin::Ours) return {OwnFile(file, archive).read(), Pose()};
     return readOthers(file, archive, name);
   } catch (const LoadError&) {
     throw;
   } catch (const openvdb::LookupError&) {
-    refuse(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
+    refuseVdb(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
   } catch (const std::bad_alloc&) {
-    refuse(file,
-           "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
-           "it again: it is damaged");
+    refuseVdb(
+        file,
+        "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
+        "it again: it is damaged");
   } catch (const std::exception&) {
-    refuse(file, "is not a whole OpenVDB file; build it again");
+    refuseVdb(file, "is not a whole OpenVDB file; build it again");
   }
 }
 

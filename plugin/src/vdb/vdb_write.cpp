@@ -14,7 +14,7 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick, kOwnNodes = kBrick * kBrick * kBrick;
+constexpr int kOwnNodes = kBrick * kBrick * kBrick;
 
 openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m,
                                     double quantum_m) {

@@ -29,7 +29,6 @@ namespace vps {
 
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
 
 /// A feature that reaches a tile.

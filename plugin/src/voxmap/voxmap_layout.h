@@ -29,7 +29,8 @@ namespace vps {
 using Index3 = Eigen::Vector3i;
 
 /// Nodes of one brick along an edge, border included, and in all.
-inline constexpr int kNodes = VoxMap::kBrick + 1;
+inline constexpr int kBrick = VoxMap::kBrick;
+inline constexpr int kNodes = kBrick + 1;
 inline constexpr int kBrickNodes = kNodes * kNodes * kNodes;
 /// Nodes from one brick to the next in memory: whole cache lines.
 inline constexpr std::uint32_t kBrickStride = (kBrickNodes + 31) / 32 * 32;

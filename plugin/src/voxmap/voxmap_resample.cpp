@@ -16,7 +16,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr int kBlocksOfBrick = kBrickStride / kLanes;
 static_assert(kBrickStride % kLanes == 0);
 

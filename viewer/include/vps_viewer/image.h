@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "vps_viewer/export.h"
+
 namespace vps::viewer {
 
 /// sRGB, 8 bits a channel, rows from the top; rgb.size() == 3 * width * height.
-struct Image {
+struct VPS_VIEWER_API Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
 
@@ -23,11 +25,11 @@ struct Image {
 
 /// Writes a PNG: the same image gives the same bytes (no time stamp), and no reader ever sees half a file.
 /// Throws std::runtime_error naming the file and the system's reason.
-void savePng(const Image& image, const std::string& file);
+VPS_VIEWER_API void savePng(const Image& image, const std::string& file);
 
 /// Reads any 8- or 16-bit PNG as RGB; transparency is laid on white. Throws LoadError if it is missing,
 /// damaged or no PNG.
-Image loadPng(const std::string& file);
+VPS_VIEWER_API Image loadPng(const std::string& file);
 
 /// How far two images differ. A pixel's difference is the greatest of its channels', 0 to 255.
 struct ImageDifference {
@@ -39,13 +41,13 @@ struct ImageDifference {
 
 /// @param tolerance difference that still counts as equal, 0 to 255; 2 absorbs what SSE and AVX round
 /// differently
-ImageDifference compare(const Image& a, const Image& b, int tolerance);
+VPS_VIEWER_API ImageDifference compare(const Image& a, const Image& b, int tolerance);
 
 /// A picture of the difference: a in pale grey, pixels beyond the tolerance in red, the stronger the further
 /// apart. Throws std::invalid_argument unless the sizes agree.
-Image differenceImage(const Image& a, const Image& b, int tolerance);
+VPS_VIEWER_API Image differenceImage(const Image& a, const Image& b, int tolerance);
 
 /// savePng(differenceImage(...)).
-void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
+VPS_VIEWER_API void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
 
 }  // namespace vps::viewer

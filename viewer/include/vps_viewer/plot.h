@@ -8,6 +8,7 @@
 
 #include "vps_scenes/contact_episodes.h"
 #include "vps_scenes/result.h"
+#include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
@@ -25,23 +26,23 @@ struct Plot {
 };
 
 /// What a plot came to. A plot is never worth a run: nothing here throws.
-struct PlotOutcome {
+struct VPS_VIEWER_API PlotOutcome {
   bool is_written = false;
   std::string failure_reason;  ///< for a person: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
   explicit operator bool() const { return is_written; }
 };
 
 /// Is there a gnuplot to run?
-bool hasGnuplot();
+VPS_VIEWER_API bool hasGnuplot();
 
 /// Forces and torques on the hand over time, as figure 9 of the paper: impacts marked, phases shaded, steps
 /// named. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
 /// @param step_names by index of step; missing ones are numbered
 /// @param step       plot only this step; -1: all
-PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
-                       const std::vector<std::string>& step_names = {}, int step = -1);
+VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
+                                      const std::vector<std::string>& step_names = {}, int step = -1);
 
 /// Any lines over a common axis; file + ".png" and file + ".svg".
-PlotOutcome plotSeries(const Plot& plot, const std::string& file);
+VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
 }  // namespace vps::viewer

@@ -16,6 +16,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/camera.h"
+#include "vps_viewer/export.h"
 #include "vps_viewer/image.h"
 
 namespace vps::viewer {
@@ -31,7 +32,7 @@ using RenderScene = std::vector<DrawnMesh>;
 
 /// What there is to draw of a scene: its parts, in order. Parts that bring no colour of their own get one
 /// each from a muted palette, so that neighbours can be told apart.
-RenderScene drawnMeshes(const scenes::Scene& scene);
+VPS_VIEWER_API RenderScene drawnMeshes(const scenes::Scene& scene);
 
 /// A section: what lies beyond the plane, on the side n_W points to, is cut away.
 struct CutPlane {
@@ -60,15 +61,16 @@ struct DrawOptions {
 };
 
 /// Bounds of all that the snapshot shows, in W. With show_waiting, of waiting parts too.
-Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot, bool show_waiting = false);
+VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,
+                                  bool show_waiting = false);
 
 /// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W,
 /// faces the viewer, and lies along two of W's axes where d_W does along one, as sections are drawn.
-CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
+VPS_VIEWER_API CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
 
 /// Holds an OpenGL context and a scene's buffers. Use it on the thread that made it; several may live side by
 /// side.
-class Renderer {
+class VPS_VIEWER_API Renderer {
  public:
   /// Uploads the meshes: smooth normals are split where faces meet at more than 28 degrees. Throws
   /// std::runtime_error in words a user can act on when EGL or OpenGL 4.5 is missing.

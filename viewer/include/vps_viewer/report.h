@@ -8,6 +8,7 @@
 #include "vps/progress.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
+#include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
@@ -27,14 +28,14 @@ struct ReportOutcome {
 /// need be). Pictures or plots that cannot be made become notes, in the page too. Everything repeats byte for
 /// byte but what the page marks as measured on the wall clock. Throws std::runtime_error when dir cannot be
 /// written.
-ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
-                          const std::string& dir, const ReportOptions& options = {});
+VPS_VIEWER_API ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                                         const std::string& dir, const ReportOptions& options = {});
 
 /// The time series as CSV: a header line, then one row a sample, SI units in the column names.
 /// Throws std::runtime_error when the file cannot be written.
-void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
+VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
 
 /// Text made safe to stand in HTML, in elements and in quoted attributes.
-std::string escapeHtml(const std::string& text);
+VPS_VIEWER_API std::string escapeHtml(const std::string& text);
 
 }  // namespace vps::viewer

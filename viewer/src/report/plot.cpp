@@ -11,7 +11,6 @@ namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
-using gnuplot::quoted;
 using Curve = std::vector<std::pair<double, double>>;
 
 constexpr std::size_t kBuckets = 1500;  // about one for each pixel of the plot's width
@@ -25,7 +24,7 @@ constexpr const char* kInk = "#333333";
 constexpr std::array<const char*, 4> kPhaseNames = {"reach", "insert", "press", "rest"};
 constexpr std::array<const char*, 4> kPhaseColors = {"#FFFFFF", "#E3EEF8", "#FBEBD9", "#EEEEEE"};
 
-const std::string kStyle =
+const std::string kLineStyle =
     "set encoding utf8\n"
     "set border 3 lc rgb \"#666666\" lw 0.8\n"
     "set tics nomirror out scale 0.6 textcolor rgb \"#333333\"\n"
@@ -54,7 +53,7 @@ std::string plotLines(const std::vector<Line>& lines, const std::string& more = 
   std::string out = "plot ";
   for (const Line& line : lines)
     out += std::string("$").append(line.name) + " with lines lw " + number(line.width) + " lc rgb \"" +
-           line.color + "\" title " + quoted(line.title) + ", \\\n  ";
+           line.color + "\" title " + gnuplot::quoted(line.title) + ", \\\n  ";
   out += more;
   while (out.back() == ' ' || out.back() == '\n' || out.back() == '\\' || out.back() == ',') out.pop_back();
   return out + "\n";
@@ -104,7 +103,7 @@ std::string nameSteps(const std::vector<scenes::TraceRow>& trace, const std::vec
       const double room_px = 1000 * (s.end_s - s.start_s) / duration_s;
       if (7.4 * static_cast<double>(full.size()) < room_px) text = full;
     }
-    out += "set label " + quoted(text) + " at first " + number(0.5 * (s.start_s + s.end_s)) +
+    out += "set label " + gnuplot::quoted(text) + " at first " + number(0.5 * (s.start_s + s.end_s)) +
            ", graph 1.05 center textcolor rgb \"#333333\"\n";
   }
   return out;
@@ -130,7 +129,7 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
     curves[7].emplace_back(row.time_s, row.F_hand_W.tau.norm());
     depth.emplace_back(row.time_s, 1e6 * row.depth_m);
   }
-  std::string script = kStyle;
+  std::string script = kLineStyle;
   const std::array<const char*, 8> names = {"fx", "fy", "fz", "f", "tx", "ty", "tz", "t"};
   for (std::size_t i = 0; i < curves.size(); ++i) addPoints(script, names[i], curves[i]);
   addPoints(script, "depth", depth);
@@ -155,16 +154,16 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
   if (!impacts.empty()) {
     script += gnuplot::dataBlock("impacts", impacts);
     marks += "$impacts with points pt 11 ps 0.9 lc rgb \"#B00020\" title " +
-             quoted("impact (" + std::to_string(impacts.size()) + ")") + ", \\\n  ";
+             gnuplot::quoted("impact (" + std::to_string(impacts.size()) + ")") + ", \\\n  ";
   }
   if (!slides.empty()) {
     script += gnuplot::dataBlock("slides", slides);
     marks += "$slides with vectors nohead lw 4 lc rgb \"#CC79A7\" title " +
-             quoted("slide (" + std::to_string(slides.size()) + ")") + ", \\\n  ";
+             gnuplot::quoted("slide (" + std::to_string(slides.size()) + ")") + ", \\\n  ";
   }
   for (std::size_t k = 1; k < kPhaseNames.size(); ++k)
     marks += std::string("keyentry with boxes fillstyle solid fillcolor rgb \"") + kPhaseColors[k] +
-             "\" title " + quoted(std::string("phase: ") + kPhaseNames[k]) + ", \\\n  ";
+             "\" title " + gnuplot::quoted(std::string("phase: ") + kPhaseNames[k]) + ", \\\n  ";
 
   const double start_s = std::floor(100 * trace.front().time_s) / 100,
                end_s = std::max(trace.back().time_s, start_s + 1e-3);
@@ -194,11 +193,11 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
 PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
   static constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                          "#E69F00", "#56B4E9", "#333333"};
-  std::string script = kStyle;
+  std::string script = kLineStyle;
   if (plot.is_log_x) script += "set logscale x\n";
   if (plot.is_log_y) script += "set logscale y\n";
-  if (!plot.title.empty()) script += "set title " + quoted(plot.title) + " textcolor rgb \"#222222\"\n";
-  script += "set xlabel " + quoted(plot.x_label) + "\nset ylabel " + quoted(plot.y_label) + "\n";
+  if (!plot.title.empty()) script += "set title " + gnuplot::quoted(plot.title) + " textcolor rgb \"#222222\"\n";
+  script += "set xlabel " + gnuplot::quoted(plot.x_label) + "\nset ylabel " + gnuplot::quoted(plot.y_label) + "\n";
   std::string commands;
   bool has_points = false;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
@@ -210,7 +209,7 @@ PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
                 (s.is_scatter    ? "points pt 7 ps 1.1"
                  : s.has_markers ? "linespoints pt 7 ps 0.8"
                                  : "lines") +
-                " lw 1.6 lc rgb \"" + kColors[i % kColors.size()] + "\" title " + quoted(s.name) + ", \\\n  ";
+                " lw 1.6 lc rgb \"" + kColors[i % kColors.size()] + "\" title " + gnuplot::quoted(s.name) + ", \\\n  ";
   }
   if (!has_points) return {false, "no points to plot"};
   return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);

@@ -20,7 +20,7 @@ using Least = std::array<double, 4>;
 template <typename Key>
 using Leasts = std::map<Key, Least>;
 
-long micrometres(double m) {
+long wholeMicrometres(double m) {
   return std::lround(m * 1e6);
 }
 
@@ -56,7 +56,7 @@ std::string lineBlock(const Leasts<long>& leasts) {
 }
 
 // The paper's colours, in Okabe and Ito's palette: right red, left blue, both yellow.
-constexpr const char* kStyle = R"(
+constexpr const char* kPlotStyle = R"(
 set encoding utf8
 left = "#0072B2"; right = "#D55E00"; both = "#E69F00"; ink = "#333333"
 set tics nomirror out scale 0.6 textcolor rgb ink
@@ -138,15 +138,15 @@ PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& force
   Leasts<std::pair<long, long>> columns;
   Leasts<long> along;
   for (const device::VerticalForceAt& at : forces) {
-    add(columns, {micrometres(at.p_DE.x()), micrometres(at.p_DE.y())}, at.force);
-    add(along, micrometres(at.p_DE.y()), at.force);
+    add(columns, {wholeMicrometres(at.p_DE.x()), wholeMicrometres(at.p_DE.y())}, at.force);
+    add(along, wholeMicrometres(at.p_DE.y()), at.force);
   }
   const std::string names = nameCurve(4, along, 0, 0.87, -1.2, "left", "left alone") +
                             nameCurve(5, along, 1, 0.13, -1.2, "right", "right alone") +
                             nameCurve(6, along, 2, 0.5, -1.8, "both", "both") +
                             nameCurve(7, along, 3, 0.5, 1.4, "both", "both, if the hand bears the couple");
   return gnuplot::draw(
-      surfaceBlock(columns) + lineBlock(along) + kStyle + kSurfaces + kLines + names + kCurves, file, 1400,
+      surfaceBlock(columns) + lineBlock(along) + kPlotStyle + kSurfaces + kLines + names + kCurves, file, 1400,
       660);
 }
 

@@ -171,6 +171,19 @@ TEST_F(VdbFile, OtherFilesAreRefused) {
   EXPECT_THROW(saveVdb(VoxMap(), file_), LoadError);
 }
 
+TEST_F(VdbFile, AMapThatIsFineInRegionsOnlyIsRefusedWithItsReason) {
+  FineRegions regions;
+  regions.boxes_M.push_back({{0, 0, 0}, {3e-3, 3e-3, 3e-3}});
+  const VoxMap map = buildVoxMapInRegions(makeBox({4e-3, 4e-3, 4e-3}), kSettings, regions);
+  try {
+    saveVdb(map, file_);
+    FAIL() << "was written";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("fine in regions only cannot be"), std::string::npos)
+        << error.what();
+  }
+}
+
 // Level sets of others
 // -------------------------------------------------------------------------------------------------------------
 
