@@ -12,7 +12,7 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
-/// Rigid pose X_AB: p_A = R p_B + p. R is a rotation (det +1); p in metres.
+/// Rigid pose X_AB: p_A = R p_B + p. R is a rotation (determinant +1), p is in metres.
 struct Pose {
   Mat3 R = Mat3::Identity();
   Vec3 p = Vec3::Zero();

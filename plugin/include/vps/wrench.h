@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Force and torque about a stated point, in a stated frame.
+// Force and torque about a point, in a frame; the variable's name states both.
 #pragma once
 
 #include "vps/pose.h"

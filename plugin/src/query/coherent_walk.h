@@ -81,13 +81,13 @@ class CoherentWalk {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
     // Rounding of the sum, below kFarthest, is made up for by the last term.
-    group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfWay;
-    if (!(group.way < kFarthestWay)) startAnew(g);
-    if (group.way < group.next) return;
+    group.odometer += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfWay;
+    if (!(group.odometer < kFarthestWay)) startAnew(g);
+    if (group.odometer < group.next) return;
     group.next = kNever;
     constexpr std::size_t kRows = kGroupLeaves / kLanes;
     for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
-      if (group.way >= memory_.row_next_[row]) visitRow(row, group.way);
+      if (group.odometer >= memory_.row_next_[row]) visitRow(row, group.odometer);
       group.next = std::min(group.next, memory_.row_next_[row]);
     }
   }
@@ -96,7 +96,7 @@ class CoherentWalk {
   void startAnew(std::size_t g) noexcept {
     const std::size_t first = g * kGroupLeaves,
                       end = std::min(reading_.shell.leaf_blocks, first + kGroupLeaves);
-    memory_.groups_[g].way = 0;
+    memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
     std::fill(&memory_.leaf_next_[first], &memory_.leaf_next_[first] + (end - first), -1.0);
     for (std::size_t row = first / kLanes; row * kLanes < end; ++row) memory_.row_next_[row] = -1;
@@ -150,7 +150,7 @@ class CoherentWalk {
     QueryMemory::Group& group = memory_.groups_[leaf.index / kGroupLeaves];
     double& leaf_next = memory_.leaf_next_[leaf.index];
     // A leaf may be read in pieces: the first sets, the others lower.
-    const double until = group.way + std::max(0.0, free - kRounding);
+    const double until = group.odometer + std::max(0.0, free - kRounding);
     leaf_next = leaf.index == noted_ ? std::min(leaf_next, until) : until;
     noted_ = leaf.index;
     const std::size_t row = leaf.index / kLanes;
@@ -175,7 +175,7 @@ class CoherentWalk {
 };
 
 /// The memory, if it is of this pair.
-inline QueryMemory* usable(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
+inline QueryMemory* memoryFor(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
   return memory != nullptr && memory->isFor(map, shell) ? memory : nullptr;
 }
 

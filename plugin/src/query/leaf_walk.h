@@ -14,7 +14,7 @@ namespace vps {
 struct Reading {
   Reading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
       : field(map), motion(field, X_MP), shell(its_shell), kernels(readKernels(simd)) {
-    field.asks_ahead = shell.leaf_blocks > kCachedLeaves;
+    field.prefetches = shell.leaf_blocks > kCachedLeaves;
   }
 
   /// Leaves whose nodes the second cache keeps from one query to the next: some 20 lines of 64 bytes each, in

@@ -100,7 +100,7 @@ QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose
   const double cutoff_m = usedCutoff(map, options.cutoff_m);
   ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
   const double least_skipped =
-      readNearLeaves(reading, X_MP, options, cutoff_m, usable(memory, map, shell), result.points_tested,
+      readNearLeaves(reading, X_MP, options, cutoff_m, memoryFor(memory, map, shell), result.points_tested,
                      [&](const ReadLeaf& leaf) { collector.take(leaf); });
   collector.finish();
   if (out.left_out > 0) result.status = Status::Truncated;

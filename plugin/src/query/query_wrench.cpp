@@ -19,7 +19,7 @@ QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& 
   const Reading reading(map, shell, X_MP, options.simd);
   WrenchCollector collector(reading, X_MP, options.gradient, p_MO);
   const double least_skipped =
-      readNearLeaves(reading, X_MP, options, 0, usable(memory, map, shell), result.points_tested,
+      readNearLeaves(reading, X_MP, options, 0, memoryFor(memory, map, shell), result.points_tested,
                      [&](const ReadLeaf& leaf) { collector.take(leaf); });
   collector.finish();
   out = collector.summary(k_N_per_m3);

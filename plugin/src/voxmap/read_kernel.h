@@ -29,7 +29,7 @@ struct FieldView {
   double voxel_m = 0, quantum_m = 0;
   float voxels_per_m = 0, quantum = 0;  ///< quantum in voxels
   float band = 0;                       ///< in voxels
-  bool asks_ahead = false;              ///< nodes may come from beyond the second cache: ask for them early
+  bool prefetches = false;              ///< nodes may come from beyond the second cache: ask for them early
   float slope = 0;        ///< the field changes by no more than this, in voxels per voxel of way
   float error = 0;        ///< the field differs from the distance it stands for by no more, in voxels
   float diagonal = 0;     ///< a distance of the band and this more reads as the band

@@ -39,7 +39,7 @@ std::size_t VoxMap::memoryBytes() const noexcept {
   return bytes;
 }
 
-std::size_t VoxMap::memoryBytesBeside(const VoxMap& other) const noexcept {
+std::size_t VoxMap::additionalMemoryBytes(const VoxMap& other) const noexcept {
   if (isSame(other)) return 0;
   const bool is_mounted_on_one = layout_->pool == other.layout_->pool;
   return memoryBytes() - (is_mounted_on_one ? layout_->pool->size() * VoxPool::kBytes : 0);
