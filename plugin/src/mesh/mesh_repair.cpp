@@ -439,7 +439,8 @@ std::string describe(const MeshReport& report) {
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
   char certain[64];
   // Rounded down: 100 % is all.
-  std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%", std::floor(1e4 * report.certain_share) / 1e2);
+  std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
+                std::floor(1e4 * report.certain_share) / 1e2);
   return text + certain;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wrench of all touching points without a list of them: what a haptic loop needs.
-// wrench_collector.h has the order of summation.
+// The wrench of all touching points without a list of them, for haptic loops.
 #include "query/coherent_walk.h"
 #include "query/wrench_collector.h"
 #include "vps/query.h"

@@ -9,7 +9,7 @@
 namespace vps {
 
 VoxMap::VoxMap() {
-  // An empty map: no cells, so everywhere outside; shared by all.
+  // An empty map has no cells, so every point is outside; all empty maps share this layout.
   static const std::shared_ptr<const VoxLayout> empty = [] {
     auto layout = std::make_shared<VoxLayout>();
     layout->pool = std::make_shared<VoxPool>(0);
