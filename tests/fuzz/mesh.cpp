@@ -56,7 +56,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const double voxel_m = vps::bounds(mesh).size().maxCoeff() / 6;
     vps::MeshReport report;
     const vps::VoxMap map = vps::buildVoxMap(mesh, {voxel_m, 3}, "", {}, &report);
-    vps::fuzz::require(report.sure >= 0 && report.sure <= 1, "a share is a share");
+    vps::fuzz::require(report.certain_share >= 0 && report.certain_share <= 1, "a share is a share");
     for (const vps::Vec3& p : mesh.vertices)
       vps::fuzz::require(std::abs(map.distance(p)) <= (1 + 1e-6) * map.band_m(), "distances end at the band");
     vps::fuzz::require(map.distance(map.bounds().max + map.bounds().size()) == map.band_m(),

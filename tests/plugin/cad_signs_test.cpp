@@ -176,7 +176,7 @@ TEST_F(CadSigns, Motor) {
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("motor", readStl(file, 1e-3), 128);
   EXPECT_GT(found.report.overlapping_shells, 0u);
-  EXPECT_GT(found.report.sure, 0.999);
+  EXPECT_GT(found.report.certain_share, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
@@ -185,7 +185,7 @@ TEST_F(CadSigns, MotorCase) {
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("Motor_Case", readStl(file, 1e-3), 128);
   EXPECT_EQ(found.report.open_edges, 123u);
-  EXPECT_GT(found.report.sure, 0.999);
+  EXPECT_GT(found.report.certain_share, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
@@ -195,7 +195,7 @@ TEST_F(CadSigns, Nut) {
   const Agreement found = viewer::compare("nut", readObj(file), 128);
   EXPECT_EQ(found.report.open_edges, 108u);
   EXPECT_GT(found.report.t_junctions, 50u);
-  EXPECT_GT(found.report.sure, 0.999);
+  EXPECT_GT(found.report.certain_share, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
@@ -220,7 +220,7 @@ TEST_F(CadSigns, SoupHasNoInsideWorthItsName) {
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.shells, 100u);
-  EXPECT_LT(found.report.sure, 0.9);  // and says so
+  EXPECT_LT(found.report.certain_share, 0.9);  // and says so
   EXPECT_EQ(found.against_windings, 0u);
 }
 TEST_F(CadSigns, SharedEdge) {

@@ -127,9 +127,9 @@ TEST(Crop, ACroppedMapCanBeMountedUpon) {
 TEST(Crop, WhatAMountedMapKeepsBesideTheOneItStandsOnIsLessThanItsAll) {
   const TubeAndPeg pair;
   const VoxMap mounted = mountVoxMap(pair.map, PlacedMesh{&pair.peg, Pose::translation({0, 0, 6 * kMm})});
-  EXPECT_EQ(pair.map.memoryBytesBeside(pair.map), 0u);
-  EXPECT_LT(mounted.memoryBytesBeside(pair.map), pair.map.memoryBytes() / 2);
-  EXPECT_EQ(pair.peg_map.memoryBytesBeside(pair.map), pair.peg_map.memoryBytes());
+  EXPECT_EQ(pair.map.additionalMemoryBytes(pair.map), 0u);
+  EXPECT_LT(mounted.additionalMemoryBytes(pair.map), pair.map.memoryBytes() / 2);
+  EXPECT_EQ(pair.peg_map.additionalMemoryBytes(pair.map), pair.peg_map.memoryBytes());
 }
 
 }  // namespace

@@ -104,8 +104,8 @@ TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
     EXPECT_EQ(report.holes, 1u);
     EXPECT_TRUE(report.signed_by_winding);
     // Unsure is what sees the hole under more than pi, a quarter of the whole: nearer than its size.
-    EXPECT_EQ(report.sure < 1, hole_voxels >= 3) << hole_voxels;
-    EXPECT_GT(report.sure, 0.8);
+    EXPECT_EQ(report.certain_share < 1, hole_voxels >= 3) << hole_voxels;
+    EXPECT_GT(report.certain_share, 0.8);
   }
 }
 
@@ -136,7 +136,7 @@ TEST(FaultyMesh, FlippedFacetsAreTurned) {
   const MeshReport report = reportOf(flipped, &map);
   EXPECT_EQ(report.flipped_facets, count);
   EXPECT_FALSE(report.signed_by_winding);  // a sound mesh again
-  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
@@ -158,7 +158,7 @@ TEST(FaultyMesh, AShellThatFacesInIsTurnedAndACavityIsNot) {
   const MeshReport report = reportOf(hollow, &map);
   EXPECT_EQ(report.turned_shells, 0u);
   EXPECT_EQ(report.overlapping_shells, 0u);
-  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, isInside), 0u);
   for (auto& t : hollow.triangles) std::swap(t[0], t[1]);  // all inside out
   EXPECT_EQ(reportOf(hollow, &map).turned_shells, 2u);
@@ -175,7 +175,7 @@ TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
   const MeshReport report = reportOf(both, &map);
   EXPECT_EQ(report.shells, 2u);
   EXPECT_TRUE(report.signed_by_winding);
-  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(
       wrongSigns(map, [in_a = insideOf(a), in_b = insideOf(b)](const Vec3& p) { return in_a(p) || in_b(p); }),
       0u);
@@ -313,7 +313,7 @@ TEST(FaultyMesh, TJunctionsAreNoHoles) {
   const MeshReport report = reportOf(mesh, &map);
   EXPECT_EQ(report.t_junctions, 3u);
   EXPECT_EQ(report.open_edges, 9u);
-  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
@@ -427,7 +427,7 @@ TEST(FaultyMesh, AFreeSheetHasNoInside) {
   VoxMap map;
   const MeshReport report = reportOf(mesh, &map);
   EXPECT_EQ(report.sheet_facets, 1u);
-  EXPECT_EQ(report.sure, 1);
+  EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
   const Vec3 on_sheet = o + Vec3(0.003, 0.003, 0.0003);
   EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // it is there all the same
@@ -442,7 +442,7 @@ TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const VoxMap one = buildVoxMap(mesh, kSettings, "", {}, &report_one);
   EXPECT_EQ(describe(report_many), describe(report_one));
-  EXPECT_EQ(report_many.sure, report_one.sure);
+  EXPECT_EQ(report_many.certain_share, report_one.certain_share);
   RandomPoints random(8);
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p = many.bounds().center() + random.inBox(many.bounds().size());
@@ -505,9 +505,9 @@ TEST(FaultyMesh, ItsReportReadsAsASentence) {
   report.shells = 12;
   report.open_edges = 34;
   report.flipped_facets = 1;
-  report.sure = 0.99876;
+  report.certain_share = 0.99876;
   EXPECT_EQ(describe(report),
-            "12 shells, 34 open edges, 1 flipped facet turned; the sign is sure for 99.87 %");
+            "12 shells, 34 open edges, 1 flipped facet turned; the sign is certain for 99.87 %");
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST_F(VoxMapCacheTest, AFaultyMeshKeepsItsReport) {
   expectSame(build(open, &second), built);
   EXPECT_TRUE(first.signed_by_winding);
   EXPECT_EQ(describe(first), describe(second));
-  EXPECT_EQ(first.sure, second.sure);
+  EXPECT_EQ(first.certain_share, second.certain_share);
 }
 
 TEST_F(VoxMapCacheTest, ADifferenceInTheLastBitIsAnotherPart) {

@@ -16,7 +16,7 @@ class btRigidBody;
 namespace vps::bullet {
 
 /// What tuneWorld changed, for its reader and for restoreWorld.
-struct VPS_BULLET_API WorldTuning {
+struct WorldTuning {
   /// A line for each: "split impulse threshold [m]: -0.04 -> 0".
   std::vector<std::string> changes;
   [[nodiscard]] bool empty() const { return changes.empty(); }

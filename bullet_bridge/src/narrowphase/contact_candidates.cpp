@@ -214,7 +214,7 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   options.gradient = settings.gradient;
   const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
   QueryMemory* memory = ask.memory ? &ask.memory->query : nullptr;
-  const LeadingPoints::Ask leaders{options, aboutMap(ask.step_W, X_MW), ask.always, mayAllBeNear(settings)};
+  const RepresentativePoints::Request leaders{options, aboutMap(ask.step_W, X_MW), ask.always, mayAllBeNear(settings)};
   const QueryResult result = ask.memory && ask.memory->leading
                                  ? ask.memory->leading->find(*theirs.map, X_MP, leaders, near, memory)
                                  : queryContacts(*theirs.map, shell, X_MP, options, near, memory);

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "vps/leading_points.h"
+#include "vps/representative_points.h"
 #include "vps_bullet/install.h"
 
 namespace vps::bullet {
@@ -14,7 +14,7 @@ struct QueryState {
   QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings);
 
   QueryMemory query;  ///< for cutoffs that stay the same
-  std::optional<LeadingPoints>
+  std::optional<RepresentativePoints>
       leading;  ///< of rigid contact, of a shell with more points than mayAllBeNear()
 };
 

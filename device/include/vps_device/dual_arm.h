@@ -39,7 +39,7 @@ enum class Side { Left, Right };
 using JointVector = Eigen::Matrix<double, 7, 1>;
 using JointMatrix = Eigen::Matrix<double, 7, 6>;  ///< joint rates from a twist (w, v)
 
-JointVector toVector(const DualArmJoints& joints) noexcept;
+VPS_DEVICE_API JointVector toVector(const DualArmJoints& joints) noexcept;
 VPS_DEVICE_API DualArmJoints fromVector(const JointVector& values) noexcept;
 
 /// One value for each plate joint, sliding joint and the handle's motor, in joint order.

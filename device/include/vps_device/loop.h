@@ -52,7 +52,7 @@ struct VPS_DEVICE_API Grasp {
 /// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
 /// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
 /// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
-struct VPS_DEVICE_API PassivityObserver {
+struct PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
   double dissipated_J = 0;  ///< by the device's own least damping over the same displacements

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling between the device's proxy and the part in hand: the law, and the port where the
-// haptic and the physics side meet. Neither side includes the other.
+// The virtual coupling between the device's proxy and the part in hand: the force law, and the buffers
+// through which the haptic thread and the physics thread exchange states.
 #pragma once
 
 #include "vps/export.h"
@@ -10,8 +10,8 @@
 
 namespace vps {
 
-/// A 6-DOF spring-damper. Limits bound the spring's part, keeping its direction, so that a part that hangs
-/// back pulls with a known greatest force.
+/// A 6-DOF spring-damper. The limits bound the spring's share and keep its direction, so that a part that
+/// lags behind the proxy pulls with a known largest force.
 struct CouplingGains {
   double k_N_per_m = 2000;
   double b_Ns_per_m = 10;
@@ -21,7 +21,7 @@ struct CouplingGains {
   double max_torque_Nm = 2.5;
 };
 
-/// The coupled frame on one side: proxy or part, at the grasp point, in W.
+/// State of one coupled frame, proxy or part: at the grasp point, in W.
 struct CouplingState {
   Pose X_W;
   Twist V_W;
@@ -35,8 +35,8 @@ struct CouplingState {
 VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                               const CouplingState& part) noexcept;
 
-/// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads
-/// the other's latest without waiting.
+/// Exchange between the two threads: the haptic thread writes the proxy, the physics thread writes the part,
+/// and each reads the other's latest state without waiting.
 struct CouplingPort {
   TripleBuffer<CouplingState> proxy;
   TripleBuffer<CouplingState> part;

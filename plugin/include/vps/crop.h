@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Models of a part's neighbourhood alone: what a scene that stays within some boxes needs of them.
+// Models reduced to the boxes in which a scene uses them.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace vps {
 
-/// The map with its nodes in and around the boxes only, in memory of its own; to the bit the same there.
-/// Elsewhere it reads as saturated, with the right sign by cells, and none of its bounds holds: only for
-/// queries whose points, and the centres of their clusters, stay in one of the boxes. May be mounted upon.
-/// O(cells).
+/// A copy of the map that keeps only the nodes in and around the boxes; readings there are the same to the
+/// bit. Elsewhere it reads as saturated, with the right sign for each cell, and its bounds do not hold: use
+/// it only for queries whose points, and the centres of their clusters, stay in one of the boxes. More parts
+/// can be mounted on it. O(cells).
 VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
-/// The shell's points in the boxes only, in their order and in their clusters: a query of fields that stay in
-/// the boxes finds the same contacts, to the bit, under smaller ids. O(points).
+/// A shell of the points in the boxes, in the same order and clusters: a query against a field that stays in
+/// the boxes finds the same contacts to the bit, under smaller ids. O(points).
 VPS_API PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
 
 }  // namespace vps

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The convex sharp edges of parts, and where those of two parts cross.
 //
-// Two parts touch at a point and a face, or where an edge crosses an edge. The second kind has no point of
-// either's shell to it: the samples on both edges lie up to half their spacing beside it.
+// Two parts touch where a point meets a face, or where an edge crosses an edge. Pointshells do not sample the
+// second kind: the nearest points on both edges may be half their spacing away from the crossing.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct EdgeSegment {
   bool ends[2] = {true, true};  ///< at from, at to: false where a curved edge goes on in another segment
 };
 
-/// Appends a mesh's edges that stick out and turn by more than 20 degrees, placed by X_MP. Edges of one face
-/// or of more than two, and of faces without an area, are left out. O(n log n).
+/// Appends a mesh's convex edges whose faces turn by more than 20 degrees, placed by X_MP. Edges of one face,
+/// of more than two, and of faces without area are left out. O(n log n).
 VPS_API void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner,
                          std::vector<EdgeSegment>& out);
 
@@ -35,7 +35,7 @@ class VPS_API EdgeSet {
   /// O(n log n).
   explicit EdgeSet(std::vector<EdgeSegment> segments);
   [[nodiscard]] const std::vector<EdgeSegment>& segments() const noexcept { return segments_; }
-  /// Calls visit(index) for each segment within radius_m of a point, in an order of its own.
+  /// Calls visit(index) for each segment within radius_m of a point. The order is fixed but not ascending.
   template <typename Visit>
   void forEachNear(const Vec3& p, double radius_m, Visit&& visit) const {
     if (!nodes_.empty()) visitNear(0, p, radius_m, visit);
@@ -67,8 +67,8 @@ class VPS_API EdgeSet {
   std::vector<Node> nodes_;
 };
 
-/// Where an edge of one set crosses an edge of another so that each part lies wholly, near by, on its own
-/// side of the plane along both: what holds them apart there is a force across that plane.
+/// An edge of one set crosses an edge of another such that near the crossing each part lies on its own side
+/// of the plane along both edges. The contact force is normal to that plane.
 struct EdgeCrossing {
   std::uint32_t edge[2] = {0, 0};
   Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each, in the frame of set 0
@@ -76,10 +76,10 @@ struct EdgeCrossing {
   double gap_m = 0;                          ///< n (p[0] - p[1]); negative where they overlap
 };
 
-/// Appends the crossings with -depth_m <= gap <= cutoff_m, by edges of set 0, then of set 1. Edges within 5
-/// degrees of parallel have no one crossing and are left to points.
+/// Appends the crossings with -depth_m <= gap <= cutoff_m, sorted by edge of set 0, then of set 1. Edges
+/// within 5 degrees of parallel have no single crossing; the shells' points find their contacts.
 /// @param X_01  frame of set 1 in that of set 0
-/// Cost: the pairs of spheres that are near, and 30 ns a pair of segments. Allocates in `out` alone.
+/// Cost: the pairs of near spheres, and 30 ns for each pair of segments. Allocates only in `out`.
 /// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
                            double depth_m, std::vector<EdgeCrossing>& out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every knob that trades speed for accuracy, in one place.
+// All settings that trade speed for accuracy.
 #pragma once
 
 #include <string_view>
@@ -9,19 +9,20 @@
 
 namespace vps {
 
+/// Whether one part's points are tested against the other's field, or both ways.
 enum class Sides { One, Both };
 
 /// How contacts become motion.
 enum class ContactMethod {
   Constraint,  ///< a few rigid contacts with a friction cone, for the solver
-  Penalty,     ///< every touching point presses with stiffness times area times depth, solved implicitly
+  Penalty,     ///< each touching point exerts stiffness times area times depth, solved implicitly
 };
 
-/// As scene files and reports spell them.
+/// Names in scene files, JSON and tables.
 inline const char* toText(Sides sides) {
   return sides == Sides::One ? "one" : "both";
 }
-/// As people are told.
+/// For sentences in messages and reports.
 inline const char* inWords(Sides sides) {
   return sides == Sides::One ? "one side" : "both sides";
 }
@@ -35,7 +36,7 @@ inline const char* toText(ContactMethod method) {
 struct Fidelity {
   double voxel_m = 0.25e-3;   ///< grid step of voxmaps
   double spacing_m = 0.5e-3;  ///< distance between shell points
-  Sides sides = Sides::Both;  ///< moving points against fixed field only, or both ways
+  Sides sides = Sides::Both;  ///< One: only the moving part's points against the fixed part's field
   Gradient gradient = Gradient::Continuous;
   int contact_limit = 64;  ///< contacts given to the solver for each pair
   double haptic_rate_hz = 1000;

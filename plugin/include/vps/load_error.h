@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one exception of loading: which file, which part, what was found, what would help.
+// The exception of loading and saving: which file, which part, what was found, what would help.
 #pragma once
 
 #include <stdexcept>
@@ -9,8 +9,8 @@
 
 namespace vps {
 
-/// Thrown while loading files, meshes and settings; never in the haptic path. what() is one line for a
-/// person: "gear.stl: part 'hub': vertex 17 is not a number; export it again".
+/// Thrown while loading or saving files and while building models; never in the haptic loop. what() is one
+/// line for a person: "gear.stl: part 'hub': vertex 17 is not a number; export it again".
 class VPS_API LoadError : public std::runtime_error {
  public:
   LoadError(const std::string& file, const std::string& part, const std::string& found_and_remedy)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a voxmap will take, before it is built.
+// The memory of a voxmap, estimated before it is built.
 #pragma once
 
 #include "vps/export.h"
@@ -8,9 +8,10 @@
 
 namespace vps {
 
-/// Bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area, as thick as the
-/// band, and the directory of its box. What buildVoxMap() refuses by, long before memory runs out. For a
-/// surface of many bricks; a part smaller than a brick may take some more. O(triangles).
+/// Estimates the bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area,
+/// as thick as the band, and the directory of its box. buildVoxMap() uses this estimate to refuse maps that
+/// would not fit. It holds for surfaces of many bricks; a part smaller than a brick may take somewhat more.
+/// O(triangles).
 VPS_API double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings);
 
 }  // namespace vps

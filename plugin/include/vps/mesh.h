@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangle meshes: the form in which every part enters.
+// Triangle meshes, the input for every part.
 #pragma once
 
 #include <array>
@@ -19,16 +19,17 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in the mesh's
-/// frame.
+/// Properties of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in
+/// the mesh's frame.
 struct MassProperties {
   double volume_m3 = 0;
   Vec3 com = Vec3::Zero();
   Mat3 inertia_m5 = Mat3::Zero();
 };
 
-/// What a mesh is made of; see checkMesh(), and repairMesh() in mesh_repair.h for the lower half.
-struct VPS_API MeshReport {
+/// What a mesh consists of. checkMesh() fills the members up to flipped_edges and shells; repairMesh()
+/// (mesh_repair.h) fills all.
+struct MeshReport {
   std::size_t triangles = 0;
   std::size_t degenerate_triangles = 0;
   std::size_t duplicate_triangles = 0;  ///< beyond the first with the same three corners, either way round
@@ -41,16 +42,16 @@ struct VPS_API MeshReport {
   }
 
   std::size_t holes = 0;               ///< groups of connected open edges
-  std::size_t t_junctions = 0;         ///< corners within an open edge: a crack without width
+  std::size_t t_junctions = 0;         ///< vertices within an open edge: cracks without width
   std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours
-  std::size_t turned_shells = 0;       ///< turned whole, since they faced in
+  std::size_t turned_shells = 0;       ///< whole shells that faced in and were turned
   std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
-  std::size_t internal_facets = 0;     ///< with solid on both sides: no surface, left out
+  std::size_t internal_facets = 0;     ///< facets with solid on both sides: not surface, left out
   std::size_t sheet_facets = 0;        ///< of free sheets: a surface without an inside
   bool signed_by_winding = false;      ///< else by pseudonormals, which closed meshes allow
   /// Share of the voxmap's nodes in the band whose winding number is more than 0.25 from 0.5; 1 for a closed
   /// mesh.
-  double sure = 1;
+  double certain_share = 1;
 };
 
 VPS_API Box bounds(const Mesh& mesh);
@@ -74,11 +75,11 @@ VPS_API Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 /// welded()).
 VPS_API MeshReport checkMesh(const Mesh& mesh);
 
-/// Refuses what nothing can be built from: no triangles, an index out of range, a coordinate that is not
-/// finite, zero area. Throws LoadError naming file and part.
+/// Refuses meshes from which nothing can be built: no triangles, an index out of range, a coordinate that is
+/// not finite, zero area. Throws LoadError naming file and part.
 VPS_API void requireUsable(const Mesh& mesh, const std::string& file, const std::string& part);
 
-/// Primitives with analytic truth, for tests and simple scenes; all centred at the origin, closed, outward.
+/// Primitives for tests and simple scenes; all are centred at the origin, closed and face outward.
 VPS_API Mesh makeBox(const Vec3& size_m);
 /// Cylinder along z. Vertices lie on the true circle, so flats are inside it by r (1 - cos(pi / segments)).
 VPS_API Mesh makeCylinder(double radius_m, double height_m, int segments);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact distance from a point to a triangle mesh: the ground truth everything else is measured against.
+// Exact distance from a point to a triangle mesh: the reference for every other distance.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ VPS_API TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3
 
 /// A bounding-volume hierarchy over a mesh. Answers are exact to floating point; the sign is that of the
 /// angle-weighted pseudonormal of the nearest feature, right for closed, consistently oriented meshes.
-/// Triangles without an area, which fill cracks of exports, have no normal: the facets beyond them count.
+/// Triangles without area, which fill cracks of CAD exports, have no normal: the facets beyond them decide.
 /// Source: Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
 class VPS_API MeshDistance {
  public:
@@ -40,8 +40,8 @@ class VPS_API MeshDistance {
   [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
   /// Negative inside. Clamped to +-max_m; beyond max_m the sign is not computed and the answer is +max_m.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
-  /// A value L with L <= distance <= L (1 + slack), unsigned; quicker than closest() where much is equally
-  /// far. If nothing is nearer than max_m: max_m / (1 + slack).
+  /// A value L with L <= distance <= L (1 + slack), unsigned; faster than closest() where many triangles are
+  /// about equally far. If nothing is nearer than max_m: max_m / (1 + slack).
   [[nodiscard]] double lowerBound(const Vec3& p, double slack, double max_m = 1e300) const noexcept;
   /// Outward pseudonormal of a triangle's feature (numbered as in TrianglePoint), unit.
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;
@@ -60,13 +60,13 @@ class VPS_API MeshDistance {
   void computeNormals();
   void computeSmoothCorners();
   void buildTree();
-  [[nodiscard]] bool isBesideThin(std::uint32_t triangle, int feature) const noexcept;
+  [[nodiscard]] bool isNextToThin(std::uint32_t triangle, int feature) const noexcept;
   [[nodiscard]] Vec3 normalThrough(const Vec3& q) const noexcept;
   template <typename Visit>
   double search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept;
 
-  /// Four boxes side by side, in floats about the mesh's centre, a hair too large; lanes not in use are
-  /// infinitely far.
+  /// Four boxes in one node, in floats about the mesh's centre, rounded outwards; unused lanes are infinitely
+  /// far.
   struct Node {
     Node();
     void set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to);
@@ -81,8 +81,8 @@ class VPS_API MeshDistance {
   std::vector<Vec3> face_normals_;
   std::vector<std::array<Vec3, 3>> edge_normals_;
   std::vector<Vec3> vertex_normals_;
-  std::vector<std::array<Eigen::Vector3f, 3>> smooth_corners_;  // by triangle; floats, for room
-  double touch_m_ = 0;                                          // what lies so near to a point touches it
+  std::vector<std::array<Eigen::Vector3f, 3>> smooth_corners_;  // by triangle; floats to save memory
+  double touch_m_ = 0;                                          // distances below this count as contact
   std::vector<std::uint8_t> is_thin_;                           // by triangle: too thin to have a normal
   std::vector<std::uint8_t> is_edge_of_thin_;                   // by triangle, a bit for each edge
   std::vector<std::uint8_t> is_corner_of_thin_;                 // by vertex

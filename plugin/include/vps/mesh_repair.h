@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with a mesh, and a mesh on which inside and outside are as sure as they can be.
+// Finds and repairs the faults of meshes that leave inside and outside ambiguous.
 #pragma once
 
 #include <string>
@@ -11,35 +11,35 @@ namespace vps {
 
 /// What repairMesh() makes of a mesh.
 struct RepairedMesh {
-  /// Facing out all over, for winding numbers: without duplicates, walls within the solid and free sheets.
+  /// For winding numbers: all facets face out; without duplicates, internal walls and free sheets.
   Mesh solid;
-  /// What distances are measured to: `solid` without facets that have solid on both sides, and with the
-  /// sheets.
+  /// For distances: `solid` without facets that have solid on both sides, and with the sheets.
   Mesh surface;
   MeshReport report;
-  /// Closed, facing out, no two shells' boxes meet: pseudonormals give the right sign on `surface`, unless it
-  /// crosses itself.
+  /// True if closed, facing out, and no two shells' boxes meet: pseudonormals then give the right sign on
+  /// `surface`, unless the mesh crosses itself.
   bool is_sound = false;
 };
 
-/// Whether the mesh was seen to cross itself, which its edges do not tell.
+/// Whether the mesh is known to cross itself, which its edges do not show.
 enum class Crossing { Unknown, Seen };
 
-/// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs what cannot
-/// wait until the sign is asked for:
-/// - of triangles with the same corners one is kept; of a pair back to back none, where it is a wall between
-///   two solids, but one where it is all there is (a surface exported for both sides);
-/// - facets are turned to agree across edges of two, the fewer to the more;
-/// - closed shells that face in are turned, unless they are a cavity: one within a shell that faces out. What
-///   lies in a shell that is turned turns with it;
-/// - open patches are turned where the rest of the mesh says clearly on which side the solid is;
-/// - facets with winding number above 0.5 on both sides are no surface.
-/// A sound mesh comes back as it was: O(n). Others need about two winding numbers a triangle.
+/// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
+/// - Of triangles with the same corners one is kept. Of a back-to-back pair none is kept if it is a wall
+/// between two
+///   solids, and one if it is the only surface there (a surface exported for both sides).
+/// - Facets are turned to agree across edges of two facets; the minority is turned.
+/// - Closed shells that face in are turned, unless they are a cavity, which lies within a shell that faces
+/// out. Shells
+///   within a turned shell are turned with it.
+/// - Open patches are turned where the rest of the mesh shows clearly on which side the solid is.
+/// - Facets with a winding number above 0.5 on both sides are removed from the surface.
+/// A sound mesh is returned unchanged: O(n). Others need about two winding numbers a triangle.
 /// `surface` is never empty.
 VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);
 
-/// In words, for a person: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign is sure
-/// for 99.8 %".
+/// The report as one line of text: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign is
+/// certain for 99.8 %".
 VPS_API std::string describe(const MeshReport& report);
 
 }  // namespace vps

@@ -18,8 +18,8 @@ struct PointShellSettings {
   double edge_angle_rad = 0.35;  ///< edges sharper than this (about 20 degrees) get points of their own
 };
 
-/// A node of the sphere hierarchy over points [first, first + count). Nodes are in depth-first order: if a
-/// node is skipped the walk goes on at `skip`.
+/// A node of the sphere hierarchy over points [first, first + count). Nodes are in depth-first order; the
+/// walk goes on at `skip` when it does not descend into a node.
 struct ShellNode {
   Vec3 center = Vec3::Zero();
   double radius_m = 0;
@@ -28,17 +28,17 @@ struct ShellNode {
   bool is_leaf = false;
 };
 
-/// Points on the surface, in the part's frame P. All arrays have one entry a point, in the order of a k-d
-/// tree's leaves, so that neighbours in space are neighbours in memory. `order` lists the points so that
+/// Points on the surface, in the part's frame P. The arrays have one entry per point, in the order of a k-d
+/// tree's leaves, so that neighbours in space are neighbours in memory. `order` lists the points such that
 /// every prefix is an even, coarser sampling. A point's index is its stable id.
 struct VPS_API PointShell {
   std::vector<Vec3> points;
-  std::vector<Vec3> inward;          ///< unit normals into the part
-  std::vector<double> area_m2;       ///< the surface each point stands for; sums to the mesh's area
+  std::vector<Vec3> inward;     ///< unit normals into the part
+  std::vector<double> area_m2;  ///< the surface area that each point represents; the sum is the mesh's area
   std::vector<std::uint32_t> order;  ///< progressive order, a permutation
   std::vector<ShellNode> nodes;      ///< sphere hierarchy, depth-first
-  /// The same leaves sixteen points wide, then spheres around sixteen leaves each, and so on; the root last.
-  /// What queries walk.
+  /// The hierarchy that queries use: leaves of sixteen points, then blocks of sixteen spheres around them,
+  /// and so on; the root last.
   std::vector<ShellBlock> blocks;
   std::size_t leaf_blocks = 0;  ///< how many of the blocks hold points; they come first
   double spacing_m = 0;
@@ -46,24 +46,25 @@ struct VPS_API PointShell {
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
 };
 
-/// Samples mesh corners, sharp edges (evenly, at half the spacing, on the vertices of rims:
-/// src/shell_samples.h) and faces (blue noise). Every point of the surface has a point within spacing_m that
-/// faces its way; face points are no nearer than 0.75 spacing_m to each other. Normals: the triangle's on
-/// faces, since interpolated ones would claim a surface that the mesh's exact distance does not know; the
-/// angle-weighted pseudonormal on edges and corners. Deterministic. O(area / spacing^2). Throws LoadError for
-/// unusable meshes and for a spacing that is not positive or would give more points than fit (says which
-/// would).
+/// Samples mesh corners, sharp edges (evenly, at half the spacing, on the vertices of rims) and faces (blue
+/// noise). Every surface point has a shell point within spacing_m that faces the same way; face points are at
+/// least 0.75 spacing_m apart. Face points have the triangle's normal, since interpolated normals would
+/// describe another surface than the mesh's exact distance; points on edges and corners have the
+/// angle-weighted pseudonormal. Deterministic. O(area / spacing^2). Throws LoadError for unusable meshes, for
+/// a spacing that is not positive, and for one that would give more points than fit in memory; the message
+/// names one that would fit.
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
-/// One shell out of several at poses (for mounted parts). Points keep their places: id i of shell s becomes
-/// i + the sizes of the shells before it. The shells' hierarchies hang side by side under one root.
+/// Merges shells at their poses into one, for mounted parts. Point i of shell s gets the id i plus the sizes
+/// of the shells before s. The shells' hierarchies become children of one root.
 VPS_API PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs);
 
-/// PLY with x y z nx ny nz (nx.. inward) and area: written binary little-endian, to the bit, and replaced
-/// whole or not at all; read binary little-endian or ascii, any order and type of properties. Throws
-/// LoadError.
+/// Writes PLY with the properties x y z, nx ny nz (inward) and area, as binary little-endian doubles, so that
+/// the shell is read back to the bit. An existing file is replaced whole or not at all. Throws LoadError.
 VPS_API void savePly(const PointShell& shell, const std::string& file);
+/// Reads PLY with these properties, in any order and of any number type, binary little-endian or ascii.
+/// Throws LoadError.
 VPS_API PointShell loadPly(const std::string& file);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long work tells a person how far it is.
+// How long computations report their progress.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,8 @@
 
 namespace vps {
 
-/// Called now and then with what is being done and the share done, 0 to 1. May be empty. Never from the
-/// haptic path.
+/// Called from time to time with the name of the current work and the share done, 0 to 1. May be empty. Never
+/// called from the haptic loop.
 using Progress = std::function<void(std::string_view doing, double share)>;
 
 }  // namespace vps

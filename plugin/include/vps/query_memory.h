@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query may keep from one pose to the next, so that points that cannot have come near are not read.
+// Temporal coherence: state that a query keeps from pose to pose to skip points that cannot have come near.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,25 @@
 
 namespace vps {
 
-/// Temporal coherence of one map and one shell. Every read or bound of a leaf of points says how far the leaf
-/// may move before any of its points can come within the cutoff; every group of leaves keeps an odometer, a
-/// sum over poses of the most that any of its points has moved. Until the odometer has gone that far, the
-/// leaf is not looked at. Proof: for the field I as it is read, |I(p') - I(p)| <= s |p' - p| with s the
-/// steepest slope of its nodes times sqrt 3; and the way between two poses is at most the sum of the ways
-/// between those in between (triangle inequality); rounding only ever makes an odometer go farther. So no
-/// touching point is ever missed: the answer is the exhaustive one, whatever the motion, jumps included.
+/// Temporal coherence of one map and one shell. When a leaf of points is read or bounded, its readings say
+/// how far the leaf may move before any of its points can come within the cutoff. Every group of leaves has
+/// an odometer: the sum over poses of the largest displacement of any of its points. A leaf is skipped until
+/// the odometer has passed that distance. Proof: for the field I as it is read, |I(p') - I(p)| <= s |p' - p|
+/// with s the steepest slope of its nodes times sqrt 3; the distance between two poses is at most the sum of
+/// the distances between the poses in between (triangle inequality); and rounding always increases the
+/// odometer. So no touching point is missed: the answer is the exhaustive one for every motion, jumps
+/// included.
 ///
-/// One memory serves one pair and one thread at a time. With another cutoff it starts anew; given to a query
-/// of another map or shell it is not used. Made once; queries with it do not allocate.
+/// One memory serves one pair and one thread at a time. A query with another cutoff resets it; a query of
+/// another map or shell ignores it. Queries with a memory do not allocate.
 class VPS_API QueryMemory {
  public:
-  /// The shell must outlive the memory, and not change. Cost and room: about 10 bytes a leaf of 16 points.
+  /// The shell must outlive the memory and not change. Memory: about 10 bytes for each leaf of 16 points.
   QueryMemory(const VoxMap& map, const PointShell& shell);
 
-  /// Forgets: the next query looks at everything.
+  /// Resets: the next query tests all points.
   void clear() noexcept;
+  /// True if the memory was made for this map and shell.
   [[nodiscard]] bool isFor(const VoxMap& map, const PointShell& shell) const noexcept;
 
  private:
@@ -37,16 +39,17 @@ class VPS_API QueryMemory {
   struct Group {
     Vec3 center = Vec3::Zero();  ///< of a sphere around its points, in P [m]
     double radius_m = 0;
-    double way = 0;    ///< odometer [voxels]
-    double next = -1;  ///< no leaf of the group need be looked at before the odometer is past this
+    double odometer = 0;  ///< [voxels]
+    double next = -1;     ///< no leaf of the group needs a test before the odometer has passed this
   };
-  VoxMap map_;  // shares the map's data, so that another map cannot take its address
+  VoxMap map_;  // shares the map's data, so that no other map can get its address
   const PointShell* shell_;
   const ShellBlock* blocks_;
   std::vector<Group> groups_;
-  std::vector<double> row_next_;         ///< the same for each sixteen leaves
-  std::vector<double> leaf_next_;        ///< and for each leaf, in whole rows
-  std::vector<std::uint16_t> row_near_;  ///< bit i: leaf i's sphere told nothing last time, only reading does
+  std::vector<double> row_next_;   ///< as Group::next, for each row of sixteen leaves
+  std::vector<double> leaf_next_;  ///< as Group::next, for each leaf, in whole rows
+  std::vector<std::uint16_t>
+      row_near_;  ///< bit i: leaf i was too near for a bound of its sphere, so it is read
   Pose X_MP_;
   double cutoff_ = 0;
 };

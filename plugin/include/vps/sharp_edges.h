@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a mesh turns sharply: the edges along which bodies first touch.
+// The sharp edges of a mesh, along which bodies touch first.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace vps {
 
-/// Vertex pairs of the edges whose two faces turn by more than angle_rad, and of all edges that have not
-/// exactly two triangles. In ascending order. Expects shared vertices (see welded()). O(n log n).
+/// Returns the vertex pairs of edges whose two faces differ by more than angle_rad, and of all edges that do
+/// not have exactly two triangles, in ascending order. Expects shared vertices (see welded()). O(n log n).
 VPS_API std::vector<std::array<std::uint32_t, 2>> sharpEdges(const Mesh& mesh, double angle_rad);
 
 }  // namespace vps

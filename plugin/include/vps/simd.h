@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which instructions the query uses: chosen at run time, with the same bits whichever it is.
+// The vector instructions that queries use: chosen at run time; every choice gives the same bits.
 #pragma once
 
 #include "vps/export.h"
 
 namespace vps {
 
-/// `Best` is the widest that the processor has. The others are for tests and measurements; one that the
-/// processor lacks falls back to the next narrower.
+/// `Best` is the widest set that the processor has. The others are for tests and measurements; a set that the
+/// processor lacks falls back to the next narrower one.
 enum class Simd { Best, Scalar, Avx2, Avx512 };
 
-/// What `wanted` comes to on this processor; never `Best`.
+/// The set that `wanted` selects on this processor; never `Best`.
 VPS_API Simd availableSimd(Simd wanted = Simd::Best) noexcept;
 VPS_API const char* toText(Simd simd) noexcept;
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a function of the haptic path returns instead of throwing.
+// What functions of the haptic loop return instead of throwing.
 #pragma once
 
 namespace vps {
 
 enum class Status {
   Ok,
-  BadPose,     ///< a pose or velocity was not finite; the answer is zero
-  Truncated,   ///< a buffer was full; the answer is valid but incomplete, and a counter says by how much
-  BeyondBand,  ///< everything is farther than the narrow band; distances are bounds
+  BadPose,     ///< a pose or velocity is not finite; the answer is zero
+  Truncated,   ///< a buffer is full; the answer is valid but incomplete, and a counter says by how much
+  BeyondBand,  ///< everything is farther away than the narrow band; distances are bounds
   Fault,       ///< the device or peer failed; zero wrench until re-armed
-  Singular,    ///< a mechanism stands where no answer exists; the answer is zero
+  Singular,    ///< a mechanism is in a singular position, where no answer exists; the answer is zero
 };
 
 inline const char* toText(Status status) {

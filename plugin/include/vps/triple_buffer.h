@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One writer hands its latest value to one reader; neither ever waits.
+// Passes the latest value from one writing thread to one reading thread; neither ever waits.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace vps {
 
-/// Three slots: the writer fills one, the reader holds one, the third is the latest published. Lock-free,
-/// wait-free, no allocation. T must be trivially copyable enough to assign without throwing.
+/// Three slots: the writer fills one, the reader owns one, the third holds the latest published value.
+/// Wait-free, no allocation. Assigning a T must not throw.
 template <typename T>
 class TripleBuffer {
  public:
@@ -18,7 +18,7 @@ class TripleBuffer {
   /// Writer: publishes a value.
   void write(const T& value) noexcept {
     slots_[write_] = value;
-    // Release makes the slot's content visible with its index; the fresh bit tells the reader to take it.
+    // Release makes the slot's content visible with its index; the fresh bit says that it is new.
     write_ = middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_acq_rel) & kIndex;
   }
 

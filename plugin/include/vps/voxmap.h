@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The voxmap: a part's signed distance on a sparse grid, sampled millions of times a second.
+// The voxmap: a part's signed distance on a sparse grid.
 #pragma once
 
 #include <array>
@@ -19,17 +19,17 @@ struct VoxMapSettings {
   double band_voxels = 4;    ///< half width of the narrow band in voxels, >= 3 (nodal gradients need it)
 };
 
-/// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force never jumps
-/// from cell to cell, and is only nearly the derivative of an energy. `Trilinear` is the exact derivative of
-/// the interpolated distance, and turns abruptly at cell borders. Cost and error: plugin/README.md.
+/// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force does not jump
+/// from cell to cell, but is only nearly conservative. `Trilinear` is the exact derivative of the
+/// interpolated distance, and jumps at cell borders. Cost and error: plugin/README.md.
 enum class Gradient { Continuous, Trilinear };
 
-struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
+struct VoxLayout;  // cells and bricks
 
-/// Signed distance [m] to a part's surface in frame M, negative inside: at the grid's nodes within the band
-/// exact to half a quantum_m() (nodes are 16 bit), trilinear between them. Beyond the band the distance
-/// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse bound that still tells far
-/// from near. Immutable once built; sampling is thread-safe, and never allocates or throws.
+/// Signed distance [m] to a part's surface in frame M, negative inside. At the grid's nodes within the band
+/// it is exact to half a quantum_m() (nodes have 16 bits); between nodes it is trilinear. Beyond the band it
+/// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse lower bound of the distance.
+/// A map is immutable, and copies share its data. Reading is thread-safe and never allocates or throws.
 class VPS_API VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
@@ -39,7 +39,7 @@ class VPS_API VoxMap {
     Vec3 normal = Vec3::Zero();
   };
 
-  /// An empty map: outside everywhere.
+  /// An empty map: every point is outside.
   VoxMap();
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
@@ -48,36 +48,37 @@ class VPS_API VoxMap {
   [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
   [[nodiscard]] const Box& bounds() const noexcept { return bounds_; }
-  /// Parts merged into it.
+  /// The number of parts merged into the map.
   [[nodiscard]] std::size_t partCount() const noexcept;
   /// True if both are copies of one map.
   [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
+  /// Bricks of 8^3 cells that store nodes.
   [[nodiscard]] std::size_t brickCount() const noexcept;
-  /// What this map keeps in memory; maps that were mounted one on another share the most of it.
+  /// Memory of this map. A map and the map it was mounted on share most of it.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
-  /// What it keeps in memory beside another that is kept anyway.
-  [[nodiscard]] std::size_t memoryBytesBeside(const VoxMap& other) const noexcept;
+  /// Memory of this map that it does not share with `other`.
+  [[nodiscard]] std::size_t additionalMemoryBytes(const VoxMap& other) const noexcept;
 
   /// Trilinear signed distance [m] at p_M, saturated at +-band_m().
   [[nodiscard]] double distance(const Vec3& p_M) const noexcept;
-  /// Unit outward normal (direction of growing distance); zero where the band gives none.
+  /// Unit outward normal (the direction in which the distance grows); zero beyond the band.
   [[nodiscard]] Vec3 normal(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
-  /// Both at once, for less than the two apart.
+  /// Distance and normal together, at less cost than two calls.
   [[nodiscard]] Sample sample(const Vec3& p_M, Gradient gradient = Gradient::Continuous) const noexcept;
-  /// A value d with |true distance| >= d for the surface, from a coarse grid that covers all space: far away
-  /// it grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
+  /// A lower bound of the true unsigned distance to the surface, from the grid of cells; outside the grid it
+  /// grows with the distance to the part's box. Not negative. Used to skip whole clusters of points.
   [[nodiscard]] double lowerBound(const Vec3& p_M) const noexcept;
-  /// A value that the signed distance at p_M is not below; -band_m() where that is all that is known. What a
-  /// sphere of points needs: every distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r,
-  /// band_m()) - sampleError_m().
+  /// A lower bound of the signed distance at p_M; -band_m() where nothing better is known. It bounds a sphere
+  /// of points: every distance(q) with |q - p_M| <= r is at least min(leastDistance(p_M) - r, band_m()) -
+  /// sampleError_m().
   [[nodiscard]] double leastDistance(const Vec3& p_M) const noexcept;
-  /// The most by which distance() can fall short of or exceed the true distance, saturated: sqrt(3)/2 voxel,
-  /// and half a quantum, at the middle of a cell where surfaces meet at a corner. (On smooth surfaces it is
-  /// h^2/8 times curvature.)
+  /// A bound of the difference between distance() and the saturated true distance: sqrt(3)/2 voxel and half a
+  /// quantum, reached at the middle of a cell where surfaces meet in a corner. (On smooth surfaces the
+  /// difference is h^2/8 times the curvature.)
   [[nodiscard]] double sampleError_m() const noexcept;
-  /// True if p_M is inside by the coarse sign; meaningful beyond the band, where distance() has saturated.
+  /// True if p_M is inside. Also valid beyond the band, where distance() has saturated.
   [[nodiscard]] bool isInsideCoarse(const Vec3& p_M) const noexcept;
-  /// Index of the part (order of merging, 0 first) whose surface is nearest at p_M's nearest node.
+  /// Index of the part (in the order of merging, from 0) whose surface is nearest at the node nearest to p_M.
   [[nodiscard]] std::uint16_t owner(const Vec3& p_M) const noexcept;
 
  private:
@@ -87,28 +88,30 @@ class VPS_API VoxMap {
   std::shared_ptr<const VoxLayout> layout_;  // never null
 };
 
-/// Builds the map of one mesh: exact distance to its triangles at every node within the band. Sign by
-/// pseudonormals where the mesh is closed, faces out and does not overlap itself; else by the winding number
-/// of what repairMesh() makes of it, and `report`, if given, tells what was found and how sure the sign is.
-/// O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size that is not
-/// positive, or a grid that would not fit in memory (says which voxel size would).
+/// Builds the map of one mesh, with the exact distance to its triangles at every node within the band. The
+/// sign comes from pseudonormals if the mesh is closed, faces out and does not overlap itself, and otherwise
+/// from the winding number of the mesh as repaired by repairMesh(). `report`, if given, says what was found
+/// and for what share of the nodes the sign is certain. O(surface area / h^2). Throws LoadError for a mesh
+/// that requireUsable() refuses, a voxel size that is not positive, or a grid that would not fit in memory;
+/// the message names a voxel size that would fit.
 VPS_API VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                            const Progress& progress = {}, MeshReport* report = nullptr);
 
-/// A part to be fused into one map, at its pose in the map's frame.
+/// A mesh at its pose in a map's frame.
 struct PlacedMesh {
   const Mesh* mesh = nullptr;
   Pose X_MP;
 };
 
-/// "Cooks" mounted parts into one voxmap (paper, section 5): the union, min over the parts' own exact
-/// distances on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells
-/// the parts apart. Throws LoadError as buildVoxMap(), for a pose that is not finite, and for parts so far
-/// apart that one map of them would not fit in memory; so do mounting, resampling and uniting.
+/// "Cooks" mounted parts into one voxmap: the union, as the minimum of the parts' own exact distances on one
+/// grid. Nothing is resampled, and the order of the parts does not matter; owner() tells them apart. Throws
+/// LoadError as buildVoxMap(), for a pose that is not finite, and for parts so far apart that one map would
+/// not fit in memory; mounting and resampling throw for the same reasons. Source: Tripicchio et al.,
+/// section 5.
 VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
                           const Progress& progress = {});
 
-/// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new
+/// Adds a part to a cooked map and returns the new map; the old one is unchanged. The cost follows the new
 /// part.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 
@@ -118,13 +121,13 @@ struct PlacedMap {
   Pose X_MP;
 };
 
-/// The field of a placed map on the grid of settings: every node is read from the map's own field, so it is
-/// off by that field's error and adds its own; sampleError_m() says how much. Much quicker than building
-/// anew. Throws LoadError if the map's band is narrower than the one asked for, or as buildVoxMap().
+/// Resamples a placed map onto the grid of `settings`: every node is read from the map's own field. The
+/// errors of both fields add up; sampleError_m() bounds them. Much faster than building the map at that pose.
+/// Throws LoadError if the map's band is narrower than the requested one, or as buildVoxMap().
 VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
-/// As mountVoxMap() for a mesh, from the part's own field: milliseconds where the mesh takes a tenth of a
-/// second or more, for the price of one resampling.
+/// As mountVoxMap() for a mesh, but resamples the part's own map: takes milliseconds where the mesh takes a
+/// tenth of a second or more.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmaps kept on disk, so that a part is built once.
+// A folder of voxmaps, so that each part is voxelised once.
 #pragma once
 
 #include <filesystem>
@@ -11,28 +11,28 @@
 
 namespace vps {
 
-/// A folder of voxmaps, each named by a 128-bit hash (XXH3) of all that it is built from: every vertex and
-/// triangle to the bit, the settings, and the version of the file. What comes out is to the bit what
-/// buildVoxMap() makes.
+/// A folder of voxmaps. Each file is named by a 128-bit hash (XXH3) of everything that determines the map:
+/// every vertex and triangle to the bit, the settings, and the version of the file. A map from the folder has
+/// the same bits as one from buildVoxMap().
 ///
-/// A file is trusted only if it is whole, of this version and this kind of machine, and its content matches
-/// its own hash; any other is built again and replaced, with a warning. The hash finds damage, not malice:
-/// the folder is for your own account. Several threads and programs may share it; files appear whole or not
-/// at all. Nothing is ever removed: delete the folder, or any file in it, whenever you like.
+/// A file is used only if it is whole, of this version and this byte order, and its content matches the hash
+/// it ends with; otherwise the map is built again and the file replaced, with a warning. The hash detects
+/// damage, not malice: use a folder that only your own account can write. Several threads and programs may
+/// share the folder. Files are never removed: delete the folder or any file in it at any time.
 class VPS_API VoxMapCache {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// @param folder  made when the first map is written
-  /// @param warn    told, in one line, what could not be read or written and what was done instead
+  /// @param folder  created when the first map is written
+  /// @param warn    called with one line of text if a file could not be read or written
   explicit VoxMapCache(std::filesystem::path folder, Warn warn = {});
 
-  /// As vps::buildVoxMap(), from the folder where it has been built before: O(bytes) of the mesh and the map.
-  /// Throws LoadError as that does, never for what is wrong with the folder.
+  /// As vps::buildVoxMap(), but reads the map from the folder if it is there: O(bytes) of mesh and map.
+  /// Throws LoadError for the same reasons, never for a fault of the folder.
   VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                const Progress& progress = {}, MeshReport* report = nullptr) const;
 
-  /// Where the map of this mesh is kept, whether there is one or not.
+  /// The path of this mesh's map, whether the file exists or not.
   [[nodiscard]] std::filesystem::path fileOf(const Mesh& mesh, const VoxMapSettings& settings) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inside or outside of triangles that need not close: the generalised winding number.
+// The generalised winding number: inside or outside of a mesh that need not be closed.
 #pragma once
 
 #include <array>
@@ -12,31 +12,30 @@
 
 namespace vps {
 
-/// How often the triangles wind around a point: their summed solid angle over 4 pi. 1 inside and 0 outside of
-/// a closed mesh that faces out; over a hole it falls smoothly from 1 to 0, so `> 0.5` is inside of an open
-/// one too. Across a triangle it jumps by 1, and nowhere else.
+/// The solid angle of all triangles as seen from a point, over 4 pi: how often they wind around it. It is 1
+/// inside and 0 outside of a closed mesh that faces out. Over a hole it falls smoothly from 1 to 0, so that
+/// `> 0.5` means inside of an open mesh too. It jumps by 1 across a triangle, and nowhere else.
 ///
-/// Clusters of triangles that are far enough stand for their triangles by their first three moments. Far
-/// enough is where the rest of the series provably is at most `cluster_error`.
-/// Sources: Jacobson et al., Robust inside-outside segmentation using generalized winding numbers, 2013;
-/// Barill et al., Fast winding numbers for soups and clouds, 2018 (there "far" is a ratio, here an error).
+/// Distant clusters of triangles are replaced by their first three moments, where the rest of the series is
+/// provably at most `cluster_error`. Sources: Jacobson et al., Robust inside-outside segmentation using
+/// generalized winding numbers, 2013; Barill et al., Fast winding numbers for soups and clouds, 2018 (there
+/// "far" is a ratio, here an error).
 class VPS_API WindingNumber {
  public:
-  /// A value, and the most by which it can be off (clusters used times cluster_error; in tests 100 times
-  /// less).
+  /// A value and a bound of its error (clusters used times cluster_error; 100 times the error in tests).
   struct Value {
     double w = 0;
     double error = 0;
   };
 
-  /// Copies what it needs. O(n log n), once. Triangles without area count nothing.
+  /// Copies what it needs. O(n log n). Triangles without area do not contribute.
   explicit WindingNumber(const Mesh& mesh, double cluster_error = 1e-2);
-  /// Of some of a mesh's triangles.
+  /// As above, for some of a mesh's triangles.
   WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cluster_error = 1e-2);
 
   /// O(log n) typical. Thread-safe; never throws or allocates. The same bits on every thread.
   [[nodiscard]] Value at(const Vec3& p) const noexcept;
-  /// From every triangle by van Oosterom and Strackee 1983. O(n).
+  /// The sum over every triangle by van Oosterom and Strackee 1983. O(n).
   [[nodiscard]] double exact(const Vec3& p) const noexcept;
 
  private:
@@ -57,7 +56,7 @@ class VPS_API WindingNumber {
   void expand(double cluster_error);
 
   Vec3 origin_ = Vec3::Zero();
-  double scale_ = 1;  ///< a power of two: the mesh in a box of about one, so that no product underflows
+  double scale_ = 1;  ///< a power of two that scales the mesh to size 1, so that no product underflows
   double cluster_error_ = 0;
   std::vector<std::array<Vec3, 3>> corners_;  // scaled, in the order of the tree
   std::vector<Node> nodes_;

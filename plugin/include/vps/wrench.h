@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Force and torque about a stated point, in a stated frame.
+// Force and torque about a point, in a frame; the variable's name states both.
 #pragma once
 
-#include "vps/export.h"
 #include "vps/pose.h"
 
 namespace vps {
 
 /// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about
 /// P's origin, in W.
-struct VPS_API Wrench {
+struct Wrench {
   Vec3 tau = Vec3::Zero();
   Vec3 f = Vec3::Zero();
 

@@ -277,7 +277,7 @@ MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const n
   best.distance_m = best.found ? std::sqrt(best2) : max_m;
   if (best.found)
     best.normal =
-        isBesideThin(best.triangle, feature) ? normalThrough(best.q) : featureNormal(best.triangle, feature);
+        isNextToThin(best.triangle, feature) ? normalThrough(best.q) : featureNormal(best.triangle, feature);
   return best;
 }
 
@@ -293,7 +293,7 @@ double MeshDistance::signedDistance(const Vec3& p, double max_m) const noexcept 
   return is_inside ? -nearest.distance_m : nearest.distance_m;
 }
 
-bool MeshDistance::isBesideThin(std::uint32_t triangle, int feature) const noexcept {
+bool MeshDistance::isNextToThin(std::uint32_t triangle, int feature) const noexcept {
   if (is_thin_[triangle] != 0) return true;
   if (feature == 0) return false;
   if (feature <= 3) return (is_edge_of_thin_[triangle] >> (feature - 1) & 1) != 0;

@@ -437,10 +437,11 @@ std::string describe(const MeshReport& report) {
   say(report.overlapping_shells, "overlapping shell", "overlapping shells");
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
-  char sure[64];
+  char certain[64];
   // Rounded down: 100 % is all.
-  std::snprintf(sure, sizeof sure, "; the sign is sure for %.4g %%", std::floor(1e4 * report.sure) / 1e2);
-  return text + sure;
+  std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
+                std::floor(1e4 * report.certain_share) / 1e2);
+  return text + certain;
 }
 
 }  // namespace vps

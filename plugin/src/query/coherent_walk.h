@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which leaves a query reads: all, those that the spheres cannot exclude, or those that may have come near
-// since the last pose.
+// Selects the leaves that a query reads: all, those that spheres cannot exclude, or those that may have come
+// near since the last pose.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -15,7 +15,7 @@
 
 namespace vps {
 
-/// The walk that remembers; see QueryMemory. Lengths are in voxels.
+/// The walk with temporal coherence; see QueryMemory. Lengths are in voxels.
 template <typename Consume>
 class CoherentWalk {
  public:
@@ -32,37 +32,37 @@ class CoherentWalk {
         turn_norm_(largestStretch(turn_)),
         reader_(reading, Reader{this, consume}) {}
 
-  /// Before a pose's first group: with another cutoff than before the memory starts anew.
+  /// Call before the first group of a pose. Another cutoff than before resets the memory.
   static void begin(QueryMemory& memory, double cutoff, const Pose& X_MP) noexcept {
     if (memory.cutoff_ == cutoff) return;
     memory.clear();
     memory.cutoff_ = cutoff;
     memory.X_MP_ = X_MP;
   }
-  /// After its last.
+  /// Call after the last group of a pose.
   static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
 
-  /// Threads may visit different groups at once. Every leaf taken has been read on return from flush().
+  /// Every visited leaf has been read when flush() returns.
   void visit(std::size_t group) noexcept { visitGroup(group); }
   void flush() noexcept { reader_.flush(); }
   [[nodiscard]] std::size_t pointsRead() const noexcept { return reader_.pointsRead(); }
 
  private:
-  /// What positions, readings and sums are rounded by at most, generously: it only costs a little culling.
+  /// A generous bound of the rounding of positions, readings and sums; it costs only a little culling.
   static constexpr double kRounding = 3e-4;
-  /// Where odometers start anew [voxels], and half the last place of a double there.
-  static constexpr double kFarthestWay = 1 << 20, kRoundingOfWay = 1.3e-10;
+  /// Where odometers are reset [voxels], and half the last place of a double there.
+  static constexpr double kFarthest = 1 << 20, kRoundingOfSum = 1.3e-10;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// The largest singular value of a matrix, or a little more: the root of the largest eigenvalue of its
-  /// square. For any matrix, since poses may be rotations to a few digits only.
+  /// The largest singular value of a matrix, rounded up: the root of the largest eigenvalue of its square.
+  /// For any matrix, since poses may be rotations to a few digits only.
   static double largestStretch(const Mat3& m) noexcept {
     const double scale = m.cwiseAbs().maxCoeff();
     if (!(scale > 0)) return 0;
     const Mat3 unit = m / scale, square = unit.transpose() * unit;
     Eigen::SelfAdjointEigenSolver<Mat3> solver;
     solver.computeDirect(square, Eigen::EigenvaluesOnly);
-    // Two largest eigenvalues that are equal, as of a difference of rotations, are exact to 1e-8.
+    // If the two largest eigenvalues are equal, as for a difference of rotations, they are exact to 1e-8.
     return scale * std::sqrt(solver.eigenvalues()[2]) * (1 + 1e-6);
   }
 
@@ -75,39 +75,40 @@ class CoherentWalk {
     }
   };
 
-  /// What a leaf, row or group waits for is lowered by note() as its leaves are read, at once or with a later
-  /// batch.
+  /// note() lowers the thresholds of leaf, row and group when a leaf is read, now or in a later batch.
   void visitGroup(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
-    // Rounding of the sum, below kFarthest, is made up for by the last term.
-    group.way += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfWay;
-    if (!(group.way < kFarthestWay)) startAnew(g);
-    if (group.way < group.next) return;
+    // The last term covers the rounding of the sum, below kFarthest.
+    group.odometer += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfSum;
+    if (!(group.odometer < kFarthest)) restart(g);
+    if (group.odometer < group.next) return;
     group.next = kNever;
     constexpr std::size_t kRows = kGroupLeaves / kLanes;
     for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
-      if (group.way >= memory_.row_next_[row]) visitRow(row, group.way);
+      if (group.odometer >= memory_.row_next_[row]) visitRow(row, group.odometer);
       group.next = std::min(group.next, memory_.row_next_[row]);
     }
   }
 
-  /// Odometers that have gone far would swallow small steps: back to zero, and look at everything.
-  void startAnew(std::size_t g) noexcept {
+  /// Large odometers would lose small steps to rounding: they are reset, and all leaves of the group are
+  /// tested.
+  void restart(std::size_t g) noexcept {
     const std::size_t first = g * kGroupLeaves,
                       end = std::min(reading_.shell.leaf_blocks, first + kGroupLeaves);
-    memory_.groups_[g].way = 0;
+    memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
     std::fill(&memory_.leaf_next_[first], &memory_.leaf_next_[first] + (end - first), -1.0);
     for (std::size_t row = first / kLanes; row * kLanes < end; ++row) memory_.row_next_[row] = -1;
   }
 
-  /// Up to sixteen leaves: those whose time has come are read, unless their spheres tell enough.
-  void visitRow(std::size_t row, double way) noexcept {
+  /// Tests up to sixteen leaves: those whose threshold has passed are read, unless the bounds of their
+  /// spheres suffice.
+  void visitRow(std::size_t row, double odometer) noexcept {
     double* next = &memory_.leaf_next_[row * kLanes];
     const auto due = [&] {
       std::uint32_t bits = 0;
-      for (int i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(way >= next[i]) << i;
+      for (int i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(odometer >= next[i]) << i;
       return bits;
     };
     std::uint32_t waiting = due();
@@ -115,7 +116,7 @@ class CoherentWalk {
       SphereBounds bounds;
       boundRow(row, bounds);
       for (int i = 0; i < kLanes; ++i)
-        next[i] = std::max(next[i], way + (static_cast<double>(bounds.free[i]) - kRounding));
+        next[i] = std::max(next[i], odometer + (static_cast<double>(bounds.free[i]) - kRounding));
       waiting = due();
     }
     memory_.row_next_[row] = kNever;
@@ -142,15 +143,15 @@ class CoherentWalk {
     std::fill_n(bounds.free, kLanes, -1.0f);
   }
 
-  /// After a read: how far the leaf may go. A reading that is all band says what a bound says.
+  /// Called after a read: computes how far the leaf may move. A saturated reading counts as a bound.
   void note(const ReadLeaf& leaf) noexcept {
     const double least = static_cast<double>(leaf.least()) * reading_.field.quantum;
     double free = (least - cutoff_) / reading_.field.slope;
     if (reading_.field.is_metric) free = std::max(free, least - error_ - beyond_);
     QueryMemory::Group& group = memory_.groups_[leaf.index / kGroupLeaves];
     double& leaf_next = memory_.leaf_next_[leaf.index];
-    // A leaf may be read in pieces: the first sets, the others lower.
-    const double until = group.way + std::max(0.0, free - kRounding);
+    // A leaf may be read in several pieces: the first sets the threshold, the others lower it.
+    const double until = group.odometer + std::max(0.0, free - kRounding);
     leaf_next = leaf.index == noted_ ? std::min(leaf_next, until) : until;
     noted_ = leaf.index;
     const std::size_t row = leaf.index / kLanes;
@@ -165,7 +166,7 @@ class CoherentWalk {
   const Reading& reading_;
   QueryMemory& memory_;
   const double cutoff_;
-  const double error_;   ///< of the field against true distances: half a cell's diagonal, and a quantum
+  const double error_;   ///< of the field: half a cell's diagonal and a quantum
   const double beyond_;  ///< a true distance above this gives readings above the cutoff
   const Mat3 turn_;      // since the last pose
   const Vec3 shift_;
@@ -174,13 +175,13 @@ class CoherentWalk {
   LeafReader<Reader> reader_;
 };
 
-/// The memory, if it is of this pair.
-inline QueryMemory* usable(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
+/// The memory if it belongs to this pair, otherwise null.
+inline QueryMemory* memoryFor(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
   return memory != nullptr && memory->isFor(map, shell) ? memory : nullptr;
 }
 
 /// Calls consume(const ReadLeaf&), in ascending order, for every leaf that may have a point within the
-/// cutoff; returns a bound [voxels] that the points of the others are not below.
+/// cutoff; returns a lower bound of the readings at the points of all other leaves [voxels].
 template <typename Consume>
 double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptions& options, double cutoff_m,
                       QueryMemory* memory, std::size_t& points_read, Consume consume) noexcept {
@@ -208,12 +209,12 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
   return least;
 }
 
-/// The result's distance, from the least reading [quanta] and what the points left out are not below
-/// [voxels].
+/// Sets the result's distance from the least reading [quanta] and the lower bound for the points that were
+/// not read [voxels].
 inline void setDistance(const VoxMap& map, const Reading& reading, float least_read, double least_skipped,
                         QueryResult& result) noexcept {
   const double read_m = reading.field.quantum_m * least_read;
-  // Where nothing is left out both are infinite; saturated bounds were rounded to floats.
+  // If nothing was skipped both are infinite; saturated bounds were rounded to floats.
   const double skipped_m = std::isfinite(least_skipped)
                                ? std::min(map.band_m(), reading.field.voxel_m * least_skipped)
                                : least_skipped;

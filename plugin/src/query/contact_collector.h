@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From leaves that have been read to contacts: place, distance, normal, owner.
+// Turns leaves that have been read into contacts: position, distance, normal, owner.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace vps {
 
-/// A saturated reading says only "far": it is never a contact, however wide the cutoff.
+/// A saturated reading means only "far": it is never a contact, however large the cutoff.
 inline double usedCutoff(const VoxMap& map, double cutoff_m) noexcept {
   return std::min(cutoff_m, map.band_m() - 0.01 * map.voxel_m());
 }
@@ -29,7 +29,7 @@ class ContactCollector {
         normals_(reading, options.gradient),
         out_(out) {}
 
-  /// All of a leaf's points within the cutoff.
+  /// Adds all of a leaf's points within the cutoff.
   void take(const ReadLeaf& leaf) noexcept {
     least_ = std::min(least_, leaf.least());
     if (!(leaf.least() <= cutoff_)) return;
@@ -37,7 +37,7 @@ class ContactCollector {
       if (leaf.value(static_cast<int>(lane)) <= cutoff_) add(leaf, static_cast<int>(lane));
   }
 
-  /// One of them.
+  /// Adds one point of a leaf.
   void add(const ReadLeaf& leaf, int lane) noexcept {
     if (out_.contacts.size() == out_.contacts.capacity()) {
       ++out_.left_out;
@@ -65,8 +65,8 @@ class ContactCollector {
     for (int i = 0; i < count; ++i) {
       Contact& c = out_.contacts[done_++];
       c.n_M = normals_.normal(i);
-      // Deeper than the band the field knows no way out; the point's own inward normal is the older VPS's
-      // answer.
+      // Deeper than the band the field has no direction: the point's own inward normal is used, as in the
+      // original VPS.
       if (c.n_M.isZero(0)) c.n_M = X_MP_.R * reading_.shell.inward[c.id];
     }
     normals_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals for points that touch, several at a time.
+// Normals at touching points, several at a time.
 #pragma once
 
 #include "query/leaf_walk.h"
@@ -7,14 +7,14 @@
 
 namespace vps {
 
-/// The reading of a lane [quanta], carried from the whole step where its point was placed to where it is,
-/// along the trilinear slope: positions of 1/16384 voxel are steps that a stiff spring feels (15 nm at 0.25
-/// mm).
+/// The reading of a lane [quanta], extrapolated along the trilinear slope from the step to which its point
+/// was rounded to the point itself: a stiff contact would show the steps of 1/16384 voxel (15 nm at 0.25 mm).
 /// @param p_P  the lane's point
 double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept;
 
-/// Gathers points of read leaves and gives each its unit outward normal. `Continuous` reads the field a voxel
-/// before and behind along each axis: the difference is that of nodal central differences, interpolated.
+/// Collects points of leaves that have been read and computes their unit outward normals. `Continuous` reads
+/// the field one voxel before and behind along each axis: the difference is the interpolated central
+/// difference of the nodes.
 class ContactNormals {
  public:
   ContactNormals(const Reading& reading, Gradient gradient) noexcept
@@ -22,13 +22,13 @@ class ContactNormals {
 
   void add(const ReadLeaf& leaf, int lane) noexcept;
   [[nodiscard]] bool isFull() const noexcept { return count_ == kMost; }
-  /// How many there are; normal(i) is valid for each after this.
+  /// Computes the normals and returns their number; normal(i) is valid after this.
   int compute() noexcept;
   /// Zero where the field has no direction.
   [[nodiscard]] Vec3 normal(int i) const noexcept {
     const Vec3 g(n_[0][i], n_[1][i], n_[2][i]);
     const double length = g.norm();
-    // Where opposite walls cancel there is no direction; below two quanta it is rounding noise.
+    // There is no direction where opposite walls cancel; below two quanta it is rounding noise.
     return length > 2 ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
   void clear() noexcept { count_ = 0; }

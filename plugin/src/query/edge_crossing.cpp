@@ -13,14 +13,14 @@ namespace vps {
 namespace {
 
 constexpr double kCosSharp = 0.94;        // 20 degrees, as PointShellSettings::edge_angle_rad
-constexpr double kLeastSine = 0.087;      // 5 degrees: below it where lines cross is mostly rounding
+constexpr double kLeastSine = 0.087;      // 5 degrees: below it the crossing of lines is mostly rounding
 constexpr double kLeastSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
-/// How far into a face's side the plane may lean, as a sine: an edge that passes from one face's edge to the
-/// next of a fine polygon stays a crossing meanwhile. Assumed.
+/// How far the plane may lean into a face, as a sine: so an edge that passes from one edge of a fine polygon
+/// to the next stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
-/// How far past its end a segment still crosses: at the joints of a curved edge the crossing falls between
-/// two, by a share of the gap. Assumed. At a true end the way out of an overlap past it must not be shorter
-/// than the one across: a square peg's rim in a square hole has long passed the hole's.
+/// How far beyond its end a segment still crosses, as a share of the gap: at the joints of a curved edge the
+/// crossing falls between two segments. Assumed. At a true end, separating along the edge must not be shorter
+/// than separating across: the rim of a square peg in a square hole has long passed the hole's rim.
 constexpr double kPast_m = 1e-6, kPastShare = 0.1;
 
 struct Face {
@@ -77,7 +77,8 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
       s.into[i] = (way - along * along.dot(way)).normalized();
     }
     if (!(face[0].normal.dot(s.into[1]) < 0)) return;  // a groove
-    // Of a blade with faces back to back the normals cancel; away from both faces is outward all the same.
+    // The normals of a blade with faces back to back cancel; the direction away from both faces is still
+    // outward.
     const Vec3 mean = face[0].normal + face[1].normal;
     s.outward = mean.norm() > 1e-6 ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
     s.owner = owner;
@@ -125,7 +126,8 @@ void EdgeSet::build() {
     std::nth_element(own.begin(), own.begin() + half, own.end(), [&](std::uint32_t a, std::uint32_t b) {
       const double at_a = segments_[a].from[axis] + segments_[a].to[axis],
                    at_b = segments_[b].from[axis] + segments_[b].to[axis];
-      return at_a != at_b ? at_a < at_b : a < b;  // a strict order, so that the tree is the same everywhere
+      return at_a != at_b ? at_a < at_b
+                          : a < b;  // a strict order, so that the tree is the same with every library
     });
     nodes_.emplace_back();
     nodes_.emplace_back();
@@ -141,7 +143,7 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-/// Goes down both hierarchies at once.
+/// Descends both hierarchies at once.
 class CrossingSearch {
  public:
   CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
@@ -166,7 +168,7 @@ class CrossingSearch {
     const Vec3 b_center = X_01_ * b.center;
     const double reach_m = a.radius_m + b.radius_m + std::max(cutoff_m_, depth_m_);
     if ((a.center - b_center).squaredNorm() > reach_m * reach_m) return;
-    // A long segment's sphere holds much that the segment is far from.
+    // The sphere of a long segment contains much space that is far from the segment.
     const double near_m = std::max(cutoff_m_, depth_m_);
     if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + near_m)) return;
     if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + near_m)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a shell and a pose to its leaves that may matter, read in batches and in ascending order.
+// Finds the leaves of a shell that may matter at a pose, and reads them in batches in ascending order.
 #pragma once
 
 #include <cmath>
@@ -10,15 +10,15 @@
 
 namespace vps {
 
-/// One map, one shell, one pose.
+/// A map, a shell and a pose, prepared for reading.
 struct Reading {
   Reading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
       : field(map), motion(field, X_MP), shell(its_shell), kernels(readKernels(simd)) {
-    field.asks_ahead = shell.leaf_blocks > kCachedLeaves;
+    field.prefetches = shell.leaf_blocks > kCachedLeaves;
   }
 
-  /// Leaves whose nodes the second cache keeps from one query to the next: some 20 lines of 64 bytes each, in
-  /// 1 MB (assumed). Asking ahead for what is there costs a tenth of a read.
+  /// Number of leaves whose nodes stay in the L2 cache from query to query: about 20 lines of 64 bytes each,
+  /// in 1 MB (assumed). Prefetching nodes that are there costs a tenth of a read.
   static constexpr std::size_t kCachedLeaves = 512;
 
   FieldView field;
@@ -27,7 +27,7 @@ struct Reading {
   const ReadKernels& kernels;
 };
 
-/// A leaf that has been read: its block, and where in the batch.
+/// A leaf that has been read: its block, and its slot in the batch.
 struct ReadLeaf {
   const ShellBlock& block;
   std::uint32_t index;  ///< of the leaf among the shell's blocks
@@ -67,7 +67,7 @@ class LeafReader {
   [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
 
  private:
-  /// Radius of a leaf, in voxels, up to which rounding of floats stays within a step, 6e-5 voxel.
+  /// Largest radius of a leaf, in voxels, at which the rounding of floats stays within a step, 6e-5 voxel.
   static constexpr double kFineEnough = 100;
 
   [[nodiscard]] std::size_t countPoints() const noexcept {
@@ -76,7 +76,7 @@ class LeafReader {
     return points;
   }
 
-  /// A leaf far larger than a voxel: each point as a block of its own, about itself.
+  /// Reads the points of a leaf that is much larger than a voxel as blocks of one point.
   void readOneByOne(const ShellBlock& block, std::uint32_t leaf) noexcept {
     ShellBlock singles[kLanes];
     for (std::uint32_t i = 0; i < block.count; ++i) {
@@ -100,18 +100,18 @@ class LeafReader {
   std::size_t points_ = 0;
 };
 
-/// Leaves that queries treat as one: 4096 points, and all under one block of the second level.
+/// Leaves per group: 4096 points, all under one block of the second level.
 inline constexpr std::size_t kGroupLeaves = kLanes * kLanes;
 inline std::size_t groupCount(const PointShell& shell) noexcept {
   return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
 }
-/// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may come down to
-/// the cutoff [voxels]; of the others, the least bound [voxels].
+/// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may reach the
+/// cutoff [voxels]; returns the least bound of the other leaves [voxels].
 template <typename Take>
 float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
   const auto& blocks = reading.shell.blocks;
   float least_skipped = std::numeric_limits<float>::infinity();
-  // Sixteen waiting children a level; 2^32 points are eight levels.
+  // Sixteen children wait on each level; 2^32 points make eight levels.
   std::uint32_t waiting[8 * kLanes];
   int count = 0;
   waiting[count++] = root;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who touches, and how far off the nearest is. Whole clusters are skipped where the field proves that none of
-// their points can matter. The proof must hold for the field as it is read, not for the true distance,
-// because the answer promised is that of reading it at every point (read_kernel.inc has the bounds).
+// Contacts and least distance. Whole clusters are skipped where the field proves that none of their points
+// matters. The proof must hold for the field as it is read, not for the true distance, because the result
+// must equal that of reading the field at every point (read_kernel.inc has the bounds).
 #include "vps/query.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Least over the shell of a lower bound of the true distance, for shells that are all beyond the band:
-/// spheres are opened until they are small beside their distance, since a quarter is precise enough to go by.
+/// The least lower bound of the true distance over a shell that is entirely beyond the band: spheres are
+/// opened until they are small compared with their distance; a quarter is precise enough.
 double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& X_MP) noexcept {
   constexpr double kSmall = 0.25;  // assumed
   const auto least = [&](const Vec3& p_P) {
@@ -71,7 +71,7 @@ class LeastReading {
     std::sort(order, order + block.count, [&](std::uint32_t a, std::uint32_t b) {
       return bounds.center[a] != bounds.center[b] ? bounds.center[a] < bounds.center[b] : a < b;
     });
-    // Once a point reads -band nothing can read less.
+    // No point can read less than -band.
     for (std::uint32_t k = 0; k < block.count && least_ > -kFullBand; ++k)
       if (bounds.least[order[k]] < reading_.field.quantum * least_) open(block.first + order[k]);
   }
@@ -100,7 +100,7 @@ QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose
   const double cutoff_m = usedCutoff(map, options.cutoff_m);
   ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
   const double least_skipped =
-      readNearLeaves(reading, X_MP, options, cutoff_m, usable(memory, map, shell), result.points_tested,
+      readNearLeaves(reading, X_MP, options, cutoff_m, memoryFor(memory, map, shell), result.points_tested,
                      [&](const ReadLeaf& leaf) { collector.take(leaf); });
   collector.finish();
   if (out.left_out > 0) result.status = Status::Truncated;
@@ -121,7 +121,7 @@ QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose
   result.is_beyond_band = !(result.min_distance_m < map.band_m());
   if (result.is_beyond_band) {
     result.status = Status::BeyondBand;
-    // Saturated readings allow for a true distance that is half a cell's diagonal less.
+    // A saturated reading is compatible with a true distance that is half a cell's diagonal less.
     result.min_distance_m =
         std::max(farBound(VoxSampler(map), shell, X_MP), map.band_m() - map.sampleError_m());
   }

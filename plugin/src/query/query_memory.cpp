@@ -29,7 +29,7 @@ QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
 }
 
 void QueryMemory::clear() noexcept {
-  for (Group& group : groups_) group.way = 0, group.next = -1;
+  for (Group& group : groups_) group.odometer = 0, group.next = -1;
   std::fill(row_next_.begin(), row_next_.end(), -1.0);
   std::fill(leaf_next_.begin(), leaf_next_.end(), std::numeric_limits<double>::infinity());
   std::fill_n(leaf_next_.begin(), shell_->leaf_blocks, -1.0);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wrench of all touching points without a list of them: what a haptic loop needs.
-// wrench_collector.h has the order of summation.
+// The wrench of all touching points without a list of them, for haptic loops.
 #include "query/coherent_walk.h"
 #include "query/wrench_collector.h"
 #include "vps/query.h"
@@ -19,7 +18,7 @@ QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& 
   const Reading reading(map, shell, X_MP, options.simd);
   WrenchCollector collector(reading, X_MP, options.gradient, p_MO);
   const double least_skipped =
-      readNearLeaves(reading, X_MP, options, 0, usable(memory, map, shell), result.points_tested,
+      readNearLeaves(reading, X_MP, options, 0, memoryFor(memory, map, shell), result.points_tested,
                      [&](const ReadLeaf& leaf) { collector.take(leaf); });
   collector.finish();
   out = collector.summary(k_N_per_m3);

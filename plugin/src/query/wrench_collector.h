@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums of touching points over leaves that have been read; what all wrench queries share.
+// Sums over the touching points of leaves that have been read.
 //
-// Sums have one order for every processor and every way of culling: sixteen lanes, leaf by leaf in ascending
-// order within a row of sixteen leaves; rows in ascending order within a group of 256 leaves; lanes by
-// halves; groups in ascending order. A leaf that does not touch adds nothing.
+// The order of summation is the same for every processor and every way of culling: sixteen lanes, leaf by
+// leaf in ascending order within a row of sixteen leaves; rows in ascending order within a group of 256
+// leaves; lanes by halves; groups in ascending order. A leaf that does not touch adds nothing.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ inline double sumOfLanes(const double lanes[kLanes]) {
   return sum[0];
 }
 
-/// Sums of leaves; the groups' sums, added up.
+/// Adds up leaves, then rows, then groups.
 class WrenchCollector {
  public:
   WrenchCollector(const Reading& reading, const Pose& X_MP, Gradient gradient, const Vec3& p_MO) noexcept
@@ -59,7 +59,7 @@ class WrenchCollector {
   /// Least reading so far [quanta].
   [[nodiscard]] float least() const noexcept { return least_; }
 
-  /// Sums with stiffness, about O.
+  /// The result with stiffness, about O.
   [[nodiscard]] TouchSummary summary(double k_N_per_m3) const noexcept {
     TouchSummary out;
     const double quantum_m = reading_.field.quantum_m, h = reading_.field.voxel_m;
@@ -95,8 +95,8 @@ class WrenchCollector {
     entry.weight = static_cast<double>(leaf.block.weight[lane]) * std::max(0.0, -reading);
     return entry;
   }
-  /// Deeper than the band the field knows no way out; the point's own inward normal is the older VPS's
-  /// answer.
+  /// Deeper than the band the field has no direction: the point's own inward normal is used, as in the
+  /// original VPS.
   [[nodiscard]] Vec3 inwardOf(const ReadLeaf& leaf, int lane) const noexcept {
     return X_MP_.R * reading_.shell.inward[leaf.block.first + static_cast<std::uint32_t>(lane)];
   }

@@ -81,7 +81,7 @@ struct Splatter::Edge {
   Vec3 a, along, pseudonormal = Vec3::Zero();
   double length, band;
   Box box;
-  std::span<const HalfOf> sides;
+  std::span<const TriangleSide> sides;
   const SurfaceFeatures& features;
   const Vec3 from;  // where the tile lies
   bool is_by_thin;
@@ -96,7 +96,7 @@ struct Splatter::Edge {
     along /= length;
     sides = features.sidesOf(i);
     is_by_thin = features.hasThin(sides);
-    for (const HalfOf side : sides) pseudonormal += features.normal(side.triangle);
+    for (const TriangleSide side : sides) pseudonormal += features.normal(side.triangle);
     box.add(a);
     box.add(b);
     bound();
@@ -111,7 +111,7 @@ struct Splatter::Edge {
   }
 
   /// Into a face from the edge, at a right angle to it; zero for a face without a normal.
-  [[nodiscard]] Vec3 into(HalfOf side) const {
+  [[nodiscard]] Vec3 into(TriangleSide side) const {
     const auto& t = features.triangle(side.triangle);
     const Vec3 m = features.normal(side.triangle).cross(along);
     return t[side.side] < t[(side.side + 1) % 3] ? m : Vec3(-m);
@@ -155,7 +155,7 @@ struct Splatter::Edge {
       const double t = along.dot(r);
       if (t < -kBorder || t > length + kBorder) continue;
       bool is_beyond = true;
-      for (const HalfOf side : sides) is_beyond = is_beyond && into(side).dot(r) <= kBorder;
+      for (const TriangleSide side : sides) is_beyond = is_beyond && into(side).dot(r) <= kBorder;
       if (!is_beyond) continue;
       const double d = (r - t * along).norm();
       if (d >= band) continue;
@@ -181,7 +181,7 @@ struct Splatter::Corner {
     v = features.point(i) - origin;
     work.clear();
     const bool is_regular = features.isRegular(i);
-    for (const HalfOf corner : features.sidesFrom(i)) {
+    for (const TriangleSide corner : features.sidesFrom(i)) {
       const auto& t = features.triangle(corner.triangle);
       work.push_back(features.point(t[(corner.side + 1) % 3]) - features.point(i));
       // Where two triangles share each edge, every edge was met as one's first side.
@@ -203,7 +203,7 @@ struct Splatter::Corner {
   }
 
   [[nodiscard]] Vec3 normal() const {
-    const std::span<const HalfOf> around = features.sidesFrom(vertex);
+    const std::span<const TriangleSide> around = features.sidesFrom(vertex);
     return features.hasThin(around) ? features.pseudonormalThrough(features.point(vertex), around)
                                     : features.pseudonormal(vertex);
   }

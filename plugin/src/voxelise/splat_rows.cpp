@@ -35,7 +35,7 @@ void SplatRegion::add(double a, double b, double c, double d, double scale) {
   const double per = -1 / lean;
   const int k = count++;
   at[k] =
-      static_cast<float>((d + a * origin[0] + b * origin[1] + c * origin[2] + kContactMargin * scale) * per);
+      static_cast<float>((d + a * origin[0] + b * origin[1] + c * origin[2] + kRoundingMargin * scale) * per);
   per_x[k] = static_cast<float>(a * per);
   per_y[k] = static_cast<float>(b * per);
   lift[k] = lean > 0 ? 0 : -kNoBound;

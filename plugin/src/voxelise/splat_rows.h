@@ -27,16 +27,16 @@ struct SplatRegion {
   int low[3], high[3];           ///< first and last node
   double origin[3] = {0, 0, 0};  ///< where node 0 lies in the coordinates that planes are given in
 
-  /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kContactMargin scale is
+  /// Adds a x + b y + c z + d >= 0, all up to a factor of `scale` > 0: a slack of kRoundingMargin scale is
   /// added.
   void add(double a, double b, double c, double d, double scale);
 
   /// In voxels: what rounding to float may cost, and more. The rows are a superset; who takes them decides.
-  static constexpr double kContactMargin = 1e-4;
+  static constexpr double kRoundingMargin = 1e-4;
 };
 
 /// Finds the rows of a region; they must hold kMaxRows. Returns how many. Every node of the region is in one;
-/// a row may hold nodes that are kContactMargin beyond it.
+/// a row may hold nodes that are kRoundingMargin beyond it.
 int findRows(const SplatRegion& region, SplatRow* rows);
 /// The same without the machine's own vector instructions, for comparison.
 int findRowsBaseline(const SplatRegion& region, SplatRow* rows);

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The body of findRows(), compiled once for each set of vector instructions. Each of
-// eight values is computed alike everywhere, so the bits are too.
-// Includes nothing with inline functions of its own: the linker would keep one copy of them for all.
+// The body of findRows(), compiled once for each set of vector instructions. All of them do the same
+// operations on each value, so the bits are the same. Includes no header with inline functions: the linker
+// would keep one copy of them for all processors.
 #pragma once
 
 #include "voxelise/splat_rows.h"
 
 namespace vps {
+namespace {  // one copy for each set of instructions
 
-/// Eight values in one, which GCC and Clang split where the machine's vectors are shorter. Left to
-/// themselves, loops over arrays of eight were scalar code in GCC 12.
+/// Vectors of eight, which GCC and Clang split where the processor's are shorter. GCC 12 did not vectorise
+/// loops over arrays of eight.
 using Floats = float __attribute__((vector_size(32)));
 using Ints = int __attribute__((vector_size(32)));
-inline constexpr int kLanes = 8;
+inline constexpr int kRowLanes = 8;
 
-static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
+inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
   constexpr Floats kLane = {0, 1, 2, 3, 4, 5, 6, 7};
   // Both ends outwards by what a z of this size may be off.
   constexpr float kMargin = 1e-3F;
@@ -22,7 +23,7 @@ static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
   const Floats last = static_cast<float>(region.high[2]) + kMargin - Floats{};
   int count = 0;
   for (int x = region.low[0]; x <= region.high[0]; ++x) {
-    for (int y = region.low[1]; y <= region.high[1]; y += kLanes) {
+    for (int y = region.low[1]; y <= region.high[1]; y += kRowLanes) {
       Floats low = first, high = last;
       const Floats at_y = static_cast<float>(y) + kLane;
       for (int k = 0; k < region.count; ++k) {
@@ -43,7 +44,7 @@ static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
       using Pairs = long long __attribute__((vector_size(32)));
       const auto pairs = reinterpret_cast<Pairs>(is_row);
       if ((pairs[0] | pairs[1] | pairs[2] | pairs[3]) == 0) continue;
-      const int left = region.high[1] - y + 1, lanes = left < kLanes ? left : kLanes;
+      const int left = region.high[1] - y + 1, lanes = left < kRowLanes ? left : kRowLanes;
       for (int i = 0; i < lanes; ++i) {
         if (is_row[i] == 0) continue;
         rows[count++] = {static_cast<unsigned char>(x), static_cast<unsigned char>(y + i),
@@ -54,4 +55,5 @@ static inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
   return count;
 }
 
+}  // namespace
 }  // namespace vps

@@ -71,7 +71,7 @@ void SurfaceFeatures::collectCorners() {
 void SurfaceFeatures::collectEdges() {
   struct Outgoing {
     std::uint32_t to;
-    HalfOf side;
+    TriangleSide side;
     bool is_forward;
   };
   std::vector<Outgoing> at;
@@ -80,7 +80,7 @@ void SurfaceFeatures::collectEdges() {
   is_regular_.assign(points_.size(), 1);
   for (std::uint32_t v = 0; v < points_.size(); ++v) {
     at.clear();
-    for (const HalfOf corner : sidesFrom(v)) {
+    for (const TriangleSide corner : sidesFrom(v)) {
       const auto& t = triangles_[corner.triangle];
       const std::uint32_t one = next(corner.side), two = next(one);
       if (t[one] > v) at.push_back({t[one], corner, true});
@@ -102,7 +102,7 @@ void SurfaceFeatures::collectEdges() {
 
 Vec3 SurfaceFeatures::pseudonormal(std::uint32_t vertex) const {
   Vec3 sum = Vec3::Zero();
-  for (const HalfOf corner : sidesFrom(vertex)) {
+  for (const TriangleSide corner : sidesFrom(vertex)) {
     const auto& t = triangles_[corner.triangle];
     const Vec3 u = points_[t[next(corner.side)]] - points_[vertex];
     const Vec3 v = points_[t[next(next(corner.side))]] - points_[vertex];
@@ -114,12 +114,12 @@ Vec3 SurfaceFeatures::pseudonormal(std::uint32_t vertex) const {
 void SurfaceFeatures::nameSides() {
   edge_of_.assign(3 * triangles_.size(), 0);
   for (std::uint32_t edge = 0; edge < edgeCount(); ++edge)
-    for (const HalfOf side : sidesOf(edge)) edge_of_[3 * std::size_t{side.triangle} + side.side] = edge;
+    for (const TriangleSide side : sidesOf(edge)) edge_of_[3 * std::size_t{side.triangle} + side.side] = edge;
 }
 
-bool SurfaceFeatures::hasThin(std::span<const HalfOf> sides) const {
+bool SurfaceFeatures::hasThin(std::span<const TriangleSide> sides) const {
   return has_thin_ && std::any_of(sides.begin(), sides.end(),
-                                  [&](HalfOf side) { return normals_[side.triangle].isZero(); });
+                                  [&](TriangleSide side) { return normals_[side.triangle].isZero(); });
 }
 
 /// The angle under which a triangle meets a point q of its boundary; 0 where it does not touch q.
@@ -133,19 +133,19 @@ double SurfaceFeatures::angleAt(const Vec3& q, std::uint32_t triangle) const {
   return 0;
 }
 
-Vec3 SurfaceFeatures::pseudonormalThrough(const Vec3& q, std::span<const HalfOf> around) const {
+Vec3 SurfaceFeatures::pseudonormalThrough(const Vec3& q, std::span<const TriangleSide> around) const {
   Vec3 sum = Vec3::Zero();
   std::vector<std::uint32_t> seen;
-  const auto see = [&](HalfOf side) {
+  const auto see = [&](TriangleSide side) {
     if (std::find(seen.begin(), seen.end(), side.triangle) == seen.end()) seen.push_back(side.triangle);
   };
-  for (const HalfOf side : around) see(side);
+  for (const TriangleSide side : around) see(side);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const double angle_rad = angleAt(q, seen[i]);
     sum += angle_rad * normals_[seen[i]];
     if (angle_rad == 0 || !normals_[seen[i]].isZero()) continue;
     for (std::uint32_t k = 0; k < 3; ++k)
-      for (const HalfOf side : sidesOf(edge_of_[3 * std::size_t{seen[i]} + k])) see(side);
+      for (const TriangleSide side : sidesOf(edge_of_[3 * std::size_t{seen[i]} + k])) see(side);
   }
   return sum;
 }

@@ -21,7 +21,7 @@
 namespace vps {
 
 /// Side `side` of a triangle, from its corner `side` to the next.
-struct HalfOf {
+struct TriangleSide {
   std::uint32_t triangle : 30;
   std::uint32_t side : 2;
 };
@@ -49,11 +49,11 @@ class SurfaceFeatures {
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] const Edge& edge(std::uint32_t i) const { return edges_[i]; }
   /// The sides that make up an edge.
-  [[nodiscard]] std::span<const HalfOf> sidesOf(std::uint32_t edge) const {
+  [[nodiscard]] std::span<const TriangleSide> sidesOf(std::uint32_t edge) const {
     return std::span(sides_).subspan(edges_[edge].first, edges_[edge + 1].first - edges_[edge].first);
   }
   /// The sides that begin at a vertex, one for each triangle there.
-  [[nodiscard]] std::span<const HalfOf> sidesFrom(std::uint32_t vertex) const {
+  [[nodiscard]] std::span<const TriangleSide> sidesFrom(std::uint32_t vertex) const {
     return std::span(corners_).subspan(first_corner_[vertex],
                                        first_corner_[vertex + 1] - first_corner_[vertex]);
   }
@@ -64,9 +64,9 @@ class SurfaceFeatures {
   /// The same at a point q of the surface, from the triangles `around` it and from those that touch q beyond
   /// triangles without a normal: a collinear triangle that closes a T-junction has the face it stands for
   /// only behind it. Slower.
-  [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const HalfOf> around) const;
+  [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const TriangleSide> around) const;
   /// Whether one of some triangles has no normal.
-  [[nodiscard]] bool hasThin(std::span<const HalfOf> sides) const;
+  [[nodiscard]] bool hasThin(std::span<const TriangleSide> sides) const;
 
  private:
   void computeNormals();
@@ -78,9 +78,9 @@ class SurfaceFeatures {
   const std::vector<std::array<std::uint32_t, 3>>& triangles_;  // the mesh's
   std::vector<Vec3> points_, normals_;
   std::vector<std::uint32_t> first_corner_;
-  std::vector<HalfOf> corners_;
+  std::vector<TriangleSide> corners_;
   std::vector<Edge> edges_;  // and one more for the end
-  std::vector<HalfOf> sides_;
+  std::vector<TriangleSide> sides_;
   std::vector<std::uint8_t> is_regular_;
   bool has_thin_ = false;
   std::vector<std::uint32_t> edge_of_;  // of each triangle's three sides; only where a triangle is thin

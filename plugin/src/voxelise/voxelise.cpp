@@ -329,7 +329,7 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
     WindingSigner signer(repaired.solid);
     layout = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
     repaired.report.signed_by_winding = true;
-    repaired.report.sure = signer.sure();
+    repaired.report.certain_share = signer.certain_share();
   }
   if (report != nullptr) *report = repaired.report;
   return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);

@@ -63,7 +63,7 @@ auto membersOf(Report& r) {
   return std::tie(r.triangles, r.degenerate_triangles, r.duplicate_triangles, r.open_edges,
                   r.non_manifold_edges, r.flipped_edges, r.shells, r.holes, r.t_junctions, r.flipped_facets,
                   r.turned_shells, r.overlapping_shells, r.internal_facets, r.sheet_facets,
-                  r.signed_by_winding, r.sure);
+                  r.signed_by_winding, r.certain_share);
 }
 constexpr std::uint64_t kReportBytes = 14 * sizeof(std::size_t) + sizeof(bool) + sizeof(double);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// A winding number this far from 0.5 is sure, and may be handed on to neighbours.
-constexpr double kSure = 0.25;
+constexpr double kCertainMargin = 0.25;
 /// Off a value before it is handed on: many times the clusters' measured error.
 constexpr double kDoubt = 0.02;
 /// Values are taken as at most this far from 0.5: crossing a facet within the solid, which no distance tells
@@ -161,9 +161,9 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
       const int i = queue[next];
       const double left = margin[i] - loss - (i == seed ? kDoubt : 0);
       // On the surface itself both signs are right, and the winding number says so.
-      count.sure += size[i] < kFullBand && (margin[i] > kSure || size[i] <= 1);
+      count.certain += size[i] < kFullBand && (margin[i] > kCertainMargin || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
-      if (!(left > kSure)) continue;
+      if (!(left > kCertainMargin)) continue;
       forEachNeighbour(nodeAt(i), Index3::Constant(kNodes), [&](const Index3& other) {
         const int j = nodeIndex(other.x(), other.y(), other.z());
         if (margin[j] >= 0 || !(size[i] + size[j] > step)) return;
@@ -200,7 +200,7 @@ void WindingSigner::signBricks(VoxLayout& layout, double voxel_m, double quantum
 
 void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>& cells, double voxel_m,
                               double quantum_m) {
-  std::atomic<std::size_t> nodes = 0, sure = 0;
+  std::atomic<std::size_t> nodes = 0, certain = 0;
   std::atomic<int> steepest = 0;
   const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
@@ -208,27 +208,27 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
     const Count count = signBrick(of_brick, kBrick * layout.cellAt(cells[i]), voxel_m, quantum_m);
     clip(of_brick, layout.cellAt(cells[i]), within);
     nodes += count.nodes;
-    sure += count.sure;
+    certain += count.certain;
     const int most = mostAlongAxes(of_brick);
     for (int seen = steepest; most > seen && !steepest.compare_exchange_weak(seen, most);) {
     }
   });
   count_.nodes += nodes;
-  count_.sure += sure;
+  count_.certain += certain;
   layout.steepest = std::max(layout.steepest, steepnessOf(steepest, voxel_m, quantum_m));
   layout.is_metric = layout.steepest <= 1;
 }
 
 std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
-                                                 const std::vector<std::uint8_t>& is_unsure) const {
+                                                 const std::vector<std::uint8_t>& is_uncertain) const {
   const CellBox corners = {layout.low, layout.size + Index3::Ones()};  // each by the cell above it
   const auto cornerOf = [&](std::size_t cell, int corner) {
     return corners.cellIndex(layout.cellAt(cell) + Index3(corner >> 2, corner >> 1 & 1, corner & 1));
   };
   enum : std::uint8_t { NotAsked, Asked, Out, In };
   std::vector<std::uint8_t> side(corners.cellCount(), NotAsked);
-  for (std::size_t i = 0; i < is_unsure.size(); ++i)
-    for (int k = 0; k < 8 && is_unsure[i] != 0; ++k) side[cornerOf(i, k)] = Asked;
+  for (std::size_t i = 0; i < is_uncertain.size(); ++i)
+    for (int k = 0; k < 8 && is_uncertain[i] != 0; ++k) side[cornerOf(i, k)] = Asked;
   const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
     if (side[i] != Asked) return;
@@ -236,8 +236,8 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
     side[i] = within.holds(node) && winding_.at(voxel_m * node.cast<double>()).w > 0.5 ? In : Out;
   });
   std::vector<std::size_t> cut;
-  for (std::size_t i = 0; i < is_unsure.size(); ++i) {
-    if (is_unsure[i] == 0) continue;
+  for (std::size_t i = 0; i < is_uncertain.size(); ++i) {
+    if (is_uncertain[i] == 0) continue;
     const std::uint8_t center = layout.bricks[i] == kInside ? In : Out;
     for (int k = 0; k < 8; ++k) {
       if (side[cornerOf(i, k)] == center) continue;
@@ -274,7 +274,7 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
         const std::size_t j = layout.cellIndex(layout.low + at);
         // Empty cells touch, and no surface is nearer than the band to either.
         const float left = margin[i] - std::max(loss[i], loss[j]) - (i == seed ? float{kDoubt} : 0.0f);
-        if (!isConstant(layout.bricks[j]) || margin[j] >= 0 || !(left > float{kSure})) return;
+        if (!isConstant(layout.bricks[j]) || margin[j] >= 0 || !(left > float{kCertainMargin})) return;
         margin[j] = left;
         queue.push_back(j);
       });
@@ -282,17 +282,17 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
   }
 
   const Within within(layout, voxel_m, quantum_m);
-  std::vector<std::uint8_t> is_unsure(layout.bricks.size());
-  for (std::size_t i = 0; i < is_unsure.size(); ++i) {
+  std::vector<std::uint8_t> is_uncertain(layout.bricks.size());
+  for (std::size_t i = 0; i < is_uncertain.size(); ++i) {
     if (!isConstant(layout.bricks[i])) continue;
     if (within.holdsNoneOf(layout.cellAt(i))) {
       layout.bricks[i] = kOutside;
       continue;
     }
     // From a cell's centre to its corners: half its diagonal. Where it is cut off, corners may disagree.
-    is_unsure[i] = margin[i] < 0.87f * loss[i] + float{kDoubt} || !within.holdsAllOf(layout.cellAt(i));
+    is_uncertain[i] = margin[i] < 0.87f * loss[i] + float{kDoubt} || !within.holdsAllOf(layout.cellAt(i));
   }
-  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, quantum_m, is_unsure);
+  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, quantum_m, is_uncertain);
   if (cut.empty()) return;
   std::uint32_t brick = takeBricks(layout, cut.size());
   for (const std::size_t cell : cut) {
@@ -304,8 +304,8 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
   signCells(layout, cut, voxel_m, quantum_m);
 }
 
-double WindingSigner::sure() const noexcept {
-  return count_.nodes == 0 ? 1 : static_cast<double>(count_.sure) / static_cast<double>(count_.nodes);
+double WindingSigner::certainShare() const noexcept {
+  return count_.nodes == 0 ? 1 : static_cast<double>(count_.certain) / static_cast<double>(count_.nodes);
 }
 
 namespace {

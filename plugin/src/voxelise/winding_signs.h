@@ -47,15 +47,15 @@ class WindingSigner {
   /// middle of such a hole, become bricks with a sign at each node. Nothing to do for a closed mesh.
   void signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m);
   /// Share of the nodes signed so far, in the band, whose winding number is more than 0.25 from 0.5.
-  [[nodiscard]] double sure() const noexcept;
+  [[nodiscard]] double certainShare() const noexcept;
 
  private:
   struct Count {
-    std::size_t nodes = 0, sure = 0;
+    std::size_t nodes = 0, certain = 0;
   };
-  /// The cells, ascending, that a hole's middle passes; `is_unsure` by cell.
+  /// The cells, ascending, that a hole's middle passes; `is_uncertain` by cell.
   [[nodiscard]] std::vector<std::size_t> cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
-                                                  const std::vector<std::uint8_t>& is_unsure) const;
+                                                  const std::vector<std::uint8_t>& is_uncertain) const;
   /// Signs the nodes of these cells' bricks.
   void signCells(VoxLayout& layout, const std::vector<std::size_t>& cells, double voxel_m, double quantum_m);
   Count signBrick(NodeValue* nodes, const Index3& low, double voxel_m, double quantum_m) const;

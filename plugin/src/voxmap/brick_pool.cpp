@@ -20,8 +20,8 @@ VoxPool::VoxPool(std::size_t capacity)
       owner_(new std::uint16_t[capacity_]),
       mixed_(new const NodeOwners*[capacity_]) {
 #ifdef __linux__
-  // Reads go all over the nodes: of small pages, more than the processor remembers (5 to 10 % of a read of
-  // 20 MB). A wish; where it is not granted, nothing else changes.
+  // Reads are scattered over the nodes; small pages exceed the TLB (5 to 10 % of the time of a read of 20
+  // MB). The call is a hint: where it is refused nothing else changes.
   const std::size_t bytes = capacity_ * kBrickStride * sizeof(NodeValue);
   if (bytes >= kPage) (void)madvise(nodes_.get(), bytes / kPage * kPage, MADV_HUGEPAGE);
 #endif
@@ -38,7 +38,7 @@ std::uint32_t VoxPool::take(std::size_t count) noexcept {
   std::size_t first = used_;
   const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
   if (run != free_.end()) {
-    // From its end: what is left keeps its place in the list, and nothing is allocated.
+    // From its end: the rest keeps its entry in the list, and nothing is allocated.
     first = run->first + (run->second -= count);
     if (run->second == 0) free_.erase(run);
   } else {
@@ -69,22 +69,22 @@ void VoxPool::giveBack(std::uint32_t first, std::size_t count) noexcept {
   }
   try {
     free_[begin] = end - begin;
-  } catch (const std::bad_alloc&) {  // lost until the pool goes
+  } catch (const std::bad_alloc&) {  // the bricks are lost until the pool is deleted
   }
 }
 
 namespace {
 
-/// Visits each brick of its own that a layout names, by that name, which may be changed.
+/// Visits the name of each non-constant brick of a layout; the visitor may change it.
 template <typename Visit>
 void forNames(VoxLayout& layout, Visit visit) {
   for (std::uint32_t& brick : layout.bricks)
     if (!isConstant(brick)) visit(brick);
 }
 
-/// What a move to another pool needs to know: bricks that several cells name are moved once.
+/// The bricks that a layout uses; bricks that several cells share are moved once.
 struct Named {
-  std::vector<std::uint8_t> is_named;  ///< by place in the pool
+  std::vector<std::uint8_t> is_named;  ///< by index in the pool
   std::size_t count = 0, mixed = 0;
 };
 
@@ -121,7 +121,7 @@ void moveToNewPool(VoxLayout& layout, std::size_t room) {
   auto owners = std::make_shared<std::vector<NodeOwners>>();
   owners->reserve(named.mixed);  // bricks point into it
   std::uint32_t next = to->take(named.count);
-  std::vector<std::uint32_t> name(from->size(), 0);  // in the new pool, by place in the old
+  std::vector<std::uint32_t> name(from->size(), 0);  // in the new pool, by index in the old one
   forNames(layout, [&](std::uint32_t& brick) {
     std::uint32_t& renamed = name[brick / kBrickStride];
     if (renamed == 0) {

@@ -44,8 +44,8 @@ bool measureColumn(std::size_t first_cell, int count, int column, const std::vec
   return true;
 }
 
-/// out[z] = min over columns of (in[column][z] + squared distance across), columns near first, until none can
-/// be nearer.
+/// out[z] = min over columns of (in[column][z] + squared distance across), columns near first, until no other
+/// can be nearer.
 void nearestColumn(int cell, int columns, const float* const* in, int count, float* out) {
   std::fill_n(out, count, kNone);
   const int middle = kColumns * cell + kColumns / 2;
@@ -101,7 +101,7 @@ std::vector<float> boundCellCenters(const Index3& size, const std::vector<std::i
     for (int x = 0; x < nx; ++x) {
       float* row = &bound[at(x, y, 0, ny, nz)];
       nearestColumn(x, kColumns * nx, rows.data(), nz, row);
-      // Rounding of a few numbers of this size, given back.
+      // Subtracts the rounding error of a few operations on numbers of this size.
       for (int z = 0; z < nz; ++z) row[z] = std::sqrt(row[z]) * (1 - 1e-6F);
     }
   });

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells with nothing around them: sixteen points that lie in one of these need not be read one by one.
+// Cells whose neighbours are all empty: the sixteen points of a leaf in such a cell need not be read.
 #include "voxmap/voxmap_layout.h"
 
 namespace vps {
 namespace {
 
-/// Spreads what is set to the neighbours along one axis. `stride`: between neighbours; `length`: of a row of
-/// them, in all.
+/// Spreads set entries to their neighbours along one axis. `stride`: from neighbour to neighbour; `length`:
+/// of a whole row of them.
 void spread(const std::vector<std::uint8_t>& from, std::size_t stride, std::size_t length,
             std::vector<std::uint8_t>& to) {
   for (std::size_t row = 0; row < from.size(); row += length) {

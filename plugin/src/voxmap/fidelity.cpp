@@ -7,12 +7,12 @@
 
 namespace vps {
 
-// All values are assumed: the paper gives none of these knobs. The grid step is half the point spacing, so
-// that a point's patch covers a few cells; `vps trade` measures what a scene really needs.
+// All values are assumed: the paper gives none of them. The grid step is half the point spacing, so that the
+// area of a point covers a few cells; `vps trade` measures what a scene needs.
 Fidelity fidelityPreset(std::string_view name) {
   Fidelity f;  // "normal": fits of tens of micrometres on parts of a few centimetres
   if (name == "normal") return f;
-  if (name == "fast") {  // to look and move around: a quarter of the points, one way of testing
+  if (name == "fast") {  // for previews: a quarter of the points, one side
     f.voxel_m = 0.5e-3;
     f.spacing_m = 1e-3;
     f.sides = Sides::One;

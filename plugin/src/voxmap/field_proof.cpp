@@ -15,10 +15,11 @@
 namespace vps {
 namespace {
 
-/// The longest way over grid cells, for a straight way of 1: |(1, sqrt 2 - 1, sqrt 3 - sqrt 2)|.
+/// The length of the longest path over grid cells between points at distance 1: |(1, sqrt 2 - 1, sqrt 3 -
+/// sqrt 2)|.
 constexpr double kLattice = 1.1281;
 
-/// What is measured over bricks; minima and maxima, so that their order does not matter.
+/// Measurements over bricks: only minima and maxima, so that the order does not matter.
 struct Measure {
   int along = 0, across = 0, diagonal = 0;  ///< differences on a cell's edges, faces, and through it [quanta]
   Box surface;                              ///< of zeros on edges [voxels]
@@ -75,7 +76,7 @@ class Proof {
     layout_.steepest = static_cast<float>(measure.along * quantum_ * (1 + 1e-6));
     const double s = quantum_ * std::max({measure.along / 1.0, measure.across / std::sqrt(2.0),
                                           measure.diagonal / std::sqrt(3.0)});
-    // A hair more than nothing, for the rounding in here.
+    // A small margin for rounding in this computation.
     error_ = std::max({1e-6, band_ * (1 - 1 / (kLattice * s)), shortfall(measure.surface)}) * (1 + 1e-6);
     layout_.node_error = static_cast<float>(error_ * (1 + 1e-6));
     layout_.is_metric = true;
@@ -109,13 +110,13 @@ class Proof {
         });
   }
 
-  /// The most by which a node below the band is less than the way to the box, negative inside it [voxels].
+  /// The largest amount by which a node below the band is less than its signed distance to the box [voxels].
   [[nodiscard]] double shortfall(const Box& box) const {
     return overCells<double>(
         [&](std::size_t cell, double& most) {
           const std::uint32_t brick = layout_.bricks[cell];
           if (brick == kOutside) return;
-          // The way to a box is convex: over a constant brick it is greatest at a corner.
+          // The distance to a box is convex: over a constant brick it is greatest at a corner.
           const int step = brick == kInside ? kBrick : 1;
           const NodeValue* nodes = layout_.nodesOf(cell);
           const Index3 first = kBrick * layout_.cellAt(cell);
@@ -131,7 +132,7 @@ class Proof {
         [](double a, double b) { return std::max(a, b); });
   }
 
-  /// The way from each cell's centre to the nearest cell that is not `kind`, or a little less [voxels].
+  /// A lower bound of the distance from each cell's centre to the nearest cell that is not `kind` [voxels].
   [[nodiscard]] std::vector<float> wayOutOf(std::uint32_t kind) const {
     std::vector<std::int32_t> is_other(layout_.bricks.size());
     std::transform(layout_.bricks.begin(), layout_.bricks.end(), is_other.begin(),
@@ -141,9 +142,10 @@ class Proof {
     return boundCellCenters(layout_.size, is_other, {all});
   }
 
-  /// Within a constant region, nodes below the band are at least the way out of it away; there a saturated
-  /// node lies within sqrt(1/2) of any place on the region's faces, and from it on f falls by the way gone.
-  /// boundCellCenters() measures to cubes about nodes, sqrt(3)/2 more than to the cell that has them.
+  /// Within a constant region, nodes below the band are at least the distance to the region's border away. A
+  /// saturated node lies within sqrt(1/2) of any point on the region's faces, and from there f falls at most
+  /// by the distance. boundCellCenters() measures to cubes around nodes: sqrt(3)/2 more than to the cell that
+  /// has them.
   void boundCenters() {
     constexpr double kContactMargin = 0.7072 + 0.8661;
     const std::vector<float> outside = wayOutOf(kOutside), inside = wayOutOf(kInside);

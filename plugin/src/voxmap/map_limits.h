@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a voxmap cannot be: looked at before any memory is taken, or any number made an index. All throw
+// Limits of voxmaps, checked before memory is allocated or a number becomes an index. All functions throw
 // LoadError.
 #pragma once
 
@@ -9,24 +9,25 @@
 
 namespace vps {
 
-/// Refuses a voxel size or a band that no map can have, NaN too.
+/// Refuses voxel sizes and bands that no map can have, including NaN.
 void requireSettings(const VoxMapSettings& settings, const std::string& part = "");
 
-/// Refuses a pose that is not made of numbers.
+/// Refuses a pose that is not finite.
 void requirePose(const Pose& X_MP);
 
-/// Refuses a surface's box so far from the origin that indices of its cells would not hold: more than half of
-/// their range of 32 bit, the other half is left to its own size. NaN too.
+/// Refuses a surface's box so far from the origin that indices of its cells would overflow: beyond half of
+/// the range of 32 bits; the other half is for the size of the box. Refuses NaN too.
 void requireNear(const Box& bounds_M, double voxel_m, const std::string& part = "");
 
-/// Bytes that a directory of so many cells takes.
+/// Bytes of a directory of so many cells.
 double directoryBytes(const Vec3& cells);
 
-/// Refuses a directory that would not fit in memory; one that does has indices of 31 bit, as queries need.
-/// @param cells  along each axis; of any size, since it may be counted before it can be an index
+/// Refuses a directory that would not fit in memory; one that fits has indices of 31 bits, as queries need.
+/// @param cells  along each axis; as doubles, since the count may exceed the range of an index
 void requireDirectory(const Vec3& cells, const std::string& file = "", const std::string& part = "");
 
-/// Refuses what would not fit in memory: "needs 12 GiB for its bricks, the limit is 4; REMEDY".
+/// Refuses what would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4;
+/// REMEDY".
 /// @param what_for  " for its bricks"
 void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
                    const std::string& file = "", const std::string& part = "");

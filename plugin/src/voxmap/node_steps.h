@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much a brick's neighbouring nodes differ: what proves how steep a field can be.
+// Differences of neighbouring nodes of a brick, which bound how steep the field is.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace vps {
 
-/// The most by which nodes differ that are one step (X, Y, Z) apart, over a brick [quanta].
+/// The largest difference of nodes that are one step (X, Y, Z) apart, over a brick [quanta].
 template <int X, int Y, int Z>
 int mostDifference(const NodeValue* nodes) {
   constexpr int kStep = nodeIndex(X, Y, Z);

@@ -22,8 +22,8 @@ Simd widest() noexcept {
   return Simd::Scalar;
 }
 
-/// Found when the program starts, so that no query waits for another's first one. What asks before that, from
-/// another constant's making, gets zero: Best, and with it the scalar path.
+/// Determined when the program starts, so that no query waits for the first one. A constructor of another
+/// global object that runs earlier reads zero: Best, and with it the scalar path.
 const Simd kWidest = widest();
 
 }  // namespace

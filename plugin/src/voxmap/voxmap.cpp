@@ -9,7 +9,7 @@
 namespace vps {
 
 VoxMap::VoxMap() {
-  // An empty map: no cells, so everywhere outside; shared by all.
+  // An empty map has no cells, so every point is outside; all empty maps share this layout.
   static const std::shared_ptr<const VoxLayout> empty = [] {
     auto layout = std::make_shared<VoxLayout>();
     layout->pool = std::make_shared<VoxPool>(0);
@@ -39,7 +39,7 @@ std::size_t VoxMap::memoryBytes() const noexcept {
   return bytes;
 }
 
-std::size_t VoxMap::memoryBytesBeside(const VoxMap& other) const noexcept {
+std::size_t VoxMap::additionalMemoryBytes(const VoxMap& other) const noexcept {
   if (isSame(other)) return 0;
   const bool is_mounted_on_one = layout_->pool == other.layout_->pool;
   return memoryBytes() - (is_mounted_on_one ? layout_->pool->size() * VoxPool::kBytes : 0);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a VoxMap lies in memory.
+// The memory layout of a VoxMap.
 //
 //   directory: dense 3-D array of cells over the part's box, its band and one empty cell more on each side
 //     cell --> brick: 9^3 nodes at spacing h, cells of 8h; the last layer of nodes repeats the next brick's
 //     first
 //         `---> or one of two constant bricks: all +band (far outside) or all -band (far inside)
 //
-// Why 9^3 and not 8^3: any of a brick's 8^3 cells then finds its eight nodes in one brick, without a branch
-// or a second look-up, for 1.42 times the memory. Why the constant bricks: reading a missing brick takes no
-// branch either. Why 16 bits: an error of 6e-5 voxel at a band of 4 buys half the memory traffic.
+// Why 9^3 and not 8^3: each of a brick's 8^3 cells then finds its eight nodes in one brick, without a branch
+// or a second look-up, for 1.42 times the memory. Why constant bricks: reading a missing brick takes no
+// branch either. Why 16 bits: an error of 6e-5 voxel at a band of 4 halves the memory traffic.
 #pragma once
 
 #include <algorithm>
@@ -36,11 +36,11 @@ inline constexpr int kBrickNodes = kNodes * kNodes * kNodes;
 inline constexpr std::uint32_t kBrickStride = (kBrickNodes + 31) / 32 * 32;
 static_assert(kBrickStride * sizeof(std::int16_t) % 64 == 0);
 
-/// A node's distance in quanta; +-kFullBand is the band's end and beyond.
+/// A node's distance in quanta; +-kFullBand means the end of the band or beyond.
 using NodeValue = std::int16_t;
 inline constexpr int kFullBand = 32767;
 
-/// Position of a node in a brick's arrays; z runs fastest. And the other way round.
+/// Index of a node in a brick's arrays, z fastest, and the inverse.
 constexpr int nodeIndex(int x, int y, int z) {
   return (x * kNodes + y) * kNodes + z;
 }
@@ -48,7 +48,7 @@ inline Index3 nodeAt(int index) {
   return {index / (kNodes * kNodes), index / kNodes % kNodes, index % kNodes};
 }
 
-/// Where the two constant bricks lie in every pool.
+/// Names of the two constant bricks in every pool.
 inline constexpr std::uint32_t kOutside = 0, kInside = kBrickStride;
 constexpr bool isConstant(std::uint32_t brick) {
   return brick <= kInside;
@@ -57,40 +57,40 @@ constexpr bool isConstant(std::uint32_t brick) {
 /// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
 inline constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
-/// A large page's bytes, where the system has such; nodes begin at one.
+/// Size of a large page, where the system has them; nodes begin at a page.
 inline constexpr std::size_t kPage = std::size_t{2} << 20;
 
-/// Who owns the nodes of a brick where parts meet.
+/// The owner of each node of a brick where parts meet.
 using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 
-/// Bricks, one after the other; a brick is named by the place of its first node. Room is taken once and
-/// filled from the front, and what is filled never changes while a map names it: maps that were mounted one
-/// on another share a pool, so that mounting costs what the new part costs. Memory that is not filled yet
-/// costs nothing on systems that give pages on first touch.
+/// A pool of bricks. A brick's name is the index of its first node. Memory is reserved once and filled from
+/// the front, and a brick does not change while a map uses it: maps that were mounted on one another share a
+/// pool, so that mounting costs only the new part. Reserved memory that is not filled yet costs nothing on
+/// systems that allocate pages at the first access.
 class VoxPool {
  public:
-  /// The most bricks that can have a name, beside the two constant ones.
+  /// The most bricks that can have a name, besides the two constant ones.
   static constexpr std::size_t kMost = UINT32_MAX / kBrickStride - 2;
 
-  /// Room for so many bricks beside the two constant ones, which it makes; and for as many again, to be
-  /// mounted.
+  /// Reserves memory for `capacity` bricks, for as many again to be mounted, and for the two constant bricks,
+  /// which it creates.
   explicit VoxPool(std::size_t capacity);
 
-  /// Takes `count` bricks that lie one after the other, of owner 0: the first's name; 0 if there is no room.
-  /// Thread-safe.
+  /// Allocates `count` consecutive bricks of owner 0 and returns the first one's name, or 0 if the pool is
+  /// full. Thread-safe.
   [[nodiscard]] std::uint32_t take(std::size_t count) noexcept;
-  /// Makes the room of a take() free for another. Thread-safe.
+  /// Frees the bricks of a take(). Thread-safe.
   void giveBack(std::uint32_t first, std::size_t count) noexcept;
   [[nodiscard]] std::size_t size() const noexcept { return used_; }  ///< bricks, constant ones too
 
   [[nodiscard]] NodeValue* nodes(std::uint32_t brick) noexcept { return nodes_.get() + brick; }
   [[nodiscard]] const NodeValue* nodes(std::uint32_t brick) const noexcept { return nodes_.get() + brick; }
-  /// Of all nodes of a brick, unless mixed.
+  /// Owner of all nodes of a brick, unless mixed.
   [[nodiscard]] std::uint16_t& owner(std::uint32_t brick) noexcept { return owner_[brick / kBrickStride]; }
   [[nodiscard]] std::uint16_t owner(std::uint32_t brick) const noexcept {
     return owner_[brick / kBrickStride];
   }
-  /// Null, or one owner a node.
+  /// Null, or an owner for each node.
   [[nodiscard]] const NodeOwners*& mixed(std::uint32_t brick) noexcept {
     return mixed_[brick / kBrickStride];
   }
@@ -102,7 +102,7 @@ class VoxPool {
     return owners != nullptr ? (*owners)[node] : owner(brick);
   }
 
-  /// Bytes that a brick takes.
+  /// Bytes of a brick.
   static constexpr std::size_t kBytes =
       kBrickStride * sizeof(NodeValue) + sizeof(std::uint16_t) + sizeof(const NodeOwners*);
 
@@ -113,13 +113,14 @@ class VoxPool {
   std::size_t capacity_;  // constant bricks too
   std::atomic<std::size_t> used_ = 0;
   std::mutex mutex_;                         // of take() and giveBack()
-  std::map<std::size_t, std::size_t> free_;  // runs given back: first and count, in bricks; no two touch
+  std::map<std::size_t, std::size_t> free_;  // freed runs: first and count, in bricks; never adjacent
   std::unique_ptr<NodeValue[], Free> nodes_;
   std::unique_ptr<std::uint16_t[]> owner_;
   std::unique_ptr<const NodeOwners*[]> mixed_;
 };
 
-/// Bricks of a pool for as long as a map names them: a mounting that was only tried leaves room for the next.
+/// Frees bricks of a pool when no map uses them any more, so that a mounting that is given up leaves its
+/// memory to the next.
 class BrickLease {
  public:
   BrickLease(std::shared_ptr<VoxPool> pool, std::uint32_t first, std::size_t count)
@@ -134,7 +135,7 @@ class BrickLease {
   std::size_t count_;
 };
 
-/// What mounting must know of the parts already there.
+/// What mounting needs to know of the parts already in the map.
 struct VoxPartRange {
   Box bounds;   ///< of the part's surface, in M [m]
   Index3 low;   ///< first cell of the part's own directory
@@ -168,29 +169,29 @@ struct CellBox {
 
 struct VoxLayout : CellBox {
   std::vector<std::uint32_t> bricks;  ///< of each cell
-  /// Of each cell, at its centre: the sign, and a value [m] that the distance to the surface is not below.
+  /// Of each cell, at its centre: a lower bound of the distance to the surface [m], with the sign of inside
+  /// or outside.
   std::vector<float> centers_m;
-  /// Of each cell: it and all those around it are the outer constant. What markFarCells() makes of `bricks`;
-  /// empty where it was not called, which costs queries time alone.
+  /// Of each cell: 1 if it and its neighbours are all the outer constant brick. markFarCells() computes it
+  /// from `bricks`; if empty, queries are slower and otherwise the same.
   std::vector<std::uint8_t> is_far;
   std::shared_ptr<VoxPool> pool;
-  std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< what mixed bricks point to
+  std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< memory that mixed bricks point to
   std::vector<std::shared_ptr<const BrickLease>> leases;               ///< of bricks that were mounted
   std::vector<VoxPartRange> parts;
-  /// The most by which neighbouring nodes differ, in voxels: 1 for true distances. More where signs change
-  /// without a surface, or where a level set of others was none.
+  /// The largest difference of neighbouring nodes, in voxels: 1 for true distances; more where signs change
+  /// without a surface, and in level sets of other programs.
   float steepest = 1;
-  /// How far nodes may be from the distance they stand for, in voxels, beside rounding: 0 as voxelised, half
-  /// a cell's diagonal once resampled, what was measured (field_proof.h) in a level set of others.
+  /// The largest error of a node, in voxels, besides rounding: 0 as voxelised, half a cell's diagonal once
+  /// resampled, and as measured (field_proof.h) in a level set of another program.
   float node_error = 0;
-  /// False where signs contradict each other: nodes then stand for no distance at all, and only `steepest` is
-  /// known of them.
+  /// False where signs contradict each other: nodes are then not distances, and only `steepest` bounds them.
   bool is_metric = true;
   void resizeCells() {
     bricks.assign(cellCount(), kOutside);
     centers_m.assign(bricks.size(), 0);
   }
-  /// Bytes that a cell takes: its brick's name, its centre's distance, whether it is far.
+  /// Bytes of a cell: its brick's name, its centre's distance, whether it is far.
   static constexpr std::size_t kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
   /// The nodes of a cell's brick.
   [[nodiscard]] const NodeValue* nodesOf(std::size_t cell) const noexcept {
@@ -198,31 +199,31 @@ struct VoxLayout : CellBox {
   }
 };
 
-/// Room for bricks, one after the other: the first's name; 0 for none. Where the pool has no room, the layout
-/// moves to a larger one first, and its bricks get new names. Not thread-safe for one layout; other layouts
-/// of the same pool may be read and written meanwhile. Throws LoadError for more bricks than can be named.
+/// Allocates consecutive bricks for a layout and returns the first one's name, 0 for none. If the pool is
+/// full, the layout moves to a larger one first, and its bricks get new names. Not thread-safe for one
+/// layout; other layouts of the same pool may be read and written meanwhile. Throws LoadError for more bricks
+/// than can be named.
 std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
 
-/// Copies the bricks that a layout names, and no others, to a pool of its own with `room` for more: mounting
-/// leaves bricks behind that nothing names any more, and a shared pool has those of other maps, which may
-/// just be written. As takeBricks().
+/// Copies the bricks that a layout uses to a pool of its own with room for `room` more: mounting leaves
+/// unused bricks behind, and a shared pool also has bricks of other maps, which other threads may be writing.
+/// Throws as takeBricks().
 void moveToNewPool(VoxLayout& layout, std::size_t room);
 
-/// Fills VoxLayout::is_far, once the bricks are final. What lies beyond the directory is outer constant too.
+/// Computes VoxLayout::is_far from the final bricks. Cells beyond the directory count as outer constant.
 void markFarCells(VoxLayout& layout);
 
-/// What a node's unit is worth. A float, so that its product with any node is exact in double, and the full
-/// band exactly VoxMap::band_m().
+/// The unit of nodes [m]. A float, so that its product with any node is exact in double, and the full band is
+/// exactly VoxMap::band_m().
 inline double quantumOf(double band_m) {
   return static_cast<float>(band_m / kFullBand);
 }
-/// A band as nodes can hold it: what a saturated node reads as.
+/// The band as nodes represent it: the reading of a saturated node.
 inline double bandHeld(double band_m) {
   return kFullBand * quantumOf(band_m);
 }
-/// A distance in quanta, |quanta| <= kFullBand, as a node holds it: the nearest whole number, halves away
-/// from zero. Nodes are rounded here and nowhere else; plain arithmetic, so that loops over it become
-/// vectors.
+/// Rounds a distance in quanta, |quanta| <= kFullBand, to a node's value: to nearest, halves away from zero.
+/// All nodes are rounded by this function; its plain arithmetic lets compilers vectorise loops over it.
 template <typename Real>
 inline NodeValue nodeOf(Real quanta) {
   return static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(Real{0.5}, quanta)));

@@ -24,8 +24,8 @@ bool inRange(const VoxPartRange& part, const Index3& cell) {
   return (cell.array() >= part.low.array()).all() && (cell.array() < part.high.array()).all();
 }
 
-/// A lower bound of the distance from a cell's centre to the parts for which the directory has nothing
-/// better: those whose own range does not hold the cell. As float, rounded towards zero, so that it stays a
+/// A lower bound of the distance from a cell's centre to the parts whose own range does not contain the cell.
+/// Other parts have better bounds in their directories. Rounded towards zero as a float, so that it stays a
 /// bound.
 float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, double voxel_m) {
   const Vec3 center = voxel_m * (VoxMap::kBrick * cell + Index3::Constant(VoxMap::kBrick / 2)).cast<double>();
@@ -35,7 +35,7 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
-/// A map's cells and an added field's on their way to become one.
+/// Merges the cells of a map with those of an added field.
 class Merger {
  public:
   Merger(const VoxLayout& a, const AddedField& b, double voxel_m)
@@ -55,7 +55,7 @@ class Merger {
   }
 
  private:
-  /// Bricks for the addeds, in a's own pool if it has room: the first's name.
+  /// Allocates the new bricks, in a's own pool if it has room; returns the first one's name.
   std::uint32_t takeRoom() {
     out_->pool = a_.pool;
     out_->owners = a_.owners;
@@ -77,7 +77,7 @@ class Merger {
     std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
   };
 
-  /// Over both. A directory without cells lies nowhere, whatever its `low` says.
+  /// The range of both. A directory without cells has no position, whatever its `low` says.
   [[nodiscard]] VoxPartRange rangeOfBoth() const {
     const VoxPartRange a = {{}, a_.low, a_.low + a_.size}, b = {{}, b_.low, b_.low + b_.size};
     if (b_.size.minCoeff() == 0) return a;
@@ -113,7 +113,7 @@ class Merger {
     out_->centers_m[cell] = std::min(from_a, from_b);
   }
 
-  /// Settles the cells where one field is constant and wins; lists the others.
+  /// Decides the cells where one field is constant; lists the others.
   void findNewBricks() {
     const Index3 low = b_.low.cwiseMax(out_->low);
     const Index3 high = (b_.low + b_.size).cwiseMin(out_->low + out_->size);
@@ -171,7 +171,7 @@ class Merger {
   std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
 };
 
-/// A field that is a map on the same grid.
+/// A map on the same grid, as an added field.
 class AddedMap final : public AddedField {
  public:
   explicit AddedMap(const VoxLayout& layout) : layout_(layout) {

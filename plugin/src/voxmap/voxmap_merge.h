@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What can be merged into a map: another map on the same grid, or one that is resampled on the way.
+// Merging of another field into a map: another map on the same grid, or one that is resampled meanwhile.
 #pragma once
 
 #include "voxmap/voxmap_layout.h"
@@ -15,16 +15,16 @@ class AddedField : public CellBox {
   [[nodiscard]] virtual std::uint16_t ownerOf(std::size_t cell, int node) const = 0;
   [[nodiscard]] virtual bool hasMixedOwners(std::size_t cell) const = 0;
 
-  std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or anything else for nodes
-  std::vector<float> centers_m;      ///< as VoxLayout has them
+  std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or another value if it has nodes
+  std::vector<float> centers_m;      ///< as in VoxLayout
   std::vector<VoxPartRange> parts;
-  float steepest = 1, node_error = 0;  ///< as VoxLayout has them
+  float steepest = 1, node_error = 0;  ///< as in VoxLayout
   bool is_metric = true;
 };
 
 /// The union of a map and a field on its grid; the field's parts get the next owner numbers.
 VoxMap mergedVoxMap(const VoxMap& a, const AddedField& b, const Box& bounds_of_b);
-/// The same of two maps with equal voxel and band.
+/// As above, for two maps with equal voxel and band.
 VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b);
 
 /// The map with its bricks in a pool of its own: merging leaves bricks behind that no map uses any more.

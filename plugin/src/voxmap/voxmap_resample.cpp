@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid resampling: a part's own field read at the nodes of another grid. Mounting a part does it on the way
-// into the cooked map, so that nothing is written twice.
+// Rigid resampling: a part's own field is read at the nodes of another grid. Mounting writes the result
+// directly into the cooked map.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<ShellBlock> nodeBlocks(double voxel_m) {
   std::vector<ShellBlock> blocks(kBlocksOfBrick);
   for (int i = 0; i < static_cast<int>(kBrickStride); ++i) {
     ShellBlock& block = blocks[static_cast<std::size_t>(i / kLanes)];
-    const int node = std::min(i, kBrickNodes - 1);  // the room after the last node repeats it
+    const int node = std::min(i, kBrickNodes - 1);  // the space after the last node repeats it
     const Vec3 offset = voxel_m * (nodeAt(node) - Index3::Constant(kBrick / 2)).cast<double>();
     block.x[i % kLanes] = static_cast<float>(offset.x());
     block.y[i % kLanes] = static_cast<float>(offset.y());
@@ -49,7 +49,7 @@ class ResampledField final : public AddedField {
         blocks_(nodeBlocks(voxel_m)),
         quanta_(static_cast<float>(field_.quantum_m / quantum_m)) {
     const double ratio = map_.voxel_m() / voxel_m;
-    // Nodes are off by the field's error; and two neighbours by no more than the field's slope over a voxel.
+    // Nodes have the field's error, and neighbours differ by at most the field's slope over a voxel.
     node_error = static_cast<float>(field_.error * ratio);
     steepest = field_.slope;
     is_metric = field_.is_metric;
@@ -87,11 +87,11 @@ class ResampledField final : public AddedField {
     return voxel_m_ * (kBrick * cell + Index3::Constant(kBrick / 2)).cast<double>();
   }
 
-  /// From the map's quanta to the grid's, rounded to the nearest. The map's band is no narrower than the
-  /// grid's, so that what is saturated stays so.
+  /// Converts the map's quanta to the grid's, rounded to nearest. The map's band is at least as wide as the
+  /// grid's, so that saturated values stay saturated.
   void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
-    // On the bits, where floats of one sign sort as their bits do: compilers do not put comparisons of floats
-    // into vectors by default.
+    // Compares the bits, since floats of one sign sort as their bits do: compilers do not vectorise
+    // comparisons of floats by default.
     constexpr auto kBand = std::bit_cast<std::int32_t>(float{kFullBand});
     for (int i = 0; i < count; ++i) {
       const auto bits = std::bit_cast<std::int32_t>(value[i] * quanta_);
@@ -112,7 +112,7 @@ class ResampledField final : public AddedField {
     for (std::size_t i = 1; i < map_.partCount(); ++i) parts.push_back(parts.front());
     kinds.assign(cellCount(), kOutside);
     centers_m.assign(cellCount(), 0);
-    // A cell's own radius, and where the eight nodes of a reading are all saturated.
+    // The radius of a cell, and the distance beyond which all eight nodes of a reading are saturated.
     const double reach_m =
         band_m + std::sqrt(3.0) * (4 * voxel_m_ + map_.voxel_m()) + sampler_.nodeError_m() + 1e-6 * band_m;
     tbb::parallel_for(0, size.x(), [&](int x) {
@@ -140,7 +140,7 @@ class ResampledField final : public AddedField {
     kinds[cell] = constant == VoxSampler::kMixed ? kInside + kBrickStride : constant;
   }
 
-  /// What all nodes of the cell centred at p_P read, where that is one constant; else VoxSampler::kMixed.
+  /// The constant that all nodes of the cell centred at p_P read; VoxSampler::kMixed if they differ.
   [[nodiscard]] std::uint32_t constantAround(const Vec3& p_P) const {
     const Vec3 half = X_PM_.R.cwiseAbs() * Vec3::Constant((4 + 1e-3) * voxel_m_);
     return sampler_.constantIn({p_P - half, p_P + half});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading a VoxMap at one point, in double; the vectorised reading of many is in read_kernel.h.
+// Reads a VoxMap at one point, in double precision; read_kernel.h reads many points at once.
 #pragma once
 
 #include <limits>
@@ -8,7 +8,7 @@
 
 namespace vps {
 
-/// Reads one map. Cheap to make (no reference is counted); the map must outlive it.
+/// Reads one map. Cheap to construct (no reference count changes); the map must outlive it.
 class VoxSampler {
  public:
   explicit VoxSampler(const VoxMap& map) noexcept
@@ -23,8 +23,8 @@ class VoxSampler {
         low_((VoxMap::kBrick * layout_.low).cast<double>()),
         size_((VoxMap::kBrick * layout_.size).cast<double>()) {}
 
-  /// Where a point lies: the directory's cell, the low node of its grid cell within the brick, and the
-  /// position between nodes. is_within is false outside the directory.
+  /// Position of a point: the directory's cell, the low node of its grid cell within the brick, and the
+  /// fraction between nodes. is_within is false outside the directory.
   struct Place {
     bool is_within = false;
     std::uint32_t brick = kOutside;
@@ -35,10 +35,10 @@ class VoxSampler {
 
   [[nodiscard]] Place place(const Vec3& p_M) const noexcept { return placeInVoxels(p_M * per_voxel_ - low_); }
 
-  /// The same from the directory's corner, in voxels.
+  /// As above, for a position from the directory's corner, in voxels.
   [[nodiscard]] Place placeInVoxels(const Vec3& x) const noexcept {
     Place at;
-    // Written so that a NaN fails it. Within, x >= 0: truncation is the floor.
+    // NaN fails this test. Within the directory x >= 0, so truncation is the floor.
     if (!((x.array() >= 0).all() && (x.array() < size_.array()).all())) return at;
     const Index3 whole = x.cast<int>();
     at.is_within = true;
@@ -54,8 +54,8 @@ class VoxSampler {
 
   /// Trilinear distance [m]; +band outside the directory.
   [[nodiscard]] double distance(const Place& at) const noexcept {
-    // A constant brick would interpolate to its constant but for rounding; returning it is exact, and quick
-    // where most points are.
+    // Interpolation in a constant brick could differ from its constant by rounding. Returning the constant is
+    // exact, and fast where most points are.
     if (at.brick == kOutside) return band_m_;
     if (at.brick == kInside) return -band_m_;
     const Corners d = corners(at);
@@ -69,13 +69,12 @@ class VoxSampler {
     if (isConstant(at.brick)) return Vec3::Zero();
     const Vec3 g = gradient == Gradient::Trilinear ? trilinearGradient(at) : continuousGradient(at);
     const double length = g.norm();
-    // Where opposite walls cancel there is no direction: a gradient below two quanta is rounding noise (a
-    // true one has length 1, some thousand quanta over a voxel).
+    // There is no direction where opposite walls cancel: a gradient below two quanta is rounding noise (a
+    // true one has length 1, some thousand quanta per voxel).
     return length > 2 ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
 
-  /// A value that the signed distance to the surface at p_M is not below; -band_m where nothing better is
-  /// known.
+  /// A lower bound of the signed distance to the surface at p_M; -band_m where nothing better is known.
   [[nodiscard]] double leastDistance(const Vec3& p_M, const Place& at) const noexcept {
     if (!at.is_within) return leastDistanceOutside(p_M);
     double least_m = -band_m_;
@@ -86,7 +85,7 @@ class VoxSampler {
     return to_box_m > 0 ? std::max(to_box_m, least_m) : least_m;
   }
 
-  /// A value that the signed distance to the surface at p_M is not above; infinite where unknown.
+  /// An upper bound of the signed distance to the surface at p_M; infinite where unknown.
   [[nodiscard]] double mostDistance(const Place& at) const noexcept {
     double most_m = std::numeric_limits<double>::infinity();
     if (at.brick == kOutside) return most_m;
@@ -100,8 +99,8 @@ class VoxSampler {
     double least_m = -std::numeric_limits<double>::infinity();
     double most_m = std::numeric_limits<double>::infinity();
   };
-  /// What the signed distance at p_M is not below and not above, by the centres of the eight cells around it:
-  /// the one that lies straight away from the surface tells most. For true distances only.
+  /// Bounds of the signed distance at p_M from the centres of the eight cells around it; the one in the
+  /// direction away from the surface gives the best bound. Only for true distances.
   [[nodiscard]] Range rangeAround(const Vec3& p_M) const noexcept {
     const Vec3 x = (p_M * per_voxel_ - low_) / VoxMap::kBrick - Vec3::Constant(0.5);
     const Vec3 low = x.array().floor();
@@ -124,7 +123,7 @@ class VoxSampler {
     const Vec3 from = ((box_M.min * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
     const Vec3 to = ((box_M.max * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
     if ((to.array() < 0).any() || (from.array() > last.array()).any()) return kOutside;
-    // The directory's rim is outside, as is all beyond.
+    // The directory's rim and everything beyond are outside.
     const Index3 low = from.cwiseMax(0).cast<int>(), high = to.cwiseMin(last).cast<int>();
     const std::uint32_t all = bricks_[layout_.cellIndex(layout_.low + low)];
     if (!isConstant(all)) return kMixed;
@@ -135,7 +134,7 @@ class VoxSampler {
     return all;
   }
 
-  /// How far nodes may be from the distance they stand for [m].
+  /// The largest error of a node [m].
   [[nodiscard]] double nodeError_m() const noexcept {
     return voxel_m_ * layout_.node_error + 0.51 * quantum_m_;
   }
@@ -152,7 +151,7 @@ class VoxSampler {
 
  private:
   using Corners = std::array<double, 8>;  // bits of the index: x y z; quanta
-  /// Centre distances were rounded to float: a bound taken from one gives this share of it back.
+  /// Centre distances were rounded to float: bounds are reduced by this factor.
   static constexpr double kRoundDown = 1 - 2e-7;
 
   static double mix(double a, double b, double t) noexcept { return a + t * (b - a); }
@@ -178,15 +177,14 @@ class VoxSampler {
   }
 
   /// Trilinear interpolation of the nodes' central differences, times two voxels, in quanta. Along its own
-  /// axis a component needs one node more on each side of the cell, which may lie in a neighbour; across, the
-  /// cell's own.
+  /// axis a component needs one more node on each side of the cell, which may lie in a neighbour brick.
   [[nodiscard]] Vec3 continuousGradient(const Place& at) const noexcept {
     constexpr int kStride[3] = {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)};
     const std::ptrdiff_t cell_stride[3] = {std::ptrdiff_t{layout_.size.y()} * layout_.size.z(),
                                            layout_.size.z(), 1};
     const NodeValue* low = lowNode(at);
     const std::ptrdiff_t index = low - (nodes_ + at.brick);
-    // A brick with a band always has neighbours: the directory keeps one empty cell around them all.
+    // A brick with a band always has neighbours: the directory has one empty cell around all bricks.
     const std::uint32_t* cell = bricks_ + at.cell;
     Vec3 g;
     for (int axis = 0; axis < 3; ++axis) {
@@ -204,27 +202,27 @@ class VoxSampler {
     return g;
   }
 
-  /// How far the interpolant can be from the distance it interpolates. Distance changes by at most the way
-  /// gone, so |sum w_i d(x_i) - d(p)| <= sum w_i |x_i - p| <= sqrt(sum w_i |x_i - p|^2) = h sqrt(sum over
-  /// axes of t (1 - t)).
+  /// A bound of the difference between the interpolant and the distance. Distance is 1-Lipschitz, so |sum w_i
+  /// d(x_i) - d(p)| <= sum w_i |x_i - p| <= sqrt(sum w_i |x_i - p|^2) = h sqrt(sum over axes of t (1 - t)).
   [[nodiscard]] double interpolationError(const Place& at) const noexcept {
     return voxel_m_ * (std::sqrt((at.t.array() * (1 - at.t.array())).sum()) + layout_.node_error) +
-           0.51 * quantum_m_;  // half a quantum from storage, the rest for rounding
+           0.51 * quantum_m_;  // half a quantum of storage, and rounding
   }
 
-  /// The directory is a box that holds the surface. From its nearest point c to p, every point of the surface
-  /// lies at a right angle to cp or behind: distance(p)^2 >= |p - c|^2 + distance(c)^2.
+  /// The directory is a box that contains the surface. With c its nearest point to p, the angle between cp
+  /// and every point of the surface, as seen from c, is at least 90 degrees: distance(p)^2 >= |p - c|^2 +
+  /// distance(c)^2.
   [[nodiscard]] double leastDistanceOutside(const Vec3& p_M) const noexcept {
     if (layout_.bricks.empty()) return boxDistance(p_M);
     const Vec3 low = low_ * voxel_m_, high = (low_ + size_) * voxel_m_;
-    // A hair inside, so that it has a place in spite of rounding.
+    // Slightly inside, so that rounding cannot move it out of the directory.
     const Vec3 hair = Vec3::Constant(1e-6 * voxel_m_);
     const Vec3 c = p_M.cwiseMax(low + hair).cwiseMin(high - hair);
     const Place at = place(c);
     const double from_c_m = at.is_within ? std::max(0.0, leastDistance(c, at)) : boxDistance(c);
     return std::sqrt((p_M - c).squaredNorm() + from_c_m * from_c_m) - voxel_m_ * 1e-5;
   }
-  /// Distance from the place to its directory cell's centre [m].
+  /// Distance from the point to its directory cell's centre [m].
   [[nodiscard]] double fromCenter(const Place& at) const noexcept {
     return voxel_m_ * (at.node.cast<double>() + at.t - Vec3::Constant(VoxMap::kBrick / 2)).norm();
   }
@@ -233,7 +231,7 @@ class VoxSampler {
   }
 
   const VoxLayout& layout_;
-  const std::uint32_t* bricks_;  // these two are the layout's, one step nearer
+  const std::uint32_t* bricks_;  // this and nodes_: copies of the layout's pointers
   const NodeValue* nodes_;
   double voxel_m_, band_m_, quantum_m_;
   const Box& bounds_;

@@ -13,7 +13,7 @@ namespace vps::scenes {
 
 /// How a run goes, by what its scene asks. Force limits, passivity control and watchdogs are no part of it:
 /// they are given up by none.
-struct VPS_SCENES_API LoadLevel {
+struct LoadLevel {
   double coarser = 1;    ///< spacing of points by the scene's, >= 1
   int rate_divisor = 1;  ///< of the physics rate
   int slower = 1;        ///< the clock's time by simulated time

@@ -67,7 +67,7 @@ std::size_t CookedField::memoryBytes(const std::vector<std::shared_ptr<const Vox
   const bullet::ShapeModels& models = shape->models();
   std::size_t bytes = models.map->memoryBytes();
   for (const auto& map : own)
-    if (map) bytes = std::min(bytes, models.map->memoryBytesBeside(*map));
+    if (map) bytes = std::min(bytes, models.map->additionalMemoryBytes(*map));
   return bytes + (models.shell ? models.shell->memoryBytes() : 0);
 }
 

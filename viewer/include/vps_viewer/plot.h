@@ -26,7 +26,7 @@ struct Plot {
 };
 
 /// What a plot came to. A plot is never worth a run: nothing here throws.
-struct VPS_VIEWER_API PlotOutcome {
+struct PlotOutcome {
   bool is_written = false;
   std::string failure_reason;  ///< for a person: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
   explicit operator bool() const { return is_written; }

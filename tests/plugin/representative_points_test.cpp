@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/leading_points.h"
+#include "vps/representative_points.h"
 
 #include <gtest/gtest.h>
 
@@ -20,22 +20,22 @@ constexpr double kVoxel_m = 0.25e-3;
 struct Fit {
   VoxMap map = buildVoxMap(makeTube(12e-3, kRadius_m + kAir_m, 20e-3, 1024), {kVoxel_m, 4});
   PointShell shell = buildPointShell(makeCylinder(kRadius_m, 5e-3, 1024), {kSpacing_m, 0.35});
-  LeadingPoints leading{shell, kTile_m};
-  LeadingPoints::Ask ask;
+  RepresentativePoints leading{shell, kTile_m};
+  RepresentativePoints::Request request;
   Pose X_MP{rotationFromVector({1e-4, -2e-4, 0.3}), {3e-6, -2e-6, 1e-3}};
 
   Fit() {
-    ask.options.cutoff_m = 40e-6;
-    ask.step_M = {{1e-4, 2e-4, 2e-3}, {20e-6, 5e-6, 30e-6}};
+    request.options.cutoff_m = 40e-6;
+    request.step_M = {{1e-4, 2e-4, 2e-3}, {20e-6, 5e-6, 30e-6}};
   }
   std::vector<Contact> all(const Pose& pose) const {
     ContactSet set(shell.size());
-    queryContacts(map, shell, pose, ask.options, set);
+    queryContacts(map, shell, pose, request.options, set);
     return set.contacts;
   }
   std::vector<Contact> lead(const Pose& pose, QueryMemory* memory = nullptr) {
     ContactSet set(shell.size());
-    EXPECT_EQ(leading.find(map, pose, ask, set, memory).status, Status::Ok);
+    EXPECT_EQ(leading.find(map, pose, request, set, memory).status, Status::Ok);
     return set.contacts;
   }
   std::uint32_t tileOf(std::uint32_t id) const {
@@ -64,9 +64,9 @@ double gapAfter(const Contact& c, const Twist& step_M) {
   return c.distance_m + c.n_M.dot(step_M.v + step_M.w.cross(c.p_M));
 }
 
-TEST(LeadingPoints, EachIsTheQuerysOwnAndTheyAreFew) {
+TEST(RepresentativePoints, EachIsTheQuerysOwnAndTheyAreFew) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
-  ASSERT_TRUE(fit().leading.isWorthIt());
+  ASSERT_TRUE(fit().leading.reducesContacts());
   ASSERT_GT(all.size(), 10000u);
   EXPECT_LT(few.size(), all.size() / 4);  // most of them at the rims
   auto at = all.begin();
@@ -77,36 +77,36 @@ TEST(LeadingPoints, EachIsTheQuerysOwnAndTheyAreFew) {
   }
 }
 
-TEST(LeadingPoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
+TEST(RepresentativePoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
   std::map<std::uint32_t, std::pair<double, double>> led;  // least gaps by tile, now and after the step
   std::map<std::uint32_t, bool> is_given;
   for (const Contact& c : fit().lead(fit().X_MP)) {
     is_given[c.id] = true;
     auto& [now_m, then_m] = led.try_emplace(fit().tileOf(c.id), 1.0, 1.0).first->second;
     now_m = std::min(now_m, c.distance_m);
-    then_m = std::min(then_m, gapAfter(c, fit().ask.step_M));
+    then_m = std::min(then_m, gapAfter(c, fit().request.step_M));
   }
   // Readings are compared where points are placed, to 1/16384 voxel, by slopes of at most sqrt 3.
   const double tol_m = 2 * 1.8 * kVoxel_m / 16384 + fit().map.quantum_m();
   // To first order: a facet's normal is off the linear one by half a facet (2 pi / 1024 / 2) and by what the
   // tile bends beyond it, (size / 2 radius)^2 / 2; so is the field's. The step is 0.04 mm at most.
   const double lean_rad = 2 * (3.1e-3 + std::pow(kTile_m / (2 * kRadius_m), 2) / 2);
-  const double then_tol_m = tol_m + LeadingPoints::kSame_m + 40e-6 * lean_rad;
+  const double then_tol_m = tol_m + RepresentativePoints::kSame_m + 40e-6 * lean_rad;
   ASSERT_LT(then_tol_m, 0.8e-6);
   std::size_t left_out = 0;
   for (const Contact& c : fit().all(fit().X_MP)) {
     if (is_given.contains(c.id)) continue;
     const std::uint32_t tile = fit().tileOf(c.id);
-    ASSERT_NE(tile, LeadingPoints::kNone) << "points of edges are all given";
+    ASSERT_NE(tile, RepresentativePoints::kNone) << "points of edges are all given";
     ++left_out;
     ASSERT_TRUE(led.contains(tile));
     EXPECT_LE(led[tile].first, c.distance_m + tol_m);
-    EXPECT_LE(led[tile].second, gapAfter(c, fit().ask.step_M) + then_tol_m);
+    EXPECT_LE(led[tile].second, gapAfter(c, fit().request.step_M) + then_tol_m);
   }
   EXPECT_GT(left_out, 10000u);
 }
 
-TEST(LeadingPoints, MemoryAndVectorsChangeNoBit) {
+TEST(RepresentativePoints, MemoryAndVectorsChangeNoBit) {
   QueryMemory memory(fit().map, fit().shell);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> way(-1, 1);
@@ -116,13 +116,13 @@ TEST(LeadingPoints, MemoryAndVectorsChangeNoBit) {
     X_MP = Pose(rotationFromVector(1e-4 * turn), 3e-6 * shift) * X_MP;
     const std::vector<Contact> plain = fit().lead(X_MP);
     ASSERT_TRUE(isSame(plain, fit().lead(X_MP, &memory))) << i;
-    fit().ask.options.simd = Simd::Scalar;
+    fit().request.options.simd = Simd::Scalar;
     ASSERT_TRUE(isSame(plain, fit().lead(X_MP))) << i;
-    fit().ask.options.simd = Simd::Best;
+    fit().request.options.simd = Simd::Best;
   }
 }
 
-TEST(LeadingPoints, PointsAskedForAreGivenWhereTheyAreNear) {
+TEST(RepresentativePoints, PointsAskedForAreGivenWhereTheyAreNear) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
   const auto has = [](const std::vector<Contact>& list, std::uint32_t id) {
     return std::any_of(list.begin(), list.end(), [&](const Contact& c) { return c.id == id; });
@@ -131,9 +131,9 @@ TEST(LeadingPoints, PointsAskedForAreGivenWhereTheyAreNear) {
   std::size_t near = 0;
   for (std::uint32_t id = 0; id < fit().shell.size(); id += 997)
     if (!has(few, id)) always.push_back(id);
-  fit().ask.always = always;
+  fit().request.required = always;
   const std::vector<Contact> more = fit().lead(fit().X_MP);
-  fit().ask.always = {};
+  fit().request.required = {};
   for (const std::uint32_t id : always) {
     EXPECT_EQ(has(more, id), has(all, id)) << id;
     near += has(all, id) ? 1 : 0;
@@ -143,35 +143,35 @@ TEST(LeadingPoints, PointsAskedForAreGivenWhereTheyAreNear) {
   EXPECT_EQ(more.size(), few.size() + near);
 }
 
-TEST(LeadingPoints, FewNearPointsAreGivenAll) {
+TEST(RepresentativePoints, FewNearPointsAreGivenAll) {
   // Lifted along x, the peg touches along a line.
   const Pose X_MP(fit().X_MP.R, {kAir_m, 0, 1e-3});
-  fit().ask.options.cutoff_m = 2e-6;
-  fit().ask.few = fit().all(X_MP).size() * 3;  // counted by the sixteen
+  fit().request.options.cutoff_m = 2e-6;
+  fit().request.full_count = fit().all(X_MP).size() * 3;  // counted by the sixteen
   const std::vector<Contact> some = fit().lead(X_MP), all = fit().all(X_MP);
-  fit().ask.few = 0;
+  fit().request.full_count = 0;
   EXPECT_LT(fit().lead(X_MP).size(), all.size());
-  fit().ask.options.cutoff_m = 40e-6;
+  fit().request.options.cutoff_m = 40e-6;
   EXPECT_GT(all.size(), 100u);
   EXPECT_TRUE(isSame(some, all));
 }
 
-TEST(LeadingPoints, NeitherAllocatesNorAnswersABadPose) {
+TEST(RepresentativePoints, NeitherAllocatesNorAnswersABadPose) {
   ContactSet set(fit().shell.size());
   const vps_test::NoAllocScope guard;
-  EXPECT_EQ(fit().leading.find(fit().map, fit().X_MP, fit().ask, set).status, Status::Ok);
-  EXPECT_EQ(fit().leading.find(fit().map, Pose::translation({NAN, 0, 0}), fit().ask, set).status,
+  EXPECT_EQ(fit().leading.find(fit().map, fit().X_MP, fit().request, set).status, Status::Ok);
+  EXPECT_EQ(fit().leading.find(fit().map, Pose::translation({NAN, 0, 0}), fit().request, set).status,
             Status::BadPose);
   EXPECT_TRUE(set.contacts.empty());
 }
 
-TEST(LeadingPoints, TilesThatAreTooSmallGiveAllAndASizeMustBePositive) {
-  LeadingPoints small(fit().shell, 1e-6);
-  EXPECT_FALSE(small.isWorthIt());
+TEST(RepresentativePoints, TilesThatAreTooSmallGiveAllAndASizeMustBePositive) {
+  RepresentativePoints small(fit().shell, 1e-6);
+  EXPECT_FALSE(small.reducesContacts());
   ContactSet set(fit().shell.size());
-  EXPECT_EQ(small.find(fit().map, fit().X_MP, fit().ask, set).status, Status::Ok);
+  EXPECT_EQ(small.find(fit().map, fit().X_MP, fit().request, set).status, Status::Ok);
   EXPECT_TRUE(isSame(set.contacts, fit().all(fit().X_MP)));
-  EXPECT_THROW(LeadingPoints(fit().shell, 0), std::invalid_argument);
+  EXPECT_THROW(RepresentativePoints(fit().shell, 0), std::invalid_argument);
 }
 
 }  // namespace
