@@ -37,7 +37,7 @@ std::string escapeHtml(const std::string& text) {
 namespace html {
 namespace {
 
-constexpr const char* kStyle = R"(
+constexpr const char* kStyleSheet = R"(
 :root { color-scheme: light; }
 body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; background: #fff; max-width: 1180px;
        margin: 0 auto; padding: 28px 24px 60px; }
@@ -104,7 +104,7 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 std::string page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         escapeHtml(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + body +
+         escapeHtml(title) + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n" + body +
          "</body>\n</html>\n";
 }
 
