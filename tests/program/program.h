@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the program `vps` from outside, in a folder of its own.
+// A test fixture that runs the program `vps` in a folder of its own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,7 +29,6 @@ struct Ran {
   std::string out, err;
 };
 
-/// A folder of its own, in which the program runs.
 class Program : public testing::Test {
  protected:
   void SetUp() override {
@@ -56,7 +55,7 @@ class Program : public testing::Test {
             slurp(folder_ / "stderr.txt")};
   }
 
-  /// Status 2 and one line on stderr, with these words in it.
+  /// Expects status 2, one line on stderr that contains these words, and no unfinished files.
   void expectRefused(const std::string& arguments, const std::string& words) const {
     const Ran ran = run(arguments);
     EXPECT_EQ(ran.status, 2) << arguments << "\n" << ran.out << ran.err;
@@ -65,7 +64,7 @@ class Program : public testing::Test {
     EXPECT_NE(ran.err.find(words), std::string::npos) << arguments << "\n" << ran.err;
     EXPECT_EQ(ran.out, "") << arguments;
     for (const auto& entry : fs::recursive_directory_iterator(folder_))
-      EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos) << entry.path();
+      EXPECT_EQ(entry.path().filename().string().find(".unfinished"), std::string::npos) << entry.path();
   }
 
   static constexpr const char* kScene =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sample scenes from end to end: what the report claims, read back from its data.
+// The sample scenes from end to end, checked by the data that the runs write.
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -29,8 +29,8 @@ json withoutWall(json data) {
   return data;
 }
 
-// The bars of the bearing block: every part ends where it belongs, never deeper in another than a quarter of
-// the fit's clearance or 10 um, and stays where it was let go to within 5 um for 2 s, with gravity and
+// Requirements for the bearing block: every part reaches its target, penetrates another by at most a quarter
+// of the fit's clearance or 10 um, and drifts by at most 5 um in the 2 s after release, with gravity and
 // without sleeping.
 TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
   const Ran ran = run("assemble " + kScenes + "bearing_block/scene.toml --out out");
@@ -46,7 +46,7 @@ TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
     EXPECT_LE(step["rest_drift_m"].get<double>(), 5e-6) << part;
     EXPECT_GE(step["rest_s"].get<double>(), 2 - 1e-9) << part;
     EXPECT_FALSE(step["is_placed"].get<bool>()) << part;
-    // By contact: it touched on the way, and the hand felt its seat.
+    // By contact: the part touched others on the way, and the hand felt a force at the end.
     EXPECT_GE(step["impacts"].get<int>() + step["slides"].get<int>(), 1) << part;
     EXPECT_GT(step["peak_force_N"].get<double>(), 1) << part;
     EXPECT_LE(step["peak_force_N"].get<double>(), 30) << part;  // the device's peak, Table 1
@@ -57,24 +57,31 @@ TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
     EXPECT_GT(fs::file_size(folder_ / "out" / file), 100u) << file;
 }
 
-TEST_F(Scenario, InRealTimeThePegGoesInAndTheReportSaysHowTimeWasKept) {
+// Whether the steps succeed in real time depends on how busy the machine is, so this test asserts only what
+// must always hold; TwoRunsGiveTheSameBitsButForWallClocks has the verdict of the same scene in lockstep.
+TEST_F(Scenario, ARealTimeRunReportsItsTimingAndExitsWithItsVerdict) {
   const Ran ran = run("assemble " + kScenes + "peg_in_hole/scene.toml --out out --no-pictures --real-time");
-  ASSERT_LE(ran.status, 1) << ran.err;  // a machine that is too busy may fail the step, never the program
   const json data = read("out/assemble.json");
+  bool is_good = data["completed"].get<bool>();
+  for (const json& step : data["steps"])
+    is_good = is_good && step["completed"].get<bool>() &&
+              step["max_penetration_m"].get<double>() <= step["penetration_limit_m"].get<double>() &&
+              step["rest_drift_m"].get<double>() <= 5e-6;
+  EXPECT_EQ(ran.status, is_good ? 0 : 1) << ran.out << ran.err;
   const json& haptic = data["wall"]["haptic"];
   const long ticks = data["haptic"]["ticks"].get<long>();
-  // The loop and physics ran by one clock: as many periods of each, but for the rest of one when they stop.
+  // Both threads run by one clock, so they have equally many periods, up to the rest of one at the end.
   const long periods = ticks + haptic["missed"].get<long>(),
              steps =
                  data["physics"]["ticks"].get<long>() + data["wall"]["physics"]["missed_periods"].get<long>();
   EXPECT_GT(ticks, 1000);
-  // Judging the step and cooking take more than a second and stop nothing: the loop has periods for 99 % of
-  // the run here, for 76 % where it stood still meanwhile.
+  // The haptic loop goes on while the step is judged and the next field cooked, which takes more than a
+  // second: its periods cover 99 % of the run here, and 76 % if it stopped meanwhile.
   EXPECT_GT(static_cast<double>(periods) / data["haptic"]["rate_hz"].get<double>(),
             0.9 * data["wall"]["run_s"].get<double>());
   EXPECT_EQ(data["wall"]["missed_while_cooking"].size(), data["steps"].size());
   EXPECT_NEAR(static_cast<double>(periods), static_cast<double>(steps), 0.05 * static_cast<double>(steps));
-  for (const json& change : data["wall"]["physics"]["load_changes"])  // a busy machine may ask for some
+  for (const json& change : data["wall"]["physics"]["load_changes"])  // a busy machine may cause some
     for (const char* key : {"time_s", "from", "to", "is_done", "why", "cost", "unseen_bound_m", "misread_m"})
       EXPECT_TRUE(change.contains(key)) << key;
   EXPECT_NE(ran.out.find("s behind the clock"), std::string::npos) << ran.out;
@@ -91,23 +98,22 @@ TEST_F(Scenario, InRealTimeThePegGoesInAndTheReportSaysHowTimeWasKept) {
   EXPECT_NE(ran.out.find("haptic loop: "), std::string::npos) << ran.out;
 }
 
-TEST_F(Scenario, SlowPhysicsWithLocalContactMountsThePegToo) {
+TEST_F(Scenario, SlowPhysicsWithLocalContactCompletesThePegToo) {
   writePegScene("pose = {position = [0, 0, -15]}\n",
                 "clearance = 0.05\n[fidelity]\nphysics_rate_hz = 100\nhaptic_rate_hz = 1000\n");
   const Ran ran = run("assemble scene.toml --out out --no-pictures --local-contact");
-  // Mounted. Status 1: once let go it drifts by 7.7 um (1.0 without local contact), beyond 5; why is not
-  // known.
-  ASSERT_LE(ran.status, 1) << ran.out << ran.err;
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;  // lockstep, so every machine gives this
   const json data = read("out/assemble.json");
   EXPECT_TRUE(data["completed"].get<bool>()) << ran.out;
   EXPECT_LE(data["steps"][0]["max_penetration_m"].get<double>(), 10e-6);
+  EXPECT_LE(data["steps"][0]["rest_drift_m"].get<double>(), 5e-6);  // measured 1.5 um
   EXPECT_LE(data["energy"]["injected_J"].get<double>(), 1e-3);
   EXPECT_EQ(data["local_contact"]["held_ticks"].get<long>(), 0);
-  EXPECT_GT(data["local_contact"]["greatest_jump_m"].get<double>(), 0) << "it took part";
+  EXPECT_GT(data["local_contact"]["greatest_jump_m"].get<double>(), 0) << "local contact had no effect";
 }
 
-// What is not modelled is out of reach, and what is left reads the same: no bit of the run changes.
-TEST_F(Scenario, SparedAndModellingEverythingThePegGoesTheSameWayForLess) {
+// What is not modelled is out of reach of every moving part, so no bit of the run changes.
+TEST_F(Scenario, ModellingOnlyWhatTheSceneRequiresGivesTheSameRunForLessMemory) {
   const std::string scene = "assemble " + kScenes + "peg_in_hole/scene.toml --no-pictures --out ";
   ASSERT_EQ(run(scene + "spared").status, 0);
   ASSERT_EQ(run(scene + "all --model-everything").status, 0);
@@ -121,7 +127,7 @@ TEST_F(Scenario, SparedAndModellingEverythingThePegGoesTheSameWayForLess) {
             0.4 * all["modelled"]["field_points"].get<double>());
 }
 
-TEST_F(Scenario, ExplainSaysOfTheBearingBlockWhatIsModelledAndWhatThatSaves) {
+TEST_F(Scenario, ExplainPrintsWhatIsModelledOfTheBearingBlockAndWhatThatSaves) {
   const Ran ran = run("explain " + kScenes + "bearing_block/scene.toml --json explain.json");
   ASSERT_EQ(ran.status, 0) << ran.err;
   for (const char* words : {"housing", "near 9 paths", "shares the models of dowel_1",
@@ -146,8 +152,7 @@ TEST_F(Scenario, TwoRunsGiveTheSameBitsButForWallClocks) {
     EXPECT_EQ(slurp(entry.path()), slurp(twin)) << entry.path();
     ++compared;
   }
-  EXPECT_GE(compared,
-            2u);  // trace and steps at the least; pictures where there is EGL, plots where there is gnuplot
+  EXPECT_GE(compared, 2u + 5u);  // trace and steps; two pictures of the assembly and three of the step
   EXPECT_EQ(withoutWall(read("a/assemble.json")).dump(), withoutWall(read("b/assemble.json")).dump());
 }
 
@@ -171,7 +176,7 @@ TEST_F(Scenario, ARecordedRunReplaysToTheSameReport) {
   EXPECT_NE(cut.out.find("the same bits"), std::string::npos) << cut.out;
 }
 
-TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndSaysSo) {
+TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndTheReasonIsGiven) {
   writePegScene("", "target = {position = [0, 0, -17]}\ntimeout_s = 4\n");
   const Ran ran = run("assemble scene.toml --out out");
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
@@ -180,8 +185,8 @@ TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndSaysSo) {
   EXPECT_NE(data["steps"][0]["failure_reason"].get<std::string>(), "");
 }
 
-TEST_F(Scenario, APartThatDriftsIsNoSuccess) {
-  // Let go at half depth with nothing under it: it falls.
+TEST_F(Scenario, APartThatDriftsAfterReleaseFails) {
+  // Released at half depth with nothing below it, the peg falls.
   writePegScene("", "start = {position = [0, 0, -5]}\ntarget = {position = [0, 0, -8]}\n");
   const Ran ran = run("assemble scene.toml --out out");
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
@@ -199,8 +204,7 @@ TEST_F(Scenario, APartThatStartsDeepInsideIsRefusedToo) {
   write("scene.toml",
         "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n[[part]]\nfile = 'pin.stl'\n"
         "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 0]}\ntarget = {position = [0, 0, 30]}\n");
-  // 15 mm from the middle to every face, and the cube's far corners nearest: its centre points are up to 15
-  // mm deep.
+  // The cube of 6 mm is in the middle of one of 30 mm: its faces are 12 mm below the other's faces.
   expectRefused("assemble scene.toml --out out", "part 'pin': starts 12000 um inside 'plate'");
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps assemble: the main job.
+// vps assemble: brings the parts together by contact, and writes report, pictures and data.
 #include <cstdio>
+#include <memory>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "run_report.h"
+#include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
@@ -15,53 +17,65 @@ namespace vps::viewer {
 
 namespace {
 
-/// What was given up to hold the rate, a line each.
+struct AssembleArguments {
+  SceneArguments scene;
+  std::string out = "out";
+  std::string json;
+  std::string record;  ///< file to record the run in; empty: none
+  bool has_pictures = true;
+  bool stops_at_failure = false;
+  bool is_real_time = false;
+  bool has_local_contact = false;
+  bool sheds_load = true;  ///< in real time
+};
+
+/// One line for each change of the load level.
 std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
   std::string lines;
   for (const scenes::LoadLevelChange& change : load_changes)
-    lines += "pace: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
+    lines += "load shedding: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
              change.is + ", since " + change.why + "; " + scenes::inWords(change) + "\n";
   return lines;
 }
 
-/// How well time was kept, in two lines.
+/// The periods and times of the haptic loop and of physics, one line each.
 std::string describe(const scenes::AssembleResult& result) {
-  const scenes::RealTimeResult& kept = *result.real_time;
+  const scenes::RealTimeResult& timing = *result.real_time;
   const auto us = [](double value) { return fixed(value, 0) + " us"; };
   return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
          fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
          us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
-         std::to_string(result.haptic.missed) + " periods missed; due to written " + us(kept.worst_us) +
-         " at worst, by " + kept.worst_cause + "\nphysics: " + std::to_string(result.physics.count) +
-         " steps at " + fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
-         std::to_string(kept.physics_missed) + " periods missed, " + fixed(kept.behind_s, 2) +
-         " s behind the clock\n" + describeLoadChanges(kept.load_changes);
+         std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
+         us(timing.worst_us) + ", because of " + timing.worst_cause +
+         "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
+         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
+         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
+         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
 }
 
-}  // namespace
-
 int runAssemble(const AssembleArguments& given) {
+  const std::string& file = given.scene.scene;
   OutputFolder out(given.out);
-  OutputFile json(given.json, {given.scene});
+  OutputFile json(given.json, {file});
   ProgressBar bar;
-  requireNotRead(given.record, {given.scene});
-  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.record});
+  requireNotRead(given.record, {file});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record});
 
   scenes::AssembleOptions options;
-  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  fill(options, bar, cache, given.models_everything);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  setModelOptions(options, bar, cache, given.scene.models_everything);
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
   options.record = given.record;
   options.is_real_time = given.is_real_time;
-  options.degrades = given.degrades;
+  options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
   const scenes::AssembleResult result = scenes::assemble(scene, options);
   throwIfStopped();
 
   bar.progress()("writing the report", 1);
-  const std::vector<std::string> notes = fillFolder(
-      out, scene, result, {"vps assemble " + given.scene + " --out " + given.out, given.has_pictures});
+  const std::vector<std::string> notes =
+      fillFolder(out, scene, result, {"vps assemble " + file + " --out " + given.out, given.has_pictures});
   out.commit();
   json.write(toJson(result));
   bar.clear();
@@ -75,6 +89,31 @@ int runAssemble(const AssembleArguments& given) {
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
   return is_good ? kGood : kBad;
+}
+
+}  // namespace
+
+void addAssemble(CommandLine& line) {
+  const auto given = std::make_shared<AssembleArguments>();
+  CLI::App& command = addCommand(
+      line, "assemble", "runs the assembly procedure by contact; writes a report, pictures and data",
+      "vps assemble scenes/bearing_block/scene.toml --out out/demo", [given] { return runAssemble(*given); });
+  addSceneOptions(command, given->scene);
+  command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
+  command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
+  command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");
+  command.add_flag("--local-contact", given->has_local_contact,
+                   "let the haptic loop compute contact between physics steps; for slow physics");
+  command.add_flag("--real-time", given->is_real_time,
+                   "run by the clock, with threads for the haptic loop and physics; not repeatable");
+  command.add_flag("!--no-load-shedding", given->sheds_load,
+                   "with --real-time: keep the full fidelity when the rate cannot be held, and count missed "
+                   "periods");
+  command
+      .add_option("--record", given->record,
+                  "record the run with its scene and meshes (MCAP), for vps replay")
+      ->type_name("FILE");
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

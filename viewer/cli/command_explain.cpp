@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps explain: what of a scene is modelled, what not, why, at what cost.
+// vps explain: what of a scene is modelled, what not, why, and at what cost.
 #include <cstdio>
+#include <memory>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
 
 namespace vps::viewer {
 
 namespace {
+
+struct ExplainArguments {
+  SceneArguments scene;
+  std::string json;
+  bool is_for_simulate = false;  ///< what vps simulate would model; always so for a scene without steps
+};
 
 std::string megabytes(std::size_t bytes) {
   return fixed(1e-6 * static_cast<double>(bytes), 2);
@@ -63,10 +71,10 @@ std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedPlan
   for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
     const scenes::PlannedStep& step = explained.plan.steps[s];
     const scenes::StepCost& cost = explained.cost.steps[s];
-    table.add({std::to_string(s + 1), step.part ? scene.parts[*step.part].part.name : "all that is not fixed",
-               regionOf(step), namesOf(scene, step.cooked), namesOf(scene, step.left_out),
-               megabytes(cost.bytes), std::to_string(cost.points),
-               cost.is_cooked ? fixed(cost.cook_wall_s, 3) : "as before"});
+    table.add({std::to_string(s + 1),
+               step.part ? scene.parts[*step.part].part.name : "all parts that are not fixed", regionOf(step),
+               namesOf(scene, step.cooked), namesOf(scene, step.left_out), megabytes(cost.bytes),
+               std::to_string(cost.points), cost.is_cooked ? fixed(cost.cook_wall_s, 3) : "as before"});
   }
   return table.text();
 }
@@ -75,25 +83,23 @@ std::string totalOf(const char* words, const scenes::PlanCost& cost) {
   return std::string(words) + megabytes(cost.most.bytes) + " MB at most (" +
          std::to_string(cost.most.voxmaps) + " voxmaps, " + std::to_string(cost.most.pointshells) +
          " pointshells, " + std::to_string(cost.most.points) + " points and " +
-         std::to_string(cost.most.field_points) + " of the field's), " + fixed(cost.build_wall_s, 2) +
+         std::to_string(cost.most.field_points) + " in the cooked fields), " + fixed(cost.build_wall_s, 2) +
          " s to build, " + fixed(cost.cook_wall_s, 2) + " s to cook\n";
 }
 
-}  // namespace
-
 int runExplain(const ExplainArguments& given) {
-  OutputFile json(given.json, {given.scene});
+  OutputFile json(given.json, {given.scene.scene});
   ProgressBar bar;
-  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json});
+  const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {given.json});
   scenes::ModelOptions options;
-  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  fill(options, bar, cache, given.models_everything);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  setModelOptions(options, bar, cache, given.scene.models_everything);
   const scenes::PlanFor purpose =
       given.is_for_simulate || scene.steps.empty() ? scenes::PlanFor::Simulate : scenes::PlanFor::Assemble;
   ExplainAnswer answer = {scene, scenes::explain(scene, purpose, options), {}};
-  if (!given.models_everything) {
+  if (!given.scene.models_everything) {
     options.models_everything = true;
-    options.warn = {};  // said once
+    options.warn = {};  // the first call has printed the warnings
     answer.everything = scenes::explain(scene, purpose, options);
   }
   throwIfStopped();
@@ -105,10 +111,23 @@ int runExplain(const ExplainArguments& given) {
               fixed(1e3 * fidelity.voxel_m, 3).c_str(), fixed(1e3 * fidelity.spacing_m, 3).c_str(),
               inWords(fidelity.sides), tableOfParts(scene, answer.chosen).c_str(),
               tableOfSteps(scene, answer.chosen).c_str());
-  std::fputs(totalOf("in all                   ", answer.chosen.cost).c_str(), stdout);
+  std::fputs(totalOf("total                    ", answer.chosen.cost).c_str(), stdout);
   if (answer.everything)
     std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);
   return kGood;
+}
+
+}  // namespace
+
+void addExplain(CommandLine& line) {
+  const auto given = std::make_shared<ExplainArguments>();
+  CLI::App& command =
+      addCommand(line, "explain", "prints what of a scene is modelled, what not, why, and what it costs",
+                 "vps explain scenes/bearing_block/scene.toml", [given] { return runExplain(*given); });
+  addSceneOptions(command, given->scene);
+  command.add_flag("--simulate", given->is_for_simulate,
+                   "explain vps simulate instead of vps assemble; the default for a scene without steps");
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps import: CAD to a scene: parts as meshes, poses, steps proposed.
+// vps import: makes a scene from a CAD file: parts as meshes, poses and proposed steps.
 #include <algorithm>
-#include <bit>
 #include <cctype>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <set>
 
-#include "commands.h"
+#include "command.h"
+#include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene_arguments.h"
+#include "stl.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
+#include "vps_scenes/import.h"
 
 namespace vps::viewer {
 
@@ -22,27 +26,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A part's mesh as binary STL: float metres, which hold 1 m to 0.06 um. Equal corners are equal to the bit,
-/// so that they weld again. (Binary PLY is smaller, but Debian 12's assimp takes a first data byte of 0x0A
-/// for a line end.)
-std::string stlOf(const Mesh& mesh) {
-  static_assert(std::endian::native == std::endian::little, "STL is little endian");
-  std::string out = "metres";
-  out.resize(80, ' ');
-  const auto put = [&out](const auto& value) {
-    out.append(reinterpret_cast<const char*>(&value), sizeof value);
-  };
-  put(static_cast<std::uint32_t>(mesh.triangles.size()));
-  for (const auto& triangle : mesh.triangles) {
-    for (int axis = 0; axis < 3; ++axis) put(0.0f);  // the normal: readers take it from the winding
-    for (const std::uint32_t vertex : triangle)
-      for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
-    put(std::uint16_t{0});
-  }
-  return out;
-}
+struct ImportArguments {
+  std::string cad, out;
+  std::string units, deflection, json;
+  bool is_forced = false;  ///< replaces an existing scene.toml
+};
 
-/// A file name out of a part's name, unlike all given so far.
+/// A file name made from a part's name, different from those in `taken`.  Binary PLY would be smaller than
+/// STL, but the assimp of Debian 12 reads a first data byte of 0x0A as a line end.
 std::string fileNameOf(const std::string& name, std::set<std::string>& taken) {
   std::string stem;
   for (const unsigned char c : name)
@@ -73,7 +64,8 @@ std::string quoted(const std::string& text) {
 
 std::string poseText(const Pose& pose) {
   const Quat q = pose.quaternion();
-  // Twelve digits say a picometre in a metre; more would only show the noise of the file's own arithmetic.
+  // Twelve digits resolve a picometre in a metre; more would show the rounding errors of the file's
+  // arithmetic.
   const auto n = [](double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.12g", value == 0 ? 0.0 : value);
@@ -89,7 +81,7 @@ Box boundsAt(const scenes::ImportedPart& part) {
   return box;
 }
 
-/// What a person should check first: the largest part stays, the others come in from below upwards.
+/// A procedure for the user to correct: the largest part is fixed, the others follow from the lowest upwards.
 struct Proposal {
   std::size_t fixed = 0;
   std::vector<std::size_t> steps;
@@ -126,23 +118,18 @@ unit = "m"
   }
   if (!proposal.steps.empty())
     out +=
-        R"(# Proposed: upwards along z, the largest part fixed. Put the steps in order, and say each fit's diametral
-# clearance (clearance = "20um").
+        R"(# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, and
+# give each fit's diametral clearance (clearance = "20um").
 )";
   for (const std::size_t i : proposal.steps) out += "[[step]]\npart = " + quoted(parts[i].name) + "\n\n";
   out.pop_back();
   return out;
 }
 
-}  // namespace
-
 int runImport(const ImportArguments& given) {
+  requireCadFile(given.cad);
   scenes::ImportSettings settings;
-  if (!given.units.empty()) {
-    settings.unit_m = scenes::unitFromText(given.units);
-    if (!settings.unit_m)
-      throw LoadError("", "", "--units is '" + given.units + "'; expected one of: mm, cm, m, um, inch");
-  }
+  settings.unit_m = unitFrom(given.units);
   if (!given.deflection.empty())
     settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
   if (!(settings.deflection_m > 0))
@@ -150,7 +137,7 @@ int runImport(const ImportArguments& given) {
   std::error_code error;
   if (!given.is_forced && fs::exists(fs::path(given.out) / "scene.toml", error))
     throw LoadError(given.out, "",
-                    "has a scene.toml already; choose another folder, or --force to write over it");
+                    "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
   OutputFile json(given.json, {given.cad});
   ProgressBar bar;
@@ -164,7 +151,7 @@ int runImport(const ImportArguments& given) {
     const ImportedPartAnswer row{part.name, fileNameOf(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
     requireNotRead((fs::path(given.out) / row.file).string(), {given.cad});
-    out.write(row.file, stlOf(part.mesh));
+    out.write(row.file, stlBytes(part.mesh));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
                    fixed(row.size_m.z() * 1e3, 2),
@@ -181,6 +168,26 @@ int runImport(const ImportArguments& given) {
   std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),
               given.out.c_str());
   return kGood;
+}
+
+}  // namespace
+
+void addImport(CommandLine& line) {
+  const auto given = std::make_shared<ImportArguments>();
+  CLI::App& command =
+      addCommand(line, "import", "makes a scene from a CAD file: parts, poses and proposed steps",
+                 "vps import assembly.step -o my_scene", [given] { return runImport(*given); });
+  command.add_option("cad", given->cad, "STEP, IGES, glTF, STL, OBJ, PLY, Inventor, ...")
+      ->required()
+      ->type_name("CAD");
+  command.add_option("-o,--out", given->out, "folder for scene.toml and meshes")
+      ->required()
+      ->type_name("DIR");
+  addUnitsOption(command, given->units);
+  command.add_option("--deflection", given->deflection,
+                     "greatest distance between curved faces and their triangles, with unit");
+  command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps query: contact of two meshes at given poses of B in A.
+// vps query: contact of two parts at given poses of B in A.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -7,19 +7,21 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
+#include "level_set_file.h"
+#include "operand.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
-#include "vps/mesh_repair.h"
 #include "vps/pair_query.h"
 #include "vps/query.h"
-#include "vps_scenes/import.h"
 
 namespace vps::viewer {
 
@@ -27,6 +29,16 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+struct QueryArguments {
+  std::string mesh_a, mesh_b;
+  std::string pose, poses;  ///< "x,y,z,qx,qy,qz,qw", or a file of such lines
+  std::string units, json;
+  std::string cache;  ///< folder for voxmaps; empty: none
+  FidelityArguments fidelity;
+  double stiffness_N_per_m3 = 1e12;
+  int repeats = 0;  ///< timed runs of each pose; 0: as many as make 100 in all
+};
 
 double secondsSince(Clock::time_point begun) {
   return std::chrono::duration<double>(Clock::now() - begun).count();
@@ -45,12 +57,12 @@ Pose poseFromText(const std::string& text, const std::string& where) {
     const bool is_separated = i == 6 ? at == end : at != end && *at == ',';
     if (read.ec != std::errc{} || !is_separated || !std::isfinite(values[i]))
       throw LoadError(where, "",
-                      "'" + text + "' is no pose; expected seven numbers: x,y,z,qx,qy,qz,qw (metres)");
+                      "'" + text + "' is not a pose; expected seven numbers: x,y,z,qx,qy,qz,qw (metres)");
     if (i < 6) ++at;
   }
   const Quat rotation(values[6], values[3], values[4], values[5]);
   if (std::abs(rotation.norm() - 1) > 1e-3)
-    throw LoadError(where, "", "'" + text + "' is no pose; the length of qx,qy,qz,qw must be 1");
+    throw LoadError(where, "", "'" + text + "' is not a pose; the length of qx,qy,qz,qw must be 1");
   return {rotation, Vec3(values[0], values[1], values[2])};
 }
 
@@ -69,94 +81,109 @@ std::vector<Pose> readPoses(const QueryArguments& given) {
     if (line.find_first_not_of(" \t") == std::string::npos || line.starts_with('#')) continue;
     poses.push_back(poseFromText(line, given.poses + ":" + std::to_string(number)));
   }
-  if (poses.empty())
-    throw LoadError(given.poses, "", "has no pose; expected a line x,y,z,qx,qy,qz,qw for each");
+  if (poses.empty()) throw LoadError(given.poses, "", "has no pose; expected lines x,y,z,qx,qy,qz,qw");
   return poses;
 }
 
-/// All parts of a file as one mesh, in the file's frame. Says what the file lacks.
-Mesh readMesh(const std::string& file, const std::string& units) {
-  scenes::ImportSettings settings;
-  if (!units.empty()) {
-    settings.unit_m = scenes::unitFromText(units);
-    if (!settings.unit_m)
-      throw LoadError("", "", "--units is '" + units + "'; expected one of: mm, cm, m, um, inch");
-  }
-  const scenes::ImportedCad cad = scenes::importCad(file, settings);
-  for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
-  Mesh mesh;
-  for (const scenes::ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
-  requireUsable(mesh, file, "");
-  return mesh;
-}
-
-/// Between its samples the field is linear: it cannot turn back within a wall thinner than two voxels.
+/// The field is linear between its nodes, so it cannot represent a wall thinner than two voxels.
 void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
   const double thinnest_m = bounds(mesh).size().minCoeff();
   if (voxel_m > thinnest_m / 2)
     warn(file + ": is " + fixed(thinnest_m * 1e3, 3) + " mm thin, less than two voxels of " +
-         fixed(voxel_m * 1e3, 3) + " mm: depths in it mean little; take a finer --voxel");
+         fixed(voxel_m * 1e3, 3) + " mm: depths in it are unreliable; use a finer --voxel");
 }
 
-VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string& file,
-             const std::optional<VoxMapCache>& cache, const Progress& progress) {
-  MeshReport report;
-  VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
-                     : buildVoxMap(mesh, settings, file, progress, &report);
-  if (report.signed_by_winding) warn(file + ": is no closed surface: " + describe(report));
-  return map;
+/// What the two files give: meshes, or the voxmap of A and the pointshell of B themselves.
+struct Operands {
+  std::optional<Mesh> mesh_a, mesh_b;
+  std::optional<VoxMap> map_a;        ///< A is a .vdb
+  std::optional<PointShell> shell_b;  ///< B is a .ply with normals and no faces
+
+  [[nodiscard]] bool hasBothMeshes() const { return mesh_a && mesh_b; }
+};
+
+void requireNotGiven(bool is_given, const std::string& option, const std::string& file, const char* holds) {
+  if (is_given)
+    throw LoadError(file, "", std::string("holds a ") + holds + " already; leave " + option + " out");
 }
 
-/// One side of the test: the points of one mesh against the field of the other.
-struct Side {
+Operands loadOperands(const QueryArguments& given) {
+  Operands operands;
+  const std::optional<double> unit_m = unitFrom(given.units);
+  const OperandKind a = operandKind(given.mesh_a), b = operandKind(given.mesh_b);
+  if (a == OperandKind::PointShell)
+    throw LoadError(given.mesh_a, "", "is a pointshell; A gives the voxmap, so name it second, as B");
+  if (b == OperandKind::LevelSet)
+    throw LoadError(given.mesh_b, "", "is a level set; B gives the pointshell, so name it first, as A");
+  if (a == OperandKind::LevelSet) {
+    requireNotGiven(!given.fidelity.voxel.empty(), "--voxel", given.mesh_a, "voxmap");
+    operands.map_a = loadLevelSet(given.mesh_a);
+  } else {
+    operands.mesh_a = readMesh(given.mesh_a, unit_m);
+  }
+  if (b == OperandKind::PointShell) {
+    requireNotGiven(!given.fidelity.spacing.empty(), "--spacing", given.mesh_b, "pointshell");
+    requireNotGiven(given.fidelity.points > 0, "--points", given.mesh_b, "pointshell");
+    operands.shell_b = loadPly(given.mesh_b);
+  } else {
+    operands.mesh_b = readMesh(given.mesh_b, unit_m);
+  }
+  return operands;
+}
+
+/// The reverse query needs the voxmap of B and the pointshell of A, which are built from meshes.
+bool isTwoSided(const Operands& operands, const Fidelity& fidelity, const QueryArguments& given) {
+  if (fidelity.sides == Sides::One || operands.hasBothMeshes()) return fidelity.sides == Sides::Both;
+  if (given.fidelity.sides == "both")
+    throw LoadError(operands.mesh_a ? given.mesh_b : given.mesh_a, "",
+                    "has no mesh, and --sides both needs the meshes of both parts; use --sides one");
+  return false;
+}
+
+/// One direction of the query: the points of one part in the field of the other.
+struct OneWay {
   VoxMap map;
   PointShell shell;
-
-  Side(const Mesh& field, const Mesh& points, const Fidelity& fidelity, const std::string& field_name,
-       const std::string& points_name, const std::optional<VoxMapCache>& cache, const Progress& progress)
-      : map(mapOf(field, {.voxel_m = fidelity.voxel_m}, field_name, cache, progress)),
-        shell(buildPointShell(points, {.spacing_m = fidelity.spacing_m}, points_name, progress)) {}
   [[nodiscard]] std::size_t memoryBytes() const { return map.memoryBytes() + shell.memoryBytes(); }
 };
 
-/// The options of a query.
-struct Asking {
+struct QuerySettings {
   Gradient gradient = Gradient::Continuous;
   double k_N_per_m3 = 0;
-
-  Asking(const QueryArguments& given, const Fidelity& fidelity)
-      : gradient(fidelity.gradient), k_N_per_m3(given.stiffness_N_per_m3) {}
 };
 
-struct SideResult {
+struct OneWayResult {
   QueryResult distance;
   std::size_t contact_count = 0, points_tested = 0;
   Wrench F_M;  ///< on the shell's part about p_MO
 };
 
-SideResult ask(Side& side, const Pose& X_MP, const Vec3& p_MO, const Asking& asking) {
-  SideResult answer;
+OneWayResult queryOneWay(const OneWay& models, const Pose& X_MP, const Vec3& p_MO,
+                         const QuerySettings& settings) {
+  OneWayResult result;
   TouchSummary sum;
-  const QueryOptions options = {.gradient = asking.gradient};
-  answer.points_tested =
-      queryWrench(side.map, side.shell, X_MP, options, asking.k_N_per_m3, p_MO, sum).points_tested;
-  answer.contact_count = sum.count;
-  answer.F_M = sum.F_O_M;
-  answer.distance = queryDistance(side.map, side.shell, X_MP);
-  return answer;
+  const QueryOptions options = {.gradient = settings.gradient};
+  result.points_tested =
+      queryWrench(models.map, models.shell, X_MP, options, settings.k_N_per_m3, p_MO, sum).points_tested;
+  result.contact_count = sum.count;
+  result.F_M = sum.F_O_M;
+  result.distance = queryDistance(models.map, models.shell, X_MP);
+  return result;
 }
 
-/// The field ends at the band. A millionth of it: the reading is a float.
+/// Whether the reading is the band's width, where the field ends: that deep or deeper. The tolerance of a
+/// millionth is for the rounding of float.
 bool isSaturated(const QueryResult& found, const VoxMap& map) {
   return found.min_distance_m <= -map.band_m() * (1 - 1e-6);
 }
 
-/// `b_in_a`: B's points in A's field; `a_in_b`, when both sides are asked, the reverse. Each then counts
-/// half.
-PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b, const Asking& asking) {
+/// @param b_in_a B's points in A's field
+/// @param a_in_b the reverse, if the query is two-sided; each direction then counts half
+PoseAnswer queryAt(const Pose& X_AB, const OneWay& b_in_a, const std::optional<OneWay>& a_in_b,
+                   const QuerySettings& settings) {
   PoseAnswer answer;
   answer.X_AB = X_AB;
-  const SideResult first = ask(b_in_a, X_AB, X_AB.p, asking);
+  const OneWayResult first = queryOneWay(b_in_a, X_AB, X_AB.p, settings);
   answer.min_distance_m = first.distance.min_distance_m;
   answer.is_beyond = first.distance.is_beyond_band;
   answer.is_saturated = isSaturated(first.distance, b_in_a.map);
@@ -165,7 +192,7 @@ PoseAnswer answerAt(const Pose& X_AB, Side& b_in_a, std::optional<Side>& a_in_b,
   answer.F_Bo_A = first.F_M;
   if (!a_in_b) return answer;
 
-  const SideResult second = ask(*a_in_b, X_AB.inverse(), Vec3::Zero(), asking);
+  const OneWayResult second = queryOneWay(*a_in_b, X_AB.inverse(), Vec3::Zero(), settings);
   answer.min_distance_m = std::min(answer.min_distance_m, second.distance.min_distance_m);
   answer.is_beyond = answer.is_beyond && second.distance.is_beyond_band;
   answer.is_saturated = answer.is_saturated || isSaturated(second.distance, a_in_b->map);
@@ -188,10 +215,6 @@ scenes::TickTimes summary(std::vector<double>& us) {
   return times;
 }
 
-double spacingFor(const Mesh& mesh, std::size_t points) {
-  return std::sqrt(area(mesh) / static_cast<double>(points));
-}
-
 std::string tableOf(const QueryAnswer& answer) {
   Table table({"pose", "distance [um]", "depth [um]", "contacts", "tested", "force [N]", "torque [N m]"});
   for (std::size_t i = 0; i < answer.poses.size(); ++i) {
@@ -205,7 +228,24 @@ std::string tableOf(const QueryAnswer& answer) {
   return table.text();
 }
 
-}  // namespace
+/// Times every query; `repeats` of each pose.
+void runPoses(const std::vector<Pose>& poses, std::size_t repeats, const OneWay& b_in_a,
+              const std::optional<OneWay>& a_in_b, const QuerySettings& settings, const Progress& progress,
+              QueryAnswer& answer) {
+  std::vector<double> us;
+  us.reserve(repeats * poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    progress("querying", static_cast<double>(i) / static_cast<double>(poses.size()));
+    PoseAnswer pose;
+    for (std::size_t k = 0; k < repeats; ++k) {
+      const auto begun = Clock::now();
+      pose = queryAt(poses[i], b_in_a, a_in_b, settings);
+      us.push_back(secondsSince(begun) * 1e6);
+    }
+    answer.poses.push_back(pose);
+  }
+  answer.time = summary(us);
+}
 
 int runQuery(const QueryArguments& given) {
   if (!(given.stiffness_N_per_m3 >= 0) || !std::isfinite(given.stiffness_N_per_m3))
@@ -215,52 +255,85 @@ int runQuery(const QueryArguments& given) {
   OutputFile json(given.json, {given.mesh_a, given.mesh_b, given.poses});
   ProgressBar bar;
 
-  const Mesh mesh_a = readMesh(given.mesh_a, given.units), mesh_b = readMesh(given.mesh_b, given.units);
-  warnIfThin(mesh_a, fidelity.voxel_m, given.mesh_a);
-  if (fidelity.sides == Sides::Both) warnIfThin(mesh_b, fidelity.voxel_m, given.mesh_b);
-  if (given.fidelity.points > 0) fidelity.spacing_m = spacingFor(mesh_b, given.fidelity.points);
+  Operands operands = loadOperands(given);
+  const bool is_two_sided = isTwoSided(operands, fidelity, given);
+  if (operands.mesh_a) warnIfThin(*operands.mesh_a, fidelity.voxel_m, given.mesh_a);
+  if (is_two_sided) warnIfThin(*operands.mesh_b, fidelity.voxel_m, given.mesh_b);
+  if (operands.mesh_b && given.fidelity.points > 0)
+    fidelity.spacing_m = spacingFor(*operands.mesh_b, given.fidelity.points);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  const auto mapFor = [&](const Mesh& mesh, const std::string& file) {
+    return mapOf(mesh, {.voxel_m = fidelity.voxel_m}, file, cache, bar.progress());
+  };
+  const auto shellFor = [&](const Mesh& mesh, const std::string& file) {
+    return buildPointShell(mesh, {.spacing_m = fidelity.spacing_m}, file, bar.progress());
+  };
+  const auto begun = Clock::now();
+  const OneWay b_in_a = {
+      operands.map_a ? std::move(*operands.map_a) : mapFor(*operands.mesh_a, given.mesh_a),
+      operands.shell_b ? std::move(*operands.shell_b) : shellFor(*operands.mesh_b, given.mesh_b)};
+  std::optional<OneWay> a_in_b;
+  if (is_two_sided)
+    a_in_b = OneWay{mapFor(*operands.mesh_b, given.mesh_b), shellFor(*operands.mesh_a, given.mesh_a)};
+
   QueryAnswer answer;
+  answer.build_wall_s = secondsSince(begun);
   answer.mesh_a = given.mesh_a;
   answer.mesh_b = given.mesh_b;
-  answer.voxel_m = fidelity.voxel_m;
-  answer.point_spacing_m = fidelity.spacing_m;
-  const Asking asking(given, fidelity);
-  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  const auto begun = Clock::now();
-  Side b_in_a(mesh_a, mesh_b, fidelity, given.mesh_a, given.mesh_b, cache, bar.progress());
-  std::optional<Side> a_in_b;
-  if (fidelity.sides == Sides::Both)
-    a_in_b.emplace(mesh_b, mesh_a, fidelity, given.mesh_b, given.mesh_a, cache, bar.progress());
-  answer.build_wall_s = secondsSince(begun);
+  answer.voxel_m = b_in_a.map.voxel_m();
+  answer.point_spacing_m = b_in_a.shell.spacing_m;
   answer.points_total = b_in_a.shell.size() + (a_in_b ? a_in_b->shell.size() : 0);
   answer.memory_bytes = b_in_a.memoryBytes() + (a_in_b ? a_in_b->memoryBytes() : 0);
-
   const std::size_t repeats = given.repeats > 0 ? static_cast<std::size_t>(given.repeats)
                                                 : std::max<std::size_t>(1, 100 / poses.size());
-  std::vector<double> us;
-  us.reserve(repeats * poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    bar.progress()("asking", static_cast<double>(i) / static_cast<double>(poses.size()));
-    PoseAnswer pose;
-    for (std::size_t run = 0; run < repeats; ++run) {
-      const auto asked = Clock::now();
-      pose = answerAt(poses[i], b_in_a, a_in_b, asking);
-      us.push_back(secondsSince(asked) * 1e6);
-    }
-    answer.poses.push_back(pose);
-  }
-  answer.time = summary(us);
+  runPoses(poses, repeats, b_in_a, a_in_b, {fidelity.gradient, given.stiffness_N_per_m3}, bar.progress(),
+           answer);
   throwIfStopped();
   json.write(toJson(answer));
   bar.clear();
 
   std::fputs(tableOf(answer).c_str(), stdout);
-  std::printf("voxel %s mm, %zu points %s mm apart, %s MB, built in %s s; a pose took %s us (median)\n",
-              fixed(answer.voxel_m * 1e3, 3).c_str(), answer.points_total,
-              fixed(answer.point_spacing_m * 1e3, 3).c_str(),
-              fixed(static_cast<double>(answer.memory_bytes) * 1e-6, 1).c_str(),
-              fixed(answer.build_wall_s, 2).c_str(), fixed(answer.time.p50_us, 1).c_str());
+  std::printf(
+      "%s query: voxels of %s mm, %zu points every %s mm, %s MB, built in %s s; a pose took %s us (median)\n",
+      is_two_sided ? "two-sided" : "one-sided", fixed(answer.voxel_m * 1e3, 3).c_str(), answer.points_total,
+      fixed(answer.point_spacing_m * 1e3, 3).c_str(),
+      fixed(static_cast<double>(answer.memory_bytes) * 1e-6, 1).c_str(),
+      fixed(answer.build_wall_s, 2).c_str(), fixed(answer.time.p50_us, 1).c_str());
   return kGood;
+}
+
+}  // namespace
+
+void addQuery(CommandLine& line) {
+  const auto given = std::make_shared<QueryArguments>();
+  CLI::App& command = addCommand(
+      line, "query", "contact of part B with part A at given poses of B in A",
+      "vps query hole.stl peg.stl --units mm --pose 0,0,-0.0149,0,0,0,1 --voxel 0.1mm --json contact.json",
+      [given] { return runQuery(*given); });
+  command
+      .add_option("mesh_a", given->mesh_a,
+                  "the fixed part: a CAD file, or a level set (.vdb, metres) that is used as its voxmap")
+      ->required()
+      ->type_name("PART_A");
+  command
+      .add_option("mesh_b", given->mesh_b,
+                  "the moving part: a CAD file, or a pointshell (.ply with normals, metres)")
+      ->required()
+      ->type_name("PART_B");
+  CLI::Option* pose = command.add_option(
+      "--pose", given->pose, "x,y,z,qx,qy,qz,qw of B in A, in metres (default: the frames coincide)");
+  command.add_option("--poses", given->poses, "file with a pose on each line")
+      ->type_name("FILE")
+      ->excludes(pose);
+  addUnitsOption(command, given->units);
+  addFidelityOptions(command, given->fidelity);
+  addPointsOption(command, given->fidelity);
+  command.add_option("--stiffness", given->stiffness_N_per_m3, "penalty stiffness per area [N/m^3]")
+      ->capture_default_str();
+  command.add_option("--repeats", given->repeats, "timed runs of each pose (default: 100 runs in all)")
+      ->check(CLI::Range(1, 1000000));
+  addCacheOption(command, given->cache);
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps replay: runs a recording again, bit for bit.
+// vps replay: runs a recording again and compares it bit for bit.
 #include <cstdio>
+#include <memory>
 #include <optional>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "run_report.h"
+#include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -17,6 +19,14 @@ namespace vps::viewer {
 
 namespace {
 
+struct ReplayArguments {
+  std::string recording;
+  std::string cache;  ///< folder for voxmaps; empty: none
+  std::string out, json;
+  std::string csv;              ///< folder for the recorded channels as tables; empty: none
+  bool is_tables_only = false;  ///< do not run
+};
+
 void writeTables(const device::RecordedRun& run, const OutputFolder& out) {
   for (const auto& [name, text] : device::csvTables(run)) out.write(name + ".csv", text);
   std::string about = "key,value\n";
@@ -24,21 +34,19 @@ void writeTables(const device::RecordedRun& run, const OutputFolder& out) {
   out.write("about.csv", about);
 }
 
-/// Says what the replay found; returns the exit status.
+/// Prints what the replay found; returns the exit status.
 int verdict(const device::RecordedRun& run, const scenes::ReplayResult& replayed) {
   const double end_s = replayed.result.simulated_s;
   if (!replayed.departure.empty()) {
     if (!replayed.other_version.empty()) warn(run.file + " " + replayed.other_version);
-    std::printf("departs from the recording at %s\n", replayed.departure.c_str());
+    std::printf("differs from the recording at %s\n", replayed.departure.c_str());
     return kBad;
   }
-  std::printf("the same bits, %zu entries up to %.3f s\n", replayed.equal, end_s);
+  std::printf("the same bits: %zu entries up to %.3f s\n", replayed.equal, end_s);
   if (run.damage.empty()) return kGood;
   warn(run.file + " " + run.damage);
   return kBad;
 }
-
-}  // namespace
 
 int runReplay(const ReplayArguments& given) {
   if (given.is_tables_only && given.csv.empty())
@@ -47,14 +55,14 @@ int runReplay(const ReplayArguments& given) {
   if (!given.out.empty()) out.emplace(given.out);
   if (!given.csv.empty()) csv.emplace(given.csv);
   OutputFile json(given.json, {given.recording});
-  const device::RecordedRun run = device::loadRecording(given.recording);
+  const device::RecordedRun recorded = device::loadRecording(given.recording);
   if (csv) {
-    writeTables(run, *csv);
+    writeTables(recorded, *csv);
     csv->commit();
   }
   if (given.is_tables_only) {
-    if (!run.damage.empty()) warn(run.file + " " + run.damage);
-    return run.damage.empty() ? kGood : kBad;
+    if (!recorded.damage.empty()) warn(recorded.file + " " + recorded.damage);
+    return recorded.damage.empty() ? kGood : kBad;
   }
 
   ProgressBar bar;
@@ -63,7 +71,7 @@ int runReplay(const ReplayArguments& given) {
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   options.cache = cache ? &*cache : nullptr;
   options.stop = &stopRequested();
-  const scenes::ReplayResult replayed = scenes::replay(run, options);
+  const scenes::ReplayResult replayed = scenes::replay(recorded, options);
   throwIfStopped();
 
   std::vector<std::string> notes;
@@ -76,7 +84,24 @@ int runReplay(const ReplayArguments& given) {
   bar.clear();
   printSteps(replayed.result);
   for (const std::string& note : notes) warn(note);
-  return verdict(run, replayed);
+  return verdict(recorded, replayed);
+}
+
+}  // namespace
+
+void addReplay(CommandLine& line) {
+  const auto given = std::make_shared<ReplayArguments>();
+  CLI::App& command =
+      addCommand(line, "replay", "runs a recording again and reports the first tick that differs, if any",
+                 "vps replay run.mcap --csv tables", [given] { return runReplay(*given); });
+  command.add_option("recording", given->recording, "what vps assemble --record wrote")
+      ->required()
+      ->type_name("RECORDING");
+  command.add_option("--csv", given->csv, "folder for the recorded channels as tables")->type_name("DIR");
+  command.add_flag("--no-run", given->is_tables_only, "with --csv: write the tables and do not run");
+  command.add_option("--out", given->out, "folder for a report, as vps assemble writes it")->type_name("DIR");
+  addCacheOption(command, given->cache);
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

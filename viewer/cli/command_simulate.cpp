@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps simulate: the scene's bodies under gravity, no hand.
+// vps simulate: the bodies of a scene move under gravity and joints, without a hand.
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -15,6 +17,13 @@
 namespace vps::viewer {
 
 namespace {
+
+struct SimulateArguments {
+  SceneArguments scene;
+  double seconds = 1;
+  bool is_real_time = false;
+  std::string trace, json;
+};
 
 std::string traceHead(const std::vector<scenes::BodyState>& bodies) {
   std::vector<std::string> cells = {"time_s", "max_depth_m"};
@@ -35,19 +44,18 @@ std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies
   return csvLine(cells);
 }
 
-}  // namespace
-
 int runSimulate(const SimulateArguments& given) {
   if (!std::isfinite(given.seconds) || given.seconds <= 0)
     throw LoadError("", "", "--seconds must be a finite number of more than 0");
-  OutputFile trace(given.trace, {given.scene}), json(given.json, {given.scene});
+  const std::string& file = given.scene.scene;
+  OutputFile trace(given.trace, {file}), json(given.json, {file});
   ProgressBar bar;
-  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.trace, given.json});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.trace, given.json});
 
   std::string rows;
   scenes::SimulateOptions options;
-  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  fill(options, bar, cache, given.models_everything);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  setModelOptions(options, bar, cache, given.scene.models_everything);
   options.is_real_time = given.is_real_time;
   options.stop = &stopRequested();
   if (!given.trace.empty())
@@ -58,7 +66,7 @@ int runSimulate(const SimulateArguments& given) {
   const scenes::SimulateResult result = scenes::simulate(scene, given.seconds, options);
   throwIfStopped();
   trace.write(rows);
-  json.write(toJson(given.scene, given.seconds, result));
+  json.write(toJson(file, given.seconds, result));
   bar.clear();
 
   Table table({"<body", "x [mm]", "y [mm]", "z [mm]", "speed [mm/s]", "spin [rad/s]"});
@@ -67,16 +75,32 @@ int runSimulate(const SimulateArguments& given) {
                fixed(body.X_WP.p.z() * 1e3, 4), fixed(body.V_WP_W.v.norm() * 1e3, 4),
                fixed(body.V_WP_W.w.norm(), 4)});
   std::fputs(table.text().c_str(), stdout);
-  std::printf("deepest %s um, kinetic energy %.3g J; a step took %s us (median), %s us (longest)\n",
+  std::printf("deepest %s um, kinetic energy %.3g J; time per step %s us (median), %s us (longest)\n",
               fixed(result.max_penetration_m * 1e6, 2).c_str(), result.kinetic_energy_J,
               fixed(result.step.p50_us, 0).c_str(), fixed(result.step.max_us, 0).c_str());
   if (!result.real_time) return kGood;
   for (const std::string& words : result.real_time->warnings) warn(words);
-  std::printf("by the clock: %s s for %s s; %llu of %llu periods missed\n",
-              fixed(result.real_time->run_wall_s, 2).c_str(), fixed(given.seconds, 2).c_str(),
+  std::printf("real time: %s s of simulated time took %s s; %llu of %llu periods missed\n",
+              fixed(given.seconds, 2).c_str(), fixed(result.real_time->run_wall_s, 2).c_str(),
               static_cast<unsigned long long>(result.real_time->missed),
               static_cast<unsigned long long>(result.step.count + result.real_time->missed));
   return kGood;
+}
+
+}  // namespace
+
+void addSimulate(CommandLine& line) {
+  const auto given = std::make_shared<SimulateArguments>();
+  CLI::App& command =
+      addCommand(line, "simulate", "moves the bodies of a scene under gravity, without a hand",
+                 "vps simulate scenes/peg_in_hole/scene.toml --seconds 2 --trace trace.csv",
+                 [given] { return runSimulate(*given); });
+  addSceneOptions(command, given->scene);
+  command.add_option("--seconds", given->seconds, "simulated time")->capture_default_str()->type_name("S");
+  command.add_flag("--real-time", given->is_real_time,
+                   "start each step by the clock when it is due, and count missed periods");
+  command.add_option("--trace", given->trace, "CSV file with a row for each step")->type_name("FILE");
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

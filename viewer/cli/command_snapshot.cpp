@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps snapshot: a picture of the finished assembly without a display, and how far it is from an earlier one.
+// vps snapshot: a picture of the finished assembly without a display, and its difference from an earlier one.
 #include <charconv>
 #include <cstdio>
 #include <map>
-#include <optional>
+#include <memory>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
+#include "scene_arguments.h"
 #include "vps/load_error.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/image.h"
@@ -17,7 +18,16 @@ namespace vps::viewer {
 
 namespace {
 
-/// From the scene to the eye.
+struct SnapshotArguments {
+  std::string scene;
+  std::string out, compare, difference, json;
+  std::string size = "1280x960";
+  std::string view = "iso";
+  bool has_section = false;
+  int tolerance = 2;
+};
+
+/// The directions from the scene to the eye.
 const std::map<std::string, Vec3>& views() {
   static const std::map<std::string, Vec3> views = {{"iso", Vec3(1, -1.4, 0.9)}, {"front", Vec3(0, -1, 0)},
                                                     {"back", Vec3(0, 1, 0)},     {"left", Vec3(-1, 0, 0)},
@@ -48,26 +58,47 @@ scenes::Snapshot finished(const scenes::Scene& scene) {
   return snapshot;
 }
 
-}  // namespace
-
 std::vector<std::string> viewNames() {
   std::vector<std::string> names;
   for (const auto& [name, direction] : views()) names.push_back(name);
   return names;
 }
 
+/// Prints how far the picture is from the wanted one, and fills the answer. Returns whether they agree.
+bool compareWith(const Image& wanted, const Image& image, const SnapshotArguments& given,
+                 SnapshotAnswer& answer) {
+  const ImageDifference found = compare(image, wanted, given.tolerance);
+  answer.is_compared = true;
+  answer.is_same_size = found.is_same_size;
+  answer.tolerance = given.tolerance;
+  answer.share_beyond = found.is_same_size ? found.share_beyond : 1;
+  answer.greatest_difference = found.greatest;
+  answer.mean_difference = found.mean;
+  const char* const file = given.compare.c_str();
+  if (!found.is_same_size) {
+    std::printf("%s is %d x %d, the picture %d x %d\n", file, wanted.width, wanted.height, image.width,
+                image.height);
+    return false;
+  }
+  const bool is_equal = found.share_beyond == 0;
+  std::printf("%s %s: %.3f %% of the pixels differ by more than %d, the greatest by %d\n",
+              is_equal ? "same as" : "differs from", file, 100 * found.share_beyond, given.tolerance,
+              found.greatest);
+  return is_equal;
+}
+
 int runSnapshot(const SnapshotArguments& given) {
   if (given.out.empty() && given.compare.empty())
     throw LoadError("", "", "give -o FILE.png, --compare IMAGE, or both");
   if (!given.difference.empty() && given.compare.empty())
-    throw LoadError("", "", "--difference needs --compare IMAGE to differ from");
+    throw LoadError("", "", "--difference needs --compare IMAGE");
   DrawOptions options;
   const auto [width, height] = sizeFromText(given.size);
   options.width = width;
   options.height = height;
   const std::vector<std::string> inputs = {given.scene, given.compare};
   OutputFile out(given.out, inputs), difference(given.difference, inputs), json(given.json, inputs);
-  // Before the work: an image that is missing is a mistake in the call.
+  // Loaded before rendering, so that a missing image is reported at once.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
   const scenes::Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
@@ -82,22 +113,8 @@ int runSnapshot(const SnapshotArguments& given) {
   SnapshotAnswer answer{.scene = given.scene, .width = width, .height = height};
   bool is_equal = true;
   if (!given.compare.empty()) {
-    const ImageDifference found = compare(image, wanted, given.tolerance);
-    answer.is_compared = true;
-    answer.is_same_size = found.is_same_size;
-    answer.tolerance = given.tolerance;
-    answer.share_beyond = found.is_same_size ? found.share_beyond : 1;
-    answer.greatest_difference = found.greatest;
-    answer.mean_difference = found.mean;
-    is_equal = found.is_same_size && found.share_beyond == 0;
-    if (!found.is_same_size)
-      std::printf("%s is %d x %d, the picture %d x %d\n", given.compare.c_str(), wanted.width, wanted.height,
-                  width, height);
-    else
-      std::printf("%s %s: %.3f %% of the pixels differ by more than %d, the greatest by %d\n",
-                  is_equal ? "as" : "unlike", given.compare.c_str(), 100 * found.share_beyond,
-                  given.tolerance, found.greatest);
-    if (!given.difference.empty() && found.is_same_size) {
+    is_equal = compareWith(wanted, image, given, answer);
+    if (!given.difference.empty() && answer.is_same_size) {
       writeDifference(image, wanted, given.tolerance, difference.partial());
       difference.commit();
     }
@@ -108,6 +125,34 @@ int runSnapshot(const SnapshotArguments& given) {
   }
   json.write(toJson(answer));
   return is_equal ? kGood : kBad;
+}
+
+}  // namespace
+
+void addSnapshot(CommandLine& line) {
+  const auto given = std::make_shared<SnapshotArguments>();
+  CLI::App& command =
+      addCommand(line, "snapshot", "draws a scene's finished assembly to a picture file, without a display",
+                 "vps snapshot scenes/peg_in_hole/scene.toml -o peg.png --view front --section",
+                 [given] { return runSnapshot(*given); });
+  addSceneArgument(command, given->scene);
+  command.add_option("-o,--out", given->out, "picture to write")->type_name("FILE.png");
+  command.add_option("--size", given->size, "width and height in pixels")
+      ->capture_default_str()
+      ->type_name("WxH");
+  command.add_option("--view", given->view, "side to look from")
+      ->capture_default_str()
+      ->check(CLI::IsMember(viewNames()));
+  command.add_flag("--section", given->has_section, "cut away the front half");
+  command.add_option("--compare", given->compare, "exit with status 1 if the picture differs from this one")
+      ->type_name("IMAGE");
+  command
+      .add_option("--tolerance", given->tolerance, "difference of a channel that counts as equal, 0 to 255")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 255));
+  command.add_option("--difference", given->difference, "picture of the difference to write")
+      ->type_name("FILE.png");
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

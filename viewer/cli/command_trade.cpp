@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps trade: speed against accuracy on a scene.
+// vps trade: measures speed against accuracy on a scene, or picks a fidelity.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 
-#include "commands.h"
+#include "command.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "scene_arguments.h"
 #include "terminal.h"
 #include "trade_report.h"
 #include "vps/load_error.h"
@@ -20,17 +22,26 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kSeconds = 46;  ///< of the fifty that a trade may take
+constexpr double kSeconds = 46;  ///< for measuring; with loading and plotting a trade takes 50 s
+
+struct TradeArguments {
+  std::string scene;
+  FidelityArguments fidelity;
+  bool is_thorough = false;
+  std::string out, csv, json;  ///< empty: none
+  std::optional<double> budget_hz;
+  std::optional<std::string> tolerance, memory;  ///< "10um", "64MB"
+};
 
 void print(const scenes::TradeResult& result) {
-  std::printf("%s, %s; models asked at %zu poses, %zu of them inside\n", result.scene.c_str(),
+  std::printf("%s, %s; models queried at %zu poses, %zu of them with overlap\n", result.scene.c_str(),
               result.excerpt.c_str(), result.poses, result.poses_inside);
   std::fputs(tradeTable(result).c_str(), stdout);
-  std::printf("\nAgainst the scene as it is:\n");
+  std::printf("\nCompared with the scene's own settings:\n");
   for (const std::string& words : scenes::tradeKnobs(result)) std::printf("  %s\n", words.c_str());
   std::printf("\n");
   for (const std::string& words : scenes::tradeAnswers(result)) std::printf("%s\n", words.c_str());
-  for (const std::string& words : result.fixed) std::printf("not a scene's choice: %s\n", words.c_str());
+  for (const std::string& words : result.fixed) std::printf("not set by a scene: %s\n", words.c_str());
   for (const std::string& words : result.left_out) std::printf("left out: %s\n", words.c_str());
 }
 
@@ -50,14 +61,16 @@ double bytesFromText(const std::string& text) {
   return scale * number;
 }
 
+/// The fidelity to pick, if the command line asks for one instead of a measurement.
 std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
   if (!given.budget_hz && !given.tolerance && !given.memory) return std::nullopt;
   if (given.is_thorough || !given.out.empty() || !given.csv.empty())
-    throw LoadError("", "",
-                    "--thorough, --out and --csv are for what is measured; with --tolerance, --budget-hz or "
-                    "--memory nothing is: leave out one or the other");
+    throw LoadError(
+        "", "",
+        "--thorough, --out and --csv belong to a measurement, but --tolerance, --budget-hz and --memory "
+        "pick a fidelity without measuring; leave out one or the other");
   scenes::FidelityWish wish;
-  // The command line has looked at its range, which lets nan through.
+  // CLI::Range lets nan through.
   if (given.budget_hz && !std::isfinite(*given.budget_hz))
     throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
   wish.budget_hz = given.budget_hz;
@@ -70,20 +83,18 @@ std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
   return wish;
 }
 
-/// Picks, and says what to paste into the scene.
+/// Picks a fidelity and prints the lines to paste into the scene.
 int pick(scenes::Scene scene, const scenes::FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
   const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, bar.progress());
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
-    say("no fidelity will do: " + choice.failure_reason);
+    say("no fidelity meets this: " + choice.failure_reason);
     return kBad;
   }
   std::printf("# %s\n%s", scenes::describe(choice).c_str(), scenes::toToml(choice.fidelity).c_str());
   return kGood;
 }
-
-}  // namespace
 
 int runTrade(const TradeArguments& given) {
   using Clock = std::chrono::steady_clock;
@@ -96,14 +107,14 @@ int runTrade(const TradeArguments& given) {
   const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
   if (wish) return pick(scene, *wish, json, bar);
   scenes::TradeOptions options;
-  // Without throwing when it is stopped: what was finished is kept.
+  // Does not throw after Ctrl-C, so that finished rows are kept.
   options.progress = [show = bar.progress()](std::string_view doing, double share) {
     if (!stopRequested()) show(doing, share);
   };
   options.warn = warn;
   options.is_thorough = given.is_thorough;
   options.stop = &stopRequested();
-  // Reading the scene counts, and plots come after.
+  // The time for loading counts too.
   options.seconds = kSeconds - std::chrono::duration<double>(Clock::now() - begun).count();
   const scenes::TradeResult result = scenes::trade(scene, options);
   const bool is_stopped = stopRequested();
@@ -122,9 +133,31 @@ int runTrade(const TradeArguments& given) {
   print(result);
   if (!plot) warn("no plot: " + plot.failure_reason);
   if (!is_stopped) return kGood;
-  say("stopped; what was measured by then is above" +
-      std::string(out || !given.csv.empty() || !given.json.empty() ? ", and saved" : ""));
+  say("stopped; the rows measured until then are above" +
+      std::string(out || !given.csv.empty() || !given.json.empty() ? " and saved" : ""));
   return kCouldNot;
+}
+
+}  // namespace
+
+void addTrade(CommandLine& line) {
+  const auto given = std::make_shared<TradeArguments>();
+  CLI::App& command = addCommand(line, "trade", "measures speed against accuracy on a scene",
+                                 "vps trade scenes/peg_in_hole/scene.toml --out out/trade",
+                                 [given] { return runTrade(*given); });
+  addSceneArgument(command, given->scene);
+  command.add_flag("--thorough", given->is_thorough,
+                   "measure all steps and settings without a time limit (default: 50 s in all)");
+  command.add_option("--out", given->out, "folder for a plot, trade.csv and trade.json")->type_name("DIR");
+  command
+      .add_option("--budget-hz", given->budget_hz, "pick a fidelity that holds this physics rate, and stop")
+      ->check(CLI::Range(1.0, 1e6));
+  command.add_option("--tolerance", given->tolerance,
+                     "pick a fidelity whose error of depth is at most this length, with unit");
+  command.add_option("--memory", given->memory, "pick a fidelity whose models need at most this: 64MB, 1GB");
+  command.add_option("--csv", given->csv, "write the table to this file")->type_name("FILE");
+  addFidelityOptions(command, given->fidelity);
+  addJsonOption(command, given->json);
 }
 
 }  // namespace vps::viewer

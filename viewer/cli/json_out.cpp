@@ -214,6 +214,24 @@ std::string toJson(const ImportAnswer& answer) {
       {{"cad", answer.cad}, {"format", answer.format}, {"parts", parts}, {"warnings", answer.warnings}});
 }
 
+std::string toJson(const ExportAnswer& answer) {
+  Json files = Json::array();
+  for (const ExportedFileAnswer& row : answer.files) {
+    Json file = {{"file", row.file}, {"model", row.model}};
+    if (row.model == "voxmap") {
+      file["voxel_m"] = row.voxel_m;
+      file["bricks"] = row.bricks;
+    } else if (row.model == "pointshell") {
+      file["points"] = row.points;
+      file["point_spacing_m"] = row.point_spacing_m;
+    } else {
+      file["triangles"] = row.triangles;
+    }
+    files.push_back(std::move(file));
+  }
+  return text({{"source", answer.source}, {"part", answer.part}, {"files", files}});
+}
+
 std::string toJson(const SnapshotAnswer& answer) {
   Json json = {{"scene", answer.scene}, {"width", answer.width}, {"height", answer.height}};
   if (answer.is_compared)

@@ -61,6 +61,21 @@ struct ImportAnswer {
   std::vector<std::string> warnings;
 };
 
+/// What `vps export` wrote into one file; `model` says which of the numbers apply.
+struct ExportedFileAnswer {
+  std::string file, model;     ///< "voxmap", "pointshell" or "mesh"
+  double voxel_m = 0;          ///< of a voxmap
+  std::size_t bricks = 0;      ///< of a voxmap
+  std::size_t points = 0;      ///< of a pointshell
+  double point_spacing_m = 0;  ///< of a pointshell
+  std::size_t triangles = 0;   ///< of a mesh
+};
+
+struct ExportAnswer {
+  std::string source, part;  ///< part: of a scene
+  std::vector<ExportedFileAnswer> files;
+};
+
 struct SnapshotAnswer {
   std::string scene;
   int width = 0, height = 0;
@@ -80,6 +95,7 @@ std::string toJson(const scenes::AssembleResult& result);
 std::string toJson(const std::string& scene, double seconds, const scenes::SimulateResult& result);
 std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
+std::string toJson(const ExportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);

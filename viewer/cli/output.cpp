@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -17,33 +16,42 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string partialName(const std::string& name) {
-  return ".partial-" + std::to_string(processId()) + (name.empty() ? "" : "-" + name);
+[[noreturn]] void failToWrite(const std::string& file, const std::string& reason) {
+  throw LoadError(file, "", "cannot be written: " + reason + "; choose another place");
 }
 
-/// A device or a pipe: written as it stands, since a rename would put a file in its place.
+/// A device or a pipe: a rename would put a file in its place.
 bool isStream(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// The file behind symbolic links, which may be missing yet: a rename onto the link would replace the link.
-fs::path throughLinks(fs::path path) {
-  constexpr int kMaxLinks = 40;  // as Linux follows
+/// The file that symbolic links lead to, which need not exist: a rename onto the link would replace the link.
+fs::path resolveLinks(fs::path path) {
+  constexpr int kMaxLinks = 40;  // as many as Linux follows
   std::error_code error;
   for (int i = 0; i < kMaxLinks && fs::is_symlink(path, error); ++i)
     path = path.parent_path() / fs::read_symlink(path, error);
   return path;
 }
 
+void writeDirectly(const std::string& file, std::string_view bytes) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) failToWrite(file, std::strerror(errno));
+}
+
+/// A link in a folder of results may lead to another file system, where a rename fails.
 void move(const fs::path& from, const fs::path& to) {
   std::error_code error;
-  const fs::path target = throughLinks(to);
+  const fs::path target = resolveLinks(to);
   fs::rename(from, target, error);
   if (error == std::errc::cross_device_link)
     fs::copy_file(from, target, fs::copy_options::overwrite_existing, error);
-  if (error) throw std::runtime_error(to.string() + ": cannot be written: " + error.message());
+  if (error) failToWrite(to.string(), error.message());
 }
 
 std::string contentOf(const fs::path& file) {
@@ -53,14 +61,6 @@ std::string contentOf(const fs::path& file) {
 }
 
 }  // namespace
-
-void writeWhole(const std::string& file, std::string_view bytes) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw std::runtime_error(file + ": cannot be written: " + std::strerror(errno));
-}
 
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs) {
   std::error_code error;
@@ -75,33 +75,25 @@ OutputFile::OutputFile(const std::string& file, const std::vector<std::string>& 
   std::error_code error;
   if (fs::is_directory(file, error)) throw LoadError(file, "", "is a folder; name a file to write");
   requireNotRead(file, inputs);
-  is_stream_ = isStream(file);
-  if (is_stream_) {
-    partial_ = file;  // not tried out: the reader of a pipe would take the end of the trial for the end
+  if (isStream(file)) {
+    partial_ = file;  // opening a pipe now would end its reader's input when it is closed again
     return;
   }
-  const fs::path path = throughLinks(file);
-  partial_ = (path.parent_path() / partialName(path.filename().string())).string();
+  whole_.emplace(resolveLinks(file));
+  partial_ = whole_->temporary().string();
   errno = 0;
-  if (!std::ofstream(partial_, std::ios::binary)) {
-    const std::string reason = std::strerror(errno);
-    throw LoadError(file, "", "cannot be written: " + reason + "; choose another place");
-  }
-}
-
-OutputFile::~OutputFile() {
-  std::error_code ignored;
-  if (!partial_.empty() && !is_stream_) fs::remove(partial_, ignored);
+  if (!std::ofstream(partial_, std::ios::binary)) failToWrite(file, std::strerror(errno));
 }
 
 void OutputFile::write(std::string_view bytes) {
   if (file_.empty()) return;
-  writeWhole(partial_, bytes);
+  writeDirectly(partial_, bytes);
   commit();
 }
 
 void OutputFile::commit() {
-  if (!file_.empty() && !is_stream_) move(partial_, file_);
+  if (!whole_) return;
+  if (const std::error_code error = whole_->commit()) failToWrite(file_, error.message());
 }
 
 OutputFolder::OutputFolder(const std::string& folder) : folder_(folder) {
@@ -110,7 +102,7 @@ OutputFolder::OutputFolder(const std::string& folder) : folder_(folder) {
   if (is_new_) fs::create_directories(folder_, error);
   if (!error && !fs::is_directory(folder_, error))
     throw LoadError(folder_, "", "is not a folder; choose another --out");
-  partial_ = (fs::path(folder_) / partialName("")).string();
+  partial_ = (fs::path(folder_) / ("." + std::to_string(processId()) + ".unfinished")).string();
   if (!error) fs::create_directory(partial_, error);
   if (error) throw LoadError(folder_, "", "cannot be written: " + error.message() + "; choose another --out");
 }
@@ -118,13 +110,13 @@ OutputFolder::OutputFolder(const std::string& folder) : folder_(folder) {
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   fs::remove_all(partial_, ignored);
-  if (is_new_) fs::remove(folder_, ignored);  // only if nothing came into it
+  if (is_new_) fs::remove(folder_, ignored);  // succeeds only for an empty folder
 }
 
 void OutputFolder::write(const std::string& name, std::string_view bytes) const {
   const fs::path file = fs::path(partial_) / name;
   fs::create_directories(file.parent_path());
-  writeWhole(file.string(), bytes);
+  writeWholeFile(file, bytes);
 }
 
 void OutputFolder::commit() {
@@ -135,7 +127,7 @@ void OutputFolder::commit() {
     const fs::path to = fs::path(folder_) / file.lexically_relative(partial_);
     fs::create_directories(to.parent_path());
     if (isStream(to))
-      writeWhole(to.string(), contentOf(file));
+      writeDirectly(to.string(), contentOf(file));
     else
       move(file, to);
   }

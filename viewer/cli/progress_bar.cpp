@@ -15,7 +15,7 @@ void ProgressBar::show(std::string_view doing, double share) {
   throwIfStopped();
   if (!is_on_) return;
   const auto now = Clock::now();
-  // Ten times a second is as fast as anyone reads.
+  // At most ten times a second.
   if (now - begun_ < std::chrono::seconds(1) || (is_drawn_ && now - drawn_ < std::chrono::milliseconds(100)))
     return;
   drawn_ = now;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says on a terminal how far long work is; silent elsewhere, and during the first second.
+// Shows the progress of long work on a terminal, from the first second on; prints nothing elsewhere.
 #pragma once
 
 #include <chrono>
@@ -16,11 +16,11 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// A callback for the work. Holds this bar by reference. Throws Stopped after Ctrl-C.
+  /// A callback for the work, which refers to this bar. The callback throws Stopped after Ctrl-C.
   Progress progress() {
     return [this](std::string_view doing, double share) { show(doing, share); };
   }
-  /// Wipes the line, so that what is printed next stands on a clean one.
+  /// Clears the line for other output.
   void clear();
 
  private:

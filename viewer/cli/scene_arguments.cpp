@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "commands.h"
+#include "scene_arguments.h"
+
+#include <CLI/CLI.hpp>
+
+#include "file_kind.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "terminal.h"
@@ -18,6 +22,22 @@ void readLength(const std::string& text, const std::string& option, double& out_
 
 }  // namespace
 
+void addFidelityOptions(CLI::App& command, FidelityArguments& given) {
+  command.add_option("--fidelity", given.preset, "preset: fast, normal or fine");
+  command.add_option("--voxel", given.voxel, "grid step of the voxmaps, with unit");
+  command.add_option("--spacing", given.spacing, "distance between points of the pointshells, with unit");
+  command.add_option(
+      "--sides", given.sides,
+      "one: points of the moving part in the field of the fixed part; both: the reverse as well");
+}
+
+void addPointsOption(CLI::App& command, FidelityArguments& given) {
+  command
+      .add_option("--points", given.points, "approximate number of pointshell points, instead of --spacing")
+      ->excludes(command.get_option("--spacing"))
+      ->check(CLI::Range(1, 100000000));
+}
+
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
   if (!given.preset.empty()) base = fidelityPreset(given.preset);
   readLength(given.voxel, "--voxel", base.voxel_m);
@@ -30,13 +50,40 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
   return base;
 }
 
+void addSceneArgument(CLI::App& command, std::string& scene) {
+  command.add_option("scene", scene, "scene file (TOML)")->required()->type_name("SCENE");
+}
+
+void addCacheOption(CLI::App& command, std::string& folder) {
+  command.add_option("--cache", folder, "folder in which voxmaps are kept and looked up")->type_name("DIR");
+}
+
+void addSceneOptions(CLI::App& command, SceneArguments& given) {
+  addSceneArgument(command, given.scene);
+  command.add_flag("--model-everything", given.models_everything,
+                   "build a voxmap and a pointshell of every part, share none and leave none out");
+  addFidelityOptions(command, given.fidelity);
+  addCacheOption(command, given.cache);
+}
+
+void addUnitsOption(CLI::App& command, std::string& units) {
+  command.add_option("--units", units, "length unit of files that do not state one: mm, cm, m, um, inch");
+}
+
+std::optional<double> unitFrom(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> unit_m = scenes::unitFromText(text);
+  if (!unit_m) throw LoadError("", "", "--units is '" + text + "'; expected one of: mm, cm, m, um, inch");
+  return unit_m;
+}
+
 std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   if (folder.empty()) return std::nullopt;
   return VoxMapCache(folder, warn);
 }
 
-void fill(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
-          bool models_everything) {
+void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+                     bool models_everything) {
   options.progress = bar.progress();
   options.cache = cache ? &*cache : nullptr;
   options.warn = warn;
@@ -45,6 +92,7 @@ void fill(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<V
 
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
                         const std::vector<std::string>& outputs) {
+  requireSceneFile(file);
   scenes::Scene scene = scenes::loadScene(file);
   std::vector<std::string> read;
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
@@ -58,7 +106,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
     say("chosen: " + scene.fidelity_choice);
     return scene;
   }
-  // What was chosen at load has been overruled, and its models with it.
+  // The command line replaces what `auto` chose at load, so the models of that choice are of no use.
   scene.fidelity_choice.clear();
   for (scenes::ScenePart& part : scene.parts) {
     part.part.map.reset();

@@ -10,7 +10,7 @@ namespace vps::viewer {
 
 namespace {
 
-/// Characters a person sees: UTF-8 continuation bytes take no room.
+/// Number of code points in UTF-8.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; }));
@@ -53,7 +53,7 @@ std::string fixed(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
-  // "-0.00" would claim a sign that the digits do not show.
+  // A number that rounds to zero is printed without a sign.
   const bool is_zero = std::string(text).find_first_of("123456789") == std::string::npos;
   return is_zero && text[0] == '-' ? text + 1 : text;
 }

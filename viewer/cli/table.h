@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plain-text table: columns as wide as their widest cell, numbers to the right.
+// Plain-text tables, and lines of CSV.
 #pragma once
 
 #include <string>
@@ -7,9 +7,10 @@
 
 namespace vps::viewer {
 
+/// A text table whose columns are as wide as their widest cell.
 class Table {
  public:
-  /// @param heads  column names; one that begins with '<' holds words and is set to the left
+  /// @param heads names of the columns; a column whose name begins with '<' is aligned left, others right
   explicit Table(std::vector<std::string> heads);
   void add(std::vector<std::string> cells);
   [[nodiscard]] std::string text() const;
@@ -19,12 +20,12 @@ class Table {
   std::vector<bool> is_left_;
 };
 
-/// A number with this many digits after the point; "-" if it is not finite.
+/// A number with this many digits after the decimal point; "-" if it is not finite.
 std::string fixed(double value, int digits);
 
-/// A line of CSV (RFC 4180): cells stand in quotes where they must.
+/// A line of CSV (RFC 4180) with quotes around the cells that need them.
 std::string csvLine(const std::vector<std::string>& cells);
-/// A number for CSV: the shortest text that reads back as the same value.
+/// The shortest text that reads back as the same value.
 std::string csvNumber(double value);
 
 }  // namespace vps::viewer

@@ -11,7 +11,7 @@ namespace vps::viewer {
 
 namespace {
 std::atomic<bool> is_stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may touch it");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait for a lock");
 
 void onStop(int) {
   is_stop_requested.store(true, std::memory_order_relaxed);
@@ -40,7 +40,7 @@ long processId() {
 void catchStop() {
   struct sigaction action = {};
   action.sa_handler = onStop;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second one has its usual effect
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal has its default effect
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

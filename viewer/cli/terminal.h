@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The little of POSIX that a command line needs: is anybody watching, and did they press Ctrl-C. And how it
-// speaks on stderr.
+// Messages on stderr, and the POSIX functions of the program: terminal, process id and Ctrl-C.
 #pragma once
 
 #include <atomic>
@@ -9,23 +8,23 @@
 
 namespace vps::viewer {
 
-/// Is stderr a terminal?
+/// Whether stderr is a terminal.
 bool isTerminal();
 
-/// Prints "vps: WORDS" on stderr as one line, whatever the words hold.
+/// Prints "vps: WORDS" on stderr as one line; control characters become spaces.
 void say(std::string words);
-/// The same with "warning: " before the words: the answer stands, but should be looked at.
+/// Prints "vps: warning: WORDS": the answer is valid, but the user should check its cause.
 void warn(const std::string& words);
 
-/// This process's number, for names of temporary files.
+/// The process id, for names of temporary files.
 long processId();
 
-/// Makes the first Ctrl-C (or SIGTERM) set stopRequested(), so that unfinished files are removed on the way
-/// out; a second one ends the program at once.
+/// Makes the first Ctrl-C (or SIGTERM) set stopRequested(), so that the program can remove unfinished files
+/// before it ends; a second one ends it at once.
 void catchStop();
 const std::atomic<bool>& stopRequested();
 
-/// Thrown where long work notices the request.
+/// Thrown by long work after stopRequested().
 struct Stopped : std::exception {
   [[nodiscard]] const char* what() const noexcept override {
     return "stopped; earlier results are untouched";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a picture is taken from.
+// The camera of a picture.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ struct VPS_VIEWER_API Camera {
   Vec3 eye_W = Vec3(1, -1, 1);
   Vec3 target_W = Vec3::Zero();
   Vec3 up_W = Vec3::UnitZ();
-  double fov_rad = 0.5;  ///< vertical angle of view; 0.5 is a short telephoto: shapes keep their proportions
+  double fov_rad = 0.5;  ///< vertical angle of view; 0.5 is a short telephoto lens, which keeps proportions
 
   /// Pose of the camera frame C in W: x right, y up, z towards the viewer.
   [[nodiscard]] Pose pose() const;
@@ -22,11 +22,11 @@ struct VPS_VIEWER_API Camera {
   [[nodiscard]] std::array<double, 2> project(const Vec3& p_W, int width, int height) const;
 };
 
-/// The nearest camera, looking along -direction, that shows the whole box.
+/// The nearest camera that looks along -direction and shows the whole box.
 /// @param direction from the scene to the eye, any length but zero
 /// @param fov_rad   vertical angle of view
 /// @param aspect    width / height of the picture
-/// @param margin    share of the picture's half size left free around the box
+/// @param margin    share of half the picture's size that stays free around the box
 VPS_VIEWER_API Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad = 0.5,
                                  double aspect = 4.0 / 3, double margin = 0.12);
 

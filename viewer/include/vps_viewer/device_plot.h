@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figure 5 of the paper, of the dual arm that this program has: the vertical force of left arm, right arm and
-// pair.
+// Figure 5 of the paper for the simulated dual arm: the vertical force of the left arm, the right arm and
+// both.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace vps::viewer {
 
-/// Left: the least force over each column of the workspace, as surfaces over x and y. Right: the least over x
-/// and z, along y, with the paper's 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input
-/// gives the same bytes.
+/// Plots the least force along z as surfaces over x and y (left), and the least force over x and z along y
+/// with the paper's 5 N and 12 N (right). Writes file + ".png" and file + ".svg"; the same input gives the
+/// same bytes.
 VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
                                               const std::string& file);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures in memory and on disk (PNG), and how far two of them differ.
+// Images in memory and as PNG files, and how far two of them differ.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace vps::viewer {
 
-/// sRGB, 8 bits a channel, rows from the top; rgb.size() == 3 * width * height.
+/// sRGB, 8 bits per channel, rows from the top; rgb.size() == 3 * width * height.
 struct VPS_VIEWER_API Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
@@ -23,28 +23,27 @@ struct VPS_VIEWER_API Image {
   [[nodiscard]] std::uint8_t* at(int x, int y) { return &rgb[3 * (std::size_t(y) * width + x)]; }
 };
 
-/// Writes a PNG: the same image gives the same bytes (no time stamp), and no reader ever sees half a file.
-/// Throws std::runtime_error naming the file and the system's reason.
+/// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The folder
+/// must exist. Throws LoadError when it cannot be written, std::runtime_error when rgb has the wrong size.
 VPS_VIEWER_API void savePng(const Image& image, const std::string& file);
 
-/// Reads any 8- or 16-bit PNG as RGB; transparency is laid on white. Throws LoadError if it is missing,
-/// damaged or no PNG.
+/// Reads any 8- or 16-bit PNG as RGB; transparent pixels are blended with white. Throws LoadError if the file
+/// is missing, damaged or not a PNG.
 VPS_VIEWER_API Image loadPng(const std::string& file);
 
-/// How far two images differ. A pixel's difference is the greatest of its channels', 0 to 255.
+/// The difference of two images. A pixel's difference is the greatest of its channels' differences, 0 to 255.
 struct ImageDifference {
-  bool is_same_size = true;  ///< if not, the rest says "entirely different"
+  bool is_same_size = true;  ///< if false, the other members have their greatest values
   double share_beyond = 0;   ///< share of pixels that differ by more than the tolerance, 0 to 1
   int greatest = 0;
   double mean = 0;  ///< over all pixels
 };
 
-/// @param tolerance difference that still counts as equal, 0 to 255; 2 absorbs what SSE and AVX round
-/// differently
+/// @param tolerance difference that counts as equal, 0 to 255; 2 covers the different rounding of SSE and AVX
 VPS_VIEWER_API ImageDifference compare(const Image& a, const Image& b, int tolerance);
 
-/// A picture of the difference: a in pale grey, pixels beyond the tolerance in red, the stronger the further
-/// apart. Throws std::invalid_argument unless the sizes agree.
+/// A picture of the difference: image a in pale grey, pixels beyond the tolerance in a red that grows with
+/// the difference. Throws std::invalid_argument unless the sizes agree.
 VPS_VIEWER_API Image differenceImage(const Image& a, const Image& b, int tolerance);
 
 /// savePng(differenceImage(...)).

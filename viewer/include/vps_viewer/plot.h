@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plots by gnuplot, which runs as a program of its own and is fed by a pipe.
+// Plots, drawn by the program gnuplot.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Series {
   std::string name;
   std::vector<std::pair<double, double>> points;
   bool has_markers = false;
-  bool is_scatter = false;  ///< markers alone
+  bool is_scatter = false;  ///< markers without lines
 };
 
 struct Plot {
@@ -25,24 +25,24 @@ struct Plot {
   bool is_log_x = false, is_log_y = false;
 };
 
-/// What a plot came to. A plot is never worth a run: nothing here throws.
+/// Whether a plot was written. Functions here do not throw, so that a missing gnuplot never ends a run.
 struct PlotOutcome {
   bool is_written = false;
-  std::string failure_reason;  ///< for a person: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
+  std::string failure_reason;  ///< for the user: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
   explicit operator bool() const { return is_written; }
 };
 
-/// Is there a gnuplot to run?
+/// Whether gnuplot is in a folder of PATH.
 VPS_VIEWER_API bool hasGnuplot();
 
-/// Forces and torques on the hand over time, as figure 9 of the paper: impacts marked, phases shaded, steps
-/// named. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
-/// @param step_names by index of step; missing ones are numbered
-/// @param step       plot only this step; -1: all
+/// Plots forces and torques on the hand over time as figure 9 of the paper, with marked impacts, shaded
+/// phases and named steps. Writes file + ".png" and file + ".svg"; the same trace gives the same bytes.
+/// @param step_names by index of the step; steps without a name get their number
+/// @param step       index of the only step to plot; -1: all steps
 VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
                                       const std::vector<std::string>& step_names = {}, int step = -1);
 
-/// Any lines over a common axis; file + ".png" and file + ".svg".
+/// Plots curves over a common axis. Writes file + ".png" and file + ".svg".
 VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
 }  // namespace vps::viewer

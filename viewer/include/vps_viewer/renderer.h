@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of a Snapshot by OpenGL 4.5, without a display: EGL on Mesa's surfaceless platform.
+// Pictures of a Snapshot by OpenGL 4.5 without a display, through EGL on Mesa's surfaceless platform.
 //
-// The look: studio light (key, fill, rim and sky), ambient occlusion, a soft shadow on an invisible floor,
-// thin dark lines on sharp edges. The part in hand is blue, its target a ghost of the same blue. Light is
-// added up in linear colour and shown in sRGB. The same input gives the same bits on one machine; different
-// CPUs round a few pixels differently by 1/255, so compare images with a tolerance.
+// Light comes from a key light, a fill light, a rim light and a sky, with ambient occlusion and a soft shadow
+// on an invisible floor. Sharp edges are thin dark lines. The part in hand is blue; its target is transparent
+// in the same blue. Light is summed in linear colour and converted to sRGB. The same input gives the same
+// bits on one machine; other CPUs round a few pixels differently by 1/255, so compare images with a
+// tolerance.
 #pragma once
 
 #include <array>
@@ -25,61 +26,63 @@ namespace vps::viewer {
 struct DrawnMesh {
   const Mesh* mesh = nullptr;  ///< must live as long as the constructor of Renderer runs
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
-  bool is_fixed = false;                              ///< drawn where X_WP says, whatever the snapshot lists
+  bool is_fixed = false;                              ///< drawn at X_WP even if the snapshot does not list it
   Pose X_WP = {};
 };
 using RenderScene = std::vector<DrawnMesh>;
 
-/// What there is to draw of a scene: its parts, in order. Parts that bring no colour of their own get one
-/// each from a muted palette, so that neighbours can be told apart.
+/// The parts of a scene, in order. Parts without a colour of their own get one from a muted palette, so that
+/// neighbours can be distinguished.
 VPS_VIEWER_API RenderScene drawnMeshes(const scenes::Scene& scene);
 
-/// A section: what lies beyond the plane, on the side n_W points to, is cut away.
+/// A section: the half space that n_W points into is cut away.
 struct CutPlane {
   Vec3 p_W = Vec3::Zero();
   Vec3 n_W = Vec3::UnitY();
-  bool cuts_hand = false;  ///< drawing practice: the inserted part (shaft, pin, screw) stays whole
+  bool cuts_hand =
+      false;  ///< false as in technical drawings: the inserted part (shaft, pin, screw) stays whole
 };
 
 struct DrawOptions {
   int width = 1280, height = 960;
-  bool show_waiting = false;  ///< parts not yet in the procedure
+  bool show_waiting = false;  ///< parts whose step has not begun
   bool show_target = true;
   bool show_contacts = true;
   bool show_force = true;
   bool show_edges = true;
   bool show_ground = true;
-  bool show_hidden_marks = true;  ///< contacts and force shine faintly through the material
-  bool highlight_hand = true;     ///< the part in hand in the accent colour instead of its own
+  bool show_hidden_marks = true;  ///< hidden contacts and forces are faintly visible through the parts
+  bool highlight_hand = true;     ///< the part in hand is blue instead of its own colour
   bool show_legend = true;
   std::optional<CutPlane> cut;
   std::string title;                    ///< first line, top left; UTF-8
-  std::string caption;                  ///< smaller lines under it; '\n' starts a new one
+  std::string caption;                  ///< smaller lines under the title, separated by '\n'
   double contact_full_scale_m = 20e-6;  ///< depth at the red end of the colour scale
-  double force_full_scale_N = 15;       ///< force whose arrow is a sixth of the picture's size
-  int supersampling = 2;                ///< 1 quick, 2 for print: each pixel is 2x2, on top of multisampling
+  double force_full_scale_N = 15;       ///< force whose arrow has a sixth of the picture's size
+  int supersampling = 2;  ///< n x n samples per pixel besides multisampling: 1 fast, 2 for print
 };
 
-/// Bounds of all that the snapshot shows, in W. With show_waiting, of waiting parts too.
+/// The box in W around all that the snapshot shows, with show_waiting also around waiting parts.
 VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,
                                   bool show_waiting = false);
 
-/// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W,
-/// faces the viewer, and lies along two of W's axes where d_W does along one, as sections are drawn.
+/// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W
+/// and faces the viewer. If d_W is along an axis of W, the plane is spanned by two axes, as in technical
+/// drawings.
 VPS_VIEWER_API CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
 
-/// Holds an OpenGL context and a scene's buffers. Use it on the thread that made it; several may live side by
-/// side.
+/// Owns an OpenGL context and a scene's buffers. Use it on the thread that made it; several may exist at
+/// once.
 class VPS_VIEWER_API Renderer {
  public:
-  /// Uploads the meshes: smooth normals are split where faces meet at more than 28 degrees. Throws
-  /// std::runtime_error in words a user can act on when EGL or OpenGL 4.5 is missing.
+  /// Uploads the meshes; faces that meet at more than 28 degrees get separate normals. Throws
+  /// std::runtime_error, which names the packages to install, when EGL or OpenGL 4.5 is missing.
   explicit Renderer(const RenderScene& scene);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// One picture. Half a million triangles take about a second on two cores of llvmpipe at 1280x960.
+  /// Draws one picture. Half a million triangles at 1280x960 take about a second on two cores with llvmpipe.
   Image render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
 
   /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".

@@ -15,10 +15,10 @@ namespace {
 }
 
 EGLDisplay openDisplay() {
-  // Any other call of epoxy's ends the program where the library itself is missing.
+  // Without the library, every other function of epoxy ends the program.
   if (!epoxy_has_egl()) fail("libEGL.so.1 is not installed");
 
-  // The default display needs an X server or Wayland; the surfaceless platform needs nothing.
+  // The default display requires an X server or Wayland; the surfaceless platform requires neither.
   EGLDisplay display = EGL_NO_DISPLAY;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
     display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
@@ -39,7 +39,7 @@ EglContext::EglContext() : display_(openDisplay()) {
   EGLConfig config = nullptr;
   EGLint count = 0;
   if (!eglChooseConfig(display_, config_wanted, &config, 1, &count) || count == 0)
-    config = nullptr;  // EGL_KHR_no_config_context: we draw into framebuffers of our own
+    config = nullptr;  // EGL_KHR_no_config_context suffices, since framebuffer objects are drawn into
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            4,
                            EGL_CONTEXT_MINOR_VERSION,
@@ -51,7 +51,7 @@ EglContext::EglContext() : display_(openDisplay()) {
   if (context_ == EGL_NO_CONTEXT) fail("the driver has no OpenGL 4.5 core profile");
 }
 
-// The display stays open: it is the process's, and others may draw on it.
+// The display stays open, because it belongs to the process and others may use it.
 EglContext::~EglContext() {
   eglDestroyContext(display_, context_);
 }

@@ -8,14 +8,15 @@ namespace vps::viewer {
 
 class EglContext {
  public:
-  /// Throws std::runtime_error that says what to install when no context can be had. Not current after this.
+  /// Throws std::runtime_error, which names the packages to install, when no context can be made. The context
+  /// is not current afterwards.
   EglContext();
   ~EglContext();
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
-  /// Current on this thread while it lives; the context that was current before comes back, so that a
-  /// renderer can be used beside a window.
+  /// Makes the context current on this thread. The destructor restores the context that was current before,
+  /// so that a renderer can be used in a program with windows.
   class Current {
    public:
     explicit Current(const EglContext& context);

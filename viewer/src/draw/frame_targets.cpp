@@ -16,7 +16,7 @@ gl::Framebuffer targetOf(const gl::Texture& texture, const char* what,
   return target;
 }
 
-/// llvmpipe has 4, GPUs 8 and more; beyond 4 a supersampled picture does not look better.
+/// llvmpipe has 4 samples, GPUs 8 and more; more than 4 do not improve a supersampled picture visibly.
 int usableSamples() {
   GLint color = 0, depth = 0;
   glGetIntegerv(GL_MAX_SAMPLES, &color);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images that a picture is put together from, for one size.
+// The render targets of a picture.
 #pragma once
 
 #include "draw/gl_objects.h"
@@ -11,13 +11,13 @@ struct FrameTargets {
   int factor;         ///< supersampling: the colour image is factor times as wide and high
   int samples;        ///< multisampling on top of it
 
-  // Normal and depth of what is seen, for ambient occlusion; at the finished size, which is fine enough.
+  // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture.
   gl::Texture geometry;
   gl::Renderbuffer geometry_depth;
   gl::Framebuffer geometry_target;
   gl::Texture occlusion_raw, occlusion;
   gl::Framebuffer occlusion_raw_target, occlusion_target;
-  // Linear colour, multisampled with stencil, then resolved, then as sRGB.
+  // Linear colour: multisampled with stencil, then resolved, then converted to sRGB.
   gl::Renderbuffer color, depth;
   gl::Framebuffer color_target;
   gl::Texture resolved;
@@ -28,10 +28,10 @@ struct FrameTargets {
   FrameTargets(int width, int height, int factor);
 };
 
-/// The images whose size does not depend on the picture's.
+/// The render targets whose size does not depend on the picture's.
 struct ShadowTargets {
   static constexpr int kKeySize = 2048, kFloorSize = 512;
-  gl::Texture key;  ///< depth as the key light sees it, compared on lookup
+  gl::Texture key;  ///< depth map of the key light, with comparison on lookup
   gl::Framebuffer key_target;
   gl::Texture floor_a, floor_b;
   gl::Renderbuffer floor_depth;

@@ -20,7 +20,7 @@ GLuint compile(const char* name, GLenum stage, const std::string& source) {
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
     log.resize(static_cast<std::size_t>(length));
     glDeleteShader(shader);
-    throw std::runtime_error(std::string("the OpenGL driver refuses the shader '") + name + "': " + log);
+    throw std::runtime_error(std::string("the OpenGL driver rejects the shader '") + name + "': " + log);
   }
   return shader;
 }
@@ -42,7 +42,7 @@ VertexArray makeVertexArray() {
 
 void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint location, int count,
                   std::size_t offset, std::size_t stride, GLuint divisor) {
-  // One binding point for each attribute: simple, and there are few.
+  // Each attribute has a binding point of its own; there are fewer than the sixteen that OpenGL guarantees.
   glVertexArrayVertexBuffer(array.id(), location, buffer.id(), static_cast<GLintptr>(offset),
                             static_cast<GLsizei>(stride));
   glVertexArrayAttribFormat(array.id(), location, count, GL_FLOAT, GL_FALSE, 0);
@@ -78,7 +78,7 @@ Framebuffer makeFramebuffer() {
 void requireComplete(const Framebuffer& framebuffer, const char* what) {
   const GLenum status = glCheckNamedFramebufferStatus(framebuffer.id(), GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE)
-    throw std::runtime_error(std::string("the OpenGL driver refuses the framebuffer for ") + what +
+    throw std::runtime_error(std::string("the OpenGL driver rejects the framebuffer for ") + what +
                              " (status " + std::to_string(status) + "); try a smaller picture");
 }
 
@@ -88,7 +88,7 @@ Program::Program(const char* name, const std::string& vertex_source, const std::
        {std::pair(GL_VERTEX_SHADER, &vertex_source), std::pair(GL_FRAGMENT_SHADER, &fragment_source)}) {
     const GLuint shader = compile(name, static_cast<GLenum>(stage), *source);
     glAttachShader(program_.id(), shader);
-    glDeleteShader(shader);  // lives as long as the program
+    glDeleteShader(shader);  // the program keeps it
   }
   glLinkProgram(program_.id());
   GLint is_ok = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenGL objects that delete themselves. The context must be current wherever one is made, used or destroyed.
+// Owners of OpenGL objects. The context must be current wherever one is made, used or destroyed.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -11,7 +11,7 @@
 
 namespace vps::viewer::gl {
 
-/// A name and the call that frees it; movable.
+/// An object's name and the function that deletes it; movable.
 template <void (*Delete)(GLuint)>
 class Object {
  public:
@@ -62,20 +62,21 @@ Buffer makeBuffer(std::span<const T> items) {
   return makeBuffer(items.data(), items.size_bytes());
 }
 VertexArray makeVertexArray();
-/// Attribute `location` of `count` floats at `offset` bytes; divisor 1: one for each instance.
+/// Adds attribute `location`: `count` floats at `offset` bytes. With divisor 1 it advances once per instance.
 void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint location, int count,
                   std::size_t offset, std::size_t stride, GLuint divisor = 0);
 
-/// Two-dimensional, clamped to its edge.
+/// A two-dimensional texture, clamped to its edge.
 Texture makeTexture(GLenum format, int width, int height, GLenum filter);
 Renderbuffer makeRenderbuffer(GLenum format, int width, int height, int samples);
 Framebuffer makeFramebuffer();
-/// Throws std::runtime_error naming what was made and the status when the driver refuses the combination.
+/// Throws std::runtime_error with `what` and the status when the driver rejects the combination of
+/// attachments.
 void requireComplete(const Framebuffer& framebuffer, const char* what);
 
 class Program {
  public:
-  /// Compiles and links. Throws std::runtime_error with the driver's log: a mistake of ours or a driver's.
+  /// Compiles and links. Throws std::runtime_error with the driver's log.
   Program(const char* name, const std::string& vertex_source, const std::string& fragment_source);
   void use() const { glUseProgram(program_.id()); }
   void set(const char* uniform, int value) const;

@@ -7,12 +7,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "draw/float_vectors.h"
+
 namespace vps::viewer {
 namespace {
-
-std::array<float, 3> toFloat(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 
 Mark makeMark(const Vec3& base_C, const Vec3& axis_C, double length_m, double width_m,
               const Eigen::Vector3f& color) {
@@ -38,7 +36,7 @@ MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double si
                    const DrawOptions& options) {
   MarkList marks;
   if (options.show_contacts) {
-    // Deepest first: beyond a few dozen, arrows hide each other and the part.
+    // Deepest first, because more than a few dozen arrows hide each other and the part.
     std::vector<std::size_t> order(snapshot.contacts.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrows and discs: contacts by depth, and the force on the hand.
+// Arrows and discs that show contacts, coloured by depth, and the force on the hand.
 #pragma once
 
 #include <array>
@@ -10,10 +10,12 @@
 
 namespace vps::viewer {
 
-/// Linear RGB of a contact as deep as `share` of full scale (0 to 1): yellow, orange, red, dark red.
+/// Linear RGB of a contact whose depth is `share` of full scale: from yellow (0) over orange and red to dark
+/// red (1).
 Eigen::Vector3f depthColor(double share);
 
-inline const Eigen::Vector3f kForceColor(0.28f, 0.02f, 0.35f);  // violet: neither the hand's blue nor a depth
+inline const Eigen::Vector3f kForceColor(
+    0.28f, 0.02f, 0.35f);  // violet: distinct from the hand's blue and the depth colours
 
 struct Mark {
   std::array<float, 3> base_C, axis_C;
@@ -21,15 +23,15 @@ struct Mark {
   std::array<float, 3> color;
 };
 
-/// The marks of a snapshot in the camera frame; arrows for the deepest contacts, discs for all.
-/// @param size_m diameter of what the picture shows
+/// The marks of a snapshot: arrows for the force and the deepest contacts, discs for all contacts.
 struct MarkList {
   std::vector<Mark> arrows, discs;
 };
+/// @param size_m diameter of what the picture shows
 MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double size_m,
                    const DrawOptions& options);
 
-/// A unit shape along +z that is drawn once for each mark.
+/// A unit shape along +z, drawn once for each mark.
 class MarkShape {
  public:
   static MarkShape arrow();
@@ -41,7 +43,7 @@ class MarkShape {
     std::array<float, 3> p, n;
   };
   explicit MarkShape(const std::vector<Vertex>& triangles);
-  /// Surface of revolution about z through (radius, z) pairs.
+  /// The surface of revolution about z through (radius, z) pairs.
   static MarkShape lathe(const std::vector<std::array<double, 2>>& profile);
   gl::Buffer vertices_;
   GLsizei vertex_count_ = 0;

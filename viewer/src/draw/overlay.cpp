@@ -17,8 +17,8 @@ std::uint8_t toSrgb(float linear) {
   return static_cast<std::uint8_t>(std::lround(255 * s));
 }
 
-/// Lays white over rows y0 to y1, so that words stay readable on whatever is behind them: `opacity` at the
-/// picture's border, fading out over the last third.
+/// Blends rows y0 to y1 with white, so that text is readable on any background: `opacity` at the picture's
+/// border, fading out over the last third.
 void whiten(Image& image, double y0, double y1, double opacity) {
   const double middle_y = 0.5 * image.height, sign = y0 < middle_y ? 1 : -1;
   const double outer = sign > 0 ? y0 : y1, height = y1 - y0;
@@ -31,7 +31,7 @@ void whiten(Image& image, double y0, double y1, double opacity) {
   }
 }
 
-/// One entry after the other along the lower border.
+/// Draws entries from left to right along the lower border.
 class Legend {
  public:
   Legend(Image& image, const Lettering& lettering, double scale)

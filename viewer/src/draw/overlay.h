@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Title, caption and legend, laid over a finished picture.
+// Title, caption and legend, drawn over a finished picture.
 #pragma once
 
 #include "draw/text.h"

@@ -14,7 +14,8 @@ GpuLines::GpuLines(std::span<const ShadingEdge> segments)
 }
 
 GpuMesh::GpuMesh(const Mesh& mesh)
-    : shading(buildShadingMesh(mesh)),
+    : bounds_P(bounds(mesh)),
+      shading(buildShadingMesh(mesh)),
       vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
       indices(gl::makeBuffer(std::span<const std::uint32_t>(shading.indices))),
       array(gl::makeVertexArray()),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene's meshes on the graphics side, and the picture's list of what stands where.
+// The meshes of a scene in graphics memory, and the bodies of one picture.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace vps::viewer {
 
-/// Line segments to draw as strips.
+/// Line segments in graphics memory.
 struct GpuLines {
   gl::Buffer buffer;
   gl::VertexArray array;
@@ -20,7 +20,8 @@ struct GpuLines {
 };
 
 struct GpuMesh {
-  ShadingMesh shading;  ///< kept: outlines and sections are found on the CPU for each picture
+  Box bounds_P;         ///< in the part's frame
+  ShadingMesh shading;  ///< kept, because outlines and sections are computed on the CPU for each picture
   gl::Buffer vertices, indices;
   gl::VertexArray array;
   GpuLines sharp_edges;
@@ -29,7 +30,7 @@ struct GpuMesh {
   void draw() const;
 };
 
-/// One part in one picture.
+/// A part at its pose in one picture.
 struct DrawnBody {
   const GpuMesh* mesh = nullptr;
   std::size_t part = 0;
@@ -40,7 +41,7 @@ struct DrawnBody {
 
 Eigen::Matrix4f toMatrix(const Pose& X);
 
-/// Edges where the surface turns away from the eye.
+/// The edges at which a smooth surface turns away from the eye.
 std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye);
 
 }  // namespace vps::viewer

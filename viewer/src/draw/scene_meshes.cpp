@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a Scene to what is drawn of it, and how to cut it open.
+// The parts of a scene to draw, and the plane of a section through them.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace vps::viewer {
 
 RenderScene drawnMeshes(const scenes::Scene& scene) {
-  // Linear RGB of muted steel, brass, sage, clay, slate and sand; no blue, which is the hand's.
+  // Linear RGB of muted steel, brass, sage, clay, slate and sand. Blue is reserved for the part in hand.
   static constexpr std::array<std::array<float, 3>, 6> kPalette = {{{0.55f, 0.57f, 0.60f},
                                                                     {0.60f, 0.43f, 0.17f},
                                                                     {0.34f, 0.46f, 0.36f},
@@ -33,13 +33,13 @@ CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W)
   double best = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 n = Vec3::Unit(axis) * (viewer[axis] < 0 ? -1 : 1);
-    constexpr double kSinFiveDegrees = 0.087;  // a motion this near to the plane still counts as in it
+    constexpr double kSinFiveDegrees = 0.087;  // a motion at a smaller angle to the plane counts as in it
     if (std::abs(n.dot(d)) < kSinFiveDegrees && n.dot(viewer) > best) {
       best = n.dot(viewer);
       cut.n_W = n;
     }
   }
-  if (best < 0.3) {  // no axis will do: the plane through the motion that faces the viewer most
+  if (best < 0.3) {  // no axis qualifies: the plane through the motion that faces the viewer most
     const Vec3 across = viewer - viewer.dot(d) * d;
     cut.n_W = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(d.unitOrthogonal());
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GLSL of the renderer. Everything is in the camera frame C (metres, x right, y up, z towards the viewer), so
-// that floats stay exact far from the world's origin. Colours are linear.
+// The shaders of the renderer. Positions are in the camera frame C (metres, x right, y up, z towards the
+// viewer), so that floats are precise far from the world's origin. Colours are linear.
 #pragma once
 
 namespace vps::viewer::glsl {
 
-// --- solid surfaces
-// -------------------------------------------------------------------------------------------
+// --- solid surfaces ---
 
 inline constexpr const char* kMeshVertex = R"(
 layout(location = 0) in vec3 position;
@@ -23,9 +22,9 @@ void main() {
 }
 )";
 
-// Light of a small photo studio that travels with the camera, so that every view is lit well: a large key
-// light top left, a fill from the right, a rim from behind, and a sky over a light floor. Highlights are the
-// reflection of those same lamps with Schlick's Fresnel term [Schlick 1994].
+// Lights that are fixed to the camera, so that every view is well lit: a large key light top left, a fill
+// light from the right, a rim light from behind, and a sky over a light floor. Highlights are reflections of
+// these lights with Schlick's Fresnel term [Schlick 1994].
 inline constexpr const char* kStudio = R"(
 uniform vec3 up_C;
 uniform sampler2D light_reaching;  // of the sky, of the key light: see kOcclusionFragment
@@ -66,7 +65,7 @@ void main() {
 }
 )";
 
-// The hint of where the part goes: clear from the front, denser towards its rim, so that its shape reads.
+// The target: transparent where it faces the viewer and denser towards its rim, so that its shape is visible.
 inline constexpr const char* kGhostFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 color;
@@ -79,7 +78,7 @@ void main() {
 }
 )";
 
-// Cut faces as in a drawing: tinted, hatched at 45 degrees, the direction alternating from part to part.
+// Cut faces as in a technical drawing: tinted and hatched at 45 degrees, in alternating directions.
 inline constexpr const char* kCapVertex = R"(
 layout(location = 0) in vec2 corner;
 uniform vec3 origin_C, x_C, y_C;
@@ -107,15 +106,14 @@ void main() {
   float width = fwidth(t);
   float distance_to_line = abs(fract(t) - 0.5);
   float line = 1.0 - smoothstep(0.09 - width, 0.09 + width, distance_to_line);
-  line *= 1.0 - smoothstep(0.3, 0.6, width);  // fades out before it could shimmer
+  line *= 1.0 - smoothstep(0.3, 0.6, width);  // fades out where lines are too fine for the pixels
   vec3 paper = mix(color, vec3(0.85), 0.25);
   vec3 base = mix(paper, paper * 0.42, line);
   result = vec4(0.55 * base + 0.45 * studio(p_C, normalize(n_C), base), 1);
 }
 )";
 
-// --- what the later passes look up
-// ----------------------------------------------------------------------------
+// --- inputs of later passes ---
 
 inline constexpr const char* kGeometryFragment = R"(
 in vec3 p_C, n_C;
@@ -133,9 +131,9 @@ void main() {
 }
 )";
 
-// Ambient occlusion in screen space: how much of the hemisphere over a pixel is free of nearer geometry. The
-// sample pattern is fixed (a spiral turned by a 4 x 4 tile), and a 4 x 4 blur afterwards removes the tile
-// exactly.
+// Ambient occlusion in screen space: the share of the hemisphere over a pixel that no nearer geometry covers.
+// The sample pattern is fixed: a spiral whose rotation repeats every 4 x 4 pixels. A 4 x 4 blur afterwards
+// removes this period exactly.
 inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;
@@ -179,7 +177,7 @@ void main() {
     vec3 s = p + d * radius_m * (0.08 + 0.92 * reach * reach);
     vec4 clip = projection * vec4(s, 1);
     float z = texture(geometry, 0.5 + 0.5 * clip.xy / clip.w).w;
-    // Ignore what is far in front: another body's silhouette, not a neighbour.
+    // Geometry far in front is the silhouette of another body and is ignored.
     float nearby = smoothstep(0.0, 1.0, radius_m / max(abs(p.z - z), 1e-12));
     hidden += z > s.z + radius_m * 0.02 ? nearby : 0.0;
   }
@@ -208,8 +206,8 @@ void main() {
 }
 )";
 
-// Seen from under the floor: how close is the nearest thing above it? x decays quickly (contact), y slowly
-// (mass).
+// The nearest part above each place of the floor, as seen from below: x decays quickly with its height, y
+// slowly.
 inline constexpr const char* kFloorFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 floor_C, up_C;
@@ -263,11 +261,10 @@ void main() {
 }
 )";
 
-// --- lines and marks
-// ------------------------------------------------------------------------------------------
+// --- lines and marks ---
 
-// A line as a screen-aligned strip: core profiles draw hardware lines only one pixel wide. Pulled a little
-// towards the eye, so that an edge lies on top of the faces it belongs to.
+// A line as a screen-aligned strip, because core profiles guarantee lines of one pixel only. It is moved
+// slightly towards the eye, so that an edge lies in front of its own faces.
 inline constexpr const char* kLineVertex = R"(
 layout(location = 0) in vec3 a;
 layout(location = 1) in vec3 b;
@@ -299,7 +296,7 @@ out vec4 result;
 void main() { result = color; }
 )";
 
-// One unit arrow or disc (along +z) for each instance.
+// One unit arrow or disc along +z per instance.
 inline constexpr const char* kMarkVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -331,11 +328,10 @@ void main() {
 }
 )";
 
-// --- to the screen
-// --------------------------------------------------------------------------------------------
+// --- the finished picture ---
 
-// Averages supersampled pixels in linear colour, bends highlights over softly instead of clipping them, and
-// encodes as sRGB [IEC 61966-2-1].
+// Averages samples in linear colour, compresses highlights instead of clipping them, and encodes as sRGB
+// [IEC 61966-2-1].
 inline constexpr const char* kFinalFragment = R"(
 uniform sampler2D linear_picture;
 uniform int factor;

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "draw/float_vectors.h"
+
 namespace vps::viewer {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-
-std::array<float, 3> toFloat(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-Vec3 toVec3(const std::array<float, 3>& v) {
-  return {v[0], v[1], v[2]};
-}
 
 /// Unit normals; zero for a triangle without area.
 std::vector<Vec3> faceNormals(const Mesh& mesh) {
@@ -55,9 +49,9 @@ double cornerAngle(const Mesh& mesh, std::uint32_t corner) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// One shading vertex for each vertex and smooth group around it. The normal of a corner is the mean of the
-/// faces that meet its own at less than the crease angle, weighted by their angle there, which does not
-/// depend on how a flat face was cut into triangles.
+/// Adds one shading vertex per vertex and smooth group around it. A corner's normal is the mean over the
+/// faces that meet its own at less than the crease angle. Faces are weighted by their angle at the vertex, so
+/// that the mean does not depend on the triangulation of flat faces.
 void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_cos, ShadingMesh& out) {
   const Fans fans = buildFans(mesh);
   out.indices.resize(3 * mesh.triangles.size());
@@ -105,7 +99,7 @@ void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_
     const Vec3& n0 = normals[edges[i].face];
     const bool is_between_two = next - i == 2;
     const Vec3 n1 = is_between_two ? normals[edges[i + 1].face] : Vec3::Zero();
-    if (is_between_two && (n0.isZero() || n1.isZero())) continue;  // a sliver without area says nothing
+    if (is_between_two && (n0.isZero() || n1.isZero())) continue;  // a triangle without area has no normal
     const double cos_angle = n0.dot(n1);
     if (!is_between_two || cos_angle < crease_cos)
       out.sharp_edges.push_back(edge);
@@ -118,8 +112,8 @@ void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_
 
 ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad) {
   const Box box = bounds(mesh);
-  // Exporters repeat vertices for each face and round them apart; a ten-millionth of the size is below any
-  // feature.
+  // Exporters repeat vertices for each face and round them differently; a ten-millionth of the size is
+  // smaller than any feature.
   const Mesh shared = welded(mesh, 1e-7 * box.size().norm());
   const std::vector<Vec3> normals = faceNormals(shared);
   ShadingMesh out;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh as a picture needs it: smooth where it is meant smooth, with its sharp edges and what can become
-// outline.
+// A mesh for drawing: shading normals, sharp edges, and edges that can be part of an outline.
 #pragma once
 
 #include <array>
@@ -21,29 +20,31 @@ struct ShadingEdge {
   std::array<float, 3> a, b;
 };
 
-/// An edge between two faces that a smooth surface continues across: outline where one face is seen from the
-/// front and the other from behind.
+/// An edge inside a smooth surface. It is part of the outline when one of its faces is seen from the front
+/// and the other from behind.
 struct SmoothEdge {
   ShadingEdge edge;
   std::array<float, 3> n_left, n_right;
 };
 
 struct ShadingMesh {
-  Vec3 center = Vec3::Zero();  ///< in the part's frame; kept apart so that float vertices far out stay exact
+  Vec3 center = Vec3::Zero();  ///< in the part's frame; separate, so that floats keep their precision far out
   std::vector<ShadingVertex> vertices;
   std::vector<std::uint32_t> indices;
-  std::vector<ShadingEdge> sharp_edges;  ///< dihedral beyond the crease angle, and open borders
+  std::vector<ShadingEdge> sharp_edges;  ///< dihedral angle beyond the crease angle, and open borders
   std::vector<SmoothEdge> smooth_edges;
 };
 
-/// 28 degrees: below a 30 degree chamfer, above the facets that CAD tessellation leaves on cylinders (20 and
-/// less).
+/// 28 degrees: less than a chamfer of 30 degrees, more than between the facets of tessellated cylinders (up
+/// to 20).
 inline constexpr double kCreaseAngle_rad = 28 * 3.14159265358979323846 / 180;
 
-/// @param crease_rad faces that meet at a smaller angle are shaded as one smooth surface. O(n log n).
+/// O(n log n).
+/// @param crease_rad faces that meet at a smaller angle are shaded as one smooth surface
 ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_rad);
 
-/// Where a plane n.p = offset (in the part's frame) cuts the mesh: unordered segments, relative to center.
+/// The intersection of the mesh with the plane n.p = offset (in the part's frame): unordered segments,
+/// relative to center.
 std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n, double offset);
 
 }  // namespace vps::viewer

@@ -11,7 +11,7 @@
 namespace vps::viewer {
 namespace {
 
-/// Calls visit for each code point; bytes that are not UTF-8 become U+FFFD.
+/// Calls visit for each code point. Bytes that are not UTF-8 become U+FFFD.
 void forEachCodePoint(const std::string& utf8, const std::function<void(char32_t)>& visit) {
   for (std::size_t i = 0; i < utf8.size();) {
     const auto lead = static_cast<unsigned char>(utf8[i]);
@@ -44,7 +44,7 @@ struct Lettering::Impl {
     if (library != nullptr) FT_Done_FreeType(library);
   }
 
-  /// Walks along a line; draw is called with each rendered glyph and the pen's place. Returns the width.
+  /// Lays out one line and calls draw with each rendered glyph and the pen's position. Returns the width.
   double walk(const std::string& utf8, const TextStyle& style, bool is_drawn,
               const std::function<void(const FT_GlyphSlot, double)>& draw) const {
     const FT_Face face = faces[style.weight == FontWeight::Bold ? 1 : 0];
@@ -57,7 +57,7 @@ struct Lettering::Impl {
       if (previous != 0 && FT_Get_Kerning(face, previous, glyph, FT_KERNING_UNFITTED, &kerning) == 0)
         pen_px += static_cast<double>(kerning.x) / 64;
       previous = glyph;
-      // Light hinting aligns to the pixel rows only: crisp, and letters keep their width.
+      // Light hinting aligns glyphs with pixel rows only, so that they are sharp and keep their width.
       if (FT_Load_Glyph(face, glyph, FT_LOAD_TARGET_LIGHT | (is_drawn ? FT_LOAD_RENDER : 0)) != 0) return;
       if (is_drawn) draw(face->glyph, pen_px);
       pen_px += static_cast<double>(face->glyph->linearHoriAdvance) / 65536;
@@ -67,7 +67,7 @@ struct Lettering::Impl {
 };
 
 Lettering::Lettering() : impl_(std::make_unique<Impl>()) {
-  // Where Debian's fonts-dejavu-core, Fedora's and Arch's packages put it.
+  // The folders of Debian's fonts-dejavu-core and of Fedora's and Arch's packages.
   static const std::array<const char*, 3> kFolders = {
       "/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu-sans-fonts/", "/usr/share/fonts/TTF/"};
   static const std::array<const char*, 2> kFiles = {"DejaVuSans.ttf", "DejaVuSans-Bold.ttf"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lettering on pictures, by FreeType with DejaVu Sans.
+// Text on images, by FreeType with the font DejaVu Sans.
 #pragma once
 
 #include <memory>
@@ -19,14 +19,14 @@ struct TextStyle {
 
 class Lettering {
  public:
-  Lettering();  ///< never throws: without the font, nothing is written and isReady() is false
+  Lettering();  ///< does not throw: without the font, write() does nothing and isReady() is false
   ~Lettering();
   Lettering(Lettering&&) noexcept;
   Lettering& operator=(Lettering&&) noexcept;
   [[nodiscard]] bool isReady() const;
   /// Width in pixels of one line of UTF-8.
   [[nodiscard]] double width(const std::string& utf8, const TextStyle& style) const;
-  /// Writes one line with its baseline's left end at (x, y). Returns the width.
+  /// Draws one line whose baseline begins at (x, y). Returns its width.
   double write(Image& image, double x, double y, const std::string& utf8, const TextStyle& style) const;
 
  private:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How far two images differ, as numbers and as a picture.
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Reads and writes PNG files.
 #include <png.h>
 
 #include <algorithm>
@@ -9,13 +10,13 @@
 #include <stdexcept>
 
 #include "vps/load_error.h"
+#include "vps/write_file.h"
 #include "vps_viewer/image.h"
-#include "vps_viewer/write_file.h"
 
 namespace vps::viewer {
 namespace {
 
-// libpng's simplified interface: no setjmp, errors come back as text.
+// libpng's simplified interface returns errors as text and needs no setjmp.
 png_image newPngImage() {
   png_image png;
   std::memset(&png, 0, sizeof png);
@@ -40,7 +41,7 @@ void savePng(const Image& image, const std::string& file) {
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))
     throw std::runtime_error(file + ": cannot be encoded as PNG: " + png.message);
   bytes.resize(size);
-  writeFileAtomically(file, bytes);
+  writeWholeFile(file, bytes);
 }
 
 Image loadPng(const std::string& file) {
@@ -48,21 +49,21 @@ Image loadPng(const std::string& file) {
   if (!stream) throw LoadError(file, "", std::string("cannot be read: ") + std::strerror(errno));
   const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 
-  // libpng is content once it has all pixels; a whole file also has its end mark (type and CRC of IEND).
+  // libpng accepts a file that ends after the last pixel; a whole file also has the chunk IEND with its CRC.
   if (bytes.rfind("IEND\xAE\x42\x60\x82") == std::string::npos)
-    throw LoadError(file, "", "not a whole PNG image (its end is missing); save it again");
+    throw LoadError(file, "", "is not a whole PNG image (its end is missing); save it again");
   png_image png = newPngImage();
   const auto refuse = [&]() {
     const std::string found = png.message;
     png_image_free(&png);
-    throw LoadError(file, "", "not a whole PNG image (" + found + "); save it again");
+    throw LoadError(file, "", "is not a whole PNG image (" + found + "); save it again");
   };
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) refuse();
-  // A damaged header can claim any size: refuse before allocating it.
+  // A damaged header can state any size, so it is checked before memory is allocated.
   constexpr png_uint_32 kMaxSide = 16384;
   if (png.width > kMaxSide || png.height > kMaxSide) {
     png_image_free(&png);
-    throw LoadError(file, "", "wider or higher than 16384 pixels; make it smaller");
+    throw LoadError(file, "", "is wider or higher than 16384 pixels; make it smaller");
   }
   png.format = PNG_FORMAT_RGB;
   Image image(static_cast<int>(png.width), static_cast<int>(png.height));

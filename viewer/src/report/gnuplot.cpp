@@ -17,7 +17,7 @@
 #include <memory>
 #include <sstream>
 
-#include "vps_viewer/write_file.h"
+#include "vps/write_file.h"
 
 extern char** environ;
 
@@ -39,9 +39,10 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-/// Empty when gnuplot ran to its end; otherwise what went wrong.
+/// Runs gnuplot on a script. Returns nothing on success, and otherwise the reason of the failure.
 std::string run(const std::string& script) {
-  // Nameless files instead of pipes: no deadlock on a full one, and no SIGPIPE when gnuplot stops early.
+  // Unnamed files instead of pipes: a full pipe could deadlock, and an early end of gnuplot would raise
+  // SIGPIPE.
   const File input(std::tmpfile()), messages(std::tmpfile());
   if (!input || !messages) return std::string("no temporary file: ") + std::strerror(errno);
   if (std::fwrite(script.data(), 1, script.size(), input.get()) != script.size() ||
@@ -127,7 +128,7 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
   if (std::any_of(file.begin(), file.end(), [](unsigned char c) { return c < 0x20; }))
     return {false, "the plot's file name has control characters"};
   const std::string size = std::to_string(width) + "," + std::to_string(height);
-  // 96 dots an inch: gnuplot's pngcairo draws fonts at 72, hence the different point sizes.
+  // gnuplot's pngcairo renders fonts at 72 dots per inch and svg at 96, hence the different point sizes.
   const std::pair<const char*, std::string> kinds[] = {
       {".png", "set terminal pngcairo size " + size + " font \"DejaVu Sans,11\" linewidth 1.2 noenhanced\n"},
       {".svg", "set terminal svg size " + size +
@@ -136,17 +137,12 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
   if (const fs::path folder = fs::path(file).parent_path(); !folder.empty())
     fs::create_directories(folder, error);
   for (const auto& [ending, terminal] : kinds) {
-    const std::string target = file + ending, temporary = target + ".tmp" + std::to_string(::getpid());
-    std::string failure_reason =
-        run(terminal + "set output " + quoted(temporary) + "\n" + body + "\nunset output\n");
-    if (failure_reason.empty()) {
-      fs::rename(temporary, target, error);
-      if (error) failure_reason = target + ": cannot be written: " + error.message();
-    }
-    if (!failure_reason.empty()) {
-      fs::remove(temporary, error);
-      return {false, failure_reason};
-    }
+    WholeFile target(file + ending);
+    const std::string failure_reason = run(terminal + "set output " + quoted(target.temporary().string()) +
+                                           "\n" + body + "\nunset output\n");
+    if (!failure_reason.empty()) return {false, failure_reason};
+    if (const std::error_code failed = target.commit())
+      return {false, file + ending + ": cannot be written: " + failed.message()};
   }
   return {true, {}};
 }

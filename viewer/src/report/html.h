@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small pieces of HTML.
+// Pieces of an HTML page.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace vps::viewer::html {
 
-/// printf with one double, in the C locale's form: format(1e6 * depth_m, "%.2f") .
+/// printf with one double: format(1e6 * depth_m, "%.2f").
 std::string format(double value, const char* form);
 
-/// A table's cell; its text is HTML already.
+/// A cell of a table; its text is HTML.
 struct Cell {
   std::string html;
   std::string css_class;
@@ -24,7 +24,7 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 /// A two-column table: name, value.
 std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 
-/// A picture that opens in full on a click; file is relative to the page.
+/// A picture that links to `link`, or to itself in full size. `file` is relative to the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
 /// The page around a body.

@@ -48,7 +48,7 @@ class PictureSet {
     std::string names;
     for (const scenes::StepResult& step : result_.steps)
       if (step.is_placed)
-        names += (names.empty() ? "; drawn on target without having got there: " : ", ") + step.part;
+        names += (names.empty() ? "; drawn at the target although not brought there: " : ", ") + step.part;
     return names;
   }
 
@@ -75,11 +75,11 @@ class PictureSet {
     if (result_.steps[i].penetration_limit_m > 0)
       options.contact_full_scale_m = result_.steps[i].penetration_limit_m;
     if (i < result_.start.size()) {
-      options.caption = "start; the target in transparency";
+      options.caption = "start; the target is transparent";
       pictures.start = save(prefix + "start.png", result_.start[i],
                             frame(snapshotBounds(drawn_, result_.start[i])), options);
     }
-    // Contact and end share a close-up of the part and its target, cut open along the way it goes in.
+    // Contact and end share a close-up of the part and its target, cut open along the direction of insertion.
     Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     if (step != nullptr) {
       const Box target_W = bounds(transformed(scene_.parts[step->part].part.mesh, step->X_WP_target));
@@ -92,7 +92,7 @@ class PictureSet {
             close_W.add(part_W.max);
           }
       if (i < result_.contact.size() &&
-          result_.contact[i].has_hand) {  // the force's arrow starts at the hand
+          result_.contact[i].has_hand) {  // the arrow of the force starts at the hand
         const Vec3& p_hand_W = result_.contact[i].X_W_Proxy.p;
         if ((p_hand_W - close_W.center()).norm() < close_W.size().norm()) close_W.add(p_hand_W);
       }
@@ -141,11 +141,11 @@ ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleRe
                             const std::string& dir, const ReportOptions& options) {
   ReportPictures none;
   none.steps.resize(result.steps.size());
-  if (!options.has_pictures) return none;  // as asked for: nothing to explain
+  if (!options.has_pictures) return none;
   try {
     return PictureSet(scene, result, dir, options).draw();
   } catch (const std::exception& error) {
-    none.failure_reason = error.what();  // a picture is never worth a run
+    none.failure_reason = error.what();  // a missing picture must not end a run
     return none;
   }
 }

@@ -16,7 +16,7 @@ struct StepPictures {
 struct ReportPictures {
   std::string overview, section;
   std::vector<StepPictures> steps;
-  std::string failure_reason;  ///< said when no picture could be made
+  std::string failure_reason;  ///< set when no picture could be made
 };
 
 ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,

@@ -2,11 +2,13 @@
 #include "vps_viewer/report.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "report/html.h"
 #include "report/pictures.h"
-#include "vps_viewer/plot.h"
-#include "vps_viewer/write_file.h"
+#include "report/run_plot.h"
+#include "vps/load_error.h"
+#include "vps/write_file.h"
 
 namespace vps::viewer {
 namespace {
@@ -18,12 +20,12 @@ std::string micrometres(double length_m, const char* form = "%.2f") {
   return format(1e6 * length_m, form);
 }
 
-/// The rows nearest after every 1 / rate_hz.
+/// The first row of every period 1 / rate_hz.
 std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {
   std::vector<scenes::TraceRow> rows;
   double next_s = 0;
   for (const scenes::TraceRow& row : trace) {
-    // Half a microsecond: times are sums of steps, and their rounding must not drop a row.
+    // The tolerance of half a microsecond is for the rounding of times, which are sums of steps.
     if (row.time_s < next_s - 0.5e-6) continue;
     rows.push_back(row);
     next_s = std::max(next_s + 1 / rate_hz, row.time_s);
@@ -43,7 +45,7 @@ std::string headline(const scenes::AssembleResult& result) {
                          : "No, the parts do not go together as planned: " + count + " steps completed.";
   if (good < done)
     text += " In " + std::to_string(done - good) +
-            " of them the part went deeper than its limit or did not stay where it was let go.";
+            " of them the part penetrated deeper than its limit or moved after it was released.";
   return "<p class=\"verdict " + std::string(is_complete && good == done ? "good" : "bad") + "\">" + text +
          "</p>\n";
 }
@@ -68,7 +70,7 @@ std::string stepTable(const scenes::AssembleResult& result) {
                     {micrometres(s.rest_drift_m), "n"}});
   }
   return html::table(
-      {"#", "part", "in place", "time [s]", "deepest [µm]", "limit [µm]", "against", "peak force [N]",
+      {"#", "part", "in place", "time [s]", "greatest overlap [µm]", "limit [µm]", "with", "peak force [N]",
        "peak torque [N m]", "impacts", "slides", "final error [µm]", "drift at rest [µm]"},
       rows);
 }
@@ -80,22 +82,22 @@ std::string stepFacts(const scenes::StepResult& s) {
     deepest += std::string(scenes::isWithinLimit(s) ? " (within" : " (<b class=\"bad\">beyond</b>") +
                " the limit of " + micrometres(s.penetration_limit_m) + " µm)";
   if (s.max_penetration_m > 0) {
-    if (!s.deepest_against.empty()) deepest += " against " + escapeHtml(s.deepest_against);
+    if (!s.deepest_against.empty()) deepest += " with " + escapeHtml(s.deepest_against);
     deepest += ", at (" + format(at_mm.x(), "%.2f") + ", " + format(at_mm.y(), "%.2f") + ", " +
                format(at_mm.z(), "%.2f") + ") mm, " + format(s.deepest_time_s, "%.3f") + " s";
   }
   return html::facts(
       {{"In place", s.completed ? "yes" : "<b class=\"bad\">no</b>: " + escapeHtml(s.failure_reason)},
-       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s on"},
-       {"Deepest overlap, by exact distance", deepest},
-       {"The same by the voxmap", micrometres(s.field_penetration_m) + " µm"},
+       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
+       {"Greatest overlap, by exact distance", deepest},
+       {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
        {"Peak force, torque on the hand",
         format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
        {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-       {"Taken anew on the way, where the device's workspace ends", std::to_string(s.index_points)},
+       {"Times the device was clutched and recentred", std::to_string(s.index_points)},
        {"Final error",
         micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
-       {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after letting go",
+       {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
         micrometres(s.rest_drift_m) + " µm"}});
 }
 
@@ -104,38 +106,72 @@ std::string plotFigure(const std::string& name, const std::string& caption) {
                       "plots/" + name + ".svg");
 }
 
+/// A plot of the whole run, and which steps have one of their own.
+struct WrittenPlot {
+  RunPlot plot;
+  std::vector<bool> has_step;
+};
+
+std::string stepPlotName(const RunPlot& plot, std::size_t step) {
+  return plot.name + "_step_" + std::to_string(step + 1);
+}
+
+/// Writes all plots into dir/plots. Plots that cannot be made become notes.
+std::vector<WrittenPlot> writePlots(const scenes::AssembleResult& result, const std::string& dir,
+                                    std::vector<std::string>& notes) {
+  std::vector<std::string> step_names;
+  for (const scenes::StepResult& step : result.steps) step_names.push_back(step.part);
+  std::vector<WrittenPlot> written;
+  for (const RunPlot& plot : runPlots()) {
+    const PlotOutcome whole = plot.draw(result, step_names, -1, dir + "/plots/" + plot.name);
+    if (!whole) {
+      const std::string note = "No plots: " + whole.failure_reason;
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+      continue;
+    }
+    std::vector<bool> has_step(result.steps.size(), false);
+    const bool has_steps = !plot.step_caption.empty() && result.steps.size() > 1;
+    for (std::size_t i = 0; has_steps && i < result.steps.size(); ++i)
+      has_step[i] = static_cast<bool>(
+          plot.draw(result, step_names, static_cast<int>(i), dir + "/plots/" + stepPlotName(plot, i)));
+    written.push_back({plot, has_step});
+  }
+  return written;
+}
+
 std::string stepSection(std::size_t i, const scenes::StepResult& step, const StepPictures& pictures,
-                        bool has_plot) {
+                        const std::vector<WrittenPlot>& plots) {
   const std::string number = std::to_string(i + 1);
   std::string out = "<h3 id=\"step-" + number + "\">" + number + ". " + escapeHtml(step.part) + "</h3>\n";
   if (!pictures.start.empty() || !pictures.contact.empty() || !pictures.end.empty()) {
     out += "<div class=\"pictures\">\n";
-    if (!pictures.start.empty()) out += html::figure(pictures.start, "Start; the target in transparency.");
-    if (!pictures.contact.empty()) out += html::figure(pictures.contact, "In contact, cut open.");
-    if (!pictures.end.empty()) out += html::figure(pictures.end, "End, cut open.");
+    if (!pictures.start.empty()) out += html::figure(pictures.start, "Start; the target is transparent.");
+    if (!pictures.contact.empty()) out += html::figure(pictures.contact, "In contact, in section.");
+    if (!pictures.end.empty()) out += html::figure(pictures.end, "End, in section.");
     out += "</div>\n";
   }
   out += stepFacts(step);
-  if (has_plot) out += plotFigure("step_" + number, "Force and torque on the hand during this step.");
+  for (const WrittenPlot& written : plots)
+    if (written.has_step[i]) out += plotFigure(stepPlotName(written.plot, i), written.plot.step_caption);
   return out;
 }
 
-/// What a run by the clock gave up to hold its rate.
-std::string load_changes(const scenes::AssembleResult& result) {
+/// Load shedding in a real-time run.
+std::string loadChanges(const scenes::AssembleResult& result) {
   if (!result.real_time) return "";
   const std::vector<scenes::LoadLevelChange>& changes = result.real_time->load_changes;
   const std::string behind = format(result.real_time->behind_s, "%.2f") +
-                             " s of the clock's time had no step of "
-                             "physics";
-  if (changes.empty()) return "<p>" + behind + "; nothing was given up to hold the rate.</p>\n";
+                             " s of wall-clock time had no physics "
+                             "step";
+  if (changes.empty()) return "<p>" + behind + "; the fidelity was not reduced to hold the rate.</p>\n";
   std::vector<std::vector<Cell>> rows;
   for (const scenes::LoadLevelChange& change : changes)
     rows.push_back({{format(change.time_s, "%.2f"), "n"},
                     {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
                     {escapeHtml(change.why), ""},
                     {escapeHtml(scenes::inWords(change)), ""}});
-  return "<p>" + behind + ". This is what was given up to hold the rate, and taken back:</p>\n" +
-         html::table({"at [s]", "from then on", "why", "what it costs"}, rows);
+  return "<p>" + behind + ". The fidelity was reduced to hold the rate, and restored, as follows:</p>\n" +
+         html::table({"at [s]", "change", "reason", "cost"}, rows);
 }
 
 std::string performance(const scenes::AssembleResult& result) {
@@ -152,16 +188,17 @@ std::string performance(const scenes::AssembleResult& result) {
   };
   double cook_s = 0;
   for (const scenes::StepResult& s : result.steps) cook_s += s.cook_wall_s;
-  return "<h2 id=\"performance\">Time it took</h2>\n<p class=\"quiet\">Measured by the wall clock on the "
+  return "<h2 id=\"performance\">Run time</h2>\n<p class=\"quiet\">Measured by the wall clock on the "
          "machine of this run; "
-         "this section differs from run to run, all others repeat.</p>\n<div data-wall-clock>\n" +
+         "this section differs from run to run, all others are the same.</p>\n<div data-wall-clock>\n" +
          html::table({"loop", "rate [Hz]", "period [µs]", "ticks", "median [µs]", "99 % [µs]", "99.9 % [µs]",
                       "longest [µs]", "longer than a period"},
                      {row("haptic", result.haptic_rate_hz, result.haptic),
                       row("physics", result.physics_rate_hz, result.physics)}) +
-         "<p>Models were built in " + format(result.build_wall_s, "%.2f") + " s, fixed parts cooked in " +
-         format(cook_s, "%.2f") + " s; the run of " + format(result.simulated_s, "%.2f") + " s took " +
-         format(result.run_wall_s, "%.2f") + " s.</p>\n" + load_changes(result) + "</div>\n";
+         "<p>The models were built in " + format(result.build_wall_s, "%.2f") +
+         " s, the fixed parts cooked in " + format(cook_s, "%.2f") + " s; the run of " +
+         format(result.simulated_s, "%.2f") + " s took " + format(result.run_wall_s, "%.2f") + " s.</p>\n" +
+         loadChanges(result) + "</div>\n";
 }
 
 std::string method(const scenes::Scene& scene, const scenes::AssembleResult& result) {
@@ -169,41 +206,71 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
   return "<h2>Energy</h2>\n" +
          html::facts({{"Work done on the hand", format(1e3 * result.energy.to_hand_J, "%.3f") + " mJ"},
                       {"Work done by the hand", format(1e3 * result.energy.from_hand_J, "%.3f") + " mJ"},
-                      {"Injected (the greatest that the hand got and nothing had stored)",
+                      {"Injected energy (received by the hand beyond what was stored)",
                        format(1e3 * result.energy.injected_J, "%.4f") + " mJ"}}) +
          "<h2>What was modelled</h2>\n" +
-         html::facts(
-             {{"Voxel size, point spacing", format(1e3 * scene.fidelity.voxel_m, "%g") + " mm, " +
-                                                format(1e3 * scene.fidelity.spacing_m, "%g") + " mm"},
-              {"Points tested", scene.fidelity.sides == Sides::Both ? "each part's against the other"
-                                                                    : "the moving part's against the fixed"},
-              {"Voxmaps", std::to_string(result.modelled.voxmaps)},
-              {"Pointshells", std::to_string(result.modelled.pointshells)},
-              {"Points", std::to_string(result.modelled.points)},
-              {"Memory", format(megabytes, "%.1f") + " MB"}}) +
-         "<h2>What this rests on</h2>\n<ul>\n"
-         "<li>Parts are rigid, with the shape of their triangle meshes; a chord of a curved face lies inside "
-         "it by the "
-         "deflection it was tessellated with.</li>\n"
-         "<li>Overlap is the exact distance between those meshes, over the step and the rest after it. The "
-         "limit is "
-         "10 µm or a quarter of the fit's clearance, whichever is less.</li>\n"
-         "<li>The hand is a model (<i>assumed</i>): it aims with a standard deviation of " +
+         html::facts({{"Voxel size, point spacing", format(1e3 * scene.fidelity.voxel_m, "%g") + " mm, " +
+                                                        format(1e3 * scene.fidelity.spacing_m, "%g") + " mm"},
+                      {"Points tested", scene.fidelity.sides == Sides::Both
+                                            ? "of each part in the other's field (two-sided)"
+                                            : "of the moving part in the fixed field (one-sided)"},
+                      {"Voxmaps", std::to_string(result.modelled.voxmaps)},
+                      {"Pointshells", std::to_string(result.modelled.pointshells)},
+                      {"Points", std::to_string(result.modelled.points)},
+                      {"Memory", format(megabytes, "%.1f") + " MB"}}) +
+         "<h2>Method and assumptions</h2>\n<ul>\n"
+         "<li>Parts are rigid and have the shape of their triangle meshes, which deviate from curved faces "
+         "by up "
+         "to the deflection of the tessellation.</li>\n"
+         "<li>Overlap is measured as the exact distance between those meshes, during the step and the rest "
+         "after "
+         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less.</li>\n"
+         "<li>The hand is simulated (<i>assumed</i> parameters): it aims with a standard deviation of " +
          micrometres(scene.hand.aim_error_m, "%.0f") + " µm and " +
          format(1e3 * scene.hand.aim_error_rad, "%.1f") + " mrad, moves at " +
-         format(1e3 * scene.hand.speed_m_s, "%.0f") + " mm/s, presses home with " +
-         format(scene.hand.press_N, "%.1f") + " N and backs off above " +
+         format(1e3 * scene.hand.speed_m_s, "%.0f") + " mm/s, presses with " +
+         format(scene.hand.press_N, "%.1f") + " N at the target and retracts above " +
          format(scene.hand.force_limit_N, "%.1f") + " N. Seed " + std::to_string(scene.hand.seed) +
          ".</li>\n"
          "<li>The device is " +
          escapeHtml(scene.device.kind == "dual_arm" ? "the simulated dual arm" : scene.device.kind) +
          ", at " + format(scene.device.scale, "%g") +
-         " scene metres per device metre; its parameters that no source gives are marked "
+         " scene metres per device metre; its parameters without a source are marked "
          "<i>assumed</i> in its data file.</li>\n"
-         "<li>Friction, density and stiffness of each material are the scene file's or the default (steel, "
-         "Coulomb "
-         "friction " +
+         "<li>Friction, density and stiffness of each material are from the scene file, or the default "
+         "(steel, "
+         "Coulomb friction " +
          format(Material().friction, "%.2f") + ", <i>assumed</i>).</li>\n</ul>\n";
+}
+
+/// The answer, with the reasons for the steps that failed and for what is missing in the report.
+std::string summary(const scenes::AssembleResult& result, const std::vector<std::string>& notes) {
+  std::string out = headline(result);
+  const auto note = [&out](const std::string& text) {
+    out += "<p class=\"note\">" + escapeHtml(text) + "</p>\n";
+  };
+  for (std::size_t i = 0; i < result.steps.size(); ++i) {
+    const scenes::StepResult& step = result.steps[i];
+    if (!step.completed)
+      note("Step " + std::to_string(i + 1) + ", " + step.part + ": " +
+           (step.failure_reason.empty() ? "not completed" : step.failure_reason));
+  }
+  for (const std::string& text : notes) note(text);
+  return out;
+}
+
+std::string howToRepeat(const std::string& command) {
+  std::string out = "<h2>How to repeat this run</h2>\n";
+  if (!command.empty()) out += "<pre>" + escapeHtml(command) + "</pre>\n";
+  return out +
+         "<p>The same command gives the same numbers, bit for bit, except for the run times above. "
+         "<a href=\"trace.csv\">trace.csv</a> has the samples.</p>\n";
+}
+
+void makeFolder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw LoadError(folder, "", "cannot be made: " + error.message() + "; choose another folder");
 }
 
 }  // namespace
@@ -212,53 +279,33 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
                           const std::string& dir, const ReportOptions& options) {
   ReportOutcome outcome;
   outcome.file = dir + "/report.html";
+  makeFolder(options.has_pictures ? dir + "/pictures" : dir);
   writeTraceCsv(thinned(result.trace, scene.record.csv_rate_hz), dir + "/trace.csv");
-
-  std::vector<std::string> step_names;
-  for (const scenes::StepResult& step : result.steps) step_names.push_back(step.part);
   if (options.progress) options.progress("plots", 0);
-  const PlotOutcome forces = plotForces(result.trace, dir + "/plots/forces", step_names);
-  std::vector<bool> has_plot(result.steps.size(), false);
-  for (std::size_t i = 0; forces && result.steps.size() > 1 && i < result.steps.size(); ++i)
-    has_plot[i] = static_cast<bool>(plotForces(result.trace, dir + "/plots/step_" + std::to_string(i + 1),
-                                               step_names, static_cast<int>(i)));
-  if (!forces) outcome.notes.push_back("No plots: " + forces.failure_reason);
+  const std::vector<WrittenPlot> plots = writePlots(result, dir, outcome.notes);
   const ReportPictures pictures = drawPictures(scene, result, dir, options);
   if (!pictures.failure_reason.empty()) outcome.notes.push_back("No pictures: " + pictures.failure_reason);
   if (options.progress) options.progress("report", 1);
 
   const std::string name = !result.scene.empty() ? result.scene : scene.name;
-  std::string body = "<h1>" + escapeHtml(name) +
-                     "</h1>\n<p class=\"quiet\">Report of an assembly run: each part is moved "
-                     "to its place by contact, as a hand would do it.</p>\n" +
-                     headline(result);
-  for (std::size_t i = 0; i < result.steps.size(); ++i)
-    if (!result.steps[i].completed)
-      body += "<p class=\"note\">Step " + std::to_string(i + 1) + ", " + escapeHtml(result.steps[i].part) +
-              ": " +
-              escapeHtml(result.steps[i].failure_reason.empty() ? "not completed"
-                                                                : result.steps[i].failure_reason) +
-              "</p>\n";
-  for (const std::string& note : outcome.notes) body += "<p class=\"note\">" + escapeHtml(note) + "</p>\n";
+  std::string body =
+      "<h1>" + escapeHtml(name) +
+      "</h1>\n<p class=\"quiet\">Report of an assembly run: a simulated hand moves each part to "
+      "its target by contact.</p>\n" +
+      summary(result, outcome.notes);
   if (!pictures.overview.empty())
     body += "<div class=\"pictures two\">\n" + html::figure(pictures.overview, "The assembly.") +
-            html::figure(pictures.section, "The same, cut open.") + "</div>\n";
+            html::figure(pictures.section, "The same in section.") + "</div>\n";
   body += "<h2>Steps</h2>\n" + stepTable(result);
-  if (forces)
-    body += "<h2>Forces on the hand</h2>\n" +
-            plotFigure("forces", "Force, torque and contact depth over the run.");
+  for (const WrittenPlot& written : plots)
+    body += "<h2>" + escapeHtml(written.plot.heading) + "</h2>\n" +
+            plotFigure(written.plot.name, written.plot.caption);
   body += "<h2>Step by step</h2>\n";
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     body += stepSection(i, result.steps[i], i < pictures.steps.size() ? pictures.steps[i] : StepPictures(),
-                        has_plot[i]);
-  body += method(scene, result) + performance(result);
-  body += "<h2>To repeat this</h2>\n";
-  if (!options.command.empty()) body += "<pre>" + escapeHtml(options.command) + "</pre>\n";
-  body +=
-      "<p>The same command gives the same numbers, bit for bit, but for the times above. Every sample stands "
-      "in "
-      "<a href=\"trace.csv\">trace.csv</a>.</p>\n";
-  writeFileAtomically(outcome.file, html::page(name + ": assembly report", body));
+                        plots);
+  body += method(scene, result) + performance(result) + howToRepeat(options.command);
+  writeWholeFile(outcome.file, html::page(name + ": assembly report", body));
   return outcome;
 }
 

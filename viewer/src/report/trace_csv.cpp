@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/gnuplot.h"
+#include "vps/write_file.h"
 #include "vps_viewer/report.h"
-#include "vps_viewer/write_file.h"
 
 namespace vps::viewer {
 namespace {
@@ -37,7 +37,7 @@ void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string
         .append(gnuplot::number(row.depth_m))
         .append("\n");
   }
-  writeFileAtomically(file, text);
+  writeWholeFile(file, text);
 }
 
 }  // namespace vps::viewer

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Figure 5 of the paper: the vertical force of the dual arm over its workspace.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,8 +15,8 @@ namespace {
 
 using gnuplot::number;
 
-// Left, right, both, sum: at a column (x, y) or along y, the least of what lies there. Keys in whole
-// micrometres, so that equal places meet.
+// The least forces (left, right, both, sum) in a column (x, y) or at one y. Keys are whole micrometres, so
+// that equal places have equal keys.
 using Least = std::array<double, 4>;
 template <typename Key>
 using Leasts = std::map<Key, Least>;
@@ -32,8 +33,8 @@ void add(Leasts<Key>& leasts, const Key& key, const device::VerticalForce& force
   for (std::size_t i = 0; i < values.size(); ++i) at->second[i] = std::min(at->second[i], values[i]);
 }
 
-/// Columns x, y [mm] and the forces, in scans of equal x with an empty line between, as gnuplot's surfaces
-/// want them.
+/// Columns x, y [mm] and the forces, in scans of equal x with an empty line between them, which is gnuplot's
+/// format for surfaces.
 std::string surfaceBlock(const Leasts<std::pair<long, long>>& leasts) {
   std::string out = "$surface << END_OF_DATA\n";
   long scan = leasts.begin()->first.first;
@@ -121,7 +122,7 @@ plot $line using 1:5 with lines lw 1.4 dt 2 lc rgb both, \
 unset multiplot
 )";
 
-/// Names a curve where it is: `share` of the way from left to right, `lines` of text above it.
+/// Labels a curve at `share` of its length from left to right, `lines` of text above it.
 std::string nameCurve(int tag, const Leasts<long>& along, std::size_t curve, double share, double lines,
                       const char* color, const char* name) {
   const auto steps = static_cast<std::ptrdiff_t>(share * static_cast<double>(along.size() - 1));
@@ -146,8 +147,8 @@ PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& force
                             nameCurve(6, along, 2, 0.5, -1.8, "both", "both") +
                             nameCurve(7, along, 3, 0.5, 1.4, "both", "both, if the hand bears the couple");
   return gnuplot::draw(
-      surfaceBlock(columns) + lineBlock(along) + kPlotStyle + kSurfaces + kLines + names + kCurves, file, 1400,
-      660);
+      surfaceBlock(columns) + lineBlock(along) + kPlotStyle + kSurfaces + kLines + names + kCurves, file,
+      1400, 660);
 }
 
 }  // namespace vps::viewer

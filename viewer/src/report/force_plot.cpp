@@ -1,62 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/plot.h"
-
+// Forces and torques on the hand over time, as figure 9 of the paper.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "report/gnuplot.h"
+#include "report/plot_style.h"
+#include "report/run_plot.h"
+#include "vps_viewer/plot.h"
 
 namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
-using Curve = std::vector<std::pair<double, double>>;
-
-constexpr std::size_t kBuckets = 1500;  // about one for each pixel of the plot's width
-
-// Okabe and Ito's palette: told apart by colour-blind readers and in grey print.
-constexpr const char* kRed = "#D55E00";
-constexpr const char* kGreen = "#009E73";
-constexpr const char* kBlue = "#0072B2";
-constexpr const char* kInk = "#333333";
 
 constexpr std::array<const char*, 4> kPhaseNames = {"reach", "insert", "press", "rest"};
 constexpr std::array<const char*, 4> kPhaseColors = {"#FFFFFF", "#E3EEF8", "#FBEBD9", "#EEEEEE"};
 
-const std::string kLineStyle =
-    "set encoding utf8\n"
-    "set border 3 lc rgb \"#666666\" lw 0.8\n"
-    "set tics nomirror out scale 0.6 textcolor rgb \"#333333\"\n"
-    "set grid lc rgb \"#D9D9D9\" lw 0.6 lt 1\n"
-    "set key outside right top vertical Left reverse samplen 1.6 spacing 1.15 width 1 textcolor rgb "
-    "\"#333333\"\n";
-
-/// The legend beside a panel of plotForces(), all at the same distance from it.
+/// The legend to the right of a panel; the same distance for all panels.
 std::string keyAt(double top) {
   return "set key at screen 0.845, screen " + number(top) + " left top\n";
-}
-
-void addPoints(std::string& script, const std::string& name, const Curve& curve) {
-  std::vector<std::vector<double>> rows;
-  for (const auto& [x, y] : gnuplot::thinned(curve, kBuckets)) rows.push_back({x, y});
-  if (rows.empty()) rows.push_back({std::nan(""), std::nan("")});  // gnuplot refuses an empty block
-  script += gnuplot::dataBlock(name, rows);
-}
-
-struct Line {
-  std::string name, title, color;
-  double width = 1.3;
-};
-
-std::string plotLines(const std::vector<Line>& lines, const std::string& more = {}) {
-  std::string out = "plot ";
-  for (const Line& line : lines)
-    out += std::string("$").append(line.name) + " with lines lw " + number(line.width) + " lc rgb \"" +
-           line.color + "\" title " + gnuplot::quoted(line.title) + ", \\\n  ";
-  out += more;
-  while (out.back() == ' ' || out.back() == '\n' || out.back() == '\\' || out.back() == ',') out.pop_back();
-  return out + "\n";
 }
 
 /// Runs of equal step and phase: [start, end) in time.
@@ -129,7 +92,7 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
     curves[7].emplace_back(row.time_s, row.F_hand_W.tau.norm());
     depth.emplace_back(row.time_s, 1e6 * row.depth_m);
   }
-  std::string script = kLineStyle;
+  std::string script = plotStyle();
   const std::array<const char*, 8> names = {"fx", "fy", "fz", "f", "tx", "ty", "tz", "t"};
   for (std::size_t i = 0; i < curves.size(); ++i) addPoints(script, names[i], curves[i]);
   addPoints(script, "depth", depth);
@@ -170,7 +133,7 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
   script += "set multiplot\nset lmargin at screen 0.075\nset rmargin at screen 0.83\n";
   script += "set xrange [" + number(start_s) + ":" + number(end_s) + "]\nset format x \"\"\n";
   script += shadePhases(trace);
-  // One panel under the other on one time axis.
+  // Three panels, one below the other, on one time axis.
   script += "set tmargin at screen 0.94\nset bmargin at screen 0.60\n" + keyAt(0.94) +
             nameSteps(trace, step_names, true);
   script +=
@@ -190,29 +153,11 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
   return gnuplot::draw(script, file, 1400, 900);
 }
 
-PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
-  static constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                                         "#E69F00", "#56B4E9", "#333333"};
-  std::string script = kLineStyle;
-  if (plot.is_log_x) script += "set logscale x\n";
-  if (plot.is_log_y) script += "set logscale y\n";
-  if (!plot.title.empty()) script += "set title " + gnuplot::quoted(plot.title) + " textcolor rgb \"#222222\"\n";
-  script += "set xlabel " + gnuplot::quoted(plot.x_label) + "\nset ylabel " + gnuplot::quoted(plot.y_label) + "\n";
-  std::string commands;
-  bool has_points = false;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    const Series& s = plot.series[i];
-    const std::string name = std::string("s").append(std::to_string(i));
-    addPoints(script, name, s.points);
-    has_points = has_points || !s.points.empty();
-    commands += std::string("$").append(name) + " with " +
-                (s.is_scatter    ? "points pt 7 ps 1.1"
-                 : s.has_markers ? "linespoints pt 7 ps 0.8"
-                                 : "lines") +
-                " lw 1.6 lc rgb \"" + kColors[i % kColors.size()] + "\" title " + gnuplot::quoted(s.name) + ", \\\n  ";
-  }
-  if (!has_points) return {false, "no points to plot"};
-  return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);
+RunPlot forcePlot() {
+  return {"forces", "Forces on the hand", "Force, torque and contact depth over the run.",
+          "Force and torque on the hand during this step.",
+          [](const scenes::AssembleResult& result, const std::vector<std::string>& step_names, int step,
+             const std::string& file) { return plotForces(result.trace, file, step_names, step); }};
 }
 
 }  // namespace vps::viewer

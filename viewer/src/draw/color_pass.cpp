@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The colour image: background, parts, cut faces, edges, marks, and the part's target.
+#include <algorithm>
+
+#include "draw/passes.h"
+
+namespace vps::viewer {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector4f;
+
+/// The uniforms of kStudio in shaders.h.
+void setStudio(const gl::Program& program, const Picture& picture) {
+  const FrameTargets& frame = *picture.gl.frame;
+  glBindTextureUnit(0, frame.occlusion.id());
+  program.set("light_reaching", 0);
+  program.set("up_C", picture.view.up_C);
+  program.set("picture_px", Vector2f(static_cast<float>(frame.width * frame.factor),
+                                     static_cast<float>(frame.height * frame.factor)));
+}
+
+void drawGhostEdges(const DrawnBody& ghost, const Picture& picture) {
+  glEnable(GL_CLIP_DISTANCE0);
+  const Vec3 p_eye = -(ghost.X_CP.R.transpose() * ghost.X_CP.p);
+  const std::vector<ShadingEdge> rim = outline(ghost.mesh->shading, p_eye);
+  const Vector4f ink(0.2f * ghost.color.x(), 0.35f * ghost.color.y(), 0.6f * ghost.color.z(), 0.55f);
+  drawLines(ghost.mesh->sharp_edges, ghost, picture, 1.1f, ink);
+  drawLines(GpuLines(rim), ghost, picture, 1.1f, ink);
+  // Where other parts hide the target, its edges are faint.
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
+  drawLines(ghost.mesh->sharp_edges, ghost, picture, 1.0f, {ink.x(), ink.y(), ink.z(), 0.16f});
+  drawLines(GpuLines(rim), ghost, picture, 1.0f, {ink.x(), ink.y(), ink.z(), 0.16f});
+  glDepthMask(GL_TRUE);
+  glDisable(GL_CLIP_DISTANCE0);
+}
+
+void drawGhost(const DrawnBody& ghost, const Picture& picture) {
+  // Only the nearest surface, or the opacities of front and back would add up. It is pushed back a little, so
+  // that the part is visible where it coincides with its target.
+  const View& view = picture.view;
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(2, 8);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  drawMeshes(picture.gl.programs.depth, {ghost}, view, view.projection, false);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_BLEND);
+  glDepthFunc(GL_LEQUAL);
+  drawMeshes(picture.gl.programs.ghost, {ghost}, view, view.projection, true);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  if (picture.options.show_edges) drawGhostEdges(ghost, picture);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+}
+
+void drawMarks(const scenes::Snapshot& snapshot, const Picture& picture) {
+  const View& view = picture.view;
+  const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, picture.options);
+  const gl::Program& program = picture.gl.programs.mark;
+  program.use();
+  program.set("projection", view.projection);
+  program.set("pull", static_cast<float>(0.01 * view.detail_m / std::max(view.detail_m, -view.center_C.z())));
+  if (picture.options.show_hidden_marks) {
+    glEnable(GL_BLEND);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_GREATER);
+    program.set("alpha", 0.28f);
+    picture.gl.arrow.draw(marks.arrows);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_LESS);
+    glDisable(GL_BLEND);
+  }
+  program.set("alpha", 1.0f);
+  picture.gl.disc.draw(marks.discs);
+  picture.gl.arrow.draw(marks.arrows);
+}
+
+}  // namespace
+
+void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const DrawnBody* target) {
+  const GpuResources& gl = picture.gl;
+  const FrameTargets& frame = *gl.frame;
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.color_target.id());
+  glViewport(0, 0, frame.width * frame.factor, frame.height * frame.factor);
+  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  glDisable(GL_DEPTH_TEST);
+  gl.drawFullScreen(gl.programs.background);
+  glEnable(GL_DEPTH_TEST);
+  if (picture.options.show_ground) drawFloorShadow(picture);
+  setStudio(gl.programs.mesh, picture);
+  drawMeshes(gl.programs.mesh, picture.bodies, picture.view, picture.view.projection, true);
+  setStudio(gl.programs.cap, picture);
+  drawCaps(gl.programs.cap, picture);
+  if (picture.options.show_edges) drawEdges(picture);
+  drawMarks(snapshot, picture);
+  if (target != nullptr) drawGhost(*target, picture);
+}
+
+Image resolvePicture(const GpuResources& gl) {
+  const FrameTargets& f = *gl.frame;
+  const int w = f.width * f.factor, h = f.height * f.factor;
+  glBlitNamedFramebuffer(f.color_target.id(), f.resolved_target.id(), 0, 0, w, h, 0, 0, w, h,
+                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, f.shown_target.id());
+  glViewport(0, 0, f.width, f.height);
+  glDisable(GL_DEPTH_TEST);
+  glBindTextureUnit(0, f.resolved.id());
+  gl.programs.final.set("linear_picture", 0);
+  gl.programs.final.set("factor", f.factor);
+  gl.drawFullScreen(gl.programs.final);
+  glEnable(GL_DEPTH_TEST);
+  std::vector<std::uint8_t> rgba(std::size_t(4) * f.width * f.height);
+  glReadPixels(0, 0, f.width, f.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  Image image(f.width, f.height);
+  for (int y = 0; y < f.height; ++y) {
+    const std::uint8_t* row =
+        &rgba[std::size_t(4) * f.width * (f.height - 1 - y)];  // OpenGL's rows start at the bottom
+    for (int x = 0; x < f.width; ++x) std::copy_n(row + 4 * x, 3, image.at(x, y));
+  }
+  return image;
+}
+
+}  // namespace vps::viewer

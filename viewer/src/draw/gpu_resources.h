@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The OpenGL objects of one renderer: shaders, render targets, meshes, marks. The context must be current
+// wherever one is made, used or destroyed.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "draw/frame_targets.h"
+#include "draw/marks.h"
+#include "draw/scene_buffers.h"
+#include "draw/shaders.h"
+
+namespace vps::viewer {
+
+struct ShaderPrograms {
+  gl::Program mesh{"mesh", glsl::kMeshVertex, std::string(glsl::kStudio) + glsl::kMeshFragment};
+  gl::Program ghost{"ghost", glsl::kMeshVertex, glsl::kGhostFragment};
+  gl::Program depth{"depth", glsl::kMeshVertex, glsl::kEmptyFragment};
+  gl::Program geometry{"geometry", glsl::kMeshVertex, glsl::kGeometryFragment};
+  gl::Program cap{"cap", glsl::kCapVertex, std::string(glsl::kStudio) + glsl::kCapFragment};
+  gl::Program cap_geometry{"cap geometry", glsl::kCapVertex, glsl::kGeometryFragment};
+  gl::Program occlusion{"occlusion", glsl::kFullScreenVertex, glsl::kOcclusionFragment};
+  gl::Program occlusion_blur{"occlusion blur", glsl::kFullScreenVertex, glsl::kOcclusionBlurFragment};
+  gl::Program floor{"floor", glsl::kMeshVertex, glsl::kFloorFragment};
+  gl::Program floor_blur{"floor blur", glsl::kFullScreenVertex, glsl::kFloorBlurFragment};
+  gl::Program floor_shadow{"floor shadow", glsl::kCapVertex, glsl::kFloorShadowFragment};
+  gl::Program background{"background", glsl::kFullScreenVertex, glsl::kBackgroundFragment};
+  gl::Program line{"line", glsl::kLineVertex, glsl::kFlatFragment};
+  gl::Program mark{"mark", glsl::kMarkVertex, glsl::kMarkFragment};
+  gl::Program final{"final", glsl::kFullScreenVertex, glsl::kFinalFragment};
+};
+
+struct GpuResources {
+  ShaderPrograms programs;
+  ShadowTargets shadows;
+  std::unique_ptr<FrameTargets> frame;                     ///< of the current picture's size
+  std::map<const Mesh*, std::unique_ptr<GpuMesh>> meshes;  ///< equal parts share one
+  MarkShape arrow = MarkShape::arrow(), disc = MarkShape::disc();
+  gl::Buffer quad_corners;
+  gl::VertexArray quad = gl::makeVertexArray(), empty = gl::makeVertexArray();
+
+  GpuResources();
+  /// Makes `frame` have this size.
+  void resizeFrame(int width, int height, int factor);
+  /// Runs a program that uses kFullScreenVertex on every pixel.
+  void drawFullScreen(const gl::Program& program) const;
+  /// Runs a program that uses kCapVertex: one square in a plane.
+  void drawSquare(const gl::Program& program) const;
+};
+
+}  // namespace vps::viewer

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ambient occlusion in screen space, from the normal and depth of what is seen.
+#include "draw/passes.h"
+
+namespace vps::viewer {
+
+void renderGeometry(const Picture& picture) {
+  const FrameTargets& frame = *picture.gl.frame;
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.geometry_target.id());
+  glViewport(0, 0, frame.width, frame.height);
+  glClearColor(0, 0, 0, -1e9f);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  drawMeshes(picture.gl.programs.geometry, picture.bodies, picture.view, picture.view.projection, false);
+  drawCaps(picture.gl.programs.cap_geometry, picture);
+}
+
+void renderOcclusion(const Picture& picture) {
+  const View& view = picture.view;
+  const FrameTargets& frame = *picture.gl.frame;
+  glDisable(GL_DEPTH_TEST);
+  const auto radius_m = static_cast<float>(0.16 * view.detail_m);
+  glBindTextureUnit(0, frame.geometry.id());
+  const gl::Program& occlusion = picture.gl.programs.occlusion;
+  occlusion.set("geometry", 0);
+  occlusion.set("half_view", view.half_view);
+  occlusion.set("radius_m", radius_m);
+  occlusion.set("projection", view.projection);
+  glBindTextureUnit(1, picture.gl.shadows.key.id());
+  occlusion.set("shadow_map", 1);
+  occlusion.set("shadow_from_C", view.shadow_from_C);
+  occlusion.set("shadow_offset_m", static_cast<float>(0.006 * view.radius_m));
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.occlusion_raw_target.id());
+  picture.gl.drawFullScreen(occlusion);
+  glBindTextureUnit(1, frame.occlusion_raw.id());
+  const gl::Program& blur = picture.gl.programs.occlusion_blur;
+  blur.set("geometry", 0);
+  blur.set("occlusion", 1);
+  blur.set("radius_m", radius_m);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.occlusion_target.id());
+  picture.gl.drawFullScreen(blur);
+  glEnable(GL_DEPTH_TEST);
+}
+
+}  // namespace vps::viewer
