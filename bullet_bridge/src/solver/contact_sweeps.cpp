@@ -8,18 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
-namespace {
-
-// Impulses are far from the ends of a double's range; std::hypot guards those and took a sixth of a heap's
-// time.
-double lengthOf(double x, double y) {
-  return std::sqrt(x * x + y * y);
-}
-
-}  // namespace
 
 double ContactSweeps::velocity(const ContactRow& row) const {
   double v = row.fixed_velocity;
@@ -171,16 +163,12 @@ double ContactSweeps::sweepOnce() {
     const double limit = c.mu * p_n;
     double p1 = c.p_t[0] - (c.W_t_inverse[0] * v1 + c.W_t_inverse[1] * v2);
     double p2 = c.p_t[1] - (c.W_t_inverse[1] * v1 + c.W_t_inverse[2] * v2);
-    if (lengthOf(p1, p2) > limit) {
+    if (tangentLength(p1, p2) > limit) {
       // It slides. The step must be along the slip itself: stepping by the block's inverse and scaling back
       // would settle on friction along W^-1 v, off the slip, and 1 % too weak.
       p1 = c.p_t[0] - v1 / c.W_t;
       p2 = c.p_t[1] - v2 / c.W_t;
-      const double size = lengthOf(p1, p2);
-      if (size > limit) {
-        p1 *= limit / size;
-        p2 *= limit / size;
-      }
+      limitToCone(p1, p2, limit);
     }
     const double d1 = p1 - c.p_t[0], d2 = p2 - c.p_t[1];
     if (d1 != 0) apply(c.tangent[0], d1);

@@ -116,21 +116,9 @@ void PenaltyPatch::findSlips(const Vec6& twist) const {
 }
 
 inline PenaltyPatch::Push PenaltyPatch::pushOf(std::size_t i) const {
-  const double k = points_[i].k, limit_N = limit_N_[i];
-  Push push;
-  push.f_n_N = k * std::max(0.0, -end_m_[i]);
-  if (!(limit_N > 0)) return push;
-  const Vec3 x(bent_m_[0][i], bent_m_[1][i], bent_m_[2][i]);
-  const double length2 = x.squaredNorm();
-  if (!(length2 > 0)) return push;
-  if (k * k * length2 <= limit_N * limit_N) {
-    push.f_t_N = k * x;
-  } else {
-    push.slip_m = std::sqrt(length2);
-    push.along = x / push.slip_m;
-    push.f_t_N = limit_N * push.along;
-  }
-  return push;
+  const double k = points_[i].k;
+  return {k * std::max(0.0, -end_m_[i]),
+          bristleForce({bent_m_[0][i], bent_m_[1][i], bent_m_[2][i]}, k, limit_N_[i])};
 }
 
 void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
@@ -143,16 +131,17 @@ void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
     if (!presses(i)) continue;
     const Point& point = points_[i];
     const Push push = pushOf(i);
-    gradient += wrenchOf(point.r, dt_s_ * (push.f_t_N - push.f_n_N * point.n));
+    gradient += wrenchOf(point.r, dt_s_ * (push.friction.f_N - push.f_n_N * point.n));
     if (!with_hessian) continue;
     // K = k_t I + (k_n - k_t) n n' - k_slip a a'
-    const bool holds = push.slip_m == 0 && limit_N_[i] > 0;
+    const double slip_m = push.friction.slip_m;
+    const bool sticks = slip_m == 0 && limit_N_[i] > 0;
     const double k_n = push.f_n_N > 0 ? dt2 * point.k : 0;
-    const double k_slip = push.slip_m > 0 ? dt2 * limit_N_[i] / push.slip_m : 0;
-    const double k_t = holds ? dt2 * point.k : k_slip;
+    const double k_slip = slip_m > 0 ? dt2 * limit_N_[i] / slip_m : 0;
+    const double k_t = sticks ? dt2 * point.k : k_slip;
     if (k_t > 0) sum.addEven(k_t, point.r);
     if (k_n != k_t) sum.add(k_n - k_t, wrenchOf(point.r, point.n));
-    if (k_slip > 0) sum.add(-k_slip, wrenchOf(point.r, push.along));
+    if (k_slip > 0) sum.add(-k_slip, wrenchOf(point.r, push.friction.direction));
   }
   if (with_hessian) hessian = sum.total();
 }
@@ -180,7 +169,7 @@ void PenaltyPatch::finish(const Vec6& twist) const {
     }
     const Push push = pushOf(i);
     out.f_n_N = push.f_n_N;
-    out.bend_W = points_[i].k > 0 ? Vec3(push.f_t_N / points_[i].k) : Vec3(Vec3::Zero());
+    out.bend_W = points_[i].k > 0 ? Vec3(push.friction.f_N / points_[i].k) : Vec3(Vec3::Zero());
     pair->all_N += push.f_n_N;
   }
 }

@@ -8,6 +8,7 @@
 
 #include "solver/island.h"
 #include "solver/penalty_pair.h"
+#include "vps/friction.h"
 
 namespace vps::bullet {
 
@@ -18,9 +19,7 @@ class PenaltyPatch {
   /// What a point's springs give at a twist.
   struct Push {
     double f_n_N = 0;
-    Vec3 f_t_N = Vec3::Zero();  // on body 1, along the slip of body 0
-    double slip_m = 0;          // of the bristle's root, had it bent freely; 0: it holds
-    Vec3 along = Vec3::Zero();  // unit, of the slip
+    BristleForce friction;  // on body 1, along the slip of body 0
   };
 
   /// @param off_tangent  of body 0 and 1: what a point's place against its body's origin changes by in the
