@@ -12,7 +12,7 @@
 namespace vps::bullet {
 namespace {
 
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 constexpr double kGravity = 9.81;
@@ -39,7 +39,7 @@ CouplingState targetAt(const Pose& X_W) {
   return target;
 }
 
-class CouplingWithSolver : public testing::TestWithParam<Solver> {
+class CouplingWithSolver : public testing::TestWithParam<SolverKind> {
  protected:
   World world{GetParam()};
   btBoxShape box{btVector3(0.01, 0.01, 0.01)};
@@ -225,12 +225,12 @@ TEST_P(CouplingWithSolver, ATargetThatIsNotANumberIsNoTarget) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, CouplingWithSolver,
-                         testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
+                         testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
 // In a step of 1 ms this pull takes the block's free path 3 mm on, farther than its map sees.
 TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
-  for (const Solver solver : {Solver::Vps, Solver::Penalty}) {
+  for (const SolverKind solver : {SolverKind::Constraint, SolverKind::Penalty}) {
     World world(solver);
     const test::Built plate = test::plate(), box = test::steelBox();  // 10 mm thick, both
     world.add(plate, Pose::translation(Vec3(0, 0, -5e-3)), true);
@@ -242,7 +242,7 @@ TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
     coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0, 3e-3))));
     world.step(200);
     // Springs give way to 2 kN on 300 mm^2 of 1e12 N/m^3 by 6.7 um.
-    EXPECT_NEAR(test::partPose(part, box).p.z(), 5e-3, solver == Solver::Penalty ? 10e-6 : 1e-6)
+    EXPECT_NEAR(test::partPose(part, box).p.z(), 5e-3, solver == SolverKind::Penalty ? 10e-6 : 1e-6)
         << nameOf(solver);
     world.world->removeConstraint(&coupling);
   }

@@ -12,7 +12,7 @@ namespace {
 
 using test::build;
 using test::Built;
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 constexpr double kWidth_m = 2e-3, kHalf_m = kWidth_m * std::numbers::sqrt2 / 2;  // of a bar; axis to edge
@@ -35,7 +35,7 @@ Built bars(bool along_x) {
 
 // Upper bars over lower ones, each where its frame says: the lower edges' top is at z = 0.
 struct Crossed {
-  explicit Crossed(double gap_m, Solver solver = Solver::Vps) : world(solver) {
+  explicit Crossed(double gap_m, SolverKind solver = SolverKind::Constraint) : world(solver) {
     ground = &world.add(lower, Pose::translation({0, 0, -kHalf_m}), true, 0.3);
     body = &world.add(upper, Pose::translation({0.31e-3, 0.17e-3, kHalf_m + gap_m}), false, 0.3);
   }
@@ -115,7 +115,7 @@ TEST(Crossing, OfASquarePegsRimDoesNotHoldItOutOfItsHole) {
   add({kHole_m + 2 * wall_m, wall_m, kDeep_m}, {0, out_m, -kDeep_m / 2});
   add({kHole_m + 2 * wall_m, wall_m, kDeep_m}, {0, -out_m, -kDeep_m / 2});
   const Built hole = build(frame, 7850), peg = build(makeBox({kPeg_m, kPeg_m, 10e-3}), 7850);
-  World world(Solver::Vps);
+  World world(SolverKind::Constraint);
   world.add(hole, Pose(), true, 0.0);
   btRigidBody& body = world.add(peg, Pose::translation({0, 0, 5e-3 + 20e-6}), false, 0.0);
   for (int i = 1; i <= 30; ++i) {

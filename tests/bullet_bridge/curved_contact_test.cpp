@@ -30,7 +30,7 @@ SideView viewOf(const Built& part, const Pose& X_WP, int side) {
   return {part.shape.get(), X_WP, static_cast<std::uint8_t>(side)};
 }
 
-struct device::SyncEvent {
+struct FlushPoint {
   Candidate point;
   FacePoint foot;
 
@@ -40,7 +40,7 @@ struct device::SyncEvent {
 };
 
 // A point of a side's shell as correct() leaves one that meets a face flush.
-std::optional<device::SyncEvent> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
+std::optional<FlushPoint> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
   const ShapeModels& models = side.shape->models();
   const Surface& surface = other.shape->models().surfaces[0];
   const MeshDistance& theirs = *surface.distance;
@@ -55,7 +55,7 @@ std::optional<device::SyncEvent> corrected(const SideView& side, const SideView&
   c.p_W = p_W;
   c.n_W = (side.side == 0 ? 1 : -1) * n_W;
   c.distance_m = n_W.dot(p_W - other.X_WM * closest.q);
-  return device::SyncEvent{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
+  return FlushPoint{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
 /// Where two faces are nearest, by a formula.
@@ -78,10 +78,10 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
     for (std::uint32_t id = 0; id < side.shape->models().shell->size(); ++id) {
       const Vec3 p_W = side.X_WM * side.shape->models().shell->points[id];
       if ((p_W - truth.p_W).norm() > kSpacing_m || side.shape->isEdgePoint(id)) continue;
-      std::optional<device::SyncEvent> sync_event = corrected(side, sides[1 - side.side], id);
-      if (!sync_event) continue;
-      const bool has_moved = sync_event->move(sides);
-      const Candidate* c = &sync_event->point;
+      std::optional<FlushPoint> flush = corrected(side, sides[1 - side.side], id);
+      if (!flush) continue;
+      const bool has_moved = flush->move(sides);
+      const Candidate* c = &flush->point;
       found.least_gap_m = std::min(found.least_gap_m, c->distance_m);
       if (!has_moved) continue;
       ++found.moved;
@@ -206,10 +206,10 @@ TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
   const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};
   int met = 0;
   for (std::uint32_t id = 0; id < peg.shape->models().shell->size(); ++id) {
-    std::optional<device::SyncEvent> sync_event = corrected(sides[0], sides[1], id);
-    if (!sync_event || peg.shape->isEdgePoint(id)) continue;
+    std::optional<FlushPoint> flush = corrected(sides[0], sides[1], id);
+    if (!flush || peg.shape->isEdgePoint(id)) continue;
     ++met;
-    EXPECT_FALSE(sync_event->move(sides)) << id;
+    EXPECT_FALSE(flush->move(sides)) << id;
   }
   EXPECT_GT(met, 100);
 }

@@ -13,7 +13,7 @@ namespace {
 using test::Built;
 
 /// Where seven boxes are that have fallen on one another; 0 threads: the stock dispatcher.
-std::vector<btTransform> heap(int threads, test::Solver solver) {
+std::vector<btTransform> heap(int threads, test::SolverKind solver) {
   static const Built box = test::steelBox();
   static const Built ground = test::plate();
   test::World world(solver, {}, 100, {}, threads);
@@ -24,7 +24,7 @@ std::vector<btTransform> heap(int threads, test::Solver solver) {
   return test::placesAfter(world, 100);
 }
 
-class DispatcherWithMode : public testing::TestWithParam<test::Solver> {};
+class DispatcherWithMode : public testing::TestWithParam<test::SolverKind> {};
 
 TEST_P(DispatcherWithMode, AnyNumberOfThreadsGivesTheStockDispatchersBits) {
   const std::vector<btTransform> expected = heap(0, GetParam());
@@ -35,9 +35,10 @@ TEST_P(DispatcherWithMode, AnyNumberOfThreadsGivesTheStockDispatchersBits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, DispatcherWithMode, testing::Values(test::Solver::Vps, test::Solver::Penalty),
+INSTANTIATE_TEST_SUITE_P(Each, DispatcherWithMode,
+                         testing::Values(test::SolverKind::Constraint, test::SolverKind::Penalty),
                          [](const auto& info) {
-                           return info.param == test::Solver::Penalty ? "Penalty" : "Constraint";
+                           return info.param == test::SolverKind::Penalty ? "Penalty" : "Constraint";
                          });
 
 TEST(Dispatcher, RefusesLessThanNoThread) {

@@ -12,7 +12,7 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 const Built& cube() {
@@ -121,7 +121,7 @@ TEST(Install, ALimitOnCandidatesIsKeptAndCounted) {
     Settings settings;
     settings.sides = Sides::One;
     settings.candidate_limit = 80;
-    World world(Solver::Vps, settings);
+    World world(SolverKind::Constraint, settings);
     world.addShape(*under, 0, Vec3::Zero(), Pose());
     world.add(cube(), Pose::translation(Vec3(0, 0, 0.010)));
     world.step();

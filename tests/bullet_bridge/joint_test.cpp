@@ -14,7 +14,7 @@ using test::Built;
 using test::kGravity;
 using test::kIsDouble;
 using test::plate;
-using test::Solver;
+using test::SolverKind;
 using test::steelBox;
 using test::World;
 
@@ -28,7 +28,7 @@ btVector3 axisInBody(const Built& part, const Vec3& axis_P) {
   return toBt(Vec3(part.frame.X_PB.R.transpose() * axis_P));
 }
 
-class JointsWithSolver : public testing::TestWithParam<Solver> {};
+class JointsWithSolver : public testing::TestWithParam<SolverKind> {};
 
 TEST_P(JointsWithSolver, APendulumSwingsAsAFormulaSays) {
   World world(GetParam());
@@ -155,7 +155,8 @@ TEST_P(JointsWithSolver, AJointTornBeyondItsStrengthBreaks) {
   world.world->removeConstraint(&joint);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, JointsWithSolver, testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
+INSTANTIATE_TEST_SUITE_P(Each, JointsWithSolver,
+                         testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
 }  // namespace

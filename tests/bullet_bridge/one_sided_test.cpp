@@ -16,7 +16,7 @@ using test::appendLine;
 using test::build;
 using test::Built;
 using test::polar;
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 constexpr int kColumns = 384;
@@ -66,7 +66,7 @@ Mesh makeMouthedRing() {
 //       \      /            /
 //                       |  /  mouth
 struct Entering {
-  explicit Entering(Sides sides) : world(Solver::Vps, settings(sides)) {
+  explicit Entering(Sides sides) : world(SolverKind::Constraint, settings(sides)) {
     fixed = &world.add(ring, Pose(), true, 0);
   }
   static Settings settings(Sides sides) {

@@ -16,7 +16,7 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 constexpr double kRadius_m = 0.005, kDepth_m = 0.015, kLength_m = 0.030;
@@ -65,7 +65,7 @@ const Built& bore(double clearance_m) {
 }
 
 struct Case {
-  Solver solver;
+  SolverKind solver;
   double clearance_m;
   double mass_kg;
 };
@@ -120,7 +120,7 @@ TEST_P(PegInBore, DroppedItSeats) {
   // In floats the stock solver, which starts friction anew each step, lets the part creep by rounding of dt
   // g, 2e-5 m/s at most, for two seconds; so do springs (4.7e-6 m/s seen), whose bends do not know of a
   // pose's rounding.
-  const bool creeps = GetParam().solver != Solver::Vps && sizeof(btScalar) == 4;
+  const bool creeps = GetParam().solver != SolverKind::Constraint && sizeof(btScalar) == 4;
   EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6);
   EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6);
   EXPECT_LE(deepest_m, kDeepest_m);
@@ -160,7 +160,7 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   // The coupling's torque tilts the peg as far as the clearance lets it; it then stands on its bottom's rim,
   // and the bottom's centre is up by the rim's radius times the tilt.
   const double tilt_rad = rotationVector(rest.R).norm();
-  const double soft_m = GetParam().solver == Solver::Penalty ? kSoft_m : 0;
+  const double soft_m = GetParam().solver == SolverKind::Penalty ? kSoft_m : 0;
   EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));
   EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6 + 0.5 * soft_m);
   EXPECT_LE(deepest_m, kDeepest_m + soft_m);
@@ -169,14 +169,13 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   world.world->removeConstraint(&coupling);
 }
 
-INSTANTIATE_TEST_SUITE_P(Fits, PegInBore,
-                         testing::Values(Case{Solver::Vps, 50e-6, 0.0185}, Case{Solver::Vps, 20e-6, 0.0185},
-                                         Case{Solver::Vps, 20e-6, 0.001}, Case{Solver::Vps, 20e-6, 0.1},
-                                         Case{Solver::Stock, 50e-6, 0.0185},
-                                         Case{Solver::Penalty, 50e-6, 0.0185},
-                                         Case{Solver::Penalty, 20e-6, 0.0185},
-                                         Case{Solver::Penalty, 20e-6, 0.001}),
-                         nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    Fits, PegInBore,
+    testing::Values(Case{SolverKind::Constraint, 50e-6, 0.0185}, Case{SolverKind::Constraint, 20e-6, 0.0185},
+                    Case{SolverKind::Constraint, 20e-6, 0.001}, Case{SolverKind::Constraint, 20e-6, 0.1},
+                    Case{SolverKind::Stock, 50e-6, 0.0185}, Case{SolverKind::Penalty, 50e-6, 0.0185},
+                    Case{SolverKind::Penalty, 20e-6, 0.0185}, Case{SolverKind::Penalty, 20e-6, 0.001}),
+    nameOf);
 
 }  // namespace
 }  // namespace vps::bullet

@@ -13,7 +13,7 @@ using test::Built;
 using test::kGravity;
 using test::kIsDouble;
 using test::plate;
-using test::Solver;
+using test::SolverKind;
 using test::steelBox;
 using test::World;
 
@@ -21,7 +21,7 @@ TEST(Penalty, ABlockSinksByItsWeightOverStiffnessAndArea) {
   Settings settings;
   settings.stiffness_N_per_m3 = 1e9;
   settings.sides = Sides::One;
-  World world(Solver::Penalty, settings);
+  World world(SolverKind::Penalty, settings);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
@@ -37,7 +37,7 @@ TEST(Penalty, FrictionHoldsWithoutCreep) {
   constexpr double kMu = 0.3;
   const double angle_rad = std::atan(0.97 * kMu);
   const Mat3 R = rotationFromVector(Vec3(0.3, 0.95, 0).normalized() * angle_rad);
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, kMu);
   btRigidBody& body = world.add(box, Pose(R, R * Vec3(0, 0, 0.005)), false, kMu);
@@ -50,7 +50,7 @@ TEST(Penalty, FrictionHoldsWithoutCreep) {
 }
 
 TEST(Penalty, ImpulsesInTheManifoldsAddUpToTheWeight) {
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
@@ -66,7 +66,7 @@ TEST(Penalty, ImpulsesInTheManifoldsAddUpToTheWeight) {
 }
 
 TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
@@ -82,7 +82,7 @@ TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
 TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
   if (!kIsDouble) GTEST_SKIP() << "the plate's speed is a difference of places, 0.1 mm/s apart in floats";
   constexpr double kSpeed_m_s = 0.1;
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   btRigidBody& below = world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
@@ -110,7 +110,7 @@ TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
 
 TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
   constexpr double kRadius_m = 5e-3, kGrown_m = 6e-3;
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   btSphereShape ball(toBt(kRadius_m));
@@ -127,7 +127,7 @@ TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
 }
 
 TEST(Penalty, PartsThatStartInsideEachOtherSeparateGently) {
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   world.world->setGravity(btVector3(0, 0, 0));
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -144,7 +144,7 @@ TEST(Penalty, PartsThatStartInsideEachOtherSeparateGently) {
 }
 
 TEST(Penalty, AStockBoxInTheIslandIsHeldToo) {
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
   world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
@@ -167,7 +167,7 @@ TEST(Penalty, TwoRunsGiveTheSameBits) {
   const Built box = steelBox(), ground = plate();
   btVector3 end[2];
   for (btVector3& p : end) {
-    World world(Solver::Penalty);
+    World world(SolverKind::Penalty);
     world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
     btRigidBody& body = world.add(box, Pose(rotationFromVector(Vec3(0.2, 0.1, 0.3)), Vec3(0, 0, 0.02)));
     world.step(300);

@@ -13,7 +13,7 @@ using test::Built;
 using test::kGravity;
 using test::kIsDouble;
 using test::plate;
-using test::Solver;
+using test::SolverKind;
 using test::steelBox;
 using test::World;
 
@@ -41,7 +41,7 @@ Rest watch(World& world, btRigidBody& body, const Pose& X_WB_expected) {
   return rest;
 }
 
-class RestWithSolver : public testing::TestWithParam<Solver> {};
+class RestWithSolver : public testing::TestWithParam<SolverKind> {};
 
 TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPut) {
   World world(GetParam());
@@ -94,7 +94,8 @@ TEST_P(RestWithSolver, BallsAndCapsulesHoldAPlateAtTheirRadius) {
   world.step(500);
   // A round side touches the face between its points, too. Springs stay where the points are, up to half a
   // spacing (times sqrt 2) from the ball's top: s^2 / (4 r) = 25 um at 1 mm.
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015, GetParam() == Solver::Penalty ? 25e-6 : 1e-6);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015,
+              GetParam() == SolverKind::Penalty ? 25e-6 : 1e-6);
 }
 
 TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
@@ -118,7 +119,7 @@ TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
         const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
         // What is left over is 3 % of the friction. The stock solver in floats is off by 0.2 % of that
         // (measured; allowed: 0.3 %), all others by less than a tenth of it.
-        const bool is_rough = GetParam() == Solver::Stock && !kIsDouble;
+        const bool is_rough = GetParam() == SolverKind::Stock && !kIsDouble;
         EXPECT_NEAR(moved_m, a * 0.05 / 2, (is_rough ? 0.1 : 0.03) * a * 0.05 / 2) << mu;
       }
     }
@@ -138,7 +139,7 @@ TEST_P(RestWithSolver, FallsFreelyUntilItTouches) {
 }
 
 TEST_P(RestWithSolver, BouncesWithTheProductOfTheRestitutions) {
-  if (GetParam() == Solver::Penalty) GTEST_SKIP() << "compliant contact has no restitution";
+  if (GetParam() == SolverKind::Penalty) GTEST_SKIP() << "compliant contact has no restitution";
   World world(GetParam());
   const Built box = steelBox(), ground = plate();
   world.world->setGravity(btVector3(0, 0, 0));
@@ -181,7 +182,7 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
   EXPECT_LE((P - Vec3(0, 0, -m)).norm(), (kIsDouble ? 1e-9 : 1e-5) * m);
   // Solver applies both forces in one line; the stock solver at points that are up to a step's travel (1
   // mm) apart, so that friction (0.15 of at most the momentum) leaves a moment.
-  const double tol = GetParam() == Solver::Stock ? 0.15 * m * 1e-3 : (kIsDouble ? 1e-9 : 1e-5) * m * 0.01;
+  const double tol = GetParam() == SolverKind::Stock ? 0.15 * m * 1e-3 : (kIsDouble ? 1e-9 : 1e-5) * m * 0.01;
   EXPECT_LE((angular(a) + angular(b) - L0 - added).norm(), tol);
   const double energy_J = 0.5 * m * (a.getLinearVelocity().length2() + b.getLinearVelocity().length2());
   EXPECT_LE(energy_J, 0.5 * m * 1.0001);
@@ -246,7 +247,7 @@ TEST(Solver, OneSweepLeavesAnErrorThatManyRemove) {
   const auto spinAfterLanding = [](int iteration_limit) {
     SolverSettings settings;
     settings.iteration_limit = iteration_limit;
-    World world(Solver::Vps, {}, 100, settings);
+    World world(SolverKind::Constraint, {}, 100, settings);
     const Built box = steelBox(), ground = plate();
     world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
     btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0051)));
@@ -266,7 +267,7 @@ TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   const auto worstOfStack = [=](int iteration_limit) {
     SolverSettings settings;
     settings.iteration_limit = iteration_limit;
-    World world(Solver::Vps, {}, 100, settings);
+    World world(SolverKind::Constraint, {}, 100, settings);
     const Built light = steelBox(), ground = plate();
     Built heavy = light;
     heavy.frame.mass_kg *= kRatio;
@@ -305,7 +306,8 @@ TEST(Solver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
   EXPECT_NEAR(low.getWorldTransform().getOrigin().z(), 0.005, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver, testing::Values(Solver::Stock, Solver::Vps, Solver::Penalty),
+INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver,
+                         testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/friction.h"
 #include "vps/mesh_distance.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/dispatcher.h"
@@ -18,16 +19,17 @@
 
 namespace vps::test {
 
-enum class Solver { Stock, Vps, Penalty };
+/// Bullet's own solver, or bullet::Solver with one of the contact methods.
+enum class SolverKind { Stock, Constraint, Penalty };
 
-inline std::string nameOf(Solver solver) {
-  return solver == Solver::Stock ? "Stock" : solver == Solver::Vps ? "Vps" : "Penalty";
+inline std::string nameOf(SolverKind solver) {
+  return solver == SolverKind::Stock ? "Stock" : solver == SolverKind::Constraint ? "Constraint" : "Penalty";
 }
 
 struct Built {
-  std::shared_ptr<Shape> shape;
+  std::shared_ptr<bullet::Shape> shape;
   Mesh mesh;
-  BodyFrame frame;
+  bullet::BodyFrame frame;
   std::shared_ptr<const MeshDistance> exact;
 };
 
@@ -36,7 +38,7 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
                    double spacing_m = 0.5e-3) {
   Built built;
   built.mesh = mesh;
-  built.frame = makeBodyFrame(massProperties(mesh), density_kg_m3);
+  built.frame = bullet::makeBodyFrame(massProperties(mesh), density_kg_m3);
   Part part;
   part.mesh = mesh;
   VoxMapSettings voxels;
@@ -45,9 +47,9 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
   PointShellSettings points;
   points.spacing_m = spacing_m;
   part.shell = std::make_shared<const PointShell>(buildPointShell(mesh, points));
-  ShapeModels models = makeModels(part);
+  bullet::ShapeModels models = bullet::makeModels(part);
   built.exact = models.surfaces[0].distance;
-  built.shape = std::make_shared<Shape>(std::move(models), built.frame.X_PB.inverse());
+  built.shape = std::make_shared<bullet::Shape>(std::move(models), built.frame.X_PB.inverse());
   return built;
 }
 
@@ -64,25 +66,25 @@ inline Built plate() {
 class World {
  public:
   /// @param threads  0: Bullet's own dispatcher
-  explicit World(Solver solver = Solver::Vps, const Settings& settings = {}, int iterations = 100,
-                 const SolverSettings& solver_settings = {}, int threads = 0)
-      : dispatcher_(threads > 0 ? std::make_unique<Dispatcher>(&config, threads)
+  explicit World(SolverKind solver = SolverKind::Constraint, const bullet::Settings& settings = {},
+                 int iterations = 100, const bullet::SolverSettings& solver_settings = {}, int threads = 0)
+      : dispatcher_(threads > 0 ? std::make_unique<bullet::Dispatcher>(&config, threads)
                                 : std::make_unique<btCollisionDispatcher>(&config)),
         dispatcher(*dispatcher_) {
-    if (solver == Solver::Stock)
+    if (solver == SolverKind::Stock)
       solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
     else
-      solver_ = std::make_unique<Solver>(solver_settings);
-    Settings used = settings;
-    if (solver == Solver::Penalty) used.mode = ContactMethod::Penalty;
+      solver_ = std::make_unique<bullet::Solver>(solver_settings);
+    bullet::Settings used = settings;
+    if (solver == SolverKind::Penalty) used.mode = ContactMethod::Penalty;
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
-    install(dispatcher, used);
-    tuneWorld(*world, iterations);
-    world->setGravity(btVector3(0, 0, toBt(-9.81)));
+    bullet::install(dispatcher, used);
+    bullet::tuneWorld(*world, iterations);
+    world->setGravity(btVector3(0, 0, bullet::toBt(-9.81)));
   }
   ~World() {
     for (auto& body : bodies) world->removeRigidBody(body.get());
-    uninstall(dispatcher);
+    bullet::uninstall(dispatcher);
   }
 
   /// mass 0: fixed. X_WP is the pose of the part's own frame.
@@ -92,17 +94,17 @@ class World {
   }
   btRigidBody& addShape(btCollisionShape& shape, double mass_kg, const Vec3& inertia, const Pose& X_WB,
                         double friction = 0.15) {
-    btRigidBody::btRigidBodyConstructionInfo info(toBt(mass_kg), nullptr, &shape,
-                                                  mass_kg > 0 ? toBt(inertia) : btVector3(0, 0, 0));
-    info.m_startWorldTransform = toBt(X_WB);
-    info.m_friction = toBt(std::sqrt(friction));  // Bullet multiplies the two bodies' values
+    btRigidBody::btRigidBodyConstructionInfo info(bullet::toBt(mass_kg), nullptr, &shape,
+                                                  mass_kg > 0 ? bullet::toBt(inertia) : btVector3(0, 0, 0));
+    info.m_startWorldTransform = bullet::toBt(X_WB);
+    info.m_friction = bullet::toBt(frictionFactor(friction));
     bodies.push_back(std::make_unique<btRigidBody>(info));
     bodies.back()->setActivationState(DISABLE_DEACTIVATION);
     world->addRigidBody(bodies.back().get());
     return *bodies.back();
   }
   void step(int count = 1, double dt_s = 1e-3) {
-    for (int i = 0; i < count; ++i) world->stepSimulation(toBt(dt_s), 0);
+    for (int i = 0; i < count; ++i) world->stepSimulation(bullet::toBt(dt_s), 0);
   }
 
   btDefaultCollisionConfiguration config;
@@ -124,7 +126,7 @@ inline std::vector<btTransform> placesAfter(World& world, int steps) {
 
 /// Pose of the part's own frame.
 inline Pose partPose(const btRigidBody& body, const Built& part) {
-  return fromBt(body.getWorldTransform()) * part.frame.X_PB.inverse();
+  return bullet::fromBt(body.getWorldTransform()) * part.frame.X_PB.inverse();
 }
 
 /// Greatest depth [m] of either part's vertices in the other, by exact distance; negative: the least gap.

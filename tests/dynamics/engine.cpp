@@ -40,8 +40,7 @@ Engine vpsEngine(const Resolution& resolution, const bullet::Settings& settings)
   engine.name = "VPS";
   engine.install = [settings](btCollisionDispatcher& dispatcher, Mode mode) {
     bullet::Settings with_mode = settings;
-    with_mode.mode =
-        mode == Mode::Penalty ? bullet::ContactMethod::Penalty : bullet::ContactMethod::Constraint;
+    with_mode.mode = mode == Mode::Penalty ? vps::ContactMethod::Penalty : vps::ContactMethod::Constraint;
     bullet::install(dispatcher, with_mode);
   };
   engine.uninstall = [](btCollisionDispatcher& dispatcher) { bullet::uninstall(dispatcher); };

@@ -62,7 +62,7 @@ World::World(const SceneSettings& settings)
   engine_.install(dispatcher_, settings.mode);
   dispatcher_.setNearCallback(timedNearCallback);
   bullet::tuneWorld(*world_);
-  setGravity(Vec3(0, 0, -device::kGravity_m_s2));
+  setGravity(Vec3(0, 0, -kGravity_m_s2));
 }
 
 World::~World() {

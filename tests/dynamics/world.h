@@ -59,7 +59,7 @@ class World {
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
   static constexpr double kStep_s = 1e-3;
-  static constexpr double device::kGravity_m_s2 = 9.81;
+  static constexpr double kGravity_m_s2 = 9.81;
 
  private:
   void addToHash();

@@ -10,7 +10,7 @@ using dynamics::makePart;
 using dynamics::PartMesh;
 using dynamics::World;
 
-inline constexpr double device::kGravity_m_s2 = World::kGravity_m_s2;
+inline constexpr double kGravity_m_s2 = World::kGravity_m_s2;
 inline constexpr double kVoxel_m = 0.5e-3;
 inline constexpr double kPlate_m = 60e-3;  ///< side of a plate
 inline constexpr double kThick_m = 10e-3;  ///< of a plate

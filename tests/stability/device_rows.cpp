@@ -81,8 +81,8 @@ Judgement shake(const Run& run) {
                             : 0),
                    "m");
   judgement.atMost("energy made", loop.ledger().injected_J, settings.injected_bound_J, "J");
-  judgement.note("force " + toText(greatest_N) + " N, energy made " +
-                 toText(loop.ledger().injected_J) + " J");
+  judgement.note("force " + toText(greatest_N) + " N, energy made " + toText(loop.ledger().injected_J) +
+                 " J");
   return judgement;
 }
 

@@ -15,7 +15,7 @@ namespace vps::stability {
 namespace {
 
 // What a bad value is given to.
-struct scenes::Scene {
+struct Scene {
   World& world;
   Placed bad;  ///< lies on the plate, well apart from others
   double& dt_s;
@@ -23,7 +23,7 @@ struct scenes::Scene {
 
 struct Quantity {
   const char* name;
-  std::function<void(scenes::Scene&, double)> give;
+  std::function<void(Scene&, double)> give;
 };
 
 Mesh boxWith(double value) {
@@ -39,7 +39,7 @@ VoxMapSettings voxels(double voxel_m, double band_voxels = 4) {
   return settings;
 }
 
-void couple(scenes::Scene& scene, const CouplingGains& gains, double at_m = 0) {
+void couple(Scene& scene, const CouplingGains& gains, double at_m = 0) {
   auto coupling = std::make_unique<bullet::CouplingConstraint>(*scene.bad.body, Pose(), gains);
   CouplingState target;
   target.X_W = Pose::translation(Vec3(at_m, 0, 10e-3));
@@ -48,95 +48,91 @@ void couple(scenes::Scene& scene, const CouplingGains& gains, double at_m = 0) {
   scene.world.addConstraint(std::move(coupling));
 }
 
-void install(scenes::Scene& scene, double bullet::Settings::*member, double value) {
+void install(Scene& scene, double bullet::Settings::*member, double value) {
   bullet::Settings settings;
   settings.*member = value;
   bullet::install(*static_cast<btCollisionDispatcher*>(scene.world.bullet().getDispatcher()), settings);
 }
 
-bullet::Shape& shapeOf(scenes::Scene& scene) {
+bullet::Shape& shapeOf(Scene& scene) {
   return *static_cast<bullet::Shape*>(scene.bad.body->getCollisionShape());
 }
 
 const std::vector<Quantity>& quantities() {
   static const std::vector<Quantity> all{
-      {"a corner, of a map", [](scenes::Scene&, double x) { buildVoxMap(boxWith(x), voxels(0.5e-3)); }},
-      {"a corner, of a shell", [](scenes::Scene&, double x) { buildPointShell(boxWith(x), {}); }},
-      {"a corner, of a body", [](scenes::Scene&, double x) { makePart(boxWith(x)); }},
-      {"voxel size", [](scenes::Scene&, double x) { buildVoxMap(makeBox(kBlock_m), voxels(x)); }},
-      {"band", [](scenes::Scene&, double x) { buildVoxMap(makeBox(kBlock_m), voxels(0.5e-3, x)); }},
+      {"a corner, of a map", [](Scene&, double x) { buildVoxMap(boxWith(x), voxels(0.5e-3)); }},
+      {"a corner, of a shell", [](Scene&, double x) { buildPointShell(boxWith(x), {}); }},
+      {"a corner, of a body", [](Scene&, double x) { makePart(boxWith(x)); }},
+      {"voxel size", [](Scene&, double x) { buildVoxMap(makeBox(kBlock_m), voxels(x)); }},
+      {"band", [](Scene&, double x) { buildVoxMap(makeBox(kBlock_m), voxels(0.5e-3, x)); }},
       {"point spacing",
-       [](scenes::Scene&, double x) {
+       [](Scene&, double x) {
          buildPointShell(makeBox(kBlock_m), {x, 0.35});
        }},
-      {"density", [](scenes::Scene&, double x) { makePart(makeBox(kBlock_m), x); }},
+      {"density", [](Scene&, double x) { makePart(makeBox(kBlock_m), x); }},
       {"pose of a shape's models",
-       [](scenes::Scene& s, double x) {
-         bullet::Shape(shapeOf(s).models(), Pose::translation(Vec3(0, x, 0)));
-       }},
+       [](Scene& s, double x) { bullet::Shape(shapeOf(s).models(), Pose::translation(Vec3(0, x, 0))); }},
       {"scale of a shape",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          shapeOf(s).setLocalScaling(btVector3(bullet::toBt(x), bullet::toBt(x), bullet::toBt(x)));
        }},
-      {"margin of a shape", [](scenes::Scene& s, double x) { shapeOf(s).setMargin(bullet::toBt(x)); }},
+      {"margin of a shape", [](Scene& s, double x) { shapeOf(s).setMargin(bullet::toBt(x)); }},
       {"mass for an inertia",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          btVector3 inertia;
          shapeOf(s).calculateLocalInertia(bullet::toBt(x), inertia);
        }},
       {"stiffness of contact",
-       [](scenes::Scene& s, double x) { install(s, &bullet::Settings::stiffness_N_per_m3, x); }},
-      {"slack of contact",
-       [](scenes::Scene& s, double x) { install(s, &bullet::Settings::contact_margin_m, x); }},
+       [](Scene& s, double x) { install(s, &bullet::Settings::stiffness_N_per_m3, x); }},
+      {"slack of contact", [](Scene& s, double x) { install(s, &bullet::Settings::contact_margin_m, x); }},
       {"spring of a coupling",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          CouplingGains gains;
          gains.k_N_per_m = x;
          couple(s, gains);
        }},
       {"damper of a coupling",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          CouplingGains gains;
          gains.b_Nms_per_rad = x;
          couple(s, gains);
        }},
       {"greatest force of a coupling",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          CouplingGains gains;
          gains.max_force_N = x;
          couple(s, gains);
        }},
-      {"target of a coupling", [](scenes::Scene& s, double x) { couple(s, {}, x); }},
+      {"target of a coupling", [](Scene& s, double x) { couple(s, {}, x); }},
       {"velocity of a body",
-       [](scenes::Scene& s, double x) { s.bad.body->setLinearVelocity(btVector3(0, bullet::toBt(x), 0)); }},
+       [](Scene& s, double x) { s.bad.body->setLinearVelocity(btVector3(0, bullet::toBt(x), 0)); }},
       {"spin of a body",
-       [](scenes::Scene& s, double x) { s.bad.body->setAngularVelocity(btVector3(0, bullet::toBt(x), 0)); }},
+       [](Scene& s, double x) { s.bad.body->setAngularVelocity(btVector3(0, bullet::toBt(x), 0)); }},
       {"place of a body",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          btTransform X = s.bad.body->getWorldTransform();
          X.getOrigin().setY(bullet::toBt(x));
          s.bad.body->setWorldTransform(X);
        }},
       {"force on a body",
-       [](scenes::Scene& s, double x) { s.bad.body->applyCentralForce(btVector3(bullet::toBt(x), 0, 0)); }},
+       [](Scene& s, double x) { s.bad.body->applyCentralForce(btVector3(bullet::toBt(x), 0, 0)); }},
       {"torque on a body",
-       [](scenes::Scene& s, double x) { s.bad.body->applyTorque(btVector3(bullet::toBt(x), 0, 0)); }},
-      {"friction of a body", [](scenes::Scene& s, double x) { s.bad.body->setFriction(bullet::toBt(x)); }},
-      {"restitution of a body",
-       [](scenes::Scene& s, double x) { s.bad.body->setRestitution(bullet::toBt(x)); }},
+       [](Scene& s, double x) { s.bad.body->applyTorque(btVector3(bullet::toBt(x), 0, 0)); }},
+      {"friction of a body", [](Scene& s, double x) { s.bad.body->setFriction(bullet::toBt(x)); }},
+      {"restitution of a body", [](Scene& s, double x) { s.bad.body->setRestitution(bullet::toBt(x)); }},
       {"mass of a body",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          s.bad.body->setMassProps(bullet::toBt(x),
                                   btVector3(bullet::toBt(1e-6), bullet::toBt(1e-6), bullet::toBt(1e-6)));
        }},
       {"inertia of a body",
-       [](scenes::Scene& s, double x) {
+       [](Scene& s, double x) {
          s.bad.body->setMassProps(bullet::toBt(0.02),
                                   btVector3(bullet::toBt(x), bullet::toBt(1e-6), bullet::toBt(1e-6)));
          s.bad.body->updateInertiaTensor();
        }},
       {"damping of a body",
-       [](scenes::Scene& s, double x) { s.bad.body->setDamping(bullet::toBt(x), bullet::toBt(x)); }},
+       [](Scene& s, double x) { s.bad.body->setDamping(bullet::toBt(x), bullet::toBt(x)); }},
   };
   return all;
 }
@@ -154,7 +150,7 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   const Placed neighbour = world.add(part, Pose::translation(Vec3(40e-3, 0, 5e-3)));
   double dt_s = 1e-3;
   // A mesh of its own: engines share shapes.
-  scenes::Scene scene{world, world.add(block(), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
+  Scene scene{world, world.add(block(), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
   world.step(5);
   const Pose before = neighbour.pose();
   try {

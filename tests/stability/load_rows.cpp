@@ -32,7 +32,7 @@ Judgement stack(Mode mode, double light_kg, double heavy_kg) {
   const Placed heavy = world.add(heavy_part, Pose::translation(Vec3(1e-3, 0.5e-3, 15.1e-3)));
   Judgement judgement;
   const Watched watched = watch(world, {floor, light, heavy}, {.steps = 800});
-  const double weight_N = (light_kg + heavy_kg) * device::kGravity_m_s2;
+  const double weight_N = (light_kg + heavy_kg) * kGravity_m_s2;
   // Its centre is off by e: an edge is pressed by 1 + 6 e / side of the mean, 1.5 here.
   judgeRun(judgement, watched, weight_N, 1.5 * sunk_m(mode, weight_N, 19e-3 * 14.5e-3), 1e-3);
   judgeRest(judgement, watched, 1e-3);
@@ -83,10 +83,10 @@ Judgement restOnSprings(Mode mode, double k_N_per_m, double sunk_wanted_m) {
   World world = makeWorld(mode, settings);
   const double weight_N = k_N_per_m * sunk_wanted_m;
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
-  const PartMesh part = dynamics::withMass(block(), weight_N / device::kGravity_m_s2);
+  const PartMesh part = dynamics::withMass(block(), weight_N / kGravity_m_s2);
   const Placed lying = world.add(part, Pose::translation(Vec3(0, 0, 5e-3)));
   // Implicit steps of dt take w^2 dt / 2 of a swing's speed each second, w^2 = g / depth: 20 of that.
-  const double rest_s = std::max(0.5, 20 * 2 * sunk_wanted_m / (device::kGravity_m_s2 * 1e-3));
+  const double rest_s = std::max(0.5, 20 * 2 * sunk_wanted_m / (kGravity_m_s2 * 1e-3));
   const Watched watched = watch(world, {floor, lying}, {.steps = static_cast<int>(rest_s / 1e-3)});
   const double sunk_m = 5e-3 - lying.pose().p.z();
   Judgement judgement;
@@ -134,7 +134,7 @@ Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   const double w2 = k_N_per_m / part.part.frame.mass_kg;
   const int steps = std::clamp(static_cast<int>(40 / (w2 * 1e-6)), 500, 20'000);
   const Watched watched = watch(world, {floor, part}, {.steps = steps});
-  const double pull_N = k_N_per_m * deep_m + part.part.frame.mass_kg * device::kGravity_m_s2;
+  const double pull_N = k_N_per_m * deep_m + part.part.frame.mass_kg * kGravity_m_s2;
   const double sunk = sunk_m(mode, pull_N, kBlock_m.x() * kBlock_m.y());
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
@@ -156,14 +156,14 @@ Judgement pressDeep(const Run& run) {
 Judgement slideDown(const Run& run) {
   constexpr double slope_rad = 20 * M_PI / 180;
   World world = makeWorld(run.mode);
-  world.setGravity(device::kGravity_m_s2 * Vec3(std::sin(slope_rad), 0, -std::cos(slope_rad)));
+  world.setGravity(kGravity_m_s2 * Vec3(std::sin(slope_rad), 0, -std::cos(slope_rad)));
   const Placed floor = world.add(plate(0.2), Pose::translation(Vec3(0.06, 0, -5e-3)), true, run.value);
   const Placed part = world.add(block(), Pose::translation(Vec3(0, 0, 5e-3)), false, run.value);
   const Watched watched = watch(world, {floor, part}, {.steps = 200});
   const double net_m_s2 =
-      device::kGravity_m_s2 * std::max(0.0, std::sin(slope_rad) - run.value * std::cos(slope_rad));
+      kGravity_m_s2 * std::max(0.0, std::sin(slope_rad) - run.value * std::cos(slope_rad));
   Judgement judgement;
-  const double weight_N = part.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, kBlock_m.x() * kBlock_m.y()), 1e-3);
   // Half of a step's share is gained before contact is met; a bristle bends first, by micrometres.
   judgement.atMost("speed off by", std::abs(part.body->getLinearVelocity().x() - net_m_s2 * 0.2),
@@ -201,7 +201,7 @@ Judgement pressFaces(const Run& run) {
   const Placed floor = world.add(part, Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed top = world.add(part, Pose::translation(Vec3(0, 0, 5.1e-3)));
   const Watched watched = watch(world, {floor, top}, {.steps = 100});
-  const double weight_N = top.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = top.part.frame.mass_kg * kGravity_m_s2;
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, side_m * side_m), 1e-3);
   judgeRest(judgement, watched, 1e-3);
@@ -224,7 +224,7 @@ Judgement lidOnPins(const Run& run) {
   const Placed lid = world.add(lid_part, Pose::translation(Vec3(0, 0, 2.5e-3 + 0.1e-3)));
   parts.push_back(lid);
   const Watched watched = watch(world, parts, {.steps = 300, .look_every = 20});
-  const double weight_N = lid.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = lid.part.frame.mass_kg * kGravity_m_s2;
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, count * M_PI * 1e-6), 1e-3);
   judgeRest(judgement, watched, 1e-3);

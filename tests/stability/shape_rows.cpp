@@ -41,7 +41,7 @@ Judgement fallOn(const Run& run, const Mesh& sharp) {
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed part =
       world.add(makePart(sharp), Pose(rotationFromVector(Vec3(0.02, 0.03, 0)), Vec3(0, 0, 1.5e-3)));
-  const double weight_N = part.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
   const Watched watched = watch(world, {floor, part}, {.steps = 1000, .look_every = 2});
   Judgement judgement;
   const double turned_m = watched.fastest_m_s * watched.fastest_m_s * 1e-6 / 10e-3;
@@ -70,7 +70,7 @@ Judgement crossKnives(const Run& run) {
   watching.before_step = [&](int) { lowest_m = std::min(lowest_m, upper.pose().p.z()); };
   const Watched watched = watch(world, {lower, upper}, watching);
   Judgement judgement;
-  const double weight_N = upper.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = upper.part.frame.mass_kg * kGravity_m_s2;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   judgement.atMost("energy gained", watched.gained_J, weight_N * (0.5e-3 + watched.fastest_m_s * 0.5e-3),
                    "J");
@@ -89,7 +89,7 @@ Judgement tower(const Run& run) {
   for (int i = 0; i < static_cast<int>(run.value); ++i)
     parts.push_back(world.add(cube, Pose::translation(Vec3(0, 0, 5e-3 + i * 10e-3))));
   const Watched watched = watch(world, parts, {.steps = 500, .look_every = 20});
-  const double weight_N = run.value * parts[1].part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = run.value * parts[1].part.frame.mass_kg * kGravity_m_s2;
   const double sunk_m = 1e-6 + (run.mode == Mode::Penalty ? 2 * weight_N / (1e12 * 300e-6) : 0);
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, sunk_m, 1e-3);
@@ -147,12 +147,11 @@ Judgement fit(const Run& run) {
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   // Never faster than it would fall; and what leaves an overlap may lift it as fast as that goes.
   const double mass_kg = part.part.frame.mass_kg, duration_s = 0.3;
-  judgement.atMost("speed", watched.fastest_m_s, device::kGravity_m_s2 * duration_s + kLeavingAtMost_m_s,
-                   "m/s");
-  judgement.atMost("energy gained", watched.gained_J,
-                   mass_kg * (kLeavingAtMost_m_s * kLeavingAtMost_m_s / 2 +
-                              device::kGravity_m_s2 * kLeaving_m_s * duration_s),
-                   "J");
+  judgement.atMost("speed", watched.fastest_m_s, kGravity_m_s2 * duration_s + kLeavingAtMost_m_s, "m/s");
+  judgement.atMost(
+      "energy gained", watched.gained_J,
+      mass_kg * (kLeavingAtMost_m_s * kLeavingAtMost_m_s / 2 + kGravity_m_s2 * kLeaving_m_s * duration_s),
+      "J");
   judgement.note("went down " + toText(-10e-3 - part.pose().p.z()) + " m");
   return judgement;
 }
@@ -162,19 +161,19 @@ Judgement fit(const Run& run) {
 Judgement slideInBore(const Run& run) {
   const double length_m = run.value * 2 * kPeg_m;
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
-  world.setGravity(Vec3(0.1 * device::kGravity_m_s2, 0, -device::kGravity_m_s2));
+  world.setGravity(Vec3(0.1 * kGravity_m_s2, 0, -kGravity_m_s2));
   const Placed bore = world.add(bored(kPeg_m + 5e-6, length_m), Pose(), true, 0);
   const PartMesh rod = makePart(test::lathe({{0, 0}, {kPeg_m, 0}, {kPeg_m, length_m}, {0, length_m}}, 128));
   const Placed part = world.add(rod, Pose::translation(Vec3(0, 0, -length_m)), false, 0);
   const int steps = 50;
   const Watched watched = watch(world, {bore, part}, {.steps = steps, .look_every = 10});
-  const double weight_N = part.part.frame.mass_kg * device::kGravity_m_s2;
+  const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
   // Half the rod's length of bore, a tenth of its breadth: what carries on springs.
   const double sunk_m =
       2e-6 + (run.mode == Mode::Penalty ? 2 * 0.1 * weight_N / (1e12 * length_m * 1e-3) : 0);
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, sunk_m, 1e-3);
-  const double fallen_m_s = device::kGravity_m_s2 * steps * 1e-3;
+  const double fallen_m_s = kGravity_m_s2 * steps * 1e-3;
   judgement.atMost("speed off by", std::abs(part.body->getLinearVelocity().z() + fallen_m_s),
                    0.01 * fallen_m_s, "m/s");
   return judgement;

@@ -8,8 +8,8 @@
 
 namespace vps::bullet {
 
-// A program that mixes Bullet's precisions crashes in silence; this makes it a compile error. The define
-// comes with the imported target vps_external::bullet (plugin/cmake/VpsFindBullet.cmake).
+// A program that mixes Bullet's precisions crashes without a message; this makes it a compile error. The
+// define comes with the imported target vps_external::bullet (plugin/cmake/VpsFindBullet.cmake).
 #ifdef VPS_BULLET_DOUBLE
 static_assert(sizeof(btScalar) == 8,
               "vps was configured for double-precision Bullet; these headers are float");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling's physics side: proxy and part joined by a spring-damper that is solved with the
+// The virtual coupling in physics: a spring-damper between proxy and part that is solved together with the
 // contacts.
 #pragma once
 
@@ -14,31 +14,30 @@ class btRigidBody;
 namespace vps::bullet {
 
 /// A 6-DOF spring-damper between a target (the device's proxy at the end of the step) and a point of a
-/// dynamic body. Implicit: the wrench is that of the law at the end of the step, found together with the
-/// contact impulses, so it is stable for any gains and a part that stands still feels exactly
-/// couplingWrench(). The spring's part of force and of torque is limited separately, keeping its direction.
+/// dynamic body. Implicit: the wrench is that of the coupling law at the end of the step, solved together
+/// with the contact impulses. So it is stable for any gains, and on a part at rest it equals
+/// couplingWrench(). The spring's force and torque are limited separately, keeping their directions.
 ///
-/// Zero solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
-/// world.addConstraint(&coupling, true): `true` also tells the contact filter to look at the coupling's pull.
-/// Same inputs give the same bits: no state passes from step to step.
+/// It has no solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
+/// world.addConstraint(&coupling, true): with `true` the contact query includes the coupling's pull in its
+/// prediction. Equal inputs give equal bits: no state is kept from step to step.
 class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// @param X_BG  the grasp frame G in the part's body frame.
-  /// Without setTarget() the coupling is open (no wrench). Throws std::invalid_argument for a body without
-  /// mass, or gains that are negative or not finite.
+  /// @param X_BG  the grasp frame G in the part's body frame. Until setTarget() the coupling is open (no
+  /// wrench). Throws std::invalid_argument for a body without mass, or gains that are negative or not finite.
   CouplingConstraint(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains);
-  /// Follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. The proxy no longer
-  /// collides (CF_NO_CONTACT_RESPONSE is set on it). Throws std::invalid_argument also for a proxy that is
-  /// not kinematic or static.
+  /// The target follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. Sets
+  /// CF_NO_CONTACT_RESPONSE on the proxy, so that it does not collide. Throws std::invalid_argument also for
+  /// a proxy that is not kinematic or static.
   CouplingConstraint(btRigidBody& proxy, const Pose& X_AG, btRigidBody& part, const Pose& X_BG,
                      const CouplingGains& gains);
 
-  /// The proxy's grasp frame at the END of the coming step, in W, and its velocity. Held until the next call.
-  /// Not finite or not is_coupled: the coupling is open. Takes precedence over the proxy body.
+  /// The proxy's grasp frame at the END of the coming step, in W, and its velocity; valid until the next
+  /// call. If it is not finite or not is_coupled, the coupling is open. Takes precedence over the proxy body.
   void setTarget(const CouplingState& target);
-  /// Lets go: no wrench until the next setTarget.
+  /// Opens the coupling: no wrench until the next setTarget.
   void release();
   void setGains(const CouplingGains& gains);
   [[nodiscard]] const CouplingGains& gains() const { return gains_; }
@@ -46,16 +45,16 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
 
   /// The part's grasp frame now, in W; time_s is the target's.
   [[nodiscard]] CouplingState partState() const;
-  /// Wrench of the last step on the part about its grasp point (where it was at the start of the step), in W:
-  /// accumulated impulse / dt.
+  /// Wrench of the last step on the part about its grasp point (as at the start of the step), in W: impulse /
+  /// dt.
   [[nodiscard]] const Wrench& wrench() const { return F_PG_W_; }
-  /// What the coupling alone would make of the part's velocity (about the body's origin, in W) in a step:
-  /// used by the contact filter to see how far points can come.
+  /// Velocity (about the body's origin, in W) that the coupling alone would add to the part in a step. The
+  /// contact query predicts with it how far points can move.
   [[nodiscard]] Twist freeVelocity(double dt_s) const;
 
-  /// Why this coupling would not act with that solver, or nullptr when it does: only solvers that call
-  /// solveConstraintObsolete (btSequentialImpulseConstraintSolver and our Solver) do.
-  [[nodiscard]] static const char* whyUnsupported(const btConstraintSolver& solver);
+  /// Reason why the coupling has no effect with that solver; nullptr if it has. It needs a solver that calls
+  /// solveConstraintObsolete: btSequentialImpulseConstraintSolver or bullet::Solver.
+  [[nodiscard]] static const char* unsupportedReason(const btConstraintSolver& solver);
 
   void buildJacobian() override;
   void getInfo1(btConstraintInfo1* info) override;
@@ -69,16 +68,16 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
   using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; at the grasp point, in W
   using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-  /// What stays the same during a step.
+  /// Constants of a step.
   struct Step {
     bool is_open = true;
     double dt_s = 0;
     Vec3 r_W = Vec3::Zero();  ///< from the body's origin to the grasp point
-    Vec6 error, V_target;     ///< pose error now and target velocity
+    Vec6 error, V_target;     ///< present pose error and target velocity
     Mat6 A;                   ///< inverse inertia seen at the grasp point
   };
-  /// impulse = c - D V, V the part's grasp velocity at the end of the step. `limited`: bit 0 torque, bit 1
-  /// force.
+  /// impulse = c - D V, with the part's grasp velocity V at the end of the step. Bits of `limited`: 0 torque,
+  /// 1 force.
   struct Law {
     Vec6 c, D;
     int limited = 0;
@@ -86,7 +85,7 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
 
   [[nodiscard]] CouplingState currentTarget() const;
   [[nodiscard]] Step makeStep(double dt_s) const;
-  /// The law with the springs' limits as they act at V_G; with `unlimited` as if there were none.
+  /// The law with the limits of the springs as they act at V_G; with `unlimited` without limits.
   [[nodiscard]] Law lawAt(const Step& step, const Vec6& V_G, bool unlimited = false) const;
   /// The impulse that satisfies the law, given the velocity the grasp point would have without it.
   [[nodiscard]] Vec6 solveImpulse(const Step& step, const Vec6& V_without) const;

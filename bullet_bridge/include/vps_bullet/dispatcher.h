@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A dispatcher that looks at many pairs of parts at once.
+// A dispatcher that processes many pairs of parts in parallel.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -10,11 +10,11 @@
 
 namespace vps::bullet {
 
-/// Drop-in for btCollisionDispatcher: before Bullet goes through the pairs one by one, the contacts of those
-/// of two bodies with VpsAlgorithms are chosen by several threads. The same bits as with the stock
-/// dispatcher, for any number of threads, and nothing in Bullet need be thread-safe: manifolds and callbacks
-/// are served in Bullet's own order, by the calling thread. A pair that is new in this step, and children of
-/// compounds, wait for their turn.
+/// Drop-in for btCollisionDispatcher: several threads find the contacts of all pairs with VPS contact before
+/// Bullet visits the pairs one by one. Results have the same bits as with the stock dispatcher, for any
+/// number of threads, and nothing in Bullet needs to be thread-safe: manifolds and callbacks are processed by
+/// the calling thread, in Bullet's own order. Pairs that are new in this step, and children of compounds, are
+/// computed at their turn.
 class VPS_BULLET_API Dispatcher : public btCollisionDispatcher {
  public:
   /// @param threads  at least 1; 0: one for each core

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part as a Bullet collision shape: voxmap and pointshell for contact, triangles for rays and pictures.
+// A part as a Bullet collision shape: voxmap and pointshell for contact, triangles for rays and debug
+// drawing.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
@@ -19,14 +20,14 @@
 
 namespace vps::bullet {
 
-/// A body's mass and the frame Bullet wants it in: origin at the centre of mass, axes principal.
+/// A body's mass, and the frame that Bullet requires: origin at the centre of mass, principal axes.
 struct BodyFrame {
   double mass_kg = 0;
   Vec3 inertia_kg_m2 = Vec3::Zero();  ///< principal moments, about the axes of B
   Pose X_PB;                          ///< body frame in the part's frame
 };
 
-/// Throws LoadError for a volume or density that is not positive (an open or inside-out mesh gives such).
+/// Throws LoadError for a volume or density that is not positive, as an open or inside-out mesh has.
 VPS_BULLET_API BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
 
 class SheetBorder;
@@ -35,30 +36,30 @@ class SheetBorder;
 struct Surface {
   std::shared_ptr<const MeshDistance> distance;
   Pose X_MP;
-  /// Of an open surface without an inside, met on the side that a point faces; null for a solid.
+  /// For an open surface without an inside, where a point meets the side that it faces; null for a solid.
   std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
-/// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against
-/// its surfaces (exact, and slower), or, if there are none, cannot be; without a shell it cannot be tested
-/// against others, without triangles rays miss it.
+/// A shape's models, all in one frame M. Any may be missing. Without a map, points of other shapes are tested
+/// against the surfaces (exact, but slower), or, without surfaces, not at all. Without a shell, the shape's
+/// own points are not tested against others. Without triangles, rays miss it.
 struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Mesh> mesh;
   /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts;
-  /// these correct the distance and normal of the few that reach the solver, which removes the field's
-  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: the field's word is taken.
+  /// the surfaces refine the distance and normal of the few that reach the solver, which removes the field's
+  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: contacts have the field's values.
   std::vector<Surface> surfaces;
 };
 
 /// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
 VPS_BULLET_API ShapeModels makeModels(const Part& part);
 
-/// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
-/// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;
-/// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. May be dynamic, unlike Bullet's mesh
-/// shapes. Shared by any number of bodies, and bound to no dispatcher: may outlive them all. Its margin is 0.
+/// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. Bullet itself does not use that type; it is concave for
+/// ray and sweep tests, and without a registered algorithm falls back to convex against triangles.
+/// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. Unlike Bullet's mesh shapes it may be
+/// dynamic. Any number of bodies may share it, and it may outlive every dispatcher. Its margin is 0.
 class VPS_BULLET_API Shape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -69,22 +70,22 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   explicit Shape(ShapeModels models, const Pose& X_SM = {});
   ~Shape() override;
 
-  /// Replaces the models (a cooked body that got one more part). Only between steps; if the box grew, follow
-  /// it with btCollisionWorld::updateSingleAabb for each static body of this shape. They are scaled as the
-  /// shape is. Throws as the constructor; the shape then is as it was.
+  /// Replaces the models, for example of a merged body that received one more part; the shape's scale applies
+  /// to them. Only between steps. If the bounding box grew, call btCollisionWorld::updateSingleAabb for each
+  /// static body of this shape. Throws as the constructor; the shape is then unchanged.
   void setModels(ShapeModels models);
   /// The models in use, scaled.
   [[nodiscard]] const ShapeModels& models() const { return models_; }
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
-  /// Grows with every change of the models, so that nobody keeps an impulse of a point that is gone.
+  /// Increases with every change of the models; point ids are valid for one revision.
   [[nodiscard]] unsigned revision() const { return revision_; }
-  /// True for a shell point that stands on a sharp edge or corner of the surfaces, where the part has no one
-  /// normal. False for all when there are no surfaces to tell by.
+  /// True for a shell point on a sharp edge or corner of the surfaces, where the part has no unique normal.
+  /// False for all points if there are no surfaces.
   [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
     return !is_edge_point_.empty() && is_edge_point_[id];
   }
-  /// Inward unit normal of a shell point on a face, of the curved surface that the facets stand for, in the
-  /// models' frame. The shell's own where there are no surfaces to tell by, and on edges.
+  /// Inward unit normal at a shell point on a face, of the curved surface that the facets approximate, in the
+  /// models' frame. On edges, and without surfaces, the shell's own normal.
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
@@ -93,39 +94,39 @@ class VPS_BULLET_API Shape : public btConcaveShape {
     std::uint32_t surface = 0;  ///< index of ShapeModels::surfaces
     std::uint32_t triangle = 0;
   };
-  /// Of a point that isEdgePoint() denies, where there are surfaces.
+  /// Requires surfaces and a point on a face: !isEdgePoint(id).
   [[nodiscard]] PointFace faceAt(std::uint32_t id) const { return face_at_[id]; }
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
-  /// The sharp edges that a shell point stands on, as indices of edges().segments(): one, more at corners and
-  /// joints, none on faces.
+  /// The sharp edges on which a shell point lies, as indices of edges().segments(): one, several at corners
+  /// and ends of segments, none on faces.
   [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t id) const {
     if (first_edge_.empty()) return {};
     return std::span(edges_at_).subspan(first_edge_[id], first_edge_[id + 1] - first_edge_[id]);
   }
-  /// Box of all models in the shape's frame.
+  /// Bounding box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
   void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
-  /// Of the solid mesh about the shape's origin, its diagonal (exact when X_SM comes from makeBodyFrame); of
-  /// the box where there is no closed mesh. Zero for a mass of zero, which is Bullet's way to say fixed.
-  /// Throws std::invalid_argument for a mass that is negative or not finite.
+  /// Diagonal of the inertia of the solid mesh about the shape's origin (exact if X_SM comes from
+  /// makeBodyFrame); of the bounding box if there is no closed mesh. Zero for a mass of zero, Bullet's
+  /// convention for fixed bodies. Throws std::invalid_argument for a mass that is negative or not finite.
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                            const btVector3& max) const override;
-  /// Makes the part larger or smaller about the shape's origin, for all bodies of this shape, with the price
-  /// of building its models again. Only between steps; follow it with btCollisionWorld::updateSingleAabb, and
-  /// with setMassProps: Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not
-  /// positive, finite and even in x, y and z (a field of distances stays one only so), and for models with a
-  /// map but without surfaces or a mesh; the shape then is as it was.
+  /// Scales the part about the shape's origin, for all bodies of this shape. Costs as much as building its
+  /// models. Only between steps; afterwards call btCollisionWorld::updateSingleAabb, and setMassProps, since
+  /// Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not positive, finite and
+  /// equal in x, y and z (otherwise the field would no longer hold distances), and for models with a map but
+  /// without surfaces or a mesh; the shape is then unchanged.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override { return scaling_; }
-  /// Has no effect, and says so once if it should have one: contact is that of the part's surface.
+  /// Has no effect, since contact is at the part's surface; a margin other than 0 is reported once on stderr.
   /// Throws std::invalid_argument for a margin that is negative or not a number.
   void setMargin(btScalar margin) override;
   btScalar getMargin() const override { return 0; }
   const char* getName() const override { return "Shape"; }
-  /// Throws std::invalid_argument: Bullet's importer has no reader for a voxmap, and would fail later.
+  /// Throws std::invalid_argument: Bullet's importer cannot read a voxmap.
   [[nodiscard]] int calculateSerializeBufferSize() const override;
 
  private:
@@ -141,7 +142,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;  // by point
   EdgeSet edges_;
-  std::vector<std::uint32_t> edges_at_, first_edge_;  // edges_at_[first_edge_[id]] ... are those of a point
+  std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]
   std::unique_ptr<const TriangleTree> triangles_;
 };
 

@@ -11,16 +11,20 @@
 namespace vps::bullet {
 
 struct SolverSettings {
-  double residual_m_s = 1e-7;  ///< stop when no contact's velocity changes by more
-  /// Sweeps over rigid contacts, a step of Newton's method counting as ten; below 40 it is sweeps alone. Of
-  /// compliant contacts: Newton's steps. >= 1
+  double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more
+  /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
+  /// sweeps. For penalty contacts: steps of Newton's method. >= 1
   int iteration_limit = 400;
 };
 
-/// Solves islands of rigid bodies, contacts (rigid or compliant), joints and VpsCouplings, the couplings
-/// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
-/// spinning friction, or bodies with linear or angular factors or no inertia go to the stock solver
-/// unchanged.
+/// Solves islands of rigid bodies, contacts (constraint or penalty), joints and CouplingConstraints; the
+/// couplings become part of the bodies' effective mass (see solver.cpp). Islands with contact stiffness
+/// flags, rolling or spinning friction, or bodies with linear or angular factors or without inertia are
+/// passed to the stock solver unchanged.
+///
+/// Penalty contacts are found through the dispatcher that the world passes to solveGroup(), so the solver
+/// needs no connection of its own. Without install() on that dispatcher, or without a dispatcher, every
+/// contact is the rigid one in its manifold.
 class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -31,18 +35,18 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// What the last island solved by our method took, counted as iteration_limit is; what is left open in the
-  /// end is swept 30 times more.
+  /// Iterations of the last island that this method solved, counted as for iteration_limit. At most 30 final
+  /// sweeps come on top.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
-  /// Whether that came down to the residual, or for parts in motion to 1e-5 of their speed.
-  [[nodiscard]] bool hasSettled() const { return is_settled_; }
+  /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if that is more.
+  [[nodiscard]] bool hasConverged() const { return is_converged_; }
 
  private:
   struct Work;
   SolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
-  bool is_settled_ = true;
+  bool is_converged_ = true;
 };
 
 }  // namespace vps::bullet

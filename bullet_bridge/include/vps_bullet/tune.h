@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bullet's parameters, set for parts of millimetres and grams at 1 kHz; and put back.
+// Sets Bullet's parameters for parts of millimetres and grams at 1 kHz, and restores them.
 #pragma once
 
 #include <LinearMath/btScalar.h>
@@ -15,34 +15,34 @@ class btRigidBody;
 
 namespace vps::bullet {
 
-/// What tuneWorld changed, for its reader and for restoreWorld.
+/// What tuneWorld changed, as text and as input for restoreWorld.
 struct WorldTuning {
-  /// A line for each: "split impulse threshold [m]: -0.04 -> 0".
+  /// One line for each parameter: "split impulse threshold [m]: -0.04 -> 0".
   std::vector<std::string> changes;
   [[nodiscard]] bool empty() const { return changes.empty(); }
 
   /// Values before and after, by parameter.
   std::vector<std::pair<double, double>> values;
-  /// Bodies that got tuneBody()'s thresholds. Only compared, so that they may be gone.
+  /// Bodies that received tuneBody()'s thresholds. Only their addresses are compared; they may be gone.
   std::vector<const btRigidBody*> bodies;
 };
 
-/// Sets a world's parameters to what contact at part scale needs; the reasons stand beside each in tune.cpp.
-/// Also tuneBody() for the bodies in it that have Bullet's own sleeping thresholds: call it when they are
-/// added. One parameter, the broadphase's margin, is the whole process's.
-/// Throws std::invalid_argument for fewer than one iteration.
+/// Sets a world's parameters to what contact at part scale needs; tune.cpp gives the reason for each.
+/// Also calls tuneBody() for the bodies of the world that have Bullet's default sleeping thresholds, so call
+/// it after they are added. One parameter, the margin of the broadphase, applies to the whole process. Throws
+/// std::invalid_argument for fewer than one iteration.
 VPS_BULLET_API WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations = 100);
 
-/// Puts back what tuneWorld changed, where it still is as tuneWorld set it.
+/// Restores what tuneWorld changed, except for values that have been changed again since.
 VPS_BULLET_API void restoreWorld(btDiscreteDynamicsWorld& world, const WorldTuning& tuning);
 
-/// Below these a body that keeps still for two seconds (Bullet's gDeactivationTime) may fall asleep. Bullet's
-/// 0.8 m/s and 1 rad/s stop a part that slides at 0.1 m/s. At 1 mm/s a body has the energy of 0.05 um of
-/// height; 0.1 rad/s is that speed at 10 mm.
+/// A body that stays below both speeds for two seconds (Bullet's gDeactivationTime) may fall asleep. Bullet's
+/// defaults, 0.8 m/s and 1 rad/s, stop a part that slides at 0.1 m/s. At 1 mm/s a body has the energy of
+/// 0.05 um of height; 0.1 rad/s is that speed at a radius of 10 mm.
 inline constexpr double kSleepSpeed_m_s = 1e-3;
 inline constexpr double kSleepSpin_rad_s = 0.1;
 
-/// Sets a body's sleeping thresholds to those.
+/// Sets a body's sleeping thresholds to kSleepSpeed_m_s and kSleepSpin_rad_s.
 VPS_BULLET_API void tuneBody(btRigidBody& body);
 
 }  // namespace vps::bullet

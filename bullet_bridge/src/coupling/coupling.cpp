@@ -15,7 +15,7 @@ namespace vps::bullet {
 
 namespace {
 
-// Bullet casts by this type when it draws or saves; one that it does not know keeps it from doing so.
+// Bullet casts by type when it draws or saves a constraint; it ignores a type that it does not know.
 constexpr btTypedConstraintType kNoStockType = MAX_CONSTRAINT_TYPE;
 
 void requireDynamic(const btRigidBody& part) {
@@ -45,7 +45,7 @@ CouplingConstraint::CouplingConstraint(btRigidBody& proxy, const Pose& X_AG, btR
   if (!proxy.isStaticOrKinematicObject())
     throw std::invalid_argument(
         "CouplingConstraint: the proxy must be kinematic; set CF_KINEMATIC_OBJECT on it");
-  // It stands for the hand, which goes where walls stop the part; only the part collides.
+  // The proxy represents the hand, which may move where walls stop the part; only the part collides.
   proxy.setCollisionFlags(proxy.getCollisionFlags() | btCollisionObject::CF_NO_CONTACT_RESPONSE);
   setGains(gains);
 }
@@ -113,9 +113,9 @@ CouplingConstraint::Step CouplingConstraint::makeStep(double dt_s) const {
 }
 
 CouplingConstraint::Law CouplingConstraint::lawAt(const Step& step, const Vec6& V_G, bool unlimited) const {
-  // At the end of the step the error is e - dt V (the target is already that of the end), so the law gives
+  // At the end of the step the error is e - dt V (the target is that of the end), so the law gives
   //   impulse = dt k (e - dt V) + dt b (V_target - V)
-  // with the first term, the spring, cut to its limit.
+  // where the first term, the spring, is limited.
   Law law;
   const double dt = step.dt_s;
   const double k[2] = {gains_.k_Nm_per_rad, gains_.k_N_per_m},
@@ -135,8 +135,8 @@ CouplingConstraint::Law CouplingConstraint::lawAt(const Step& step, const Vec6& 
 }
 
 CouplingConstraint::Vec6 CouplingConstraint::solveImpulse(const Step& step, const Vec6& V_without) const {
-  // V = V_without + A (c - D V). A limit makes the law depend on V; its direction settles in a few rounds,
-  // and a fixed number of them keeps the cost bounded.
+  // V = V_without + A (c - D V). With a limit the law depends on V; its direction converges in a few rounds,
+  // and their fixed number bounds the cost.
   constexpr int kRounds = 4;  // assumed; the direction turns by less than dt * velocity / error a round
   Law law = lawAt(step, V_without, true);
   Vec6 V;
@@ -165,7 +165,7 @@ Twist CouplingConstraint::freeVelocity(double dt_s) const {
           part_.getInvMass() * Vec3(impulse.tail<3>())};
 }
 
-const char* CouplingConstraint::whyUnsupported(const btConstraintSolver& solver) {
+const char* CouplingConstraint::unsupportedReason(const btConstraintSolver& solver) {
   if (solver.getSolverType() == BT_SEQUENTIAL_IMPULSE_SOLVER) return nullptr;
   return "CouplingConstraint needs btSequentialImpulseConstraintSolver or Solver: this solver never calls "
          "solveConstraintObsolete, so the coupling would give no force";
@@ -208,7 +208,7 @@ void CouplingConstraint::solveConstraintObsolete(btSolverBody& part, btSolverBod
   part.internalApplyImpulse(force * part_.getInvMass(), part_.getInvInertiaTensorWorld() * torque, 1);
 }
 
-// Gains are set by setGains; Bullet's numbered parameters (ERP, CFM) have no meaning here.
+// Gains are set by setGains(); Bullet's numbered parameters (ERP, CFM) have no effect.
 void CouplingConstraint::setParam(int, btScalar, int) {}
 btScalar CouplingConstraint::getParam(int, int) const {
   return 0;

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// install(): the create function that Bullet calls for each new pair with a Shape.
+//
+// An installation lives in a map keyed by dispatcher, behind a mutex: a dispatcher neither owns the create
+// functions in its table nor has a user pointer, yet install(), uninstall() and stats() are given nothing
+// else. No step reads the map; pairs share their Context, and the solver finds the create function in the
+// dispatcher's table (penalty_contacts.h).
 #include "vps_bullet/install.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -14,30 +20,19 @@
 #include <set>
 #include <stdexcept>
 
-#include "install/context.h"
-#include "native_shapes/native_shape_algorithm.h"
+#include "narrowphase/contact_algorithm.h"
+#include "narrowphase/context.h"
+#include "narrowphase/native_shape_algorithm.h"
+#include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
-#include "vps_bullet/algorithm.h"
+#include "solver/dispatch_table.h"
+#include "solver/penalty_contacts.h"
 
 namespace vps::bullet {
 
 namespace {
 
-constexpr int kVps = FAST_CONCAVE_MESH_PROXYTYPE;
-
-// A dispatcher's tables, which it fills by public calls and lets only its heirs read.
-struct Tables : btCollisionDispatcher {
-  using Table =
-      btCollisionAlgorithmCreateFunc* [MAX_BROADPHASE_COLLISION_TYPES][MAX_BROADPHASE_COLLISION_TYPES];
-  static const Table& contact(const btCollisionDispatcher& d) {
-    return d.*(&Tables::m_doubleDispatchContactPoints);
-  }
-  static const Table& closest(const btCollisionDispatcher& d) {
-    return d.*(&Tables::m_doubleDispatchClosestPoints);
-  }
-};
-
-const Shape* vpsOf(const btCollisionObjectWrapper& body) {
+const Shape* shapeOf(const btCollisionObjectWrapper& body) {
   return dynamic_cast<const Shape*>(body.getCollisionShape());
 }
 
@@ -45,26 +40,29 @@ bool hasSurface(const Shape& shape) {
   return shape.models().map || !shape.models().surfaces.empty();
 }
 
-// One side's points, the other's surface. Without either a pair would do nothing in silence.
+// Contact needs the points of one side and the surface of the other. A pair without them would do nothing,
+// silently.
 void requireContact(bool is_possible) {
   if (!is_possible)
     throw std::invalid_argument(
-        "a Shape's models cannot touch what it met: one side needs a shell, the other a map or surfaces");
+        "a Shape's models allow no contact with this shape: one side needs a shell, the other a map or "
+        "surfaces");
 }
 
-template <typename Algorithm, typename... Arguments>
+template <typename ContactAlgorithm, typename... Arguments>
 btCollisionAlgorithm* make(btCollisionAlgorithmConstructionInfo& info, Arguments&&... arguments) {
-  void* room = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(Algorithm));
+  void* room = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
   try {
-    return new (room) Algorithm(info, std::forward<Arguments>(arguments)...);
+    return new (room) ContactAlgorithm(info, std::forward<Arguments>(arguments)...);
   } catch (...) {
     info.m_dispatcher1->freeCollisionAlgorithm(room);
     throw;
   }
 }
 
-// For every pair of a Shape with anything but a compound, whose parts Bullet hands in one by one.
-struct VpsCreate : btCollisionAlgorithmCreateFunc {
+// Called for every pair of a Shape with another shape, except compounds: Bullet passes their children one by
+// one.
+struct CreateFunction : ContactCreateFunction {
   std::shared_ptr<Context> context;
 
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
@@ -72,15 +70,15 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
                                                  const btCollisionObjectWrapper* body1) override {
     const btCollisionObjectWrapper* const bodies[] = {body0, body1};
     for (const btCollisionObjectWrapper* body : bodies)
-      if (vpsOf(*body)) hintAtSleep(*body->getCollisionObject());
+      if (shapeOf(*body)) warnOfSleep(*body->getCollisionObject());
     try {
       for (const int side : {0, 1})
-        if (!vpsOf(*bodies[side])) return withNativeShape(info, bodies, side);
-      const Shape &a = *vpsOf(*body0), &b = *vpsOf(*body1);
+        if (!shapeOf(*bodies[side])) return withNativeShape(info, bodies, side);
+      const Shape &a = *shapeOf(*body0), &b = *shapeOf(*body1);
       requireContact((a.models().shell && hasSurface(b)) || (b.models().shell && hasSurface(a)));
-      return make<Algorithm>(info, body0, body1, context);
-    } catch (const std::exception& why) {  // Bullet's dispatch is no place to throw through
-      say(why.what());
+      return make<ContactAlgorithm>(info, body0, body1, context);
+    } catch (const std::exception& error) {  // Bullet's dispatch is not exception-safe
+      warnOnce(error.what());
       return make<btEmptyAlgorithm>(info);
     }
   }
@@ -89,68 +87,75 @@ struct VpsCreate : btCollisionAlgorithmCreateFunc {
   btCollisionAlgorithm* withNativeShape(btCollisionAlgorithmConstructionInfo& info,
                                         const btCollisionObjectWrapper* const (&bodies)[2], int side) {
     const btCollisionShape& shape = *bodies[side]->getCollisionShape();
-    const Shape* vps = vpsOf(*bodies[1 - side]);
+    const Shape* vps = shapeOf(*bodies[1 - side]);
     if (!vps)
-      throw std::invalid_argument(std::string(shape.getName()) +
-                                  " has the shape type of Shape, which is taken; it does not collide");
+      throw std::invalid_argument(
+          std::string(shape.getName()) +
+          " uses the shape type of bullet::Shape, which is reserved; it does not collide");
     const bool is_smooth = isPrimitive(shape) && !hasCorners(shape);
     requireContact(vps->models().shell || (!is_smooth && hasSurface(*vps)));
-    if (is_smooth) return make<Algorithm>(info, bodies[0], bodies[1], context);
+    if (is_smooth) return make<ContactAlgorithm>(info, bodies[0], bodies[1], context);
     return make<NativeShapeAlgorithm>(info, bodies[0], bodies[1], context, side);
   }
 
-  // A sleeping threshold of 0.8 m/s stops what slides; see tuneBody.
-  void hintAtSleep(const btCollisionObject& object) {
+  // A sleeping threshold of 0.8 m/s stops sliding parts; see tuneBody.
+  void warnOfSleep(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     constexpr double kFast_m_s = 0.1;  // a part that is pushed by hand
     if (!body || body->isStaticOrKinematicObject() || body->getActivationState() == DISABLE_DEACTIVATION ||
         !(body->getLinearSleepingThreshold() > kFast_m_s))
       return;
-    say("a body may fall asleep while it slides at " + std::to_string(body->getLinearSleepingThreshold()) +
-        " m/s; call tuneWorld when all bodies are added, or tuneBody");
+    warnOnce("a body may fall asleep while it slides at " +
+             std::to_string(body->getLinearSleepingThreshold()) +
+             " m/s; call tuneWorld when all bodies are added, or tuneBody");
   }
 
-  // Each thing once; pairs come and go.
-  void say(const std::string& words) {
+  // Once for each message, since pairs are created and destroyed often.
+  void warnOnce(const std::string& message) {
     const std::lock_guard lock(mutex_);
-    if (said_.insert(words).second) std::fprintf(stderr, "vps: %s\n", words.c_str());
+    if (reported_.insert(message).second) std::fprintf(stderr, "vps: %s\n", message.c_str());
   }
   std::mutex mutex_;
-  std::set<std::string> said_;
+  std::set<std::string> reported_;
 };
 
 struct Installation {
   std::shared_ptr<Context> context = std::make_shared<Context>();
-  VpsCreate create;
-  /// What was registered before, contact and closest, by type, in both orders.
+  CreateFunction create;
+  /// The functions registered before, contact and closest, by type, in both orders.
   std::map<std::pair<int, int>, std::pair<btCollisionAlgorithmCreateFunc*, btCollisionAlgorithmCreateFunc*>>
       before;
+
+  Installation() {
+    context->native_shapes = std::make_shared<NativeShapeCache>();
+    context->penalty_contacts = create.penalty_contacts = std::make_shared<PenaltyContacts>();
+    create.context = context;
+  }
 };
 
-// The dispatcher's tables have no room for an owner, so installations are kept here.
 std::mutex g_mutex;
 std::map<const btCollisionDispatcher*, std::unique_ptr<Installation>>& installations() {
   static std::map<const btCollisionDispatcher*, std::unique_ptr<Installation>> all;
   return all;
 }
 
-// A dispatcher that died without uninstall leaves an entry that says nothing about one that has come to
-// lie at its place.
+// A dispatcher that was destroyed without uninstall leaves an entry, which does not apply to another
+// dispatcher that was later created at the same address. So the dispatcher's table decides.
 Installation* find(const btCollisionDispatcher& dispatcher) {
   const auto it = installations().find(&dispatcher);
-  const bool is_there =
-      it != installations().end() && Tables::contact(dispatcher)[kVps][kVps] == &it->second->create;
+  const bool is_there = it != installations().end() &&
+                        DispatchTable::contact(dispatcher)[kShapeType][kShapeType] == &it->second->create;
   return is_there ? it->second.get() : nullptr;
 }
 
 template <typename Visit>
 void forEachPair(const Visit& visit) {
   for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
-    // An empty shape means nothing, compounds are taken apart by Bullet, soft bodies have Bullet's own.
+    // An empty shape has no contact, Bullet splits compounds, and soft bodies use Bullet's own algorithm.
     if (type == EMPTY_SHAPE_PROXYTYPE || type == COMPOUND_SHAPE_PROXYTYPE || type == SOFTBODY_SHAPE_PROXYTYPE)
       continue;
-    visit(kVps, type);
-    if (type != kVps) visit(type, kVps);
+    visit(kShapeType, type);
+    if (type != kShapeType) visit(type, kShapeType);
   }
 }
 
@@ -178,15 +183,14 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
   Installation* installation = find(dispatcher);
   if (!installation) {
     auto fresh = std::make_unique<Installation>();
-    fresh->create.context = fresh->context;
     installation = fresh.get();
     installations()[&dispatcher] = std::move(fresh);
   }
   installation->context->settings = settings;
   btCollisionAlgorithmCreateFunc* create = &installation->create;
   forEachPair([&](int a, int b) {
-    auto* contact = Tables::contact(dispatcher)[a][b];
-    auto* closest = Tables::closest(dispatcher)[a][b];
+    auto* contact = DispatchTable::contact(dispatcher)[a][b];
+    auto* closest = DispatchTable::closest(dispatcher)[a][b];
     if (contact != create) installation->before[{a, b}] = {contact, closest};
     registerBoth(dispatcher, a, b, create, create);
   });
@@ -195,13 +199,13 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
 void uninstall(btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
-  constexpr long kOurs = 2;  // the installation's and its create function's; all others are pairs'
+  constexpr long kOurs = 2;  // references of the installation and its create function; others belong to pairs
   if (installation && installation->context.use_count() > kOurs)
-    std::fprintf(stderr,
-                 "vps: uninstalled while pairs of bodies with VpsShapes exist; they keep VPS contact\n");
+    std::fprintf(
+        stderr, "vps: uninstalled while pairs of bodies with a bullet::Shape exist; they keep VPS contact\n");
   if (installation)
     for (const auto& [types, functions] : installation->before)
-      if (Tables::contact(dispatcher)[types.first][types.second] == &installation->create)
+      if (DispatchTable::contact(dispatcher)[types.first][types.second] == &installation->create)
         registerBoth(dispatcher, types.first, types.second, functions.first, functions.second);
   installations().erase(&dispatcher);
 }
@@ -209,13 +213,6 @@ void uninstall(btCollisionDispatcher& dispatcher) {
 bool isInstalled(const btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   return find(dispatcher) != nullptr;
-}
-
-std::shared_ptr<Context> contextOf(const btDispatcher* dispatcher) {
-  const std::lock_guard lock(g_mutex);
-  if (!dispatcher) return nullptr;
-  const Installation* installation = find(*static_cast<const btCollisionDispatcher*>(dispatcher));
-  return installation ? installation->context : nullptr;
 }
 
 Stats stats(const btCollisionDispatcher& dispatcher) {

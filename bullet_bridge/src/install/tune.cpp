@@ -17,38 +17,39 @@ namespace vps::bullet {
 namespace {
 
 int wantedMode(int mode) {
-  // One friction direction follows the slip only while there is one; and 3.24 keeps a contact's directions,
-  // which we set, only with the caching flag. A random or interleaved order changes with what else is there.
+  // With one friction direction, friction follows the slip only while the part slides. Bullet 3.24 keeps the
+  // friction directions that we set only with the caching flag. In a random or interleaved order the result
+  // would depend on other contacts.
   mode |=
       SOLVER_USE_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_ENABLE_FRICTION_DIRECTION_CACHING;
   return mode & ~(SOLVER_RANDMIZE_ORDER | SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS);
 }
 
-/// Calls visit(value, wanted, name) for every parameter that matters, in a fixed order.
+/// Calls visit(value, wanted, name) for every parameter that tuneWorld sets, in a fixed order.
 /// Bullet's defaults: btContactSolverInfo.h and btDbvtBroadphase.cpp of 3.24; measured: the bridge's tests.
 template <typename Visit>
 void forEachParameter(btDiscreteDynamicsWorld& world, int solver_iterations, const Visit& visit) {
   btContactSolverInfo& info = world.getSolverInfo();
-  // The stock solver's residual falls with them (Bullet: 10); Solver stops by settings of its own.
+  // The stock solver's residual decreases with them (Bullet: 10); bullet::Solver has its own settings.
   visit(info.m_numIterations, solver_iterations, "solver iterations");
-  // Position errors are pushed out without leaving velocity behind, from the first micrometre on: Bullet's
-  // threshold of 40 mm never acts on a part.
+  // Position errors are corrected without adding velocity, from the first micrometre on: Bullet's threshold
+  // of 40 mm is never reached by a part.
   visit(info.m_splitImpulse, 1, "split impulse");
   visit(info.m_splitImpulsePenetrationThreshold, btScalar(0), "split impulse threshold [m]");
-  // What turns a part out of an overlap counts as much as what moves it (Bullet: a tenth).
+  // Overlap is corrected by rotation as much as by translation (Bullet: a tenth).
   visit(info.m_splitImpulseTurnErp, btScalar(1), "split impulse turn erp");
-  // The share of an error that a step takes out: the speed of leaving an overlap. Bullet's own value.
+  // Share of an overlap that is corrected in one step. Bullet's own value.
   visit(info.m_erp2, btScalar(0.2), "contact erp");
-  // An overlap that is left alone, and a softness of contact, each are a part sunk by so much.
+  // Both a tolerated overlap and a compliance of contacts let a part sink by that much.
   visit(info.m_linearSlop, btScalar(0), "linear slop [m]");
   visit(info.m_globalCfm, btScalar(0), "global cfm");
-  // Contacts keep their ids, so last step's impulses are nearly this step's (Bullet: 0.85 of them).
+  // Contacts keep their ids, so last step's impulses are nearly those of this step (Bullet: 0.85).
   visit(info.m_warmstartingFactor, btScalar(1), "warm starting factor");
-  // Islands are solved one by one, so that one part's result does not depend on what else is in the world.
+  // Islands are solved one by one, so that a part's result does not depend on other bodies in the world.
   visit(info.m_minimumSolverBatchSize, 1, "least solver batch size");
   visit(info.m_solverMode, wantedMode(info.m_solverMode),
         "solver mode (warm start, two friction directions kept by contact, fixed order)");
-  // 50 mm of margin pairs everything with everything at part scale: 1023 pairs for 50.
+  // At part scale Bullet's margin of 50 mm pairs every body with every other: 1023 pairs instead of 50.
   visit(gDbvtMargin, btScalar(1e-3), "broadphase margin [m], for the whole process");
 }
 
@@ -57,7 +58,7 @@ bool hasThresholds(const btRigidBody& body, double speed_m_s, double spin_rad_s)
          body.getAngularSleepingThreshold() == toBt(spin_rad_s);
 }
 
-// Those of btRigidBodyConstructionInfo.
+// Defaults of btRigidBodyConstructionInfo.
 constexpr btScalar kBulletSpeed_m_s = btScalar(0.8), kBulletSpin_rad_s = btScalar(1);
 
 template <typename Visit>

@@ -7,6 +7,7 @@
 #include "narrowphase/round_contact.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
+#include "shape/sheet_border.h"
 
 namespace vps::bullet {
 
@@ -16,16 +17,16 @@ std::size_t limitOf(const Settings& settings, const PointShell& shell) {
   return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
 }
 
-// A spring per area must stay where its area is.
-bool movesToRounds(const Settings& settings) {
-  return settings.use_surfaces && settings.mode == ContactMethod::Constraint;
+// A penalty point must stay where its area is.
+bool refinesOnRounds(const Settings& settings) {
+  return settings.use_surfaces && settings.contact_method == ContactMethod::Constraint;
 }
 
-// A shell's points against anything that has a distance: walks the shell's spheres.
+// Finds a shell's points near anything with a distance function, by the hierarchy of bounding spheres.
 template <typename CanBeNear, typename At>
-std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cutoff_m,
-                              const Settings& settings, const CanBeNear& canBeNear, const At& at,
-                              std::vector<Candidate>& out, std::size_t& points_tested) {
+std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff_m, const Settings& settings,
+                           const CanBeNear& canBeNear, const At& at, std::vector<Candidate>& out,
+                           std::size_t& points_tested) {
   const PointShell& shell = *side.shape->models().shell;
   const double sign = side.side == 0 ? 1 : -1;
   const std::size_t limit = limitOf(settings, shell);
@@ -59,10 +60,10 @@ std::size_t collectByDistance(const SideView& side, const Pose& X_WS, double cut
   return left_out;
 }
 
-// Points around the place where a ball touches a face all move there: the nearest of them speaks for it.
-// Those that neither touch nor move go.
-void settleOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
-                   double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
+// All points around the place where a ball touches a face move there; the one that moved least is kept.
+// Points that neither touch nor move are dropped.
+void mergeOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
+                  double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
   struct Moved {
     std::size_t index;
     double way_m;
@@ -72,7 +73,7 @@ void settleOnRound(const SideView& side, const SideView& other, const btCollisio
   std::size_t kept = first;
   for (std::size_t i = first; i < out.size(); ++i) {
     Candidate c = out[i];
-    const bool is_moved = touchRound(c, side, other, primitive);
+    const bool is_moved = refineOnRound(c, side, other, primitive);
     if (c.distance_m > cutoff_m) continue;
     if (is_moved) {
       constexpr double kSame_m = 1e-6;
@@ -100,18 +101,18 @@ Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
   return {X_MW.R * V_W.w, X_MW.R * (V_W.v + V_W.w.cross(p_WM))};
 }
 
-/// Points of `side` (in its models' frame M) seen from the surfaces of `other` (in its N).
+/// Distances of points of `side` (in its models' frame M) from the surfaces of `other` (in its frame N).
 class SurfaceView {
  public:
   SurfaceView(const SideView& side, const SideView& other)
       : side_(side), surfaces_(other.shape->models().surfaces), X_NM_(other.X_WM.inverse() * side.X_WM) {}
 
-  /// A value that the distance of p is not below; max_m if it is farther, or deep behind a sheet.
+  /// Lower bound of the distance of p; max_m if p is farther, or deep behind a sheet.
   [[nodiscard]] double leastDistance(const Vec3& p_M, double max_m) const {
     double least_m = max_m;
     for (const Surface& surface : surfaces_) {
       const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
-      // Of a solid all depths count: its sign is needed however far it is.
+      // Inside a solid every depth counts, so the sign is needed at any distance.
       const double d = surface.sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
       least_m = std::min(least_m, d);
     }
@@ -132,7 +133,7 @@ class SurfaceView {
  private:
   static constexpr double kNever_m = 1e30;
 
-  // How far behind a sheet a point may be and still count: as far as its part's field can tell where it is.
+  // Greatest depth behind a sheet at which a point counts: as far as its part's field can measure.
   [[nodiscard]] double depthBehindSheets_m() const {
     const VoxMap* map = side_.shape->models().map.get();
     return map ? 2 * map->band_m() : 0.5 * side_.shape->models().shell->spacing_m;
@@ -169,16 +170,16 @@ class SurfaceView {
     if (!closest.found) return never;
     const SheetFoot foot = surface.sheet->seenFrom(p, inward, closest);
     const Vec3 normal = foot.normal;
-    // Nearly edge-on the side is a matter of rounding; such points do not touch.
+    // Where the point looks nearly along the sheet, its side depends on rounding; such points do not touch.
     constexpr double kEdgeOn = 0.05;
     if (inward.dot(normal) < kEdgeOn) return never;
     const SurfaceDistance d = make(closest, p, normal, surface);
     return d.distance_m < 0 && !hasEnteredBy(-d.distance_m, X_PM.inverse() * closest.q) ? never : d;
   }
 
-  // A face that looks down at a sheet from a wall's thickness above has not gone through it from below: the
-  // sheet then is no nearer to it than to the wall's other face. The part's own field knows, but for half a
-  // voxel at its edges.
+  // A face that looks at a sheet from a wall's thickness above has not passed through it from below: the
+  // sheet is then nearer to the wall's other face. The part's own field tells, with an error of half a voxel
+  // at its edges.
   [[nodiscard]] bool hasEnteredBy(double depth_m, const Vec3& q_M) const {
     const VoxMap* map = side_.shape->models().map.get();
     return !map || 0.5 * map->voxel_m() - map->distance(q_M) >= 0.5 * depth_m;
@@ -194,33 +195,34 @@ class SurfaceView {
 bool RelativeMotion::canTouch(Candidate& c) const {
   const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
   c.predicted_m = c.distance_m - approach_m;
-  // Contact turns the free motion: a part that lands on one edge swings its other edge faster than it fell.
-  // So a share of the greatest speed counts in every direction. Half: assumed, it covers a rod struck at one
-  // end. The couplings' pull is left out of it: on a part that is pressed home it is large, and contact holds
-  // it.
+  // Contact changes the free motion: a part that lands on one edge swings its other edge faster than it fell.
+  // So a share of the greatest speed counts in every direction. Half: assumed; it covers a rod struck at one
+  // end. The pull of couplings is not included: on a part that is pressed against its seat it is large, and
+  // contact balances it.
   return c.distance_m <= contact_margin_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
 }
 
-std::size_t collectFromMap(const SideView& side, const SideView& other, double cutoff_m,
-                           const Settings& settings, const SideQuery& ask, std::vector<Candidate>& out,
-                           std::size_t& points_tested) {
+std::size_t findMapCandidates(const SideView& side, const SideView& other, double cutoff_m,
+                              const Settings& settings, const SideQuery& query, std::vector<Candidate>& out,
+                              std::size_t& points_tested) {
   const ShapeModels& theirs = other.shape->models();
   const PointShell& shell = *side.shape->models().shell;
-  // One buffer a thread, so that pairs do not each hold megabytes; as large as the largest shell so far.
+  // One buffer for each thread, as large as the largest shell so far, instead of megabytes for each pair.
   thread_local ContactSet near(0);
   near.contacts.reserve(shell.size());
   QueryOptions options;
   options.cutoff_m = cutoff_m;
   options.gradient = settings.gradient;
   const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
-  QueryMemory* memory = ask.memory ? &ask.memory->query : nullptr;
-  const RepresentativePoints::Request leaders{options, aboutMap(ask.step_W, X_MW), ask.always, mayAllBeNear(settings)};
-  const QueryResult result = ask.memory && ask.memory->leading
-                                 ? ask.memory->leading->find(*theirs.map, X_MP, leaders, near, memory)
+  QueryMemory* memory = query.state ? &query.state->query : nullptr;
+  const RepresentativePoints::Request leaders{options, aboutMap(query.step_W, X_MW), query.always,
+                                   smallQueryLimit(settings)};
+  const QueryResult result = query.state && query.state->leading
+                                 ? query.state->leading->find(*theirs.map, X_MP, leaders, near, memory)
                                  : queryContacts(*theirs.map, shell, X_MP, options, near, memory);
   points_tested += result.points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
-  // The buffer's capacity depends on what other pairs needed; the limit must not.
+  // The buffer's capacity depends on other pairs; the limit must not.
   const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
   for (const Contact& contact : std::span(near.contacts).first(count)) {
     Candidate c;
@@ -236,28 +238,28 @@ std::size_t collectFromMap(const SideView& side, const SideView& other, double c
   return near.contacts.size() - count;
 }
 
-std::size_t collectFromPrimitive(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
-                                 double cutoff_m, const Settings& settings, std::vector<Candidate>& out,
-                                 std::size_t& points_tested) {
-  const btCollisionShape& exact = withoutStandIn(primitive);
+std::size_t findPrimitiveCandidates(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
+                                    double cutoff_m, const Settings& settings, std::vector<Candidate>& out,
+                                    std::size_t& points_tested) {
+  const btCollisionShape& exact = unwrapped(primitive);
   const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
   const Pose X_SM = X_WS.inverse() * side.X_WM;
   const PointShell& shell = *side.shape->models().shell;
-  const double reach_m = movesToRounds(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
+  const double reach_m = refinesOnRounds(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
   const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
   const auto canBeNear = [&](const ShellNode& node) {
     return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;
   };
   const std::size_t first = out.size();
   const std::size_t left_out =
-      collectByDistance(side, X_WS, cutoff_m + reach_m, settings, canBeNear, at, out, points_tested);
-  if (reach_m > 0) settleOnRound(side, other, exact, cutoff_m, out, first);
+      findByDistance(side, X_WS, cutoff_m + reach_m, settings, canBeNear, at, out, points_tested);
+  if (reach_m > 0) mergeOnRound(side, other, exact, cutoff_m, out, first);
   return left_out;
 }
 
-std::size_t collectFromSurfaces(const SideView& side, const SideView& other, double cutoff_m,
-                                const Settings& settings, std::vector<Candidate>& out,
-                                std::size_t& points_tested) {
+std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, double cutoff_m,
+                                  const Settings& settings, std::vector<Candidate>& out,
+                                  std::size_t& points_tested) {
   if (other.shape->models().surfaces.empty()) return 0;
   const SurfaceView view(side, other);
   const PointShell& shell = *side.shape->models().shell;
@@ -265,7 +267,7 @@ std::size_t collectFromSurfaces(const SideView& side, const SideView& other, dou
   const auto canBeNear = [&](const ShellNode& node) {
     return view.leastDistance(node.center, node.radius_m + cutoff_m) - node.radius_m <= cutoff_m;
   };
-  return collectByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
+  return findByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
 }
 
 }  // namespace vps::bullet

@@ -10,90 +10,92 @@ namespace vps::bullet {
 
 namespace {
 
-// The next of a row of lengths, each half as long again: a query's memory is for one cutoff.
+// Rounds up to a geometric series of lengths: a QueryMemory is valid for one cutoff.
 double roundedUp(double cutoff_m, double most_m) {
   constexpr double kStep = 1.5, kUnit_m = 1e-6;
   const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));
   return std::min(kUnit_m * std::pow(kStep, steps), most_m);
 }
 
-// How deep edges may overlap and still push each other out, as a share of what the fields see. assumed:
-// deeper, points lie inside and do it.
+// Greatest overlap of edges that counts as a crossing, as a share of the query range. assumed: at greater
+// depth shell points lie inside and act instead.
 double edgeDepth_m(const PairView& pair, double cutoff_m) {
   constexpr double kShare = 0.25;
-  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * query_range_m(pair)) : cutoff_m;
+  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * queryRange_m(pair)) : cutoff_m;
 }
 
-QueryState& memoryOf(const PairView& pair, int i, PairState& state) {
-  std::optional<QueryState>& own = state.memory[i];
+QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
+  std::optional<QueryState>& own = state.query_state[i];
   return own ? *own
              : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
                            state.context->settings);
 }
 
-SideQuery askOf(const PairView& pair, int i, PairState& state) {
+SideQuery sideQueryOf(const PairView& pair, int i, PairState& state) {
   std::vector<std::uint32_t>& always = state.always[i];
   always.clear();
-  for (const Candidate& c : state.selection.chosen)  // ascending
+  for (const Candidate& c : state.selection.contacts)  // ascending
     if (c.side == i && !c.isCrossing()) always.push_back(c.id);
   const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
-  return {&memoryOf(pair, i, state), {way_s * state.motion.V.w, way_s * state.motion.V.v}, always};
+  return {&queryStateOf(pair, i, state), {way_s * state.motion.V.w, way_s * state.motion.V.v}, always};
 }
 
-// In penalty mode the points of faces press along their own normals.
-void takeSpringNormals(const PairView& pair, const Settings& settings, std::vector<Candidate>& candidates) {
+// In penalty contact the points of faces press along their own normals.
+void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
+                             std::vector<Candidate>& candidates) {
   for (int i = 0; i < 2; ++i)
-    if (settings.mode == ContactMethod::Penalty && pair.hasShell(i)) takeOwnNormals(candidates, pair.side(i));
+    if (settings.contact_method == ContactMethod::Penalty && pair.hasShell(i))
+      useOwnNormals(candidates, pair.side(i));
 }
 
 }  // namespace
 
-void collect(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-             PairState* state) {
+void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+                    PairState* state) {
   std::size_t tested = 0, left_out = 0;
   for (int i = 0; i < 2; ++i) {
-    if (!asksPoints(pair, i, context.settings.sides)) continue;
+    if (!queriesPoints(pair, i, context.settings.sides)) continue;
     const int j = 1 - i;
     if (isPrimitive(*pair.wrapper[j]->getCollisionShape()))
-      left_out += collectFromPrimitive(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
-                                       cutoff_m, context.settings, out, tested);
+      left_out += findPrimitiveCandidates(pair.side(i), *pair.wrapper[j]->getCollisionShape(), pair.X_WS[j],
+                                          cutoff_m, context.settings, out, tested);
     else if (pair.hasMap(j)) {
-      const double wide_m = state ? roundedUp(cutoff_m, query_range_m(pair)) : cutoff_m;
-      const SideQuery ask = state ? askOf(pair, i, *state) : SideQuery{};
-      left_out += collectFromMap(pair.side(i), pair.side(j), wide_m, context.settings, ask, out, tested);
+      const double wide_m = state ? roundedUp(cutoff_m, queryRange_m(pair)) : cutoff_m;
+      const SideQuery query = state ? sideQueryOf(pair, i, *state) : SideQuery{};
+      left_out += findMapCandidates(pair.side(i), pair.side(j), wide_m, context.settings, query, out, tested);
     } else {
-      left_out += collectFromSurfaces(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
+      left_out += findSurfaceCandidates(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }
   }
-  // Springs stand for areas, and a crossing has none.
-  if (context.settings.mode == ContactMethod::Constraint && context.settings.use_surfaces && pair.vps[0] &&
-      pair.vps[1])
-    left_out += collectCrossings(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
-                                 context.settings, out);
+  // Penalty points represent areas, and a crossing has none.
+  if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
+      pair.vps[0] && pair.vps[1])
+    left_out += findCrossingCandidates(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
+                                       context.settings, out);
   context.points_tested += tested;
   context.left_out += left_out;
 }
 
-void collectForStep(const PairView& pair, const RelativeMotion& motion, PairState& state,
-                    std::vector<Candidate>& out) {
+void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
+                        std::vector<Candidate>& out) {
   Context& context = *state.context;
-  const double sight = query_range_m(pair);
+  const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
-  if (motion.contact_margin_m + travel_m <= sight) {
-    collect(pair, motion.contact_margin_m + travel_m, context, out, &state);
-    takeSpringNormals(pair, context.settings, out);
+  if (motion.contact_margin_m + travel_m <= range_m) {
+    findCandidates(pair, motion.contact_margin_m + travel_m, context, out, &state);
+    useOwnNormalsForPenalty(pair, context.settings, out);
     return;
   }
-  const double stride_m = std::max(0.5 * (sight - motion.contact_margin_m), 0.25 * sight);
+  const double stride_m = std::max(0.5 * (range_m - motion.contact_margin_m), 0.25 * range_m);
   constexpr double kMostStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
   const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStrides)));
   PairView later = pair;
   for (int k = 0; k < strides && out.empty(); ++k) {
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, motion.dt_s, t_s);
-    collect(later, std::min(motion.contact_margin_m + travel_m / strides, sight), context, out);
-    takeSpringNormals(later, context.settings, out);
-    // Keep what is met in this stride, as planes seen from where the bodies are now.
+    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, out);
+    useOwnNormalsForPenalty(later, context.settings, out);
+    // Keep what the body meets in this stride, as planes relative to where the bodies are now.
     std::erase_if(out, [&](Candidate& c) {
       const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
@@ -106,37 +108,37 @@ void collectForStep(const PairView& pair, const RelativeMotion& motion, PairStat
   }
 }
 
-void correctAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                std::vector<Candidate>& candidates) {
+void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+               std::vector<Candidate>& candidates) {
   if (!settings.use_surfaces) return;
   for (int i = 0; i < 2; ++i)
-    if (asksPoints(pair, i, settings.sides))
-      correct(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion,
-              asksPoints(pair, 1 - i, settings.sides));
+    if (queriesPoints(pair, i, settings.sides))
+      refine(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), motion,
+             queriesPoints(pair, 1 - i, settings.sides));
 }
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates) {
   std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
 }
 
-void choose(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-            ManifoldWriter* writer, std::vector<Candidate>& candidates) {
+void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates) {
   dropUnreachable(motion, candidates);
-  if (writer) writer->recall(candidates);
+  if (writer) writer->markExistingContacts(candidates);
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
-  // Four times the limit go to the exact surfaces: enough for some to prove out of reach, and no more than
-  // the step's time allows (about 0.5 us each).
+  // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach,
+  // and affordable (about 0.5 us each).
   for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
-    thinOut(candidates, cell_m);
-  correctAll(pair, motion, settings, candidates);
+    reduceByCell(candidates, cell_m);
+  refineAll(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
-  chooseSpread(candidates, limit, radius_m, settings.contact_margin_m);
+  reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m);
 }
 
-void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
-                   Selection& selection) {
-  selection.chosen = chosen;
+void storeSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
+                    Selection& selection) {
+  selection.contacts = chosen;
   selection.is_valid = true;
   selection.X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   selection.X_W0 = pair.X_WS[0];
@@ -145,16 +147,16 @@ void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, c
   selection.reach_m = motion.contact_margin_m + motion.speed_m_s * motion.dt_s;
 }
 
-bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
+bool hasNotMoved(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
   if (!selection.is_valid) return false;
   for (int i = 0; i < 2; ++i)
     if (!(selection.key[i] == pair.key(i))) return false;
-  if (motion.contact_margin_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kStill_m) return false;
+  if (motion.contact_margin_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kUnmoved_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
   const double turned_rad = (moved.R - Mat3::Identity()).norm();
-  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kStill_m;
+  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kUnmoved_m;
 }
 
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
@@ -163,7 +165,7 @@ double motionChange_m(const Selection& selection, const PairView& pair, const Re
   return (change.velocityAt(pair.center_W()).norm() + change.V.w.norm() * pair.radius_m()) * motion.dt_s;
 }
 
-Carry carryOf(const Selection& selection, const PairView& pair) {
+CandidateMotion motionSince(const Selection& selection, const PairView& pair) {
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose body0_W = pair.X_WS[0] * selection.X_W0.inverse();
   const Pose body1_W = pair.X_WS[0] * X_01 * selection.X_01.inverse() * pair.X_WS[0].inverse();

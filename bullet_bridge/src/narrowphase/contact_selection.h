@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From all points of a pair that are near the other side to those that the solver is given: few, of rigid
-// bodies (choose_rigid.cpp), or all that press, of springs (choose_springs.cpp).
+// From all points of a pair that are near the other side to those that the solver is given: a few rigid
+// contacts (rigid_selection.cpp), or every point that presses (penalty_selection.cpp).
 #pragma once
 
 #include <vector>
@@ -10,47 +10,47 @@
 
 namespace vps::bullet {
 
-// What both need.
+// Both contact methods use these.
 
-/// Adds all points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
-/// memory at least those: what the last steps' distances exclude is not read.
-void collect(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-             PairState* state = nullptr);
+/// Adds the points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
+/// state, which makes repeated queries cheaper, possibly more points than that.
+void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+                    PairState* state = nullptr);
 
-/// Adds the candidates of the step. A body that moves less than the fields can see is looked at once, where
-/// it is. A faster one is looked at along its way, so that it cannot pass through; the plane it first meets
-/// then holds for the whole step.
-void collectForStep(const PairView& pair, const RelativeMotion& motion, PairState& state,
-                    std::vector<Candidate>& out);
+/// Adds the candidates of the step. A body that moves less than the query range is queried once, where it is.
+/// A faster one is queried at several places along its path, so that it cannot tunnel; the plane that it
+/// meets first then holds for the whole step.
+void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
+                        std::vector<Candidate>& out);
 
-/// The candidates' planes from the exact surfaces, where the settings want them.
-void correctAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                std::vector<Candidate>& candidates);
+/// Refines the candidates by the exact surfaces, if the settings say so.
+void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+               std::vector<Candidate>& candidates);
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates);
 
-/// From thousands of near points to the few that hold the part.
+/// Reduces thousands of near points to the few contacts that support the part.
 /// @param writer  knows last step's contacts; may be null
-void choose(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-            ManifoldWriter* writer, std::vector<Candidate>& candidates);
+void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates);
 
-void keepSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,
-                   Selection& selection);
+void storeSelection(const std::vector<Candidate>& contacts, const PairView& pair,
+                    const RelativeMotion& motion, Selection& selection);
 
-/// assumed: a part that moved less [m] would have no better points than those chosen before
-constexpr double kStill_m = 1e-6;
-/// True if the selection's points are still the ones to look at.
-bool isWhereItWas(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
+/// assumed: no other points would be better contacts for a part that has moved by less [m]
+constexpr double kUnmoved_m = 1e-6;
+/// True if the stored selection is still valid for this step.
+bool hasNotMoved(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// How much farther than foreseen then any point of the smaller body may go in the step [m].
+/// How much farther than at the time of the selection any point of the smaller body may go in the step [m].
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// What takes a selection's planes to where the bodies are now. Within kStill_m that is as good as a look.
-Carry carryOf(const Selection& selection, const PairView& pair);
+/// Carries a selection's planes to where the bodies are now. Within kUnmoved_m that is as good as a query.
+CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 
-// The two modes: state.contacts of the coming step, with springs state.penalty as well.
+// The two contact methods: set state.contacts for the coming step; with penalty, state.penalty as well.
 
-void chooseRigid(const PairView& pair, PairState& state);
-void choosePenalty(const PairView& pair, PairState& state);
+void selectRigid(const PairView& pair, PairState& state);
+void selectPenalty(const PairView& pair, PairState& state);
 
 }  // namespace vps::bullet

@@ -9,10 +9,10 @@ namespace vps::bullet {
 
 namespace {
 
-// A cooked body is the union of its parts: an edge that another part covers is no edge of the body's.
-// @param out_M  the way from the edge's place p_M out of the body
+// A merged body is the union of its parts: an edge that another part covers is not an edge of the body.
+// @param out_M  direction out of the body at the edge's point p_M
 bool isCovered(const Shape& shape, std::uint16_t owner, const Vec3& p_M, const Vec3& out_M) {
-  constexpr double kOff_m = 10e-6;  // assumed: seams of parts that are mounted on each other are flatter
+  constexpr double kOff_m = 10e-6;  // assumed: more than the seam between parts mounted on each other
   const std::vector<Surface>& surfaces = shape.models().surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (i == owner || surfaces[i].sheet) continue;
@@ -32,8 +32,8 @@ bool isCovered(const EdgeCrossing& at, const SideView& body0, const SideView& bo
 
 }  // namespace
 
-std::size_t collectCrossings(const SideView& body0, const SideView& body1, double cutoff_m, double depth_m,
-                             const Settings& settings, std::vector<Candidate>& out) {
+std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, double cutoff_m,
+                                   double depth_m, const Settings& settings, std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();

@@ -10,9 +10,9 @@ namespace vps::bullet {
 
 namespace {
 
-constexpr double kGain_m = 1e-7;  // below it a look at the surfaces is not worth its time
+constexpr double kGain_m = 1e-7;  // a smaller decrease is not worth a query of the surfaces
 
-// The face nearest to p; none where an edge is nearer, or an open surface.
+// The face nearest to p; none where an edge or an open surface is nearer.
 std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, double max_m) {
   std::optional<FacePoint> nearest;
   MeshDistance::Closest best;
@@ -32,7 +32,7 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
   return nearest;
 }
 
-// The shell's point on its own face.
+// The shell point on its own face.
 FacePoint ownFace(const Candidate& c, const SideView& side) {
   const Shape::PointFace face = side.shape->faceAt(c.id);
   const Surface& surface = side.shape->models().surfaces[face.surface];
@@ -40,7 +40,7 @@ FacePoint ownFace(const Candidate& c, const SideView& side) {
           face.triangle};
 }
 
-/// Two orthonormal directions across n.
+/// Two orthonormal directions normal to n.
 Eigen::Matrix<double, 3, 2> across(const Vec3& n) {
   Eigen::Matrix<double, 3, 2> T;
   T.col(0) = n.unitOrthogonal();
@@ -48,7 +48,8 @@ Eigen::Matrix<double, 3, 2> across(const Vec3& n) {
   return T;
 }
 
-// The way along the tangent plane to where the gap's parabola is least, none where it is too flat to gain.
+// Displacement in the tangent plane to the minimum of the gap's parabola; zero where it is too flat to
+// matter.
 Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
   const Eigen::Matrix<double, 3, 2> T = across(their.outward_W);
   const Eigen::Vector2d slope = T.transpose() * own.outward_W;
@@ -67,18 +68,18 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
 }  // namespace
 
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& foot,
-                   double most_gain_m) {
-  if (side.shape->models().surfaces.empty()) return false;  // then nothing is known of its faces
+                   double max_gain_m) {
+  if (side.shape->models().surfaces.empty()) return false;  // its faces are not known
   const double reach_m = side.shape->models().shell->spacing_m;
   std::optional<FacePoint> own = ownFace(c, side), their = foot;
   if (own->surface->sheet || their->surface->sheet) return false;
   if (!((own->outward_W + their->outward_W).norm() * reach_m > kGain_m)) return false;
   constexpr int kSteps = 5;        // most need one or two
-  constexpr double kThere = 5e-3;  // of the reach: leans by less than a thousandth
+  constexpr double kThere = 5e-3;  // of the reach: the normals then differ by less than a thousandth
   for (int i = 0; i < kSteps; ++i) {
     const Vec3 way = wayToLeast(*own, *their, reach_m);
     if (way.norm() < kThere * reach_m) break;
-    // Farther than the reach another point of the shell is nearer, and finds the same place.
+    // Beyond the reach another shell point is nearer, and finds the same place.
     const Vec3 to_W = own->q_W + way;
     if (i == kSteps - 1 || (to_W - c.p_W).norm() > reach_m) return false;
     const double gap_m = std::abs((own->q_W - their->q_W).dot(their->outward_W));
@@ -87,10 +88,10 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
     if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosFlush)) return false;
   }
   const double gap_m = (own->q_W - their->q_W).dot(their->outward_W);
-  if (c.distance_m - gap_m > most_gain_m) return false;
+  if (c.distance_m - gap_m > max_gain_m) return false;
   c.p_W = own->q_W;
   c.n_W = (side.side == 0 ? 1 : -1) * their->outward_W;
-  // A corner between facets is nearer than the facets' middles, whatever the curved surface says.
+  // A corner between facets may be nearer than the curved surface.
   c.distance_m = std::min(c.distance_m, gap_m);
   return true;
 }

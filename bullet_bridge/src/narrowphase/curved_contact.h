@@ -9,7 +9,7 @@ namespace vps::bullet {
 /// Faces whose normals are within 20 degrees of opposite touch flush.
 inline constexpr double kCosFlush = 0.94;
 
-/// A point of a face, as the curved surface that the facets stand for.
+/// A point of a face, on the curved surface that the facets approximate.
 struct FacePoint {
   Vec3 q_W = Vec3::Zero(), outward_W = Vec3::Zero();
   const Surface* surface = nullptr;
@@ -21,19 +21,20 @@ struct FacePoint {
   }
 };
 
-/// Moves a face's point along its part's surface to where the gap to the other's curved surface is least, if
-/// that is within the shell's spacing of it: p_W, distance and normal become those there, on the exact
-/// surfaces. A ball of 5 mm with points 0.5 mm apart lies 12 um deeper between them, and the normals of
-/// points beside the contact lean by 0.05 rad, which a hand that slides it feels.
-/// @param c  corrected, of a point on a face: its normal is the other's at the point's foot
-/// @param their  that foot, on a face
-/// @param most_gain_m  by how much the gap may be less there: candidates are found by their points' gaps, and
-///                     what is nearer by more than the slack that they are looked for with would come and go
-/// @return false: left as it was. Flat and conforming faces (a peg in its bore) cost no look at a surface;
-/// others two to four.
+/// Moves a face's point along its part's surface to where the gap to the other curved surface is least, if
+/// that is within the shell's spacing: p_W, distance and normal become those at that place, on the exact
+/// surfaces. Without it, a ball of 5 mm with points 0.5 mm apart lies 12 um deeper between its points, and
+/// the normals of the points around the contact lean by 0.05 rad, which is felt when sliding over it.
+/// @param c           refined, of a point on a face: its normal is the other surface's at the point's foot
+/// @param their       that foot, on a face
+/// @param max_gain_m  greatest accepted decrease of the gap: candidates are searched by the gaps of their
+///                    points, so a contact that is nearer by more than the contact margin would appear and
+///                    disappear
+/// @return false: unchanged. Flat and conforming faces (a peg in its bore) need no surface query, others two
+/// to four.
 /// Source: Newton's method for the common normal, with the curvature of both (Johnson, Contact Mechanics,
 /// 1985, section 4.1: the gap between two surfaces).
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& their,
-                   double most_gain_m);
+                   double max_gain_m);
 
 }  // namespace vps::bullet

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "vps_bullet/algorithm.h"
+#include "narrowphase/pair_algorithm.h"
 
 namespace vps::bullet {
 

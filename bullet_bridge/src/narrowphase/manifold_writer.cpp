@@ -14,20 +14,20 @@ namespace {
 
 constexpr int kPerManifold = MANIFOLD_CACHE_SIZE;
 
-// Positions on both bodies: the shell's point on its own side, its foot on the other's surface.
+// Positions on both bodies: the shell point on its own side, its foot on the other's surface.
 void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
   on0 = c.side == 0 ? c.p_W : Vec3(c.p_W + c.distance_m * c.n_W);
   on1 = c.side == 1 ? c.p_W : Vec3(c.p_W - c.distance_m * c.n_W);
 }
 
-// Of the shell's point on its own side, of an edge on both.
+// Index of the shell point on its own side; at a crossing, of the edge on either side.
 int indexOn(const Candidate& c, int side) {
   if (c.isCrossing() && side == 1) return static_cast<int>(c.crossed - 1);
   return c.side == side ? static_cast<int>(c.id) : -1;
 }
 
-// Along the slip, so that the solver's friction pyramid is exact for a sliding part; for one at rest, along a
-// direction that depends on the normal alone, so that it does not turn with noise.
+// Along the slip, so that the solver's friction pyramid is exact for a sliding part; for a part at rest,
+// along a direction that depends on the normal only, so that it does not turn with noise.
 void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& velocity) {
   constexpr double kSlip_m_s =
       1e-4;  // assumed: far above a resting part's jitter, far below motion one can see
@@ -45,7 +45,7 @@ void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& ve
   point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
 }
 
-// What btManifoldResult::addContactPoint would set from the bodies.
+// Sets what btManifoldResult::addContactPoint would set from the bodies.
 void setMaterial(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
   point.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
   point.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
@@ -80,8 +80,8 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   return point;
 }
 
-// Impulses last step, in the new friction directions.
-void inherit(btManifoldPoint& point, const btManifoldPoint& old) {
+// Last step's impulses, in the new friction directions.
+void copyImpulses(btManifoldPoint& point, const btManifoldPoint& old) {
   point.m_appliedImpulse = old.m_appliedImpulse;
   const btVector3 lateral = old.m_lateralFrictionDir1 * old.m_appliedImpulseLateral1 +
                             old.m_lateralFrictionDir2 * old.m_appliedImpulseLateral2;
@@ -92,14 +92,6 @@ void inherit(btManifoldPoint& point, const btManifoldPoint& old) {
 }
 
 }  // namespace
-
-std::uint64_t keyOf(const btManifoldPoint& point) {
-  Candidate c;
-  c.side = point.m_index0 >= 0 ? 0 : 1;
-  if (point.m_index0 >= 0 && point.m_index1 >= 0) c.crossed = static_cast<std::uint32_t>(point.m_index1) + 1;
-  c.id = static_cast<std::uint32_t>(c.side == 0 ? point.m_index0 : point.m_index1);
-  return c.key();
-}
 
 ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
                                const btCollisionObject* object1)
@@ -113,8 +105,8 @@ void ManifoldWriter::append(btAlignedObjectArray<btPersistentManifold*>& manifol
   for (btPersistentManifold* manifold : manifolds_) manifolds.push_back(manifold);
 }
 
-void ManifoldWriter::forget() {
-  // With the id of no point they match none, and the next write gives their user data back.
+void ManifoldWriter::invalidateIds() {
+  // Without a valid id they match no candidate, and the next write() returns their user data.
   for (btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i) {
       btManifoldPoint& point = manifold->getContactPoint(i);
@@ -122,18 +114,18 @@ void ManifoldWriter::forget() {
     }
 }
 
-void ManifoldWriter::harvest() {
+void ManifoldWriter::readManifolds() {
   old_.clear();
   for (const btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       old_.push_back({keyOf(manifold->getContactPoint(i)), manifold->getContactPoint(i)});
-  // They were written in this order, and are heavy to move.
+  // They were usually written in this order, and sorting them is expensive.
   const auto isBefore = [](const Old& a, const Old& b) { return a.key < b.key; };
   if (!std::is_sorted(old_.begin(), old_.end(), isBefore)) std::sort(old_.begin(), old_.end(), isBefore);
 }
 
-void ManifoldWriter::recall(std::vector<Candidate>& candidates) {
-  harvest();
+void ManifoldWriter::markExistingContacts(std::vector<Candidate>& candidates) {
+  readManifolds();
   if (old_.empty()) return;
   for (Candidate& c : candidates) {
     const auto it = std::lower_bound(old_.begin(), old_.end(), c.key(),
@@ -146,11 +138,11 @@ void ManifoldWriter::recall(std::vector<Candidate>& candidates) {
 
 void ManifoldWriter::write(std::span<const Candidate> contacts,
                            const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion) {
-  harvest();
+  readManifolds();
   const std::size_t manifold_count = (contacts.size() + kPerManifold - 1) / kPerManifold;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
-    if (!manifold) break;  // the user forbade the pool to grow
+    if (!manifold) break;  // the pool is full and may not grow
     manifolds_.push_back(manifold);
   }
   const bool had_contacts = !old_.empty();
@@ -166,9 +158,9 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       const Candidate& c = contacts[first + static_cast<std::size_t>(i)];
       btManifoldPoint& point = manifold.getContactPoint(i);
       point = makePoint(c, bodies, motion);
-      while (old != old_.end() && old->key < c.key()) ++old;  // both ascend by key
+      while (old != old_.end() && old->key < c.key()) ++old;  // both are ascending by key
       if (old != old_.end() && old->key == c.key()) {
-        inherit(point, old->point);
+        copyImpulses(point, old->point);
         old->point.m_userPersistentData = nullptr;
       }
       const int flags = objects_[0]->getCollisionFlags() | objects_[1]->getCollisionFlags();
@@ -184,9 +176,9 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
     gContactEndedCallback(manifolds_.front());
 }
 
-void reportToQuery(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
-                   btManifoldResult& result) {
-  // Bullet's query results ask the manifold for the order of the bodies, and a query has none of its own.
+void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
+                    btManifoldResult& result) {
+  // Bullet's query results read the order of the bodies from a manifold, and a query has none of its own.
   btPersistentManifold order(bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject(), 0,
                              BT_LARGE_FLOAT, BT_LARGE_FLOAT);
   btPersistentManifold* before = result.getPersistentManifold();

@@ -24,23 +24,22 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_
   return motion;
 }
 
-double query_range_m(const PairView& pair) {
-  double query_range_m = 1e30;
+double queryRange_m(const PairView& pair) {
+  double range_m = 1e30;
   for (const Shape* shape : pair.vps)
-    if (shape && shape->models().map)
-      query_range_m = std::min(query_range_m, 0.95 * shape->models().map->band_m());
-  return query_range_m;
+    if (shape && shape->models().map) range_m = std::min(range_m, 0.95 * shape->models().map->band_m());
+  return range_m;
 }
 
-bool asksPoints(const PairView& pair, int i, Sides sides) {
+bool queriesPoints(const PairView& pair, int i, Sides sides) {
   if (!pair.hasShell(i)) return false;
-  if (sides == Sides::Both || !pair.canLookBothWays()) return true;
+  if (sides == Sides::Both || !pair.isTwoSided()) return true;
   const bool is_first = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm();
   return i == (is_first ? 0 : 1);
 }
 
 int sideCount(const PairView& pair, Sides sides) {
-  return sides == Sides::Both && pair.canLookBothWays() ? 2 : 1;
+  return sides == Sides::Both && pair.isTwoSided() ? 2 : 1;
 }
 
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two bodies that may touch, at one instant: their shapes, their poses, how they move against each other.
+// Two bodies that may touch, at one instant: shapes, poses and relative motion.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -8,7 +8,7 @@
 
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/motion.h"
-#include "native_shapes/native_shape_adapter.h"
+#include "native_shapes/shape_key.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
@@ -30,13 +30,13 @@ struct PairView {
   [[nodiscard]] SideView side(int i) const {
     return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
-  /// Changes when the size of a side does that is no Shape.
+  /// Of a side that is no Shape; changes with its size.
   [[nodiscard]] ShapeKey key(int i) const {
     return vps[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
   }
   [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
   [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
-  [[nodiscard]] bool canLookBothWays() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
+  [[nodiscard]] bool isTwoSided() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
     double radius_m = 1e30;
@@ -55,21 +55,22 @@ struct PairView {
 
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m);
 
-/// How far the fields can see [m]: the band bounds it.
-double query_range_m(const PairView& pair);
+/// Greatest distance that the fields can measure [m]; their band bounds it.
+double queryRange_m(const PairView& pair);
 
-/// True if the points of side i are looked at. One-sided: only the smaller body's, since a larger one's may
-/// be too far apart to catch it.
-bool asksPoints(const PairView& pair, int i, Sides sides);
+/// True if the points of side i are queried. One-sided: only those of the smaller body, since points of a
+/// larger one may be too far apart to touch it.
+bool queriesPoints(const PairView& pair, int i, Sides sides);
 
-/// How many sides' points answer for the same surface.
+/// How many sides' points are queried, so that their areas overlap.
 int sideCount(const PairView& pair, Sides sides);
 
-/// Where both bodies are t_s into a step of dt_s, moving freely at the velocity of its end, as all that looks
-/// ahead takes it. (That of t_s is another: a stiff coupling pulls nearly as far in a part of the step.)
+/// Moves both bodies to where they are t_s into a step of dt_s, in free motion at the velocity of the step's
+/// end, as every prediction assumes. (The velocity at t_s differs: a stiff coupling pulls nearly as far in a
+/// part of the step.)
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 
-/// Where the bodies go in the step if they keep their velocities: what takes each from its place to that one.
+/// Displacement of both bodies in the step at constant velocity, in W.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 
 }  // namespace vps::bullet

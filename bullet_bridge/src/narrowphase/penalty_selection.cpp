@@ -1,74 +1,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Penalty mode: every point that can touch is a spring of the solver's.
+// Penalty contact: every point that can touch presses.
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/penalty_points.h"
 
 namespace vps::bullet {
 
 namespace {
 
-// A point on an edge has no normal of its own, and the field is worst near the other side's edges: 14 um at
-// the root of an M10 thread with voxels of 0.2 mm, and normals that follow the grid. A nut that stood on such
-// points lost 21 % of its acceleration.
-void correctSprings(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                    std::vector<Candidate>& candidates) {
-  // Of a body that was looked at along its way, the places are elsewhere.
-  if (!settings.use_surfaces ||
-      motion.contact_margin_m + motion.speed_m_s * motion.dt_s > query_range_m(pair))
+// A point on an edge has no normal of its own, and the field has its greatest errors near the other side's
+// edges: 14 um at the root of an M10 thread with voxels of 0.2 mm, with normals that follow the grid. A nut
+// supported by such points lost 21 % of its acceleration.
+void refinePenaltyPoints(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                         std::vector<Candidate>& candidates) {
+  // Candidates of a fast body were found elsewhere along its path.
+  if (!settings.use_surfaces || motion.contact_margin_m + motion.speed_m_s * motion.dt_s > queryRange_m(pair))
     return;
   Pose way[2];
   coast(pair, motion.dt_s, way);
   for (int i = 0; i < 2; ++i)
     if (pair.hasShell(i))
-      correctEdges(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), way,
-                   motion);
+      refineEdges(candidates, pair.side(i), pair.side(1 - i), *pair.wrapper[1 - i]->getCollisionShape(), way,
+                  motion);
   dropUnreachable(motion, candidates);
 }
 
-// All that can touch, and the few of them that stand in the manifolds, to be seen and for solvers that know
-// nothing of springs.
-void chooseSprings(const PairView& pair, PairState& state) {
+// Selects all points that can touch, and the few of them that are written to the manifolds, for users and for
+// solvers without penalty contact.
+void selectPenaltyPoints(const PairView& pair, PairState& state) {
   Context& context = *state.context;
   const RelativeMotion& motion = state.motion;
   Selection& selection = state.selection;
   std::vector<Candidate>& candidates = state.contacts;
-  collectForStep(pair, motion, state, candidates);
+  findStepCandidates(pair, motion, state, candidates);
   ++context.pair_updates;
   context.candidates += candidates.size();
   dropUnreachable(motion, candidates);
-  correctSprings(pair, motion, context.settings, candidates);
-  selection.springs = candidates;
+  refinePenaltyPoints(pair, motion, context.settings, candidates);
+  selection.penalty_points = candidates;
   Settings seen = context.settings;
   seen.use_surfaces = false;
-  choose(pair, motion, seen, state.writer.get(), candidates);
-  keepSelection(candidates, pair, motion, selection);
+  selectContacts(pair, motion, seen, state.writer.get(), candidates);
+  storeSelection(candidates, pair, motion, selection);
 }
 
-// What recallSelection() does for thousands of points: within kStill_m their planes are as good as a look.
-// The points that could be left out as the motion was are those that can be left out now.
-bool recallSprings(const PairView& pair, PairState& state, Carry& carry) {
+// As reuseSelection() for rigid contact, but for thousands of points: the motion must be unchanged too, so
+// that the points that were out of reach still are.
+bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion& moved) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
-  if (!(motionChange_m(selection, pair, motion) <= kStill_m) || !isWhereItWas(selection, pair, motion))
+  if (!(motionChange_m(selection, pair, motion) <= kUnmoved_m) || !hasNotMoved(selection, pair, motion))
     return false;
-  carry = carryOf(selection, pair);
-  state.contacts = selection.chosen;
-  for (Candidate& c : state.contacts) carry(c);
+  moved = motionSince(selection, pair);
+  state.contacts = selection.contacts;
+  for (Candidate& c : state.contacts) moved(c);
   return true;
 }
 
 }  // namespace
 
-void choosePenalty(const PairView& pair, PairState& state) {
+void selectPenalty(const PairView& pair, PairState& state) {
   const Context& context = *state.context;
-  Carry carry;
-  if (!recallSprings(pair, state, carry)) chooseSprings(pair, state);
+  CandidateMotion moved;
+  if (!reusePenaltyPoints(pair, state, moved)) selectPenaltyPoints(pair, state);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
   state.penalty.mu =
       btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);
   const double stiffness = context.settings.stiffness_N_per_m3 / sideCount(pair, context.settings.sides);
-  renewPoints(state.penalty, state.selection.springs, stiffness, state.motion, carry);
+  updatePenaltyPoints(state.penalty, state.selection.penalty_points, stiffness, state.motion, moved);
 }
 
 }  // namespace vps::bullet

@@ -9,10 +9,10 @@ namespace vps::bullet {
 
 namespace {
 
-// Points of a tile, eight by eight: where more are near than mayAllBeNear(), tiles are more than the contacts
-// wanted. Larger tiles where a shell would have more than sixteen for each contact.
+// Points of a surface tile, eight by eight: where more points are near than smallQueryLimit(), there are more
+// tiles than contacts. Tiles are larger where a shell would have more than sixteen of them for each contact.
 constexpr std::size_t kTilePoints = 64;
-constexpr double kTileSpacings = 12;  // from corner to corner, and a little more
+constexpr double kTileSpacings = 12;  // the diagonal and a margin
 constexpr double kMostTiles = 16;
 
 double tileSize_m(const PointShell& shell, const Settings& settings) {
@@ -25,13 +25,13 @@ double tileSize_m(const PointShell& shell, const Settings& settings) {
 
 QueryState::QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings)
     : query(map, shell) {
-  // Each spring counts; of rigid contact's points few do.
-  if (settings.mode == ContactMethod::Constraint && shell.size() > mayAllBeNear(settings) &&
+  // Every penalty point counts; of the points of rigid contact only a few do.
+  if (settings.contact_method == ContactMethod::Constraint && shell.size() > smallQueryLimit(settings) &&
       shell.spacing_m > 0)
     leading.emplace(shell, tileSize_m(shell, settings));
 }
 
-std::size_t mayAllBeNear(const Settings& settings) {
+std::size_t smallQueryLimit(const Settings& settings) {
   return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
 }
 

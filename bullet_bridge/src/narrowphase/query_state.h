@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a pair keeps of one side's shell against the other's map.
+// What a pair stores from step to step for the points of one side in the other's map.
 #pragma once
 
 #include <optional>
 
 #include "vps/representative_points.h"
-#include "vps_bullet/install.h"
+#include "vps_bullet/settings.h"
 
 namespace vps::bullet {
 
@@ -13,12 +13,13 @@ struct QueryState {
   /// O(points). The shell must outlive it.
   QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings);
 
-  QueryMemory query;  ///< for cutoffs that stay the same
-  std::optional<RepresentativePoints>
-      leading;  ///< of rigid contact, of a shell with more points than mayAllBeNear()
+  QueryMemory query;  ///< valid for one cutoff
+  /// One representative point per surface tile; for constraint contact and shells with more points than
+  /// smallQueryLimit().
+  std::optional<RepresentativePoints> leading;
 };
 
-/// So many near points of a side or fewer are all looked at.
-std::size_t mayAllBeNear(const Settings& settings);
+/// Up to this number of near points of one side, all of them are examined.
+std::size_t smallQueryLimit(const Settings& settings);
 
 }  // namespace vps::bullet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Constraint mode: few points, each a constraint of the solver.
+// Constraint contact: few points, each a constraint of the solver.
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
 #include "narrowphase/contact_selection.h"
@@ -8,24 +8,25 @@ namespace vps::bullet {
 
 namespace {
 
-// A part that has not moved since its points were chosen keeps them, and their planes go with it: at rest
-// that is all the work there is. Planes that were found anew each step would turn within a hair where an edge
-// lies on an edge, and let the part fall for a step: then a heap never sleeps. False: choose anew.
-bool recallSelection(const PairView& pair, PairState& state) {
-  if (!isWhereItWas(state.selection, pair, state.motion)) return false;
-  // Points that could not be reached as the motion was had more than the slack to go.
+// A part that has not moved since its contacts were selected keeps them, and their planes move with it: a
+// part at rest needs no more work. If planes were searched again each step, they would turn with rounding
+// where an edge lies on an edge and let the part fall for a step, so that a heap would never sleep. False:
+// select again.
+bool reuseSelection(const PairView& pair, PairState& state) {
+  if (!hasNotMoved(state.selection, pair, state.motion)) return false;
+  // Points that were out of reach were farther away than the contact margin.
   if (motionChange_m(state.selection, pair, state.motion) > state.motion.contact_margin_m) return false;
-  const Carry carry = carryOf(state.selection, pair);
-  state.contacts = state.selection.chosen;
-  for (Candidate& c : state.contacts) carry(c);
+  const CandidateMotion moved = motionSince(state.selection, pair);
+  state.contacts = state.selection.contacts;
+  for (Candidate& c : state.contacts) moved(c);
   dropUnreachable(state.motion, state.contacts);
   return true;
 }
 
 void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
                         const btCollisionObject* object0, const btCollisionObject* object1) {
-  // The solver takes the gap off the rebound's speed, which kills a bounce that would happen within the step.
-  // So a point that bounces does so at once: early by less than a step's travel, with the right energy.
+  // The solver subtracts the gap from the rebound speed, which would suppress a bounce within the step. So a
+  // point that bounces does so at once: early by less than a step's travel, with the right energy.
   if (!(btManifoldResult::calculateCombinedRestitution(object0, object1) > 0)) return;
   for (Candidate& c : candidates)
     if (c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - 0.2 * motion.dt_s)
@@ -34,14 +35,14 @@ void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion
 
 }  // namespace
 
-void chooseRigid(const PairView& pair, PairState& state) {
+void selectRigid(const PairView& pair, PairState& state) {
   Context& context = *state.context;
-  if (!recallSelection(pair, state)) {
-    collectForStep(pair, state.motion, state, state.contacts);
+  if (!reuseSelection(pair, state)) {
+    findStepCandidates(pair, state.motion, state, state.contacts);
     ++context.pair_updates;
     context.candidates += state.contacts.size();
-    choose(pair, state.motion, context.settings, state.writer.get(), state.contacts);
-    keepSelection(state.contacts, pair, state.motion, state.selection);
+    selectContacts(pair, state.motion, context.settings, state.writer.get(), state.contacts);
+    storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
                      pair.wrapper[1]->getCollisionObject());

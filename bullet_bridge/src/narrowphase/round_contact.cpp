@@ -21,8 +21,8 @@ namespace {
 
 using Point = std::optional<Vec3>;
 
-// On the circle of radius r about the axis at height h, the farthest towards a direction. A direction along
-// the axis has none.
+// The farthest point in a direction on the circle of radius r about the axis at height h. None for a
+// direction along the axis.
 Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction) {
   constexpr double kLeast = 0.2;
   Vec3 radial = direction;
@@ -33,7 +33,7 @@ Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction
 
 Point onCylinder(const btCylinderShape& shape, const SurfaceDistance& at, const Vec3& p, const Vec3& inward) {
   const int axis = shape.getUpAxis();
-  if (at.is_edge || std::abs(at.n[axis]) > 0.5) return {};  // by its rim or its end
+  if (at.is_edge || std::abs(at.n[axis]) > 0.5) return {};  // at its rim or its end
   return onCircle(axis, shape.getRadius(), p[axis], inward);
 }
 
@@ -45,7 +45,7 @@ Point onCone(const btConeShape& shape, const SurfaceDistance& at, const Vec3& p,
   return onCircle(axis, std::max(radius_m, 0.0), height_m, inward);
 }
 
-// Of the spheres whose hull's surface is nearest to p: one's ball, or one between two; three make it flat.
+// On the part of the hull nearest to p: one sphere, or the cone between two; three spheres make it flat.
 Point onMultiSphere(const btMultiSphereShape& shape, const SurfaceDistance& at, const Vec3& p,
                     const Vec3& inward) {
   const double scale = shape.getLocalScaling().x();
@@ -71,7 +71,7 @@ Point onMultiSphere(const btMultiSphereShape& shape, const SurfaceDistance& at, 
   return Vec3(centers[0] + share * (centers[1] - centers[0]) + radius_m * inward);
 }
 
-// A point of the solid, near p's foot, that reaches far into a face with this inward normal. In the shape's
+// A point of the solid, near p's foot, that reaches far into a face with this inward normal; in the shape's
 // frame.
 Point farthestPoint(const btCollisionShape& shape, const SurfaceDistance& at, const Vec3& p,
                     const Vec3& inward) {
@@ -130,9 +130,9 @@ double leastRadius_m(const btCollisionShape& shape) {
   }
 }
 
-/// The part's exact surface seen from x, in the models' frame.
+/// The nearest point of the part's exact surface to x, in the models' frame.
 struct OwnFoot {
-  double distance_m = 1e30;  ///< of x, negative within the part
+  double distance_m = 1e30;  ///< of x, negative inside the part
   Vec3 q = Vec3::Zero(), outward = Vec3::Zero();
 };
 
@@ -155,19 +155,19 @@ double roundReach_m(const btCollisionShape& primitive, double spacing_m) {
   return std::min(spacing_m, spacing_m * spacing_m / (2 * std::max(radius_m, 1e-12)));
 }
 
-bool touchRound(Candidate& c, const SideView& side, const SideView& other,
-                const btCollisionShape& primitive) {
+bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
+                   const btCollisionShape& primitive) {
   const ShapeModels& models = side.shape->models();
   if (models.surfaces.empty() || side.shape->isEdgePoint(c.id)) return false;
   const Pose X_SM = other.X_WM.inverse() * side.X_WM;
   const Vec3 &p_M = models.shell->points[c.id], &inward_M = models.shell->inward[c.id];
   const Vec3 p = X_SM * p_M, inward = X_SM.R * inward_M;
   const SurfaceDistance at = primitiveDistance(primitive, p);
-  constexpr double kFacing = 0.2;  // as in correct.cpp: beyond 78 degrees a face and a surface do not meet
+  constexpr double kFacing =
+      0.2;  // as in contact_refinement.cpp: beyond 78 degrees a face and a surface do not touch
   if (at.n.dot(inward) < kFacing) return false;
   const Point x = farthestPoint(primitive, at, p, inward);
-  // In a socket of nearly its own radius a point is where its face touches; a look at the surface is not
-  // free.
+  // In a socket of nearly its own radius a face touches at its point; the query of the surface is then saved.
   constexpr double kGain_m = 1e-7;
   if (!x || at.distance_m - (p - *x).dot(inward) < kGain_m) return false;
   const Vec3 x_M = X_SM.inverse() * *x;

@@ -6,16 +6,17 @@
 
 namespace vps::bullet {
 
-/// How much farther from a primitive's round side than the contact itself the nearest of a face's points can
-/// be: s^2 / (2 r) for points s apart on a ball of radius r, at most s. 0 for primitives without a round
+/// How much farther than the contact itself the nearest shell point of a face can be from a primitive's round
+/// side: s^2 / (2 r) for points s apart on a ball of radius r, at most s. 0 for primitives without a round
 /// side.
 double roundReach_m(const btCollisionShape& primitive, double spacing_m);
 
-/// Moves a candidate of `side` on a face from its point to where that face touches the primitive, if that is
-/// nearer: the primitive's farthest point against the face's normal, near where the candidate is, and its
-/// foot on the part's exact surface. That point is of the primitive's solid, so what it finds is never nearer
-/// than the truth. Exact for a flat face. False, and nothing changed, for points on edges, parts without
-/// exact surfaces, flat sides of primitives, and where nothing is gained.
-bool touchRound(Candidate& c, const SideView& side, const SideView& other, const btCollisionShape& primitive);
+/// Moves a candidate of `side` on a face from its shell point to where that face touches the primitive, if
+/// that is nearer: the primitive's farthest point against the face's normal, near the candidate, and its foot
+/// on the part's exact surface. That point belongs to the primitive's solid, so the distance found is never
+/// less than the true one. Exact for a flat face. Returns false, and changes nothing, for points on edges,
+/// parts without exact surfaces, flat sides of primitives, and where the distance would not decrease.
+bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
+                   const btCollisionShape& primitive);
 
 }  // namespace vps::bullet

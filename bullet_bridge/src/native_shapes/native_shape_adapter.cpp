@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "native_shapes/native_shape_adapter.h"
 
-#include <LinearMath/btTransform.h>
-
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <numeric>
 
 #include "native_shapes/native_shape_mesh.h"
 #include "native_shapes/primitive.h"
+#include "shape/sheet_border.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
 
 namespace {
 
-/// Points in an order in which each sixteen in a row are near each other.
+/// Sorts points so that each sixteen in a row are near each other.
 void sortInSpace(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
                  const std::vector<Vec3>& points) {
   if (end - begin <= static_cast<std::size_t>(kLanes)) return;
@@ -34,15 +32,15 @@ void sortInSpace(std::vector<std::uint32_t>& order, std::size_t begin, std::size
   sortInSpace(order, middle, end, points);
 }
 
-// Only penalty contact asks for it: a corner has none, and would not press. Half a millimetre's square,
-// assumed: what a shell's point stands for.
+// Area of a corner, which penalty contact needs: a square of half a millimetre. Assumed: as much as a shell
+// point represents.
 constexpr double kCornerArea_m2 = 0.25e-6;
 
 struct Corners {
   std::vector<Vec3> points, inward;
 };
 
-// Each vertex that a triangle uses; of a sheet once for each side.
+// Each vertex that a triangle uses; for a sheet once for each side.
 Corners cornersOf(const MeshDistance& surface, bool is_sheet) {
   const Mesh& mesh = surface.mesh();
   std::vector<std::uint8_t> is_taken(mesh.vertices.size(), 0);
@@ -94,16 +92,16 @@ PointShell shellOf(const Corners& corners) {
   return mergedShells(pointers, std::vector<Pose>(leaves.size()));
 }
 
-ShapeModels modelsOf(const NativeShapeMesh& partner) {
+ShapeModels modelsOf(const NativeShapeMesh& native) {
   ShapeModels models;
-  const auto surface = std::make_shared<const MeshDistance>(partner.mesh);
-  models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, partner.is_sheet)));
+  const auto surface = std::make_shared<const MeshDistance>(native.mesh);
+  models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, native.is_sheet)));
   models.surfaces = {
-      {surface, Pose(), partner.is_sheet ? std::make_shared<const SheetBorder>(partner.mesh) : nullptr}};
+      {surface, Pose(), native.is_sheet ? std::make_shared<const SheetBorder>(native.mesh) : nullptr}};
   return models;
 }
 
-// FNV-1a, over the numbers as they lie in memory.
+// FNV-1a over the bits of the coordinates.
 std::uint64_t hashOf(const Mesh& mesh) {
   std::uint64_t hash = 0xcbf29ce484222325ull;
   for (const auto& t : mesh.triangles)
@@ -118,85 +116,32 @@ std::uint64_t hashOf(const Mesh& mesh) {
 
 }  // namespace
 
-NativeShape::NativeShape(const btCollisionShape& shape)
-    : Shape(modelsOf(partnerMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
+NativeShapeAdapter::NativeShapeAdapter(const btCollisionShape& shape)
+    : Shape(modelsOf(nativeShapeMesh(shape))), primitive_(isPrimitive(shape) ? &shape : nullptr) {}
 
-const btCollisionShape* primitiveBehind(const btCollisionShape& shape) {
-  const auto* adapter = dynamic_cast<const NativeShape*>(&shape);
+const btCollisionShape* primitiveOf(const btCollisionShape& shape) {
+  const auto* adapter = dynamic_cast<const NativeShapeAdapter*>(&shape);
   return adapter ? adapter->primitive() : nullptr;
 }
 
-const btCollisionShape& withoutStandIn(const btCollisionShape& shape) {
-  const btCollisionShape* primitive = primitiveBehind(shape);
+const btCollisionShape& unwrapped(const btCollisionShape& shape) {
+  const btCollisionShape* primitive = primitiveOf(shape);
   return primitive ? *primitive : shape;
 }
 
-SheetBorder::SheetBorder(const Mesh& mesh) {
-  std::map<std::array<std::uint32_t, 2>, int> uses;
-  for (const auto& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax({t[k], t[(k + 1) % 3]});
-      ++uses[{low, high}];
-    }
-  std::map<std::uint32_t, std::vector<std::array<std::uint32_t, 2>>> at_vertex;
-  for (const auto& [edge, count] : uses)
-    if (count == 1)
-      for (const std::uint32_t v : edge) at_vertex[v].push_back(edge);
-  for (const auto& t : mesh.triangles) {
-    first_.push_back(static_cast<std::uint32_t>(edges_.size()));
-    for (const std::uint32_t v : t)
-      if (const auto it = at_vertex.find(v); it != at_vertex.end())
-        for (const auto& edge : it->second)
-          edges_.push_back({mesh.vertices[edge[0]], mesh.vertices[edge[1]]});
-  }
-  first_.push_back(static_cast<std::uint32_t>(edges_.size()));
-  touch_m_ = 1e-9 * (1 + bounds(mesh).size().norm());
-}
-
-bool SheetBorder::isOnBorder(std::uint32_t triangle, const Vec3& q) const {
-  for (std::uint32_t i = first_[triangle]; i < first_[triangle + 1]; ++i) {
-    const Vec3 along = edges_[i].b - edges_[i].a;
-    const double share = std::clamp((q - edges_[i].a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    if ((edges_[i].a + share * along - q).norm() <= touch_m_) return true;
-  }
-  return false;
-}
-
-SheetFoot SheetBorder::seenFrom(const Vec3& p, const Vec3& inward, const MeshDistance::Closest& foot) const {
-  const Vec3 n = inward.dot(foot.normal) < 0 ? Vec3(-foot.normal) : foot.normal;
-  const Vec3 from_q = p - foot.q;
-  const double beside_m = (from_q - from_q.dot(n) * n).norm();
-  if (!(beside_m > touch_m_) || !isOnBorder(foot.triangle, foot.q)) return {n, false};
-  return {(n + from_q / from_q.norm()).normalized(), true};
-}
-
-ShapeKey keyOf(const btCollisionShape& shape) {
-  ShapeKey key;
-  key.type = shape.getShapeType();
-  btVector3 low, high;
-  shape.getAabb(btTransform::getIdentity(), low, high);
-  const btVector3& scale = shape.getLocalScaling();
-  for (int k = 0; k < 3; ++k) {
-    key.numbers[k] = low[k];
-    key.numbers[3 + k] = high[k];
-    key.numbers[6 + k] = scale[k];
-  }
-  return key;
-}
-
-std::shared_ptr<const NativeShape> NativeShapeCache::get(const btCollisionShape& shape) {
+std::shared_ptr<const NativeShapeAdapter> NativeShapeCache::get(const btCollisionShape& shape) {
   const std::lock_guard lock(mutex_);
   const ShapeKey key = keyOf(shape);
   const auto it = entries_.find(&shape);
   const bool is_known = it != entries_.end() && it->second.key == key;
   if (is_known && it->second.adapter.use_count() > 1) return it->second.adapter;
-  const std::uint64_t hash = hashOf(partnerMesh(shape).mesh);
+  const std::uint64_t hash = hashOf(nativeShapeMesh(shape).mesh);
   if (is_known && it->second.hash == hash) return it->second.adapter;
-  // Of shapes that are gone nobody tells us: what no pair uses goes when there is much of it.
+  // Bullet does not report deleted shapes, so adapters without pairs are dropped when there are many.
   constexpr std::size_t kMostKept = 64;
   if (entries_.size() >= kMostKept)
     std::erase_if(entries_, [](const auto& entry) { return entry.second.adapter.use_count() == 1; });
-  const auto adapter = std::make_shared<const NativeShape>(shape);
+  const auto adapter = std::make_shared<const NativeShapeAdapter>(shape);
   entries_[&shape] = {key, hash, adapter};
   return adapter;
 }

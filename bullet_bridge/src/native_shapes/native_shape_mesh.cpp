@@ -28,14 +28,15 @@ namespace vps::bullet {
 
 namespace {
 
-// Flatter than this, in sizes, a closed surface is a sheet: float coordinates cannot tell.
+// A closed surface that is flatter than this, relative to its size, is a sheet: float coordinates cannot
+// resolve it.
 constexpr double kFlat = 1e-6;
 
 [[noreturn]] void refuse(const btCollisionShape& shape, const std::string& why) {
   throw std::invalid_argument(std::string("Shape and ") + shape.getName() + " do not collide: " + why);
 }
 
-// So many vertices on a circle that its chords are within a micrometre of it.
+// Number of vertices on a circle for which its chords are within a micrometre of it.
 int circleSegments(double radius_m) {
   constexpr double kSagitta_m = 1e-6;
   if (!(radius_m > kSagitta_m)) return 32;
@@ -43,7 +44,7 @@ int circleSegments(double radius_m) {
   return 4 * static_cast<int>(std::ceil(std::clamp(exact, 32.0, 1024.0) / 4));
 }
 
-// From z up to axis up, right-handed.
+// Rotates a mesh from z up to axis up, right-handed.
 Mesh turnedTo(int axis, Mesh mesh) {
   for (Vec3& p : mesh.vertices) {
     const Vec3 z_up = p;
@@ -77,7 +78,7 @@ Vec3 areaNormal(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
 
-// Of a hull without a volume, one side.
+// Keeps one side of a hull without volume.
 void keepOneSide(Mesh& mesh) {
   Vec3 front = Vec3::Zero();
   for (const auto& t : mesh.triangles)
@@ -95,7 +96,7 @@ NativeShapeMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& p
   btConvexHullComputer computer;
   computer.compute(coordinates.data(), 3 * sizeof(double), static_cast<int>(points.size()), 0, 0);
   NativeShapeMesh hull;
-  // Bullet rounds to 1/10216 of the size to find who is a corner; the corners themselves we take unrounded.
+  // Bullet rounds to 1/10216 of the size to find the corners; we use the corners' unrounded coordinates.
   for (int i = 0; i < computer.vertices.size(); ++i)
     hull.mesh.vertices.push_back(points[static_cast<std::size_t>(computer.original_vertex_index[i])]);
   for (int f = 0; f < computer.faces.size(); ++f) {
@@ -146,8 +147,8 @@ std::vector<Vec3> cloudPoints(const btConvexPointCloudShape& shape) {
   return points;
 }
 
-// Where nothing but a support function is known: the hull of what it gives in 10,242 directions. Each corner
-// that is rounded by radius r has one of them within 2.6 degrees of any direction it supports: the rounding
+// For shapes of which only the support function is known: the hull of its values in 10,242 directions. A
+// corner rounded by radius r has one of them within 2.6 degrees of any direction it supports, so the rounding
 // is cut by at most r (1 - cos 2.6 deg) = 1.03e-3 r.
 std::vector<Vec3> supportPoints(const btConvexShape& shape) {
   std::vector<Vec3> points;
@@ -184,20 +185,20 @@ Mesh allTriangles(const btConcaveShape& shape) {
     if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
   Mesh mesh = welded(all.mesh);
   if (mesh.triangles.empty() || !(area(mesh) > 0))
-    refuse(shape, "it names no triangles; build a Shape from its mesh");
+    refuse(shape, "it reports no triangles; build a bullet::Shape from its mesh");
   return mesh;
 }
 
 NativeShapeMesh concaveMesh(const btConcaveShape& shape) {
-  NativeShapeMesh partner{allTriangles(shape), false};
-  if (!checkMesh(partner.mesh).isClosed())
-    partner.is_sheet = true;
-  else if (massProperties(partner.mesh).volume_m3 < 0)
-    flip(partner.mesh);  // wound inside out, or mirrored by a negative scale
-  return partner;
+  NativeShapeMesh native{allTriangles(shape), false};
+  if (!checkMesh(native.mesh).isClosed())
+    native.is_sheet = true;
+  else if (massProperties(native.mesh).volume_m3 < 0)
+    flip(native.mesh);  // wound inside out, or mirrored by a negative scale
+  return native;
 }
 
-// Directed edges that no other triangle runs the other way.
+// Directed edges without an opposite edge in another triangle.
 std::vector<std::array<std::uint32_t, 2>> borderOf(const Mesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, int> edges;
   for (const auto& t : mesh.triangles)
@@ -208,7 +209,7 @@ std::vector<std::array<std::uint32_t, 2>> borderOf(const Mesh& mesh) {
   return border;
 }
 
-// A terrain is ground all the way down: walls along its border and a floor, as far below as it is wide.
+// A terrain is closed by walls along its border and a floor, as far below as it is wide.
 //
 //    ~~~~~~~~~~~   the field, facing up
 //    |         |   walls
@@ -246,13 +247,13 @@ NativeShapeMesh terrainMesh(const btHeightfieldTerrainShape& shape) {
   return terrain;
 }
 
-NativeShapeMesh scaledBy(double factor, NativeShapeMesh partner) {
-  for (Vec3& p : partner.mesh.vertices) p *= factor;
-  if (factor < 0) flip(partner.mesh);
-  return partner;
+NativeShapeMesh scaledBy(double factor, NativeShapeMesh native) {
+  for (Vec3& p : native.mesh.vertices) p *= factor;
+  if (factor < 0) flip(native.mesh);
+  return native;
 }
 
-// Bullet's own corners of it lie a margin below its plane.
+// Not from Bullet's corners of it, which lie a margin below its plane.
 NativeShapeMesh flatBox(const btBox2dShape& shape) {
   const Vec3 half = fromBt(shape.getHalfExtentsWithMargin());
   Mesh mesh;
@@ -274,7 +275,7 @@ NativeShapeMesh convexMesh(const btConvexShape& shape) {
 
 }  // namespace
 
-NativeShapeMesh partnerMesh(const btCollisionShape& shape) {
+NativeShapeMesh nativeShapeMesh(const btCollisionShape& shape) {
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
       return {makeBox(2 * fromBt(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin()))};
@@ -291,14 +292,14 @@ NativeShapeMesh partnerMesh(const btCollisionShape& shape) {
     }
     case UNIFORM_SCALING_SHAPE_PROXYTYPE: {
       const auto& scaled = static_cast<const btUniformScalingShape&>(shape);
-      return scaledBy(scaled.getUniformScalingFactor(), partnerMesh(*scaled.getChildShape()));
+      return scaledBy(scaled.getUniformScalingFactor(), nativeShapeMesh(*scaled.getChildShape()));
     }
     case BOX_2D_SHAPE_PROXYTYPE:
       return flatBox(static_cast<const btBox2dShape&>(shape));
     case TERRAIN_SHAPE_PROXYTYPE:
       return terrainMesh(static_cast<const btHeightfieldTerrainShape&>(shape));
     case CONVEX_2D_SHAPE_PROXYTYPE:
-      refuse(shape, "it is meant for a world of two dimensions");
+      refuse(shape, "it is meant for two-dimensional worlds");
     case GIMPACT_SHAPE_PROXYTYPE:
       if (static_cast<const btGImpactShapeInterface&>(shape).getGImpactShapeType() ==
           CONST_GIMPACT_COMPOUND_SHAPE)

@@ -8,19 +8,19 @@ class btCollisionShape;
 
 namespace vps::bullet {
 
-/// Triangles in the shape's frame, as large as the shape is scaled, without Bullet's collision margin.
+/// Triangles in the shape's frame, with its scale applied, without Bullet's collision margin.
 struct NativeShapeMesh {
   Mesh mesh;
-  /// It has no inside: met on the side that a point faces. Else it is closed and faces out.
+  /// It has no inside: a point meets the side that it faces. Otherwise it is closed and faces outward.
   bool is_sheet = false;
 };
 
-/// More would take over a gigabyte, and a stall of seconds in the middle of a step. Assumed.
+/// More would take over a gigabyte and stall a step for seconds. Assumed.
 inline constexpr std::size_t kMaxNativeTriangles = 4'000'000;
 
-/// How each type's triangles come about, and how far they are from the shape: README.md, "With whom".
-/// Deterministic. O(triangles). Throws std::invalid_argument for a shape without a surface that we can learn:
-/// says which and what would do.
-NativeShapeMesh partnerMesh(const btCollisionShape& shape);
+/// README.md, "Collides with", says how the triangles of each type are made and how far they are from the
+/// shape. Deterministic. O(triangles). Throws std::invalid_argument for a shape whose surface cannot be
+/// obtained: the message names the shape and a remedy.
+NativeShapeMesh nativeShapeMesh(const btCollisionShape& shape);
 
 }  // namespace vps::bullet

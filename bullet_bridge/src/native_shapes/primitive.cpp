@@ -20,14 +20,14 @@ namespace vps::bullet {
 
 namespace {
 
-// Around a point: the distance to it less the radius.
+// Distance to a sphere about a point.
 SurfaceDistance aroundPoint(const Vec3& p_from_center, double radius_m) {
   const double r = p_from_center.norm();
   return {r - radius_m, r > 0 ? Vec3(p_from_center / r) : Vec3::UnitZ().eval()};
 }
 
-// A product of intervals: q are the distances to each pair of faces, n_i the faces' normals.
-// Outside, the faces that are passed add up as in Pythagoras; inside, the nearest face counts.
+// Distance to a product of intervals: q are the distances to each pair of faces, with their normals. Outside,
+// the positive distances are components of the distance; inside, the nearest face counts.
 template <int N>
 SurfaceDistance productDistance(const double (&q)[N], const Vec3 (&normals)[N]) {
   Vec3 outside = Vec3::Zero();
@@ -68,14 +68,13 @@ struct Point2 {
   double x, y;
 };
 
-// The nearest point of segment ab to p, as a share of the way from a to b.
+// Parameter from 0 (a) to 1 (b) of the point of segment ab nearest to p.
 double nearestShare(const Point2& p, const Point2& a, const Point2& b) {
   const double dx = b.x - a.x, dy = b.y - a.y;
   return std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
 }
 
-// In the half plane of the axis (y) and the radius (x) a cone is a triangle: rim, apex, and the base's
-// centre.
+// In the half plane of axis (y) and radius (x) a cone is a triangle of rim, apex and centre of the base.
 //
 //   apex
 //    |  .      inside: below the side and above the base
@@ -116,9 +115,10 @@ struct Sphere {
   double radius_m;
 };
 
-// A convex solid's signed distance is max over unit n of n.p - h(n), h its support; of the hull of spheres
-// h(n) = max n.c_i + r_i. So d = max over n of g(n), g(n) = min over i of n.(p - c_i) - r_i. On the unit
-// sphere a maximum of g has one, two or three spheres that g is equal for: all such n are tried.
+// The signed distance of a convex solid is the maximum over unit vectors n of n.p - h(n), with its support
+// function h. For the hull of spheres h(n) = max n.c_i + r_i, so d = max over n of g(n), with g(n) = min over
+// i of n.(p - c_i) - r_i. At a maximum of g on the unit sphere the minimum is attained by one, two or three
+// spheres: all such n are tried.
 class SphereHull {
  public:
   SphereHull(const Sphere* spheres, int count, const Vec3& p) : spheres_(spheres), count_(count), p_(p) {
@@ -136,27 +136,27 @@ class SphereHull {
   [[nodiscard]] Vec3 from(int i) const { return p_ - spheres_[i].center; }
 
   void consider(const Vec3& n) {
-    if (!(n.squaredNorm() > 0.5)) return;  // p in a centre has no direction there
+    if (!(n.squaredNorm() > 0.5)) return;  // a point in a sphere's centre has no direction
     double least = 1e300;
     for (int i = 0; i < count_; ++i) least = std::min(least, n.dot(from(i)) - spheres_[i].radius_m);
     if (least > best_.distance_m) best_ = {least, n};
   }
-  // Equal for both: n.u = a on the axis u between them; then as far towards p as a unit vector can.
+  // Equal for both spheres: n.u = a along the axis u between them, and otherwise towards p.
   void considerPair(int i, int j) {
     const Vec3 between = spheres_[j].center - spheres_[i].center;
     const double length = between.norm(), a = (spheres_[i].radius_m - spheres_[j].radius_m) / length;
-    if (!(std::abs(a) < 1)) return;  // one holds the other
+    if (!(std::abs(a) < 1)) return;  // one contains the other
     const Vec3 u = between / length;
     Vec3 w = from(i) - u * u.dot(from(i));
-    if (!(w.norm() > 1e-12 * length)) w = u.unitOrthogonal();  // on the axis all ways are the same
+    if (!(w.norm() > 1e-12 * length)) w = u.unitOrthogonal();  // on the axis all directions are equal
     consider(a * u + std::sqrt(1 - a * a) * w.normalized());
   }
-  // Equal for all three: n = s + t m, s in their plane, m the plane's normal.
+  // Equal for all three spheres: n = s + t m, with s in their plane and m the plane's normal.
   void considerTriple(int i, int j, int k) {
     const Vec3 u = spheres_[j].center - spheres_[i].center, v = spheres_[k].center - spheres_[i].center;
     const Vec3 m = u.cross(v);
     const double m2 = m.squaredNorm();
-    if (!(m2 > 1e-18 * u.squaredNorm() * v.squaredNorm())) return;  // in a line: pairs cover it
+    if (!(m2 > 1e-18 * u.squaredNorm() * v.squaredNorm())) return;  // collinear: covered by pairs
     const double au = spheres_[i].radius_m - spheres_[j].radius_m;
     const double av = spheres_[i].radius_m - spheres_[k].radius_m;
     const Vec3 s = (au * v.cross(m) + av * m.cross(u)) / m2;
@@ -210,7 +210,7 @@ bool isPrimitive(const btCollisionShape& shape) {
       return scaled.getUniformScalingFactor() > 0 && isPrimitive(*scaled.getChildShape());
     }
     default:
-      return primitiveBehind(shape) != nullptr;
+      return primitiveOf(shape) != nullptr;
   }
 }
 
@@ -260,7 +260,7 @@ SurfaceDistance primitiveDistance(const btCollisionShape& shape, const Vec3& p) 
       return cylinderDistance(axis, cylinder.getRadius(), cylinder.getHalfExtentsWithMargin()[axis], p);
     }
     default:
-      return primitiveDistance(*primitiveBehind(shape), p);
+      return primitiveDistance(*primitiveOf(shape), p);
   }
 }
 

@@ -16,7 +16,7 @@ std::shared_ptr<const Mesh> scaled(const Mesh& mesh, double factor) {
 ShellBlock scaled(const ShellBlock& from, double factor) {
   ShellBlock block = from;
   for (double& c : block.center) c *= factor;
-  block.radius_m *= factor * (1 + 1e-6);  // the offsets are rounded again
+  block.radius_m *= factor * (1 + 1e-6);  // for the rounding of the scaled offsets
   const auto f = static_cast<float>(factor);
   for (int i = 0; i < kLanes; ++i) {
     block.x[i] *= f;
@@ -48,7 +48,7 @@ std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor)
   return larger;
 }
 
-// `larger`: what has been scaled already. One part's sign is found as buildVoxMap() finds it, also for open
+// `larger` holds the models scaled so far. The sign of a single part is found by buildVoxMap(), also for open
 // meshes.
 std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& larger, double factor) {
   VoxMapSettings settings;

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part's models, larger or smaller.
+// A part's models at another size.
 #pragma once
 
 #include "vps_bullet/shape.h"
 
 namespace vps::bullet {
 
-/// Models of the part made `factor` times as large about the origin of their frame M. Shell and mesh are
-/// scaled copies, the map and the exact surfaces are built anew, on a grid scaled alike: as many voxels, the
-/// same quality. Costs what building them cost. A map that was fine only in regions becomes fine everywhere.
-/// Throws std::invalid_argument for models with a map but neither surfaces nor a mesh to build it from.
+/// Models of the part scaled by `factor` about the origin of their frame M. Shell and mesh are scaled copies.
+/// The map and the exact surfaces are built again, the map on a grid scaled by the same factor, with as many
+/// voxels and the same quality; that costs as much as building them the first time. A map that was fine only
+/// in regions becomes fine everywhere. Throws std::invalid_argument for models with a map but neither
+/// surfaces nor a mesh to build it from.
 ShapeModels scaledModels(const ShapeModels& models, double factor);
 
 }  // namespace vps::bullet

@@ -21,16 +21,16 @@ namespace vps::bullet {
 
 namespace {
 
-// What does no harm is said once and not obeyed.
-void sayOnce(std::atomic_flag& said, const char* words) {
-  if (!said.test_and_set()) std::fprintf(stderr, "vps: %s\n", words);
+// For calls without effect that do no harm.
+void warnOnce(std::atomic_flag& was_reported, const char* message) {
+  if (!was_reported.test_and_set()) std::fprintf(stderr, "vps: %s\n", message);
 }
 
 Mat3 inertiaAboutCom(const MassProperties& unit_density, double density) {
   return unit_density.inertia_m5 * density;
 }
 
-// Parallel axes: inertia about O of a mass whose centre is at p from O.
+// Parallel axes theorem: inertia about O of a mass whose centre is at p from O.
 Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
   return about_com + mass_kg * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
 }
@@ -54,9 +54,10 @@ struct PointNormals {
 
 constexpr double kOnSurface_m = 1e-6;
 
-// A point on a face has that face's normal; one on an edge has the mean of several.
+// A point on a face has the normal of that face; a point on an edge has the mean of several.
 PointNormals findNormals(const ShapeModels& models) {
-  constexpr double kCosFace = 0.99;  // 8 degrees; edges of 20 degrees and more have means at least 10 off
+  constexpr double kCosFace =
+      0.99;  // 8 degrees; at an edge of 20 degrees or more the mean normal is 10 degrees or more away
   if (!models.shell || models.surfaces.empty()) return {};
   const std::size_t count = models.shell->size();
   PointNormals normals{std::vector<std::uint8_t>(count, 1), models.shell->inward,
@@ -141,7 +142,7 @@ class Shape::TriangleTree {
   struct Node {
     Box box;
     std::uint32_t first = 0, count = 0;  // count 0: inner node
-    std::uint32_t skip = 0;              // next node in depth-first order when this one is left out
+    std::uint32_t skip = 0;              // next node in depth-first order if this one is skipped
   };
 
   static bool overlap(const Box& a, const Box& b) {
@@ -301,8 +302,9 @@ void Shape::setLocalScaling(const btVector3& scaling) {
 
 void Shape::setMargin(btScalar margin) {
   if (!(margin >= 0)) throw std::invalid_argument("Shape: a margin must not be negative; it is always 0");
-  static std::atomic_flag said;
-  if (margin != 0) sayOnce(said, "Shape has no margin: its contact distance is that of the part's surface");
+  static std::atomic_flag was_reported;
+  if (margin != 0)
+    warnOnce(was_reported, "Shape has no margin: its contact distance is that of the part's surface");
 }
 
 int Shape::calculateSerializeBufferSize() const {

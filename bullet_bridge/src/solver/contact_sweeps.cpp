@@ -8,18 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
-namespace {
-
-// Impulses are far from the ends of a double's range; std::hypot guards those and took a sixth of a heap's
-// time.
-double lengthOf(double x, double y) {
-  return std::sqrt(x * x + y * y);
-}
-
-}  // namespace
 
 double ContactSweeps::velocity(const ContactRow& row) const {
   double v = row.fixed_velocity;
@@ -36,7 +28,7 @@ void ContactSweeps::apply(const ContactRow& row, double impulse) {
 ContactRow ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
                                   const Vec3& d) const {
   ContactRow row;
-  // Both at the middle of the gap: two forces in one line keep the angular momentum.
+  // Both forces act at the middle of the gap: forces in one line preserve the angular momentum.
   const btVector3 at = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * btScalar(0.5);
   for (int i = 0; i < 2; ++i) {
     const Vec3 r = fromBt(at - objects[i]->getWorldTransform().getOrigin());
@@ -52,7 +44,7 @@ void ContactSweeps::prepareRow(ContactRow& row) const {
   row.W = 0;
   for (ContactRow::Side& side : row.side) {
     if (side.body < 0) continue;
-    side.MinvJ = body(side).held_inverse * side.J;
+    side.MinvJ = body(side).effective_inverse * side.J;
     row.W += side.J.dot(side.MinvJ);
   }
 }
@@ -66,7 +58,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.mu = point.m_combinedFriction;
   c.gap_m = point.getDistance() + info.m_linearSlop;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
-  if (n.isZero(0)) return;  // a contact without a direction has nothing to act along
+  if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
     btPlaneSpace1(point.m_normalWorldOnB, point.m_lateralFrictionDir1, point.m_lateralFrictionDir2);
     point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
@@ -95,12 +87,12 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
 }
 
 void ContactSweeps::prepare() {
-  drives_.clear();
+  joint_states_.clear();
   for (JointRow& row : joints_.rows) {
-    Drive drive{&row, {Vec6::Zero(), Vec6::Zero()}, 0};
-    drive.W = row.inverseMass(island_, &drive.MinvJ);
+    JointState joint{&row, {Vec6::Zero(), Vec6::Zero()}, 0};
+    joint.W = row.inverseMass(island_, &joint.MinvJ);
     row.impulse_Ns = 0;
-    if (drive.W > 0) drives_.push_back(drive);
+    if (joint.W > 0) joint_states_.push_back(joint);
   }
   for (RigidContact& c : contacts_) {
     prepareRow(c.normal);
@@ -123,40 +115,40 @@ void ContactSweeps::start() {
 }
 
 void ContactSweeps::applyImpulses() {
-  for (IslandBody& b : island_.bodies) b.u = b.held_inverse * (b.momentum + b.drive);
+  for (IslandBody& b : island_.bodies) b.u = b.effective_inverse * (b.momentum + b.coupling_impulse);
   for (const RigidContact& c : contacts_) {
     if (c.p_n != 0) apply(c.normal, c.p_n);
     for (int t = 0; t < 2; ++t)
       if (c.p_t[t] != 0) apply(c.tangent[t], c.p_t[t]);
   }
-  for (const Drive& drive : drives_)
+  for (const JointState& joint : joint_states_)
     for (int i = 0; i < 2; ++i)
-      if (drive.row->body[i] >= 0)
-        island_.bodies[static_cast<std::size_t>(drive.row->body[i])].u +=
-            drive.row->impulse_Ns * drive.MinvJ[i];
+      if (joint.row->body[i] >= 0)
+        island_.bodies[static_cast<std::size_t>(joint.row->body[i])].u +=
+            joint.row->impulse_Ns * joint.MinvJ[i];
 }
 
-// Joints' rows have units of their own: a turn's change of velocity counts as that of a point 10 mm away.
+// Rows of joints have their own units: an angular velocity counts as the velocity at a radius of 10 mm.
 // Assumed.
 double ContactSweeps::sweepJoints() {
   double residual_m_s = 0;
-  for (const Drive& drive : drives_) {
-    JointRow& row = *drive.row;
-    const double error = row.target - row.velocity(island_) - row.softness * drive.W * row.impulse_Ns;
-    const double wanted_Ns = row.impulse_Ns + error / (drive.W * (1 + row.softness));
+  for (const JointState& joint : joint_states_) {
+    JointRow& row = *joint.row;
+    const double error = row.target - row.velocity(island_) - row.cfm * joint.W * row.impulse_Ns;
+    const double wanted_Ns = row.impulse_Ns + error / (joint.W * (1 + row.cfm));
     const double change_Ns = std::clamp(wanted_Ns, row.lower_Ns, row.upper_Ns) - row.impulse_Ns;
     if (change_Ns == 0) continue;
     row.impulse_Ns += change_Ns;
     for (int i = 0; i < 2; ++i)
       if (row.body[i] >= 0)
-        island_.bodies[static_cast<std::size_t>(row.body[i])].u += change_Ns * drive.MinvJ[i];
+        island_.bodies[static_cast<std::size_t>(row.body[i])].u += change_Ns * joint.MinvJ[i];
     const bool is_turn = row.J[0].tail<3>().isZero(0) && row.J[1].tail<3>().isZero(0);
-    residual_m_s = std::max(residual_m_s, std::abs(change_Ns) * drive.W * (is_turn ? 0.01 : 1));
+    residual_m_s = std::max(residual_m_s, std::abs(change_Ns) * joint.W * (is_turn ? 0.01 : 1));
   }
   return residual_m_s;
 }
 
-// One sweep. Returns the greatest change of a row's velocity.
+// Returns the greatest change of a row's velocity.
 double ContactSweeps::sweepOnce() {
   double residual_m_s = sweepJoints();
   for (RigidContact& c : contacts_) {
@@ -171,16 +163,12 @@ double ContactSweeps::sweepOnce() {
     const double limit = c.mu * p_n;
     double p1 = c.p_t[0] - (c.W_t_inverse[0] * v1 + c.W_t_inverse[1] * v2);
     double p2 = c.p_t[1] - (c.W_t_inverse[1] * v1 + c.W_t_inverse[2] * v2);
-    if (lengthOf(p1, p2) > limit) {
-      // It slides. The step must be along the slip itself: stepping by the block's inverse and scaling back
-      // would settle on friction along W^-1 v, off the slip, and 1 % too weak.
+    if (tangentLength(p1, p2) > limit) {
+      // The contact slides. The step must be along the slip itself: a step by the block's inverse, scaled
+      // back, would converge to friction along W^-1 v, not along the slip, and 1 % too weak.
       p1 = c.p_t[0] - v1 / c.W_t;
       p2 = c.p_t[1] - v2 / c.W_t;
-      const double size = lengthOf(p1, p2);
-      if (size > limit) {
-        p1 *= limit / size;
-        p2 *= limit / size;
-      }
+      limitToCone(p1, p2, limit);
     }
     const double d1 = p1 - c.p_t[0], d2 = p2 - c.p_t[1];
     if (d1 != 0) apply(c.tangent[0], d1);
@@ -195,22 +183,22 @@ double ContactSweeps::sweepOnce() {
 
 SolveOutcome ContactSweeps::sweep(double residual_m_s, int limit) {
   SolveOutcome outcome;
-  while (outcome.steps < limit && !outcome.is_settled) {
-    outcome.is_settled = sweepOnce() <= residual_m_s;
+  while (outcome.steps < limit && !outcome.is_converged) {
+    outcome.is_converged = sweepOnce() <= residual_m_s;
     ++outcome.steps;
   }
   return outcome;
 }
 
-// A joint holds against the push; a motor or limit, whose impulse is bounded, does not mind it.
-void ContactSweeps::pushJoint(const Drive& drive) {
-  const JointRow& row = *drive.row;
+// A joint resists the push; a motor or limit, whose impulse is bounded, does not.
+void ContactSweeps::pushJoint(const JointState& joint) {
+  const JointRow& row = *joint.row;
   constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
   if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) return;
-  const double impulse_Ns = (row.fixed_velocity - row.velocity(island_)) / drive.W;
+  const double impulse_Ns = (row.fixed_velocity - row.velocity(island_)) / joint.W;
   for (int i = 0; i < 2; ++i)
     if (row.body[i] >= 0)
-      island_.bodies[static_cast<std::size_t>(row.body[i])].u += impulse_Ns * drive.MinvJ[i];
+      island_.bodies[static_cast<std::size_t>(row.body[i])].u += impulse_Ns * joint.MinvJ[i];
 }
 
 void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
@@ -230,9 +218,9 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
   for (std::size_t i = 0; i < push_.size(); ++i) std::swap(island_.bodies[i].u, push_[i]);
   for (int i = 0; i < sweep_limit; ++i) {
     double residual_m_s = 0;
-    for (const Drive& drive : drives_) pushJoint(drive);
+    for (const JointState& joint : joint_states_) pushJoint(joint);
     for (RigidContact& c : contacts_) {
-      double v = 0;  // the partner's own motion is no part of the push
+      double v = 0;  // the motion of kinematic bodies does not belong to the push
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
       const double p = std::max(0.0, c.p_push + (c.target_m_s - v) / c.normal.W);
@@ -241,15 +229,15 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);
       c.p_push = p;
     }
-    // Left ten times as far from done, a heavy load on light bodies was lowered by each step's velocity as
-    // much as each push had raised it.
+    // With ten times this tolerance, each step's velocity lowered a heavy load on light bodies as much as
+    // each push had raised it.
     if (residual_m_s * dt < kNothing_m) break;
   }
   for (std::size_t i = 0; i < push_.size(); ++i) {
     IslandBody& b = island_.bodies[i];
     Vec6& push = push_[i];
     std::swap(b.u, push);
-    // Each row's push is limited already, but rows that contradict each other add up.
+    // Each row's push is limited, but contradictory rows add up.
     const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
     if (fastest_m_s > kMostPush_m_s) push *= kMostPush_m_s / fastest_m_s;
   }

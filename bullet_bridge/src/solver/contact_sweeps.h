@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid contact: projected Gauss-Seidel over joints and the few contacts in Bullet's manifolds.
+// Constraint contact: projected Gauss-Seidel over joints and the few contacts in Bullet's manifolds.
 //
-// Signorini in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a pyramid) in the
-// tangent plane. Overlap is pushed out afterwards in a second, frictionless solve whose velocities move the
-// bodies once and are forgotten, so that no energy enters (split impulse). Sources: Catto 2005 (sequential
+// Signorini's condition in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a
+// pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its velocities move the
+// bodies once and are discarded, so that no energy is added (split impulse). Sources: Catto 2005 (sequential
 // impulses); Jourdan, Alart and Jean 1998 (Gauss-Seidel for frictional contact).
 #pragma once
 
@@ -28,11 +28,11 @@ struct ContactRow {
     Vec6 MinvJ = Vec6::Zero();
   };
   Side side[2];
-  double fixed_velocity = 0;  ///< of a kinematic partner, along the direction
-  double W = 0;               ///< J held^-1 J'
+  double fixed_velocity = 0;  ///< of a kinematic body, along the direction
+  double W = 0;               ///< J effective_mass^-1 J'
 };
 
-/// A contact of a manifold as the solver sees it.
+/// A contact of a manifold, with its rows.
 struct RigidContact {
   btManifoldPoint* point = nullptr;
   const btCollisionObject* object[2] = {nullptr, nullptr};
@@ -51,16 +51,16 @@ class ContactSweeps {
 
   void clear() { contacts_.clear(); }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
-  /// Starts from last step's impulses, each body's mass being `held`.
+  /// Starts from last step's impulses, with the bodies' effective masses.
   void start();
   /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times.
   SolveOutcome sweep(double residual_m_s, int limit);
-  /// Velocities of the bodies by the contacts' impulses as they stand.
+  /// Sets the bodies' velocities from the present impulses.
   void applyImpulses();
   [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }
-  /// Pushes out, by a share and without leaving velocity behind, the overlap left at the end of the step.
+  /// Finds the push that removes a share of the overlap left at the end of the step, without adding velocity.
   void solvePush(const btContactSolverInfo& info, int sweep_limit);
-  /// Leaves impulses in the manifolds and moves the bodies by the push.
+  /// Writes the impulses to the manifolds and moves the bodies by the push.
   void finish(double dt_s);
 
  private:
@@ -76,20 +76,20 @@ class ContactSweeps {
   [[nodiscard]] double velocity(const ContactRow& row) const;
   void apply(const ContactRow& row, double impulse);
 
-  /// A joint's row, prepared.
-  struct Drive {
+  /// A joint's row with its inverse masses.
+  struct JointState {
     JointRow* row;
     Vec6 MinvJ[2];
     double W;
   };
 
-  void pushJoint(const Drive& drive);
+  void pushJoint(const JointState& joint);
 
   Island& island_;
   JointRows& joints_;
-  std::vector<Drive> drives_;
+  std::vector<JointState> joint_states_;
   std::vector<RigidContact> contacts_;
-  std::vector<Vec6> push_;  // velocities that only move, for one step
+  std::vector<Vec6> push_;  // velocities that change positions only, in one step
 };
 
 }  // namespace vps::bullet

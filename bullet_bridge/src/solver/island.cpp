@@ -13,8 +13,7 @@
 namespace vps::bullet {
 namespace {
 
-// What initSolverBody and convertBodies of the stock solver take as external: forces, torques, gyroscopic
-// terms.
+// As initSolverBody and convertBodies of the stock solver: forces, torques, gyroscopic terms.
 Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
   Vec3 w = fromBt(b.getInvInertiaTensorWorld() * b.getTotalTorque()) * dt_s;
   const Vec3 v = fromBt(b.getTotalForce()) * b.getInvMass() * dt_s;
@@ -29,7 +28,7 @@ Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
   return stacked(w, v);
 }
 
-// No point of the body is farther than this from its origin.
+// Greatest distance of the body's points from its origin.
 double reach_m(const btRigidBody& b) {
   btVector3 center;
   btScalar radius_m = 0;

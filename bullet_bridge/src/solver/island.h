@@ -23,36 +23,36 @@ inline Vec6 stacked(const Vec3& w, const Vec3& v) {
   return u;
 }
 
-/// A dynamic body; twists are about its centre. Its velocity solves held u = momentum + drive + the contacts'
-/// impulses.
+/// A dynamic body; twists are about its centre. Its velocity u solves
+/// effective_mass u = momentum + coupling_impulse + the contacts' impulses.
 struct IslandBody {
   btRigidBody* rigid = nullptr;
-  double reach_m = 0;  ///< no point of it is farther from its centre
+  double reach_m = 0;  ///< greatest distance of its points from its centre
   Mat6 mass = Mat6::Zero();
-  Vec6 momentum = Vec6::Zero();  ///< mass times the velocity with external forces
-  Mat6 held = Mat6::Zero();      ///< mass, and the implicit part of the couplings that hold it
-  Mat6 held_inverse = Mat6::Zero();
-  Vec6 drive = Vec6::Zero();  ///< the couplings' constant part
-  Vec6 u = Vec6::Zero();      ///< at first that of the last step
+  Vec6 momentum = Vec6::Zero();        ///< mass times the velocity with external forces
+  Mat6 effective_mass = Mat6::Zero();  ///< mass plus the implicit part of its couplings
+  Mat6 effective_inverse = Mat6::Zero();
+  Vec6 coupling_impulse = Vec6::Zero();  ///< constant part of its couplings
+  Vec6 u = Vec6::Zero();                 ///< initially that of the last step
 };
 
-/// How a solver of the island ended.
+/// Result of an iterative solution of the island.
 struct SolveOutcome {
   int steps = 0;
-  bool is_settled = false;
+  bool is_converged = false;
 };
 
 class Island {
  public:
   void clear();
   void add(btRigidBody& rigid, double dt_s);
-  /// -1: not moved by contact.
+  /// -1: contact does not move it.
   [[nodiscard]] int indexOf(const btCollisionObject* object) const;
-  /// Of a body that is not in the island but moves (kinematic), about its origin.
+  /// Velocity of a body that is not in the island but moves (kinematic), about its origin.
   [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
   void writeVelocities() const;
   void readVelocities(std::vector<Vec6>& u) const;
-  /// Greatest speed of any body's point at these twists, one a body [m/s]; infinite where one is no number.
+  /// Greatest speed of any point at these twists, one for each body [m/s]; infinite if one is not finite.
   [[nodiscard]] double topSpeed(std::span<const Vec6> twists) const;
 
   std::vector<IslandBody> bodies;

@@ -38,7 +38,7 @@ void IslandMatrix::start(std::size_t body_count, std::span<const std::pair<int, 
   std::fill_n(sparse_.valuePtr(), sparse_.nonZeros(), 0.0);
 }
 
-// Blocks are stored whole, on the diagonal too: the factorisation reads the lower half.
+// Blocks are stored completely, also on the diagonal; the factorisation reads the lower half.
 void IslandMatrix::makePattern() {
   first_.assign(body_count_ + 1, 0);
   for (const std::uint64_t key : blocks_) ++first_[static_cast<std::size_t>(columnOf(key)) + 1];

@@ -12,20 +12,20 @@
 
 namespace vps::bullet {
 
-/// Dense for a few bodies. For many, sparse, its pattern kept as long as the same bodies touch: finding one
-/// and ordering its columns takes several times as long as factoring it.
+/// Dense for a few bodies, sparse for many. The sparse pattern is kept as long as the same bodies touch:
+/// finding it and ordering its columns takes several times as long as the factorisation.
 class IslandMatrix {
  public:
-  /// All zero. Blocks of `pairs` (row body, column body; any order, repeats allowed) and all on the diagonal
-  /// may be added to.
+  /// Sets all entries to zero. Afterwards add() accepts the blocks of `pairs` (row body, column body; any
+  /// order, repeats allowed) and the diagonal.
   void start(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
-  /// Adds to the block of two bodies; the upper half may be left out, and is ignored.
+  /// Adds to the block of two bodies. Blocks of the upper half are ignored.
   void add(int row_body, int column_body, const Mat6& block);
-  /// answer: the matrix's inverse times rhs. False: it is not positive definite.
+  /// answer: the inverse of the matrix times rhs. False: the matrix is not positive definite.
   [[nodiscard]] bool solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& answer);
 
  private:
-  static constexpr std::size_t kDense = 12;  // assumed: bodies up to which dense is quicker
+  static constexpr std::size_t kDense = 12;  // assumed: greatest number of bodies for which dense is faster
   [[nodiscard]] bool isDense() const { return body_count_ <= kDense; }
   void makePattern();
 

@@ -14,18 +14,18 @@ namespace vps::bullet {
 namespace {
 
 /// A row as getInfo2() fills it.
-struct Filled {
+struct BulletRow {
   btScalar linear[2][4] = {}, angular[2][4] = {};
   btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;
 };
-static_assert(sizeof(Filled) % sizeof(btScalar) == 0);
+static_assert(sizeof(BulletRow) % sizeof(btScalar) == 0);
 
-Vec6 jacobianOf(const Filled& row, int side) {
+Vec6 jacobianOf(const BulletRow& row, int side) {
   const auto vec = [](const btScalar* v) { return Vec3(v[0], v[1], v[2]); };
   return stacked(vec(row.angular[side]), vec(row.linear[side]));
 }
 
-/// The share of a row's impulse that each body gets, added to the joint's feedback.
+/// Adds a row's force and torque on each body to the joint's feedback.
 void addFeedback(btJointFeedback& feedback, const JointRow& row, double dt_s) {
   const auto force = [&](int side) { return toBt(Vec3(row.J[side].tail<3>() * (row.impulse_Ns / dt_s))); };
   const auto torque = [&](int side) { return toBt(Vec3(row.J[side].head<3>() * (row.impulse_Ns / dt_s))); };
@@ -41,7 +41,7 @@ double JointRow::inverseMass(const Island& island, Vec6 (*MinvJ)[2]) const {
   double W = 0;
   for (int i = 0; i < 2; ++i) {
     if (body[i] < 0) continue;
-    const Vec6 each = island.bodies[static_cast<std::size_t>(body[i])].held_inverse * J[i];
+    const Vec6 each = island.bodies[static_cast<std::size_t>(body[i])].effective_inverse * J[i];
     W += J[i].dot(each);
     if (MinvJ) (*MinvJ)[i] = each;
   }
@@ -58,34 +58,34 @@ void JointRows::add(btTypedConstraint& joint, const Island& island, const btCont
   btTypedConstraint::btConstraintInfo1 size{};
   joint.getInfo1(&size);
   if (size.m_numConstraintRows <= 0) return;
-  std::vector<Filled> filled(static_cast<std::size_t>(size.m_numConstraintRows));
-  for (Filled& row : filled) row.cfm = info.m_globalCfm;
-  btTypedConstraint::btConstraintInfo2 ask{};
-  ask.fps = 1 / info.m_timeStep;
-  ask.erp = info.m_erp;
-  ask.m_numIterations = info.m_numIterations;
-  ask.m_damping = info.m_damping;
-  Filled& first = filled.front();
-  ask.m_J1linearAxis = first.linear[0];
-  ask.m_J2linearAxis = first.linear[1];
-  ask.m_J1angularAxis = first.angular[0];
-  ask.m_J2angularAxis = first.angular[1];
-  ask.m_constraintError = &first.error;
-  ask.cfm = &first.cfm;
-  ask.m_lowerLimit = &first.lower;
-  ask.m_upperLimit = &first.upper;
-  ask.rowskip = sizeof(Filled) / sizeof(btScalar);
-  joint.getInfo2(&ask);
+  std::vector<BulletRow> bullet_rows(static_cast<std::size_t>(size.m_numConstraintRows));
+  for (BulletRow& row : bullet_rows) row.cfm = info.m_globalCfm;
+  btTypedConstraint::btConstraintInfo2 request{};
+  request.fps = 1 / info.m_timeStep;
+  request.erp = info.m_erp;
+  request.m_numIterations = info.m_numIterations;
+  request.m_damping = info.m_damping;
+  BulletRow& first = bullet_rows.front();
+  request.m_J1linearAxis = first.linear[0];
+  request.m_J2linearAxis = first.linear[1];
+  request.m_J1angularAxis = first.angular[0];
+  request.m_J2angularAxis = first.angular[1];
+  request.m_constraintError = &first.error;
+  request.cfm = &first.cfm;
+  request.m_lowerLimit = &first.lower;
+  request.m_upperLimit = &first.upper;
+  request.rowskip = sizeof(BulletRow) / sizeof(btScalar);
+  joint.getInfo2(&request);
 
   const btCollisionObject* const objects[2] = {&joint.getRigidBodyA(), &joint.getRigidBodyB()};
-  const double torn_Ns = joint.getBreakingImpulseThreshold();
-  for (const Filled& from : filled) {
+  const double breaking_Ns = joint.getBreakingImpulseThreshold();
+  for (const BulletRow& from : bullet_rows) {
     JointRow row;
     row.joint = &joint;
     row.target = from.error;
-    row.softness = from.cfm;
-    row.lower_Ns = std::max<double>(from.lower, -torn_Ns);
-    row.upper_Ns = std::min<double>(from.upper, torn_Ns);
+    row.cfm = from.cfm;
+    row.lower_Ns = std::max<double>(from.lower, -breaking_Ns);
+    row.upper_Ns = std::min<double>(from.upper, breaking_Ns);
     for (int side = 0; side < 2; ++side) {
       row.J[side] = jacobianOf(from, side);
       row.body[side] = island.indexOf(objects[side]);

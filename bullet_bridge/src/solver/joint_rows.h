@@ -11,15 +11,15 @@ struct btContactSolverInfo;
 
 namespace vps::bullet {
 
-/// One degree of freedom that a joint takes or drives: J u = target - softness times impulse, as far as the
-/// impulse's limits go.
+/// One degree of freedom that a joint constrains or drives: J u = target - cfm times impulse, within the
+/// limits of the impulse.
 struct JointRow {
   btTypedConstraint* joint = nullptr;
-  int body[2] = {-1, -1};  ///< -1: not moved
+  int body[2] = {-1, -1};  ///< -1: the solver does not move it
   Vec6 J[2] = {Vec6::Zero(), Vec6::Zero()};
-  double fixed_velocity = 0;  ///< of bodies that are not moved, along the row
+  double fixed_velocity = 0;  ///< of bodies that the solver does not move, along the row
   double target = 0;
-  double softness = 0;  ///< Bullet's cfm: a share of the row's inverse mass
+  double cfm = 0;  ///< constraint force mixing, as a share of the row's inverse mass
   double lower_Ns = 0, upper_Ns = 0;
   double impulse_Ns = 0;
 
@@ -34,16 +34,16 @@ struct JointRow {
   [[nodiscard]] double velocity(const Island& island) const {
     return velocity([&](std::size_t i) -> const Vec6& { return island.bodies[i].u; });
   }
-  /// J held^-1 J', with each body's held^-1 J' if asked for.
+  /// J effective_mass^-1 J'; with MinvJ also each body's effective_mass^-1 J'.
   double inverseMass(const Island& island, Vec6 (*MinvJ)[2] = nullptr) const;
 };
 
 class JointRows {
  public:
   void clear() { rows.clear(); }
-  /// Asks an enabled joint for its rows.
+  /// Adds the rows of an enabled joint.
   void add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info);
-  /// Leaves impulses in the joints, and in their feedback where asked for; breaks those that were torn.
+  /// Writes the impulses to the joints and to their feedback, and disables joints that broke.
   void finish(double dt_s);
 
   std::vector<JointRow> rows;

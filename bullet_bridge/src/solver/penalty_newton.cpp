@@ -11,7 +11,7 @@
 namespace vps::bullet {
 namespace {
 
-/// A twist about `from` as one about `to`.
+/// Transforms a twist about `from` into one about `to`.
 Mat6 twistShift(const Vec3& from, const Vec3& to) {
   Mat6 X = Mat6::Identity();
   X.bottomLeftCorner<3, 3>() = -crossMatrix(to - from);
@@ -26,7 +26,7 @@ double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
 
 }  // namespace
 
-void PenaltyNewton::add(PenaltyPair& pair, bool foresees_turning) {
+void PenaltyNewton::add(PenaltyPair& pair, bool follows_rotation) {
   if (pair.points.empty()) return;
   const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
   if (body[0] < 0 && body[1] < 0) return;
@@ -36,8 +36,8 @@ void PenaltyNewton::add(PenaltyPair& pair, bool foresees_turning) {
   for (const PenaltyPoint& p : pair.points) patch.center += p.p_W;
   patch.center /= static_cast<double>(pair.points.size());
   patch.fixed.setZero();
-  // A turning body's points go along a circle, off the tangent that a twist takes them along. Left out, a nut
-  // ends each step a little off its thread, and the springs that put it back brake it.
+  // Points of a rotating body move along circles, not along the tangents that a twist describes. Without this
+  // term a nut would end each step slightly off its thread, and the forces that return it would slow it down.
   Mat3 off_tangent[2];
   for (int i = 0; i < 2; ++i) {
     patch.body[i] = body[i];
@@ -46,7 +46,7 @@ void PenaltyNewton::add(PenaltyPair& pair, bool foresees_turning) {
     patch.X[i] = sign * twistShift(fromBt(pair.object[i]->getWorldTransform().getOrigin()), patch.center);
     if (body[i] < 0) patch.fixed += patch.X[i] * now;
     const Vec3 turn = dt_s_ * now.head<3>();
-    off_tangent[i] = foresees_turning ? Mat3(rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn))
+    off_tangent[i] = follows_rotation ? Mat3(rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn))
                                       : Mat3(Mat3::Zero());
   }
   patch.build(pair, off_tangent, dt_s_);
@@ -62,7 +62,7 @@ Vec6 PenaltyNewton::twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& 
 void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient) {
   for (std::size_t i = 0; i < u.size(); ++i) {
     const IslandBody& b = island_.bodies[i];
-    gradient[i] = b.held * u[i] - b.momentum - b.drive;
+    gradient[i] = b.effective_mass * u[i] - b.momentum - b.coupling_impulse;
   }
   for (std::size_t j = 0; j < joint_kg_.size(); ++j) {
     const JointRow& row = joints_.rows[j];
@@ -80,11 +80,11 @@ void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, s
 }
 
 void PenaltyNewton::prepareJoints() {
-  constexpr double kStiffer = 1e6;  // than the bodies are heavy
+  constexpr double kStiffer = 1e6;  // relative to the inverse of the bodies' inverse mass
   joint_kg_.clear();
   for (const JointRow& row : joints_.rows) {
     const double W = row.inverseMass(island_);
-    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.softness, 1 / kStiffer)) : 0);
+    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.cfm, 1 / kStiffer)) : 0);
   }
   is_free_.assign(joints_.rows.size(), 0);
 }
@@ -108,7 +108,7 @@ void PenaltyNewton::startMatrix() {
 
 bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) {
   if (gradient.size() == 1 && joint_kg_.empty()) {
-    Mat6 H = island_.bodies[0].held;
+    Mat6 H = island_.bodies[0].effective_mass;
     for (const PenaltyPatch& patch : patches()) {
       const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
       H += X.transpose() * patch.hessian * X;
@@ -119,8 +119,8 @@ bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
   }
   startMatrix();
   for (std::size_t i = 0; i < gradient.size(); ++i)
-    hessian_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].held);
-  // Lower blocks only: that is what the factorisation reads.
+    hessian_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
+  // Lower blocks only: the factorisation reads no others.
   const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
@@ -142,9 +142,9 @@ bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
   return true;
 }
 
-// The potential is convex, so its slope along the step grows: the least is where that is zero.
-double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
-  constexpr double kFlat = 0.1;  // of the slope at the start: a better share would not save an iteration
+// The potential is convex, so its slope along the step increases: the minimum is where it is zero.
+double PenaltyNewton::lineSearch(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
+  constexpr double kFlat = 0.1;  // of the initial slope; a more accurate minimum would not save an iteration
   trial_.resize(u.size());
   trial_gradient_.resize(u.size());
   const auto slopeAt = [&](double share) {
@@ -168,7 +168,7 @@ double PenaltyNewton::shareOf(const std::vector<Vec6>& u, const std::vector<Vec6
 }
 
 double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
-  if (!joint_kg_.empty()) return island_.topSpeed(step);  // joints may move bodies that nothing touches
+  if (!joint_kg_.empty()) return island_.topSpeed(step);  // joints may move bodies without contact
   double speed_m_s = 0;
   for (const PenaltyPatch& patch : patches()) {
     const Vec6 twist = twistOf(patch, step) - patch.fixed;
@@ -180,7 +180,7 @@ double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
 double PenaltyNewton::imbalance_m_s() {
   trial_.resize(gradient_.size());
   for (std::size_t i = 0; i < gradient_.size(); ++i)
-    trial_[i] = island_.bodies[i].held_inverse * gradient_[i];
+    trial_[i] = island_.bodies[i].effective_inverse * gradient_[i];
   return island_.topSpeed(trial_);
 }
 
@@ -190,33 +190,34 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
   gradient_.resize(u_.size());
   step_.resize(u_.size());
   SolveOutcome outcome;
-  while (outcome.steps < iteration_limit && !outcome.is_settled) {
+  while (outcome.steps < iteration_limit && !outcome.is_converged) {
     ++outcome.steps;
     evaluateAll(u_, true, gradient_);
     if (end == End::Balanced && imbalance_m_s() < residual_m_s) {
-      outcome.is_settled = true;
+      outcome.is_converged = true;
       break;
     }
     if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
-    if (!(slope < 0)) {  // as well balanced as rounding allows, or no number
+    if (!(slope < 0)) {  // balanced as well as rounding allows, or not finite
       constexpr double kGoodEnough = 10;
-      outcome.is_settled = slope >= 0 && (end == End::Short || imbalance_m_s() < kGoodEnough * residual_m_s);
+      outcome.is_converged =
+          slope >= 0 && (end == End::Short || imbalance_m_s() < kGoodEnough * residual_m_s);
       break;
     }
-    // The last step is too short for a better share of it to matter.
-    outcome.is_settled = end == End::Short && greatestSpeed(step_) < residual_m_s;
-    const double share = outcome.is_settled ? 1 : shareOf(u_, step_, slope);
+    // The last step is so short that a line search does not matter.
+    outcome.is_converged = end == End::Short && greatestSpeed(step_) < residual_m_s;
+    const double share = outcome.is_converged ? 1 : lineSearch(u_, step_, slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
   }
   for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
   return outcome;
 }
 
-double PenaltyNewton::renewLimits() {
+double PenaltyNewton::updateLimits() {
   island_.readVelocities(u_);
   double change = 0, greatest = 0;
-  for (PenaltyPatch& patch : patches()) patch.renewLimits(twistOf(patch, u_), change, greatest);
+  for (PenaltyPatch& patch : patches()) patch.updateLimits(twistOf(patch, u_), change, greatest);
   return greatest > 0 ? change / greatest : change;
 }
 

@@ -6,13 +6,13 @@
 
 #include <algorithm>
 
-#include "narrowphase/manifold_writer.h"
+#include "solver/contact_key.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
 namespace {
 
-/// A point that stands for no area: a steel corner of a millimetre. Assumed.
+/// Stiffness of a point without an area: a steel corner of a millimetre. Assumed.
 constexpr double kPointStiffness_N_per_m = 1e7;
 
 Vec3 lateralImpulse(const btManifoldPoint& point) {
@@ -25,7 +25,7 @@ void setLateralImpulse(btManifoldPoint& point, const Vec3& impulse_Ns) {
   point.m_appliedImpulseLateral2 = point.m_lateralFrictionDir2.dot(toBt(impulse_Ns));
 }
 
-/// The point of the pair that a manifold's contact was made of; null: none.
+/// The point of the pair that a manifold's contact was made from; null: none.
 const PenaltyPoint* pointOf(const PenaltyPair& pair, const btManifoldPoint& contact, int index) {
   if (pair.is_of_manifold) return &pair.points[static_cast<std::size_t>(index)];
   const std::uint64_t key = keyOf(contact);
@@ -35,48 +35,6 @@ const PenaltyPoint* pointOf(const PenaltyPair& pair, const btManifoldPoint& cont
 }
 
 }  // namespace
-
-void renewPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
-                 const RelativeMotion& motion, const Carry& carry) {
-  constexpr double kMostEasing_m_s = 0.05;  // assumed: bodies put into each other separate gently
-  const double easing_m = kMostEasing_m_s * motion.dt_s;
-  const Mat3 R_W1 = fromBt(pair.object[1]->getWorldTransform().getBasis());
-  const Mat3 turned = R_W1 * pair.R_W1.transpose();
-  pair.R_W1 = R_W1;
-  thread_local std::vector<PenaltyPoint> old;
-  old.swap(pair.points);
-  pair.points.resize(candidates.size());
-  auto point_at = pair.points.begin();
-  auto before = old.begin();
-  for (Candidate c : candidates) {
-    carry(c);
-    PenaltyPoint& point = *point_at++ = {};
-    point.key = c.key();
-    point.p_W = c.p_W;
-    point.n_W = c.n_W;
-    point.k_N_per_m = stiffness_N_per_m3 * c.area_m2;
-    double before_m = 0;  // a point that was not there has not been deeper
-    while (before != old.end() && before->key < point.key) ++before;
-    if (before != old.end() && before->key == point.key) {
-      const Vec3 bend_W = turned * before->bend_W;
-      point.bend_W = bend_W - point.n_W * point.n_W.dot(bend_W);
-      point.f_n_N = before->f_n_N;
-      before_m = std::min(0.0, before->gap_m);
-      // What is given back is pressed out in a step, so no more than that may lie open.
-      if (before->ease_m > 0) point.ease_m = std::max(before->ease_m - easing_m, -c.distance_m - easing_m);
-    }
-    // Deeper than the step's approach can bring it: the bodies were put into each other, or another surface
-    // became the nearest.
-    const double deeper_m = before_m - motion.contact_margin_m - c.distance_m;
-    if (deeper_m > point.ease_m) {
-      const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +
-                                0.1 * motion.own_speed_m_s * motion.dt_s;
-      point.ease_m = std::max(point.ease_m, deeper_m - approach_m);
-    }
-    point.ease_m = std::clamp(point.ease_m, 0.0, std::max(0.0, -c.distance_m));
-    point.gap_m = c.distance_m + point.ease_m;
-  }
-}
 
 PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s) {
   PenaltyPair pair;
@@ -91,7 +49,7 @@ PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s) {
     point.gap_m = contact.getDistance();
     point.k_N_per_m = kPointStiffness_N_per_m;
     point.f_n_N = contact.m_appliedImpulse / dt_s;
-    // The impulse was on body 0, against its way.
+    // The impulse acted on body 0, against its displacement.
     point.bend_W = -lateralImpulse(contact) / (dt_s * point.k_N_per_m);
     pair.points.push_back(point);
     pair.mu = std::max<double>(pair.mu, contact.m_combinedFriction);
@@ -99,18 +57,18 @@ PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s) {
   return pair;
 }
 
-void leaveImpulses(std::span<const PenaltyManifold> manifolds, double dt_s) {
+void writeImpulses(std::span<const PenaltyManifold> manifolds, double dt_s) {
   const auto forEachContact = [&](const auto& visit) {
     for (const auto& [manifold, pair] : manifolds)
       for (int i = 0; i < manifold->getNumContacts(); ++i)
         visit(*pair, manifold->getContactPoint(i), pointOf(*pair, manifold->getContactPoint(i), i));
   };
-  for (const PenaltyManifold& m : manifolds) m.pair->told_N = 0;
+  for (const PenaltyManifold& m : manifolds) m.pair->manifold_N = 0;
   forEachContact([](PenaltyPair& pair, btManifoldPoint&, const PenaltyPoint* point) {
-    if (point) pair.told_N += point->f_n_N;
+    if (point) pair.manifold_N += point->f_n_N;
   });
   forEachContact([dt_s](const PenaltyPair& pair, btManifoldPoint& contact, const PenaltyPoint* point) {
-    const double scale = point && pair.told_N > 0 ? dt_s * pair.all_N / pair.told_N : 0;
+    const double scale = point && pair.manifold_N > 0 ? dt_s * pair.total_N / pair.manifold_N : 0;
     contact.m_appliedImpulse = toBt(point ? scale * point->f_n_N : 0);
     setLateralImpulse(contact, point ? Vec3(-scale * point->k_N_per_m * point->bend_W) : Vec3(Vec3::Zero()));
   });

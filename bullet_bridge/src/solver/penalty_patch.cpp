@@ -15,17 +15,17 @@ inline Vec6 wrenchOf(const Vec3& r, const Vec3& f) {
   return stacked(r.cross(f), f);
 }
 
-/// Sums of symmetric matrices, their lower halves.
+/// Sum of symmetric matrices; only the lower half is computed.
 class SymmetricSum {
  public:
-  // Column by column: the compiler makes vectors of the inner loop.
+  // Column by column, so that the compiler vectorises the inner loop.
   void add(double factor, const Vec6& g) {
     for (int c = 0; c < 6; ++c) {
       const double scaled = factor * g[c];
       for (int r = 0; r < 6; ++r) sum_(r, c) += scaled * g[r];
     }
   }
-  // Of a spring that is as stiff in all directions, in a point.
+  // A spring at a point, equally stiff in all directions.
   void addEven(double k, const Vec3& r) {
     k_ += k;
     kr_ += k * r;
@@ -93,8 +93,7 @@ void PenaltyPatch::findGaps(const Vec6& twist) const {
                        (e[i] * way[4] + f[i] * way[5]));
 }
 
-// The tangential part of each point's way, added to its bend. Memory that does not overlap, so that the
-// compiler may take several points at once.
+// Adds the tangential part of each point's displacement to its bend. __restrict lets the compiler vectorise.
 void PenaltyPatch::findSlips(const Vec6& twist) const {
   const std::size_t count = points_.size();
   const Vec6 way = dt_s_ * twist;
@@ -115,22 +114,10 @@ void PenaltyPatch::findSlips(const Vec6& twist) const {
   }
 }
 
-inline PenaltyPatch::Push PenaltyPatch::pushOf(std::size_t i) const {
-  const double k = points_[i].k, limit_N = limit_N_[i];
-  Push push;
-  push.f_n_N = k * std::max(0.0, -end_m_[i]);
-  if (!(limit_N > 0)) return push;
-  const Vec3 x(bent_m_[0][i], bent_m_[1][i], bent_m_[2][i]);
-  const double length2 = x.squaredNorm();
-  if (!(length2 > 0)) return push;
-  if (k * k * length2 <= limit_N * limit_N) {
-    push.f_t_N = k * x;
-  } else {
-    push.slip_m = std::sqrt(length2);
-    push.along = x / push.slip_m;
-    push.f_t_N = limit_N * push.along;
-  }
-  return push;
+inline PenaltyPatch::PointForce PenaltyPatch::forceAt(std::size_t i) const {
+  const double k = points_[i].k;
+  return {k * std::max(0.0, -end_m_[i]),
+          bristleForce({bent_m_[0][i], bent_m_[1][i], bent_m_[2][i]}, k, limit_N_[i])};
 }
 
 void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
@@ -140,24 +127,25 @@ void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
   SymmetricSum sum;
   const double dt2 = dt_s_ * dt_s_;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!presses(i)) continue;
+    if (!isActive(i)) continue;
     const Point& point = points_[i];
-    const Push push = pushOf(i);
-    gradient += wrenchOf(point.r, dt_s_ * (push.f_t_N - push.f_n_N * point.n));
+    const PointForce force = forceAt(i);
+    gradient += wrenchOf(point.r, dt_s_ * (force.friction.f_N - force.f_n_N * point.n));
     if (!with_hessian) continue;
     // K = k_t I + (k_n - k_t) n n' - k_slip a a'
-    const bool holds = push.slip_m == 0 && limit_N_[i] > 0;
-    const double k_n = push.f_n_N > 0 ? dt2 * point.k : 0;
-    const double k_slip = push.slip_m > 0 ? dt2 * limit_N_[i] / push.slip_m : 0;
-    const double k_t = holds ? dt2 * point.k : k_slip;
+    const double slip_m = force.friction.slip_m;
+    const bool sticks = slip_m == 0 && limit_N_[i] > 0;
+    const double k_n = force.f_n_N > 0 ? dt2 * point.k : 0;
+    const double k_slip = slip_m > 0 ? dt2 * limit_N_[i] / slip_m : 0;
+    const double k_t = sticks ? dt2 * point.k : k_slip;
     if (k_t > 0) sum.addEven(k_t, point.r);
     if (k_n != k_t) sum.add(k_n - k_t, wrenchOf(point.r, point.n));
-    if (k_slip > 0) sum.add(-k_slip, wrenchOf(point.r, push.along));
+    if (k_slip > 0) sum.add(-k_slip, wrenchOf(point.r, force.friction.direction));
   }
   if (with_hessian) hessian = sum.total();
 }
 
-void PenaltyPatch::renewLimits(const Vec6& twist, double& change, double& greatest) {
+void PenaltyPatch::updateLimits(const Vec6& twist, double& change, double& greatest) {
   findGaps(twist);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const double limit_N = pair->mu * points_[i].k * std::max(0.0, -end_m_[i]);
@@ -170,18 +158,18 @@ void PenaltyPatch::renewLimits(const Vec6& twist, double& change, double& greate
 void PenaltyPatch::finish(const Vec6& twist) const {
   findGaps(twist);
   findSlips(twist);
-  pair->all_N = 0;
+  pair->total_N = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     PenaltyPoint& out = pair->points[i];
-    if (!presses(i)) {
+    if (!isActive(i)) {
       out.f_n_N = 0;
       out.bend_W.setZero();
       continue;
     }
-    const Push push = pushOf(i);
-    out.f_n_N = push.f_n_N;
-    out.bend_W = points_[i].k > 0 ? Vec3(push.f_t_N / points_[i].k) : Vec3(Vec3::Zero());
-    pair->all_N += push.f_n_N;
+    const PointForce force = forceAt(i);
+    out.f_n_N = force.f_n_N;
+    out.bend_W = points_[i].k > 0 ? Vec3(force.friction.f_N / points_[i].k) : Vec3(Vec3::Zero());
+    pair->total_N += force.f_n_N;
   }
 }
 

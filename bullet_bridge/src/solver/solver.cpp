@@ -3,11 +3,11 @@
 //
 //     (M + J' D J) u = M u0 + J' c + sum of contact impulses        (J, c, D: the couplings' linear laws)
 //
-// so a coupling is nothing but more effective mass and a constant push: M_eff = M + J' D J, a 6x6 matrix for
-// each body. Contacts are then solved with M_eff, as rigid ones by sweeps or as springs by Newton's method.
-// Solved beside them as one more row block, a stiff coupling on a light part converges like (1 - 1 / (1 + A
-// D)): 20 kN/m on 1 g at 1 kHz needs hundreds of iterations. Sources: Todorov 2014 and Castro et al. 2021 for
-// implicit springs as effective mass.
+// so a coupling only adds effective mass and a constant impulse: M_eff = M + J' D J, a 6x6 matrix for each
+// body. Contacts are then solved with M_eff, by the constraint or the penalty method. As one more block of
+// rows, a stiff coupling on a light part would converge like (1 - 1 / (1 + A D)): 20 kN/m on 1 g at 1 kHz
+// would need hundreds of iterations. Sources: Todorov 2014 and Castro et al. 2021 for implicit springs as
+// effective mass.
 #include "vps_bullet/solver.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -19,9 +19,9 @@
 #include <unordered_set>
 #include <vector>
 
-#include "install/context.h"
 #include "solver/contact_sweeps.h"
 #include "solver/island.h"
+#include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
 #include "solver/rigid_newton.h"
 #include "vps_bullet/convert.h"
@@ -29,10 +29,10 @@
 
 namespace vps::bullet {
 
-/// What one island is solved with; kept from call to call for its memory.
+/// Working data of one island; kept between calls to reuse its memory.
 struct Solver::Work {
   /// A coupling whose part is in the island.
-  struct Held {
+  struct ActiveCoupling {
     CouplingConstraint* coupling;
     int body;
     Mat6 J;  // body's twist -> grasp point's
@@ -42,21 +42,21 @@ struct Solver::Work {
   JointRows joints;
   ContactSweeps rigid{island, joints};
   RigidNewton rigid_newton{island, joints};
-  PenaltyNewton soft{island, joints};
-  bool is_soft = false;
+  PenaltyNewton penalty{island, joints};
+  bool is_penalty = false;
   std::vector<CouplingConstraint*> couplings;
-  std::vector<Held> held;
-  std::vector<PenaltyManifold> manifolds;  // of soft contacts
-  std::deque<PenaltyPair> made;            // of manifolds that are nobody's pair
-  std::vector<Vec6> u;                     // room for velocities
+  std::vector<ActiveCoupling> active_couplings;
+  std::vector<PenaltyManifold> manifolds;  // with penalty contact
+  std::deque<PenaltyPair> converted;       // of manifolds without VPS contact
+  std::vector<Vec6> u;                     // scratch
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
-  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const Context* context,
+  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const PenaltyContacts* contacts,
                       const btContactSolverInfo& info);
-  void holdCouplings(double dt_s);
+  void gatherCouplings(double dt_s);
   void applyLaws();
-  bool renewLaws();
+  bool updateLaws();
   SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
 };
@@ -68,7 +68,7 @@ bool hasUnitFactors(const btRigidBody& b) {
   return b.getLinearFactor() == one && b.getAngularFactor() == one;
 }
 
-// Bullet's idiom for a body that does not turn is an inertia of zero; our mass matrices have no such thing.
+// In Bullet a body that cannot rotate has zero inertia; our mass matrices do not allow that.
 bool canTurn(const btRigidBody& b) {
   const btVector3& inverse = b.getInvInertiaDiagLocal();
   return !(b.getInvMass() > 0) || (inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0);
@@ -106,19 +106,20 @@ void Solver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints,
   }
 }
 
-bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const Context* context,
+bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const PenaltyContacts* contacts,
                                   const btContactSolverInfo& info) {
   rigid.clear();
-  soft.clear(info.m_timeStep);
+  penalty.clear(info.m_timeStep);
   manifolds.clear();
-  made.clear();
+  converted.clear();
   for (btPersistentManifold* manifold : from) {
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (!isPlain(manifold->getContactPoint(i))) return false;
-    manifolds.push_back({manifold, context ? context->penalty.of(manifold) : nullptr});
+    manifolds.push_back({manifold, contacts ? contacts->find(manifold) : nullptr});
   }
-  is_soft = std::any_of(manifolds.begin(), manifolds.end(), [](const auto& m) { return m.pair != nullptr; });
-  if (!is_soft) {
+  is_penalty =
+      std::any_of(manifolds.begin(), manifolds.end(), [](const auto& m) { return m.pair != nullptr; });
+  if (!is_penalty) {
     for (btPersistentManifold* manifold : from)
       for (int i = 0; i < manifold->getNumContacts(); ++i)
         rigid.add(*manifold, manifold->getContactPoint(i), info);
@@ -126,75 +127,75 @@ bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const C
   }
   std::unordered_set<const PenaltyPair*> added;  // a pair may have several manifolds
   for (PenaltyManifold& m : manifolds) {
-    if (!m.pair) m.pair = &made.emplace_back(penaltyPairOf(*m.manifold, info.m_timeStep));
-    if (added.insert(m.pair).second) soft.add(*m.pair);
+    if (!m.pair) m.pair = &converted.emplace_back(penaltyPairOf(*m.manifold, info.m_timeStep));
+    if (added.insert(m.pair).second) penalty.add(*m.pair);
   }
   return true;
 }
 
-void Solver::Work::holdCouplings(double dt_s) {
-  held.clear();
+void Solver::Work::gatherCouplings(double dt_s) {
+  active_couplings.clear();
   for (CouplingConstraint* coupling : couplings) {
     coupling->buildJacobian();
     coupling->step_ = coupling->makeStep(dt_s);
     const int index = island.indexOf(&coupling->part_);
     if (coupling->step_.is_open || index < 0) continue;
-    Held h{coupling, index, Mat6::Identity(), coupling->lawAt(coupling->step_, Vec6::Zero(), true)};
+    ActiveCoupling h{coupling, index, Mat6::Identity(), coupling->lawAt(coupling->step_, Vec6::Zero(), true)};
     h.J.bottomLeftCorner<3, 3>() = -crossMatrix(coupling->step_.r_W);
-    held.push_back(h);
+    active_couplings.push_back(h);
   }
 }
 
 void Solver::Work::applyLaws() {
   for (IslandBody& b : island.bodies) {
-    b.held = b.mass;
-    b.drive.setZero();
+    b.effective_mass = b.mass;
+    b.coupling_impulse.setZero();
   }
-  for (const Held& h : held) {
+  for (const ActiveCoupling& h : active_couplings) {
     IslandBody& b = island.bodies[static_cast<std::size_t>(h.body)];
-    b.held += h.J.transpose() * h.law.D.asDiagonal() * h.J;
-    b.drive += h.J.transpose() * h.law.c;
+    b.effective_mass += h.J.transpose() * h.law.D.asDiagonal() * h.J;
+    b.coupling_impulse += h.J.transpose() * h.law.c;
   }
-  for (IslandBody& b : island.bodies) b.held_inverse = b.held.llt().solve(Mat6::Identity());
+  for (IslandBody& b : island.bodies) b.effective_inverse = b.effective_mass.llt().solve(Mat6::Identity());
 }
 
-// True if the laws hold as they stand; else those that do not are replaced.
-bool Solver::Work::renewLaws() {
-  bool is_settled = true;
-  for (Held& h : held) {
+// True if the laws are valid at the present velocities; otherwise replaces those that are not.
+bool Solver::Work::updateLaws() {
+  bool is_converged = true;
+  for (ActiveCoupling& h : active_couplings) {
     const Vec6 V_G = h.J * island.bodies[static_cast<std::size_t>(h.body)].u;
     const CouplingConstraint::Law law = h.coupling->lawAt(h.coupling->step_, V_G);
     const double change = (law.c - h.law.c).norm();
-    if (law.limited != h.law.limited || change > 1e-6 * law.c.norm()) is_settled = false;
-    if (!is_settled) h.law = law;
+    if (law.limited != h.law.limited || change > 1e-6 * law.c.norm()) is_converged = false;
+    if (!is_converged) h.law = law;
   }
-  return is_settled;
+  return is_converged;
 }
 
-// Sweeps settle what is nearly settled, such as parts at rest, in a few microseconds; Newton's method settles
-// the rest.
+// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows.
 SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_s) {
-  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: what each costs
-  constexpr double kShareOfSpeed = 1e-5;                       // assumed: a micron on the way of a decimetre
+  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
+  constexpr double kShareOfSpeed = 1e-5;  // assumed: a micrometre on a path of a decimetre
   const int newton_limit = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
   rigid.start();
   SolveOutcome outcome =
       rigid.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
-  if (outcome.is_settled || newton_limit == 0) return outcome;
+  if (outcome.is_converged || newton_limit == 0) return outcome;
   island.readVelocities(u);
   const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u));
   const SolveOutcome newton = rigid_newton.solve(rigid.contacts(), dt_s, near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * newton.steps;
-  outcome.is_settled = newton.is_settled;
-  rigid.applyImpulses();  // whatever is left open, velocities are those that the impulses give
-  if (newton.is_settled) return outcome;
+  outcome.is_converged = newton.is_converged;
+  rigid.applyImpulses();  // even without convergence, velocities are those of the impulses
+  if (newton.is_converged) return outcome;
   const SolveOutcome end =
       rigid.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
-  return {outcome.steps + end.steps, end.is_settled};
+  return {outcome.steps + end.steps, end.is_converged};
 }
 
 SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings, double dt_s) {
-  return is_soft ? soft.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings, dt_s);
+  return is_penalty ? penalty.solve(settings.residual_m_s, settings.iteration_limit)
+                    : solveRigid(settings, dt_s);
 }
 
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
@@ -208,37 +209,38 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   };
   const double dt_s = info.m_timeStep;
   Work& work = *work_;
-  const std::shared_ptr<const Context> context = contextOf(dispatcher);
+  PenaltyContacts* contacts = penaltyContactsOf(dispatcher);
+  if (contacts) contacts->setHasSolver();
   if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
-      !work.gatherContacts(spanOf(manifolds, manifold_count), context.get(), info))
+      !work.gatherContacts(spanOf(manifolds, manifold_count), contacts, info))
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
-  if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call for nothing
+  if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call without bodies
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
-  work.holdCouplings(dt_s);
+  work.gatherCouplings(dt_s);
 
-  // A spring at its limit makes its law depend on the answer, and friction's limit is the normal force that
-  // the answer has: solve, look, and solve again where they changed.
-  const int rounds = work.is_soft ? 20 : 6;  // assumed; limits of couplings settle in two or three
-  constexpr double kSettled = 1e-6;          // of the greatest limit of friction
+  // The law of a coupling at its limit depends on the solution, and so do the limits of friction: solve,
+  // update both, and solve again if they changed.
+  const int rounds = work.is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
+  constexpr double kSettled = 1e-6;             // share of the greatest limit of friction
   iterations_used_ = 0;
   for (int round = 0; round < rounds; ++round) {
     work.applyLaws();
     const SolveOutcome outcome = work.solveContacts(settings_, dt_s);
     iterations_used_ = std::max(iterations_used_, outcome.steps);
-    is_settled_ = outcome.is_settled;
-    if (round == rounds - 1) break;  // unsettled: laws and limits stay those that u was solved with
-    const bool has_settled_friction = !work.is_soft || work.soft.renewLimits() < kSettled;
-    if (work.renewLaws() && has_settled_friction) break;
+    is_converged_ = outcome.is_converged;
+    if (round == rounds - 1) break;  // not converged: laws and limits stay those of the last solution
+    const bool has_settled_friction = !work.is_penalty || work.penalty.updateLimits() < kSettled;
+    if (work.updateLaws() && has_settled_friction) break;
   }
-  for (const Work::Held& h : work.held) {
+  for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
-  if (work.is_soft) {
-    work.soft.finish();
+  if (work.is_penalty) {
+    work.penalty.finish();
     work.joints.finish(dt_s);
-    leaveImpulses(work.manifolds, dt_s);
+    writeImpulses(work.manifolds, dt_s);
     work.island.writeVelocities();
   } else {
     work.joints.finish(dt_s);

@@ -9,6 +9,7 @@
 
 #include "models/scene_models.h"
 #include "vps/crop.h"
+#include "vps/friction.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -29,7 +30,7 @@ struct DynamicBody {
 bullet::Settings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
   bullet::Settings settings;
-  settings.mode =
+  settings.contact_method =
       scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
@@ -111,9 +112,7 @@ struct Simulation::World {
 
   void setMaterial(btRigidBody& body, std::size_t part) const {
     const Material& material = scene.parts[part].part.material;
-    // Bullet multiplies the two bodies' values. Their roots make it the geometric mean of the two materials',
-    // so that two parts of 0.15 rub with 0.15, as tables of friction mean it.
-    body.setFriction(static_cast<btScalar>(std::sqrt(material.friction)));
+    body.setFriction(static_cast<btScalar>(frictionFactor(material.friction)));
     body.setRestitution(static_cast<btScalar>(material.restitution));
   }
 };

@@ -25,7 +25,7 @@ namespace vps::bullet {
 namespace {
 
 using test::Built;
-using test::Solver;
+using test::SolverKind;
 using test::World;
 
 constexpr bool kIsDouble = sizeof(btScalar) == 8;
@@ -376,7 +376,7 @@ TEST_P(NativeShapeAdapter, APartRestsOnItAtItsHeight) {
 }
 
 TEST_P(NativeShapeAdapter, APartRestsOnItInPenaltyModeToo) {
-  World world(Solver::Penalty);
+  World world(SolverKind::Penalty);
   world.addShape(*ground_.shape, 0, Vec3::Zero(), ground_.X_WB);
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, kHalf_m + 0.2e-3)));
   body.setAngularFactor(0);
@@ -692,7 +692,7 @@ std::vector<btTransform> fallOnNativeShapes(int threads) {
   btSphereShape ball(toBt(0.02));
   btCollisionShape* shapes[] = {&slabHull(ground, 0.5), &box,
                                 &ground.keep<btBvhTriangleMeshShape>(&floorMesh(ground), true), &ball};
-  World world(Solver::Vps, {}, 100, {}, threads);
+  World world(SolverKind::Constraint, {}, 100, {}, threads);
   for (int i = 0; i < 4; ++i)
     world.addShape(*shapes[i], 0, Vec3::Zero(), Pose::translation(Vec3(0.015 * i, 0.01 * (i % 2), -0.012)));
   for (int i = 0; i < 7; ++i)

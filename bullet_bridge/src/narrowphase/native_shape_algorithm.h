@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Narrow phase for pairs of a Shape with a shape that a NativeShape stands in for.
+// Narrow phase for pairs of a Shape with one of Bullet's own shapes that needs a NativeShapeAdapter.
 #pragma once
 
 #include <memory>
 
-#include "vps_bullet/algorithm.h"
+#include "narrowphase/pair_algorithm.h"
 
 namespace vps::bullet {
 
-class NativeShape;
+struct Context;
 
-/// Algorithm with one side's shape replaced by its stand-in. Renews the stand-in when the shape's key
-/// changes (scaled, resized, refitted); the contacts' impulses are then forgotten.
+/// ContactAlgorithm with the shape of one side replaced by its adapter. Builds the adapter again when the
+/// shape's key changes (scaled, resized, refitted); the impulses of its contacts are then dropped.
 class NativeShapeAlgorithm final : public PairAlgorithm {
  public:
   /// @param native_side  0 or 1: whose shape is replaced. Throws as NativeShapeCache::get().
@@ -20,7 +20,7 @@ class NativeShapeAlgorithm final : public PairAlgorithm {
                        std::shared_ptr<Context> context, int native_side);
   ~NativeShapeAlgorithm() override;
 
-  /// Does nothing where the stand-in must be renewed: that is left to processCollision(), one pair at a time.
+  /// Does nothing where the adapter must be built again: processCollision() does that, one pair at a time.
   void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
@@ -29,7 +29,7 @@ class NativeShapeAlgorithm final : public PairAlgorithm {
 
  private:
   struct State;
-  // Behind a pointer: Bullet's algorithm pool has elements of a fixed size that it does not check in Release.
+  // Behind a pointer: elements of Bullet's algorithm pool have a fixed size, which Release does not check.
   std::unique_ptr<State> state_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "native_shapes/native_shape_algorithm.h"
+#include "narrowphase/native_shape_algorithm.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
@@ -7,7 +7,8 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "install/context.h"
+#include "narrowphase/contact_algorithm.h"
+#include "narrowphase/context.h"
 #include "native_shapes/native_shape_adapter.h"
 
 namespace vps::bullet {
@@ -16,21 +17,21 @@ static_assert(sizeof(NativeShapeAlgorithm) <= sizeof(btConvexConcaveCollisionAlg
 
 namespace {
 
-/// Both bodies, the partner's shape replaced.
-struct StandIns {
+/// Both bodies, with the adapter in place of the native shape.
+struct AdaptedBodies {
   btCollisionObjectWrapper replaced;
   const btCollisionObjectWrapper* wrapper[2];
-  StandIns(const NativeShape& adapter, int side, const btCollisionObjectWrapper* body0,
-           const btCollisionObjectWrapper* body1)
-      : StandIns(adapter, *(side == 0 ? body0 : body1), body0, body1) {
+  AdaptedBodies(const NativeShapeAdapter& adapter, int side, const btCollisionObjectWrapper* body0,
+                const btCollisionObjectWrapper* body1)
+      : AdaptedBodies(adapter, *(side == 0 ? body0 : body1), body0, body1) {
     wrapper[side] = &replaced;
   }
 
  private:
-  StandIns(const NativeShape& adapter, const btCollisionObjectWrapper& partner,
-           const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
-      : replaced(partner.m_parent, &adapter, partner.m_collisionObject, partner.getWorldTransform(),
-                 partner.m_partId, partner.m_index),
+  AdaptedBodies(const NativeShapeAdapter& adapter, const btCollisionObjectWrapper& native,
+                const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
+      : replaced(native.m_parent, &adapter, native.m_collisionObject, native.getWorldTransform(),
+                 native.m_partId, native.m_index),
         wrapper{body0, body1} {}
 };
 
@@ -40,19 +41,19 @@ struct NativeShapeAlgorithm::State {
   std::shared_ptr<Context> context;
   int native_side = 0;
   ShapeKey key;
-  std::shared_ptr<const NativeShape> adapter;  // null: the shape has become one that cannot be met
-  std::unique_ptr<Algorithm> inner;
+  std::shared_ptr<const NativeShapeAdapter> adapter;  // null: the shape has become one without contact
+  std::unique_ptr<ContactAlgorithm> inner;
 
   void renew(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
     const btCollisionShape& shape = *bodies[native_side]->getCollisionShape();
     key = keyOf(shape);
     inner.reset();
-    adapter = context->partners.get(shape);
+    adapter = context->native_shapes->get(shape);
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
-    inner = std::make_unique<Algorithm>(info, bodies[0], bodies[1], context);
+    inner = std::make_unique<ContactAlgorithm>(info, bodies[0], bodies[1], context);
   }
-  // In the middle of a step there is nobody to throw to.
-  void renewOrSay(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
+  // Bullet's step is not exception-safe.
+  void renewOrReport(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
     if (key == keyOf(*bodies[native_side]->getCollisionShape())) return;
     try {
       renew(dispatcher, bodies);
@@ -81,18 +82,18 @@ void NativeShapeAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
 
 void NativeShapeAlgorithm::prepare(const btCollisionObjectWrapper* body0,
                                    const btCollisionObjectWrapper* body1, const btDispatcherInfo& info) {
-  const btCollisionObjectWrapper* partner = state_->native_side == 0 ? body0 : body1;
-  if (!state_->adapter || state_->key != keyOf(*partner->getCollisionShape())) return;
-  const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
+  const btCollisionObjectWrapper* native = state_->native_side == 0 ? body0 : body1;
+  if (!state_->adapter || state_->key != keyOf(*native->getCollisionShape())) return;
+  const AdaptedBodies bodies(*state_->adapter, state_->native_side, body0, body1);
   state_->inner->prepare(bodies.wrapper[0], bodies.wrapper[1], info);
 }
 
 void NativeShapeAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                             const btCollisionObjectWrapper* body1,
                                             const btDispatcherInfo& info, btManifoldResult* result) {
-  state_->renewOrSay(*m_dispatcher, {body0, body1});
+  state_->renewOrReport(*m_dispatcher, {body0, body1});
   if (!state_->adapter) return;
-  const StandIns bodies(*state_->adapter, state_->native_side, body0, body1);
+  const AdaptedBodies bodies(*state_->adapter, state_->native_side, body0, body1);
   state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 

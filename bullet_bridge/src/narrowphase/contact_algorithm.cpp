@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/contact_algorithm.h"
+
+#include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <typeinfo>
+#include <utility>
+
+#include "narrowphase/contact_selection.h"
+#include "solver/penalty_contacts.h"
+
+namespace vps::bullet {
+
+// Elements of Bullet's pool are as large as its own largest algorithm, whatever size is requested.
+static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
+
+namespace {
+
+// Point ids are valid for one set of models only.
+void resetIfModelsChanged(PairState& state, const PairView& pair) {
+  for (int i = 0; i < 2; ++i) {
+    const unsigned revision = pair.vps[i] ? pair.vps[i]->revision() : 0;
+    if (state.revision[i] == revision) continue;
+    state.revision[i] = revision;
+    state.selection.is_valid = false;
+    state.selection.contacts.clear();
+    state.penalty.points.clear();
+    for (auto& query_state : state.query_state) query_state.reset();
+    state.writer->invalidateIds();
+  }
+}
+
+// Bodies that overlap at their first query by more than their motion explains were placed into each other,
+// usually by mistake.
+void countInitialOverlap(const PairView& pair, PairState& state) {
+  if (std::exchange(state.was_queried, true)) return;
+  double overlap_m = 0;
+  for (const Candidate& c : state.contacts) overlap_m = std::max(overlap_m, -c.distance_m);
+  if (overlap_m <= state.motion.contact_margin_m + state.motion.speed_m_s * state.motion.dt_s) return;
+  Context& context = *state.context;
+  double deepest_m = context.deepest_start_m;
+  while (overlap_m > deepest_m && !context.deepest_start_m.compare_exchange_weak(deepest_m, overlap_m)) {
+  }
+  if (context.overlapping_starts++ > 0) return;
+  const Vec3 at = pair.center_W();
+  std::fprintf(stderr,
+               "vps: two bodies begin %.3g mm inside each other, near (%.4g, %.4g, %.4g) m; they are moved "
+               "apart at 0.05 m/s. Further pairs are counted in stats().\n",
+               1e3 * overlap_m, at.x(), at.y(), at.z());
+}
+
+// Reports the points that are near now, rather than contacts for a step.
+void reportClosestPoints(const PairView& pair, Context& context, btManifoldResult& result) {
+  RelativeMotion still;
+  still.contact_margin_m =
+      std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), queryRange_m(pair));
+  std::vector<Candidate> candidates;
+  findCandidates(pair, still.contact_margin_m, context, candidates);
+  selectContacts(pair, still, context.settings, nullptr, candidates);
+  reportContacts(candidates, pair.wrapper, result);
+}
+
+// Other solvers than bullet::Solver do not know penalty points.
+void warnWithoutSolver() {
+  static std::atomic_flag was_reported;
+  if (!was_reported.test_and_set())
+    std::fprintf(
+        stderr,
+        "vps: contact_method is Penalty, but the world is not solved by bullet::Solver: its contacts "
+        "are taken as rigid\n");
+}
+
+// Pairs without penalty points, as all pairs of constraint contact, leave nothing for the solver.
+void passToSolver(PairState& state) {
+  PenaltyContacts& contacts = *state.context->penalty_contacts;
+  const bool has_points = !state.penalty.points.empty();
+  const bool was_registered = std::exchange(state.is_registered, has_points);
+  if (was_registered && !contacts.hasSolver()) warnWithoutSolver();  // a whole step has passed
+  if (!has_points && was_registered) contacts.remove(&state.penalty);
+  if (has_points)
+    for (const btPersistentManifold* manifold : state.writer->manifolds())
+      contacts.add(manifold, &state.penalty);
+}
+
+}  // namespace
+
+ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
+                                   const btCollisionObjectWrapper* body0,
+                                   const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context)
+    : PairAlgorithm(info, body0, body1), state_(std::make_unique<PairState>()) {
+  state_->context = std::move(context);
+  state_->writer = std::make_unique<ManifoldWriter>(*m_dispatcher, body0->getCollisionObject(),
+                                                    body1->getCollisionObject());
+}
+
+ContactAlgorithm::~ContactAlgorithm() {
+  state_->context->penalty_contacts->remove(&state_->penalty);
+}
+
+void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
+  state_->writer->append(manifolds);
+}
+
+void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
+                               const btDispatcherInfo& info) {
+  PairState& state = *state_;
+  const PairView pair(body0, body1);
+  state.contacts.clear();
+  state.motion = {};
+  state.is_prepared = true;
+  resetIfModelsChanged(state, pair);
+  const Settings& settings = state.context->settings;
+  const bool is_penalty = settings.contact_method == ContactMethod::Penalty;
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
+  if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
+  // Penalty points press from the first touch on, so points beyond the step's travel are not needed.
+  constexpr double kPenaltyMargin_m = 2e-6;  // assumed: contact changes the motion within the step
+  const double contact_margin_m =
+      is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
+  state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m);
+  is_penalty ? selectPenalty(pair, state) : selectRigid(pair, state);
+}
+
+void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
+                                        const btCollisionObjectWrapper* body1, const btDispatcherInfo& info,
+                                        btManifoldResult* result) {
+  Context& context = *state_->context;
+  const PairView pair(body0, body1);
+  // A contactTest passes a result of its own type.
+  if (typeid(*result) != typeid(btManifoldResult)) {
+    if (pair.X_WS[0].isFinite() && pair.X_WS[1].isFinite()) reportClosestPoints(pair, context, *result);
+    return;
+  }
+  if (!state_->is_prepared) prepare(body0, body1, info);
+  state_->is_prepared = false;
+  countInitialOverlap(pair, *state_);
+  context.contacts += state_->contacts.size();
+  state_->writer->write(state_->contacts, pair.wrapper, state_->motion);
+  passToSolver(*state_);
+}
+
+}  // namespace vps::bullet

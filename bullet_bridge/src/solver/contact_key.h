@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The number by which a contact is known from step to step.
+#pragma once
+
+#include <cstdint>
+
+class btManifoldPoint;
+
+namespace vps::bullet {
+
+/// @param side     0 or 1: whose shell the point belongs to
+/// @param crossed  at a crossing of edges 1 + body 1's edge; 0: a shell point
+/// @param id       of the point in its shell; at a crossing body 0's edge
+constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std::uint32_t id) {
+  return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
+}
+
+/// Key of a contact that ManifoldWriter wrote: the side with the shell has the point's id as its index, the
+/// other -1; at a crossing each index is that body's edge.
+std::uint64_t keyOf(const btManifoldPoint& point);
+
+}  // namespace vps::bullet
