@@ -199,7 +199,7 @@ TEST_F(CadSigns, Nut) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
+TEST_F(CadSigns, PinHeaderWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinHeader_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("PinHeader", readWrl(file, 2.54e-3), 128);
@@ -207,7 +207,7 @@ TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, PinSocketOfOneShellAFace) {
+TEST_F(CadSigns, PinSocketWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinSocket_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("PinSocket", readWrl(file, 2.54e-3), 128);
@@ -215,7 +215,7 @@ TEST_F(CadSigns, PinSocketOfOneShellAFace) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, SoupHasNoInsideWorthItsName) {
+TEST_F(CadSigns, TriangleSoupReportsUncertainSigns) {
   const fs::path file = find("cad-trimesh/soup.stl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);

@@ -61,7 +61,7 @@ TEST(CouplingLaw, TheSpringIsLimitedInItsOwnDirectionAndDampingIsAddedAfter) {
   EXPECT_LT((F.tau - Vec3(0, 0, 1)).norm(), kEps);
 }
 
-TEST(CouplingLaw, HalfATurnIsTheGreatestRotationAndStaysFinite) {
+TEST(CouplingLaw, HalfATurnIsTheLargestRotationAndStaysFinite) {
   CouplingGains gains;
   gains.k_Nm_per_rad = 1;
   gains.max_torque_Nm = 100;

@@ -61,7 +61,7 @@ ContactSet contactsOf(const VoxMap& map, const PointShell& shell, const Pose& X_
   return set;
 }
 
-TEST(Crop, AMapReadsTheSameToTheBitInItsBoxesAndTakesLess) {
+TEST(Crop, ACroppedMapReadsTheSameBitsInItsBoxesAndUsesLessMemory) {
   const TubeAndPeg pair;
   const VoxMap cropped = croppedVoxMap(pair.map, pair.boxes);
   test::RandomPoints random(3);
@@ -76,7 +76,7 @@ TEST(Crop, AMapReadsTheSameToTheBitInItsBoxesAndTakesLess) {
   EXPECT_LT(cropped.memoryBytes(), pair.map.memoryBytes());
 }
 
-TEST(Crop, APartThatStaysInTheBoxesMeetsTheSameContactsBothWays) {
+TEST(Crop, APartThatStaysInTheBoxesHasTheSameContactsBothWays) {
   const TubeAndPeg pair;
   const VoxMap map = croppedVoxMap(pair.map, pair.boxes);
   const PointShell shell = croppedShell(pair.shell, pair.boxes);
@@ -92,7 +92,7 @@ TEST(Crop, APartThatStaysInTheBoxesMeetsTheSameContactsBothWays) {
   EXPECT_GT(found, 10000u) << "the poses must touch for this to say something";
 }
 
-TEST(Crop, AShellKeepsEachPointOfItsBoxesAndNoOther) {
+TEST(Crop, ACroppedShellKeepsThePointsInItsBoxesOnly) {
   const TubeAndPeg pair;
   const PointShell shell = croppedShell(pair.shell, pair.boxes);
   std::size_t next = 0;
@@ -124,7 +124,7 @@ TEST(Crop, ACroppedMapCanBeMountedUpon) {
   }
 }
 
-TEST(Crop, WhatAMountedMapKeepsBesideTheOneItStandsOnIsLessThanItsAll) {
+TEST(Crop, AMountedMapSharesMemoryWithTheMapBelow) {
   const TubeAndPeg pair;
   const VoxMap mounted = mountVoxMap(pair.map, PlacedMesh{&pair.peg, Pose::translation({0, 0, 6 * kMm})});
   EXPECT_EQ(pair.map.additionalMemoryBytes(pair.map), 0u);

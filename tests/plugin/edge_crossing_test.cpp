@@ -39,7 +39,7 @@ Mat3 turned(const Vec3& axis, double angle_rad) {
   return rotationFromVector(angle_rad * axis);
 }
 
-TEST(EdgeSet, ABoxHasTwelveAndNoneOnItsDiagonals) {
+TEST(EdgeSet, ABoxHasTwelveEdgesAndNoneOnItsDiagonals) {
   const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
   ASSERT_EQ(edges.segments().size(), 12U);
   double length = 0;
@@ -47,7 +47,7 @@ TEST(EdgeSet, ABoxHasTwelveAndNoneOnItsDiagonals) {
   EXPECT_NEAR(length, 4 * (1 + 2 + 3), kRounding);
 }
 
-TEST(EdgeSet, GroovesAndTheFacetsOfRoundFacesAreNone) {
+TEST(EdgeSet, GroovesAndFacetBordersOfRoundFacesAreNotEdges) {
   // A flanged bush of 24 flats, 15 degrees apart. Its five convex rims, and not the root of the flange.
   const EdgeSet edges = edgesOf(test::lathe({{6, 0}, {15, 0}, {15, 4}, {9, 4}, {9, 20}, {6, 20}}, 24));
   EXPECT_EQ(edges.segments().size(), 5U * 24U);
@@ -66,7 +66,7 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
 }
 
 // Two bars on edge, one across the other.
-TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
+TEST(EdgeCrossing, OfTwoBarsLiesAtTheirContact) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const double half = std::sqrt(0.5);  // from the axis to an edge
   for (const double gap : {0.01, 0.0, -0.01}) {
@@ -82,7 +82,7 @@ TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
   }
 }
 
-TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
+TEST(EdgeCrossing, IsFoundUpToTheGivenDepth) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, 2 * std::sqrt(0.5) - 0.1)),
       X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3::Zero());
@@ -94,7 +94,7 @@ TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
   EXPECT_NEAR(out[0].gap_m, -0.1, kRounding);
 }
 
-TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {
+TEST(EdgeCrossing, DoesNotExistWhereAFaceLiesOnAnEdge) {
   // Upper bar flat over the lower one's edge: its own edges cross that edge nowhere near the ends it has.
   const EdgeSet bar = edgesOf(makeBox({10, 1, 1}));
   const double half = std::sqrt(0.5);
@@ -104,7 +104,7 @@ TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {
     EXPECT_NEAR(std::abs(c.n.z()), 1, 0.02 + kRounding) << "the rims of the face that lies on it, at most";
 }
 
-TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
+TEST(EdgeCrossing, IsTheSameWithThePartsExchanged) {
   const EdgeSet a = edgesOf(makeBox({1, 2, 3})),
                 b = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 2}, {0, 2}}, 17));
   std::mt19937 random(1);
@@ -126,7 +126,7 @@ TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
   EXPECT_GT(seen, 100U);
 }
 
-TEST(EdgeCrossing, TheHierarchyMissesNone) {
+TEST(EdgeCrossing, TheHierarchyFindsWhatAnExhaustiveSearchFinds) {
   const Mesh part = test::lathe({{0.6, 0}, {1.5, 0}, {1.5, 0.4}, {0.9, 0.4}, {0.9, 2}, {0.6, 2}}, 40);
   const EdgeSet edges = edgesOf(part);
   std::vector<EdgeSet> alone;
@@ -166,7 +166,7 @@ bool pierces(const Vec3& from, const Vec3& to, const Vec3& size) {
 
 // Of boxes apart, the distance is that of a corner to the other, or of two edges: so where no corner is
 // nearest, a crossing is.
-TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
+TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   const Vec3 size0(1, 2, 3), size1(2, 1.5, 1);
   const Mesh box0 = makeBox(size0), box1 = makeBox(size1);
   const MeshDistance to0(box0), to1(box1);
@@ -207,7 +207,7 @@ TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
 }
 
 // A rim of chords: a bar's edge that goes round it is always crossed, at the joints too.
-TEST(EdgeCrossing, IsNotLostAtTheJointsOfARim) {
+TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
   const EdgeSet disc = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 96)),
                 bar = edgesOf(makeBox({1, 4, 1}));
   // The bar lies on edge across the rim of the disc's top face.

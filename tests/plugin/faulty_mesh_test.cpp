@@ -239,7 +239,7 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
   EXPECT_EQ(wrongSigns(map, isInside), 0u);
 }
 
-TEST(FaultyMesh, AnInternalWallIsNoSurface) {
+TEST(FaultyMesh, AnInternalWallIsRemovedFromTheSurface) {
   // A cuboid in two halves that share the four corners of a wall, once with one wall and once with two back
   // to back.
   Mesh closed;
@@ -300,7 +300,7 @@ TEST(FaultyMesh, ASurfaceExportedForBothSidesIsASolid) {
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
-TEST(FaultyMesh, TJunctionsAreNoHoles) {
+TEST(FaultyMesh, TJunctionsAreNotHoles) {
   Mesh mesh = tube();
   for (const std::size_t i : {7u, 20u, 50u}) {  // a facet is cut and its neighbour is not
     const auto [a, b, c] = mesh.triangles[i];
@@ -317,7 +317,7 @@ TEST(FaultyMesh, TJunctionsAreNoHoles) {
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
-TEST(FaultyMesh, OneShellAFaceIsASolidEvenIfSomeFaceIn) {
+TEST(FaultyMesh, OneShellPerFaceIsASolidEvenIfSomeShellsFaceIn) {
   // A box of six faces with corners of their own, a hair apart, each face of 2 x 8 x 8 triangles.
   RandomPoints random(7);
   const Pose X = random.pose(0.01);
@@ -409,7 +409,7 @@ void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
   EXPECT_GT(touching, 1000u);
 }
 
-TEST(FaultyMesh, BeyondTheBandAllIsOutsideWhateverTheWindingNumberSays) {
+TEST(FaultyMesh, BeyondTheBandEveryPointIsOutsideForAnyWindingNumber) {
   const Mesh pipe = pipeWithAFlippedWall();
   ASSERT_GT(WindingNumber(pipe).at({0, 0, 0.0235}).w, 0.5);  // the rim is nearer than that, at 0.25 mm
   const PointShell shell = buildPointShell(makeSphere(0.003, 4), {0.2e-3, 0.35});
@@ -433,7 +433,7 @@ TEST(FaultyMesh, AFreeSheetHasNoInside) {
   EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // it is there all the same
 }
 
-TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
+TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOneThread) {
   Mesh mesh = tube();
   mesh.triangles.erase(mesh.triangles.begin() + 10, mesh.triangles.begin() + 30);
   append(mesh, transformed(makeBox({0.02, 0.004, 0.004}), Pose(Mat3::Identity(), bounds(mesh).center())));
@@ -464,7 +464,7 @@ Mesh tetrahedra(int along) {
   return mesh;
 }
 
-TEST(FaultyMesh, ManyShellsApartAreSoundAndAreTurned) {
+TEST(FaultyMesh, ManySeparateShellsAreSoundAndAreTurned) {
   // Where every two were compared, half a million took minutes.
   const Mesh apart = tetrahedra(31);
   const RepairedMesh sound = repairMesh(apart);
@@ -480,7 +480,7 @@ TEST(FaultyMesh, ManyShellsApartAreSoundAndAreTurned) {
   EXPECT_EQ(turned.surface.triangles, apart.triangles);
 }
 
-TEST(FaultyMesh, TwoOfManyShellsThatMeetAreFound) {
+TEST(FaultyMesh, TwoOverlappingShellsAmongManyAreFound) {
   const Mesh apart = tetrahedra(12);
   for (const std::uint32_t shell : {1u, 700u, 1727u}) {
     // One reaches into its neighbour, one faces in and lies within its neighbour: a cavity.
@@ -500,7 +500,7 @@ TEST(FaultyMesh, TwoOfManyShellsThatMeetAreFound) {
   }
 }
 
-TEST(FaultyMesh, ItsReportReadsAsASentence) {
+TEST(FaultyMesh, TheReportReadsAsASentence) {
   MeshReport report;
   report.shells = 12;
   report.open_edges = 34;

@@ -97,7 +97,7 @@ TEST_P(EveryShell, AreasSumToTheMeshsArea) {
   for (const double a : shell.area_m2) ASSERT_GE(a, 0);
 }
 
-TEST_P(EveryShell, NoSurfaceIsFartherThanTheSpacingFromAPoint) {
+TEST_P(EveryShell, NoSurfacePointIsFartherThanTheSpacingFromAShellPoint) {
   double greatest = 0;
   for (const Vec3& p : probes(sample.mesh, 5000))
     greatest = std::max(greatest, nearestDistance(p, shell.points));
@@ -105,7 +105,7 @@ TEST_P(EveryShell, NoSurfaceIsFartherThanTheSpacingFromAPoint) {
   RecordProperty("greatest_gap_over_spacing", std::to_string(greatest / sample.spacing_m));
 }
 
-TEST_P(EveryShell, SpheresHoldTheirPointsAndSkipTheirNodes) {
+TEST_P(EveryShell, SpheresContainTheirPointsAndSkipTheirNodes) {
   std::size_t next_point = 0;
   for (std::size_t i = 0; i < shell.nodes.size(); ++i) {
     const ShellNode& node = shell.nodes[i];
@@ -230,7 +230,7 @@ TEST(PointShell, AMeshWithRepeatedVerticesGivesTheSameShell) {
   EXPECT_EQ(buildPointShell(soup, {0.5 * kMm, 0.35}).size(), samples()[0].shell.size());
 }
 
-TEST(PointShell, MergingKeepsPlacesSoThatIdsMapBack) {
+TEST(PointShell, MergingKeepsTheOrderSoThatIdsMapBack) {
   const PointShell &a = samples()[5].shell, &b = samples()[3].shell;
   const Pose X_MA(rotationFromVector({0.3, 0.2, 0.1}), Vec3(1, 2, 3) * kMm),
       X_MB = Pose::translation({0.02, 0, 0});

@@ -70,7 +70,7 @@ class QueryMemoryTest : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
 
-TEST_P(QueryMemoryTest, CreepingIsNoticedAfterAJumpToTheEndOfTheWorld) {
+TEST_P(QueryMemoryTest, SlowMotionIsNoticedAfterAVeryLongJump) {
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary coherent, all;
   const auto ask = [&](const Pose& X_MP) {
@@ -213,7 +213,7 @@ TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
   }
 }
 
-TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
+TEST(QueryMemory, AtRestOnlyNearPointsAreRead) {
   const Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary sum;

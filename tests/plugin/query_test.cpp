@@ -221,7 +221,7 @@ class EveryPair : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Query, EveryPair, testing::Range(0, 5));
 
-TEST_P(EveryPair, CullingFindsExactlyWhatVisitingEveryPointFinds) {
+TEST_P(EveryPair, CullingFindsExactlyWhatAnExhaustiveQueryFinds) {
   const double band_m = pair.map.band_m();
   ContactSet culled(pair.shell.size()), all(pair.shell.size());
   std::size_t touching = 0, tested = 0, visited = 0;
@@ -283,7 +283,7 @@ TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
   }
 }
 
-TEST_P(EveryPair, DistanceIsTheLeastReadingOrAnHonestBound) {
+TEST_P(EveryPair, DistanceIsTheLeastReadingOrALowerBound) {
   std::size_t tested = 0, exact = 0;
   const auto poses = manyPoses(pair, 400);
   for (const Pose& X_MP : poses) {
@@ -308,7 +308,7 @@ TEST_P(EveryPair, DistanceIsTheLeastReadingOrAnHonestBound) {
   EXPECT_LT(tested, poses.size() * pair.shell.size());
 }
 
-TEST(Query, OnlyPointsNearContactAreVisited) {
+TEST(Query, OnlyPointsNearContactAreRead) {
   const VoxMap map = buildVoxMap(makeBox({30 * kMm, 30 * kMm, 10 * kMm}), {0.25 * kMm, 4});
   const PointShell shell = shellOf(makeBox({10 * kMm, 10 * kMm, 10 * kMm}), 0.2 * kMm);
   ContactSet set(shell.size());
@@ -325,7 +325,7 @@ TEST(Query, OnlyPointsNearContactAreVisited) {
   EXPECT_GT(free.min_distance_m, 0);
 }
 
-TEST(Query, FarAwayTheDistanceIsALowerBoundThatKeepsMostOfTheWay) {
+TEST(Query, FarAwayTheDistanceIsALowerBoundWithASmallError) {
   const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64);
   const VoxMap map = buildVoxMap(bore, {0.25 * kMm, 4});
   const PointShell shell = shellOf(makeCylinder(5 * kMm, 12 * kMm, 64), 0.6 * kMm);
@@ -358,7 +358,7 @@ TEST(Query, AFullContactSetKeepsTheFirstIdsAndCountsTheRest) {
   EXPECT_EQ(few.left_out, 0u);
 }
 
-TEST(Query, ABadPoseGivesNothing) {
+TEST(Query, ABadPoseGivesNoContacts) {
   const Pair& pair = pairs()[0];
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
     Pose moved, turned;
@@ -384,7 +384,7 @@ TEST(Query, AnEmptyShellTouchesNothing) {
   EXPECT_EQ(queryDistance(pairs()[0].map, PointShell{}, Pose()).min_distance_m, kInfinity);
 }
 
-TEST(Query, DeeperThanTheBandThePointsOwnNormalShowsAWayOut) {
+TEST(Query, DeeperThanTheBandThePointsOwnNormalIsUsed) {
   const Pair& pair =
       pairs()[2];  // a ball in the middle of a block, 15 mm of material around it, 3 mm of band
   const ContactSet set = contactsOf(pair.map, pair.shell, Pose());
@@ -395,7 +395,7 @@ TEST(Query, DeeperThanTheBandThePointsOwnNormalShowsAWayOut) {
   }
 }
 
-TEST(Query, OwnersTellMountedPartsApart) {
+TEST(Query, OwnersDistinguishMountedParts) {
   const Pair& pair = pairs()[4];
   const PointShell& ball = pairs()[2].shell;
   // On the ball at x = 4 mm from its far side, then on the box from the other.

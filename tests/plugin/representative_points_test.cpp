@@ -64,7 +64,7 @@ double gapAfter(const Contact& c, const Twist& step_M) {
   return c.distance_m + c.n_M.dot(step_M.v + step_M.w.cross(c.p_M));
 }
 
-TEST(RepresentativePoints, EachIsTheQuerysOwnAndTheyAreFew) {
+TEST(RepresentativePoints, EachEqualsTheQuerysContactAndTheyAreFew) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
   ASSERT_TRUE(fit().leading.reducesContacts());
   ASSERT_GT(all.size(), 10000u);
@@ -77,7 +77,7 @@ TEST(RepresentativePoints, EachIsTheQuerysOwnAndTheyAreFew) {
   }
 }
 
-TEST(RepresentativePoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
+TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsTileNowAndAfterTheStep) {
   std::map<std::uint32_t, std::pair<double, double>> led;  // least gaps by tile, now and after the step
   std::map<std::uint32_t, bool> is_given;
   for (const Contact& c : fit().lead(fit().X_MP)) {
@@ -122,7 +122,7 @@ TEST(RepresentativePoints, MemoryAndVectorsChangeNoBit) {
   }
 }
 
-TEST(RepresentativePoints, PointsAskedForAreGivenWhereTheyAreNear) {
+TEST(RepresentativePoints, RequiredPointsAreReportedIfTheyAreNear) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
   const auto has = [](const std::vector<Contact>& list, std::uint32_t id) {
     return std::any_of(list.begin(), list.end(), [&](const Contact& c) { return c.id == id; });
@@ -143,7 +143,7 @@ TEST(RepresentativePoints, PointsAskedForAreGivenWhereTheyAreNear) {
   EXPECT_EQ(more.size(), few.size() + near);
 }
 
-TEST(RepresentativePoints, FewNearPointsAreGivenAll) {
+TEST(RepresentativePoints, FewNearPointsAreAllReported) {
   // Lifted along x, the peg touches along a line.
   const Pose X_MP(fit().X_MP.R, {kAir_m, 0, 1e-3});
   fit().request.options.cutoff_m = 2e-6;
@@ -156,7 +156,7 @@ TEST(RepresentativePoints, FewNearPointsAreGivenAll) {
   EXPECT_TRUE(isSame(some, all));
 }
 
-TEST(RepresentativePoints, NeitherAllocatesNorAnswersABadPose) {
+TEST(RepresentativePoints, DoesNotAllocateAndRejectsABadPose) {
   ContactSet set(fit().shell.size());
   const vps_test::NoAllocScope guard;
   EXPECT_EQ(fit().leading.find(fit().map, fit().X_MP, fit().request, set).status, Status::Ok);
@@ -165,7 +165,7 @@ TEST(RepresentativePoints, NeitherAllocatesNorAnswersABadPose) {
   EXPECT_TRUE(set.contacts.empty());
 }
 
-TEST(RepresentativePoints, TilesThatAreTooSmallGiveAllAndASizeMustBePositive) {
+TEST(RepresentativePoints, TilesThatAreTooSmallReportAllPointsAndASizeMustBePositive) {
   RepresentativePoints small(fit().shell, 1e-6);
   EXPECT_FALSE(small.reducesContacts());
   ContactSet set(fit().shell.size());

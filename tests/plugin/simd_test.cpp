@@ -220,7 +220,7 @@ TEST(SimdKernels, ReadingsAreTheTrilinearFormula) {
   }
 }
 
-TEST(SimdKernels, LeavesWithNothingAroundReadAsIfPlaced) {
+TEST(SimdKernels, LeavesInEmptySurroundingsReadTheSameWithoutPlacement) {
   std::size_t saved = 0;
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const Trial trial(seed);
@@ -233,7 +233,7 @@ TEST(SimdKernels, LeavesWithNothingAroundReadAsIfPlaced) {
   EXPECT_GT(saved, 20u);
 }
 
-TEST(SimdKernels, ALeafThatReachesPastTheCellsAroundItIsRead) {
+TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
   const Index3 lone(4, 4, 4);
   const SteepField field(1, 1, &lone);
   std::mt19937 random(1);

@@ -39,7 +39,7 @@ SplatRegion randomRegion(RandomPoints& random, std::vector<Plane>& planes) {
   return region;
 }
 
-TEST(SplatRows, HoldEveryNodeOfTheRegionAndNoneFarBeyondIt) {
+TEST(SplatRows, ContainEveryNodeOfTheRegionAndNoneFarBeyondIt) {
   RandomPoints random(1);
   std::vector<Plane> planes;
   std::array<SplatRow, kMaxRows + 8> rows;

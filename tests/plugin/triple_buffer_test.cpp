@@ -15,7 +15,7 @@
 namespace vps {
 namespace {
 
-TEST(TripleBuffer, ReaderSeesTheInitialValueThenTheLatestOnly) {
+TEST(TripleBuffer, TheReaderGetsTheInitialValueThenOnlyTheLatest) {
   TripleBuffer<int> buffer(7);
   EXPECT_EQ(buffer.read(), 7);
   buffer.write(1);
@@ -24,7 +24,7 @@ TEST(TripleBuffer, ReaderSeesTheInitialValueThenTheLatestOnly) {
   EXPECT_EQ(buffer.read(), 2);  // nothing new: the same again
 }
 
-TEST(TripleBuffer, WritingDoesNotDisturbWhatTheReaderHolds) {
+TEST(TripleBuffer, WritingDoesNotChangeTheValueBeingRead) {
   TripleBuffer<int> buffer(0);
   buffer.write(1);
   const int& held = buffer.read();

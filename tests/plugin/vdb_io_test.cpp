@@ -55,7 +55,7 @@ TEST_F(VdbFile, ReloadsToTheSameBits) {
   expectSame(map, loaded);
 }
 
-TEST_F(VdbFile, ACookedMapKeepsItsOwnersAndTakesFurtherParts) {
+TEST_F(VdbFile, ACookedMapKeepsItsOwnersAndMorePartsCanBeMounted) {
   const Mesh tube = makeTube(0.01, 0.006, 0.012, 64), pin = makeCylinder(0.005, 0.03, 64);
   const Mesh box = makeBox({0.01, 0.01, 0.01});
   const Pose X_box = Pose::translation({0.02, 0.01, 0});
@@ -91,7 +91,7 @@ TEST_F(VdbFile, AResampledMapKeepsItsErrorAndItsBounds) {
   expectSame(loaded, loadVdb(file_));
 }
 
-TEST_F(VdbFile, OtherProgramsSeeAPlainLevelSet) {
+TEST_F(VdbFile, OtherProgramsReadAPlainLevelSet) {
   constexpr double kRadius_m = 0.008;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
   saveVdb(map, file_);
@@ -273,7 +273,7 @@ TEST_F(ForeignVdb, AWideBandIsKeptUpTo32Voxels) {
   EXPECT_LT(worstError_m(map, Pose(), 6 * kVoxel_m), interpolation_m(map, 6 * kVoxel_m));
 }
 
-TEST_F(ForeignVdb, ATurnedOrMovedGridIsReadWhereItLies) {
+TEST_F(ForeignVdb, ARotatedOrMovedGridIsReadAtItsPose) {
   for (const Pose& X_FM :
        {Pose::translation({0.25e-3, 0.1e-3, -0.4e-3}), Pose::translation(Vec3(3, 16, -5) * kVoxel_m),
         RandomPoints(41).pose(0.02), Pose(Quat(0, 1, 0, 0), Vec3::Zero())}) {
@@ -318,7 +318,7 @@ TEST_F(ForeignVdb, AnInsideWithoutSignsGetsThem) {
   expectSame(stored(ball()), stored(grid));
 }
 
-TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetIsTakenOrTheOneNamed) {
+TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetOrTheNamedOneIsRead) {
   const FloatGrid::Ptr a = ball(), b = ball(5), fog = FloatGrid::create(0);
   const auto colour = openvdb::Vec3SGrid::create();
   a->setName("a"), b->setName("b"), fog->setName("density"), colour->setName("Cd");
@@ -351,7 +351,7 @@ TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetIsTakenOrTheOneNamed) {
   expectSame(loadVdb(file_, "shared"), map_b);
 }
 
-TEST_F(ForeignVdb, WhatIsNoLevelSetIsRefusedWithARemedy) {
+TEST_F(ForeignVdb, OtherGridsAreRefusedWithARemedy) {
   const auto expect = [&](const openvdb::GridBase::Ptr& grid, const char* text) {
     const std::string said = complaintAbout(grid);
     EXPECT_NE(said.find(text), std::string::npos) << said;
@@ -406,7 +406,7 @@ TEST_F(ForeignVdb, WhatIsNoLevelSetIsRefusedWithARemedy) {
   expect(grid, "sheared");
 }
 
-TEST_F(ForeignVdb, WhatWouldNotFitInMemoryIsRefusedBeforeItIsTaken) {
+TEST_F(ForeignVdb, AFileThatWouldNotFitInMemoryIsRefusedBeforeItIsRead) {
   FloatGrid::Ptr grid = ball();
   grid->insertMeta("file_mem_bytes", openvdb::Int64Metadata(std::int64_t{1} << 40));
   store({grid}, false);
@@ -513,7 +513,7 @@ TEST_F(NonMetricVdb, CulledAndCoherentAnswersAreTheExhaustiveOne) {
   }
 }
 
-TEST_F(NonMetricVdb, NoReadingIsBelowWhatABoundAllows) {
+TEST_F(NonMetricVdb, NoReadingIsBelowItsBound) {
   for (const auto& [name, grid] : notMetric()) {
     const VoxMap map = stored(grid);
     RandomPoints random(45);
@@ -527,7 +527,7 @@ TEST_F(NonMetricVdb, NoReadingIsBelowWhatABoundAllows) {
   }
 }
 
-TEST_F(NonMetricVdb, TrueDistancesAreProvenAlmostAsTrueDistances) {
+TEST_F(NonMetricVdb, BoundsOfTrueDistancesAreNearlyTight) {
   const VoxMap map = stored(ball());
   // Ways over grid cells cost 0.1135 of the band, whatever the distances (field_proof.h).
   EXPECT_LT(map.sampleError_m(), (0.8661 + 0.1137 * 4) * kVoxel_m + map.quantum_m());

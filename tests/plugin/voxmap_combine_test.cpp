@@ -106,7 +106,7 @@ TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
   forRandomNodes(5000, 0.013, [&](const Vec3& p) { ASSERT_EQ(plate.distance(p), again.distance(p)); });
 }
 
-TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
+TEST(ResampledVoxMap, DiscardedMountingsFreeTheirMemory) {
   const Mesh block = makeBox({0.012, 0.01, 0.008});
   const VoxMap base = cookVoxMap({{&block, Pose()}}, kSettings);
   const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
@@ -157,7 +157,7 @@ TEST(ResampledVoxMap, AChainOfMountingsKeepsTheBricksThatItNeeds) {
             2 * 2 * static_cast<double>(chain.brickCount()) * (2 * 736 * 2 + 10) + cells_bytes);
 }
 
-TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsNearIt) {
+TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsOneNearIt) {
   const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
   const auto moved = [&](double cells) {
     return resampledVoxMap({&ball, Pose::translation(cells * 8 * kVoxel_m * Vec3::Ones())}, kSettings);
@@ -183,7 +183,7 @@ TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
   }
 }
 
-TEST(ResampledVoxMap, CullingIsExactOnItToo) {
+TEST(ResampledVoxMap, CullingIsExactOnAResampledMap) {
   const VoxMap source = buildVoxMap(makeBox({0.01, 0.008, 0.006}), kSettings);
   const VoxMap moved = resampledVoxMap({&source, RandomPoints(8).pose(0.003)}, kSettings);
   const PointShell shell = buildPointShell(makeSphere(0.003, 3), {0.3e-3, 0.35});

@@ -179,7 +179,7 @@ TEST(VoxMap, TrilinearNormalIsTheDerivativeOfTheDistance) {
   EXPECT_GT(compared, 2000);
 }
 
-TEST(VoxMap, DistanceNeverJumps) {
+TEST(VoxMap, DistanceIsContinuous) {
   const VoxMap map =
       buildVoxMap(transformed(makeTube(0.01, 0.006, 0.02, 64), RandomPoints(10).pose(0.01)), kSettings);
   RandomPoints random(11);
@@ -199,7 +199,7 @@ TEST(VoxMap, DistanceNeverJumps) {
   }
 }
 
-TEST(VoxMap, ContinuousNormalNeverJumps) {
+TEST(VoxMap, TheContinuousNormalIsContinuous) {
   constexpr double kRadius_m = 0.01;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
   RandomPoints random(12);
@@ -246,7 +246,7 @@ TEST(VoxMap, BoundsHoldEverywhere) {
   }
 }
 
-TEST(VoxMap, FarOffAndNotANumberAreOutside) {
+TEST(VoxMap, FarPointsAndNaNAreOutside) {
   const VoxMap map = buildVoxMap(makeBox({0.01, 0.01, 0.01}), kSettings);
   EXPECT_EQ(map.distance({1e9, 0, 0}), map.band_m());
   EXPECT_EQ(map.distance({std::nan(""), 0, 0}), map.band_m());
@@ -272,7 +272,7 @@ TEST(VoxMap, SampleIsDistanceAndNormal) {
   }
 }
 
-TEST(VoxMap, ManyThreadsGiveTheBitsOfOne) {
+TEST(VoxMap, ManyThreadsGiveTheBitsOfOneThread) {
   const Mesh mesh = transformed(makeTube(0.01, 0.006, 0.02, 200), RandomPoints(17).pose(0.01));
   const VoxMap many = buildVoxMap(mesh, kSettings);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -404,7 +404,7 @@ TEST(VoxMap, UnusableSettingsAreRefusedWithARemedy) {
   EXPECT_THROW(cookVoxMap({}, kSettings), LoadError);
 }
 
-TEST(VoxMap, TheVoxelSizeThatIsSaidToFitDoes) {
+TEST(VoxMap, TheVoxelSizeNamedInTheErrorFits) {
   const Mesh box = makeBox({0.1, 0.1, 0.1});
   try {
     buildVoxMap(box, {1e-8, 4});
