@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes that nobody should send: each gets a clear LoadError or the right answer.
+// Invalid and extreme meshes: each gives a clear LoadError or the right answer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsAllocated) {
   }
 }
 
-/// What is said when something is refused.
+/// The message of the error.
 template <typename Do>
 std::string refusalOf(Do what) {
   try {
@@ -147,7 +147,7 @@ TEST(BadInput, AVoxelSizeBeyondTheRangeOfFloatsIsRefused) {  // found by fuzzing
   EXPECT_NE(refusal(mesh, {1e-71, 4}).find("is the unit right"), std::string::npos);
 }
 
-/// A turned tube of any size: signs and distances as exact as at the usual size.
+/// A rotated tube of any size: signs and distances are as exact as at the usual size.
 void expectRightAtSize(double size_m) {
   const Mesh unit = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(2).pose(1));
   Mesh mesh = unit;
@@ -161,7 +161,7 @@ void expectRightAtSize(double size_m) {
     const Vec3 at = (bounds(unit).center() + random.inBox(0.7 * bounds(unit).size())) * 20;
     const Vec3 p = at.array().round() / 20;
     const double expected = std::clamp(truth.signedDistance(p), -0.2, 0.2) * size_m;
-    // Half a quantum, a float's rounding at the band, and the node's own place.
+    // Half a quantum, the rounding of floats at the band, and of the node's position.
     ASSERT_NEAR(map.distance(size_m * p), expected, 0.51 * map.quantum_m()) << size_m;
   }
 }

@@ -111,8 +111,9 @@ struct Agreement {
   std::size_t asked = 0, against_windings = 0, doubtful = 0, against_rays = 0;
 };
 
-/// Compares a map's nodes, at random places in and around the part, with the winding number of all triangles
-/// (of the cleaned mesh) and with the parity of eleven rays (of the mesh as it came), where nine agree.
+/// Compares the signs of a map's nodes, at random positions in and around the part, with the winding number
+/// of all triangles (of the cleaned mesh) and with the parity of eleven rays (of the mesh as given), where
+/// nine agree.
 Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels) {
   Agreement found;
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
@@ -123,7 +124,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
   std::vector<Vec3> ways;
   for (int i = 0; i < 11; ++i) ways.push_back(random.inBox(Vec3::Ones()).normalized());
   for (int n = 0; n < 400; ++n) {
-    // Half beside the surface, half anywhere.
+    // Half of them near the surface, half anywhere.
     Vec3 p = bounds(mesh).center() + random.inBox(0.6 * bounds(mesh).size());
     if (n % 2) {
       const auto pick = static_cast<std::size_t>((0.5 + 0.5 * random.unit()) * 0.999 *
@@ -160,7 +161,7 @@ class CadSigns : public testing::Test {
 };
 
 #define SKIP_WITHOUT(file) \
-  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " is not here; set VPS_CAD_DIR"
+  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " does not exist; set VPS_CAD_DIR"
 
 TEST_F(CadSigns, Bearing) {
   const fs::path file = find("occt-bearing-motor/bearing.stl");
@@ -220,7 +221,7 @@ TEST_F(CadSigns, TriangleSoupReportsUncertainSigns) {
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.shells, 100u);
-  EXPECT_LT(found.report.certain_share, 0.9);  // and says so
+  EXPECT_LT(found.report.certain_share, 0.9);
   EXPECT_EQ(found.against_windings, 0u);
 }
 TEST_F(CadSigns, SharedEdge) {

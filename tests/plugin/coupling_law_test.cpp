@@ -12,7 +12,7 @@
 namespace vps {
 namespace {
 
-constexpr double kEps = 1e-12;  // a handful of roundings of numbers of order ten
+constexpr double kEps = 1e-12;  // a few roundings of numbers of order ten
 
 CouplingState at(const Vec3& p_W, const Vec3& rotation = Vec3::Zero()) {
   CouplingState state;

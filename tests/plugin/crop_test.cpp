@@ -21,7 +21,7 @@ Box boxOf(const Vec3& min, const Vec3& max) {
   return box;
 }
 
-/// A tube of 20 mm, and the half of it that a peg of 6 mm may visit: its upper half, with room around.
+/// A tube of 20 mm, and its upper half with a margin, where a peg of 6 mm moves.
 struct TubeAndPeg {
   Mesh tube = makeTube(10 * kMm, 3.02 * kMm, 20 * kMm, 48), peg = makeCylinder(3 * kMm, 12 * kMm, 48);
   VoxMap map = buildVoxMap(tube, {0.25 * kMm, 4}), peg_map = buildVoxMap(peg, {0.25 * kMm, 4});
@@ -89,7 +89,7 @@ TEST(Crop, APartThatStaysInTheBoxesHasTheSameContactsBothWays) {
     expectSameContacts(of_tube, contactsOf(pair.peg_map, shell, X_TP.inverse()));
     found += of_peg.contacts.size() + of_tube.contacts.size();
   }
-  EXPECT_GT(found, 10000u) << "the poses must touch for this to say something";
+  EXPECT_GT(found, 10000u) << "the poses must touch, or the test shows nothing";
 }
 
 TEST(Crop, ACroppedShellKeepsThePointsInItsBoxesOnly) {

@@ -65,7 +65,7 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
 }
 
-// Two bars on edge, one across the other.
+// Two bars standing on edge, one across the other.
 TEST(EdgeCrossing, OfTwoBarsLiesAtTheirContact) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const double half = std::sqrt(0.5);  // from the axis to an edge
@@ -95,7 +95,8 @@ TEST(EdgeCrossing, IsFoundUpToTheGivenDepth) {
 }
 
 TEST(EdgeCrossing, DoesNotExistWhereAFaceLiesOnAnEdge) {
-  // Upper bar flat over the lower one's edge: its own edges cross that edge nowhere near the ends it has.
+  // The upper bar lies flat on the lower one's edge: its own edges do not cross that edge except near its
+  // ends.
   const EdgeSet bar = edgesOf(makeBox({10, 1, 1}));
   const double half = std::sqrt(0.5);
   const Pose X_01(Mat3(turned(Vec3::UnitZ(), 0.5) * turned(Vec3::UnitX(), std::numbers::pi / 4)),
@@ -164,8 +165,8 @@ bool pierces(const Vec3& from, const Vec3& to, const Vec3& size) {
   return first < last;
 }
 
-// Of boxes apart, the distance is that of a corner to the other, or of two edges: so where no corner is
-// nearest, a crossing is.
+// The distance of separate boxes is that of a corner to the other box or that of two edges; where no corner
+// is nearest, a crossing gives it.
 TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   const Vec3 size0(1, 2, 3), size1(2, 1.5, 1);
   const Mesh box0 = makeBox(size0), box1 = makeBox(size1);
@@ -178,7 +179,7 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
     double corner = 1e300, edge = 1e300, sine = 0;
     for (const Vec3& v : box1.vertices) corner = std::min(corner, to0.signedDistance(X_01 * v));
     for (const Vec3& v : box0.vertices) corner = std::min(corner, to1.signedDistance(X_01.inverse() * v));
-    // Exhaustively: nearest points of segments, by how near the lines are and where.
+    // Exhaustive: nearest points of segments, and the distance of their lines.
     for (const EdgeSegment& s0 : edges0.segments())
       for (const EdgeSegment& s1 : edges1.segments()) {
         const Vec3 a = s0.from, d0 = s0.to - s0.from, b = X_01 * s1.from, d1 = X_01.R * (s1.to - s1.from);
@@ -190,8 +191,8 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
         edge = apart;
         sine = d0.normalized().cross(d1.normalized()).norm();
       }
-    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // left to points
-    // Boxes that overlap without a corner inside have no distance: an edge then pierces a face.
+    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // found by points
+    // Overlapping boxes without a corner inside have no distance: an edge pierces a face.
     bool overlaps = false;
     for (const EdgeSegment& s : edges0.segments())
       overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
@@ -206,7 +207,7 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   EXPECT_GT(edge_cases, 100);
 }
 
-// A rim of chords: a bar's edge that goes round it is always crossed, at the joints too.
+// A bar's edge that goes around a rim of chords always crosses it, at the joints too.
 TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
   const EdgeSet disc = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 96)),
                 bar = edgesOf(makeBox({1, 4, 1}));

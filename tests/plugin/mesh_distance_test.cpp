@@ -72,7 +72,7 @@ TEST(MeshDistance, SignedDistanceToABoxIsItsFormula) {
 }
 
 TEST(MeshDistance, SignIsRightAtSharpSpikesWhereFaceNormalsFail) {
-  // A needle: near its tip the nearest feature is the vertex, and some faces that share it look away.
+  // A needle: near its tip the nearest feature is the vertex, and some faces around it face away.
   Mesh needle;
   needle.vertices = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}, {0.5, 0.3, 2}};
   needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -109,7 +109,7 @@ TEST(MeshDistance, SignIsRightNextToTrianglesWithoutArea) {
   ASSERT_TRUE(checkMesh(plain).isClosed());
   ASSERT_GT(massProperties(plain).volume_m3, 0);
   for (const int seed : {1, 2, 3}) {
-    const Pose X = RandomPoints(seed).pose(1);  // rounds C off the line
+    const Pose X = RandomPoints(seed).pose(1);  // rounding moves C off the line
     const MeshDistance blade(transformed(plain, X));
     RandomPoints random(seed + 10);
     for (int n = 0; n < 20000; ++n) {

@@ -85,8 +85,8 @@ TEST_P(EveryShell, PointsLieOnTheMeshWithUnitInwardNormals) {
     const MeshDistance::Closest closest = exact.closest(shell.points[i]);
     ASSERT_LT(closest.distance_m, 10 * kRounding);
     ASSERT_NEAR(shell.inward[i].norm(), 1, 1e-14);
-    // A point that rounding puts beside an edge of facets may be given either facet: 20 degrees at most
-    // apart; on sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's.
+    // Rounding may assign a point near a border of facets to either facet: they are at most 20 degrees apart;
+    // on sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's.
     ASSERT_LT(shell.inward[i].dot(closest.normal), -0.55);
   }
 }
@@ -166,8 +166,8 @@ TEST(PointShell, FacePointsKeepThreeQuartersOfTheSpacingFromEachOther) {
 }
 
 TEST(PointShell, CornersAndRimVerticesAreKept) {
-  // Of convex rims the mesh's vertices touch first. 160 segments of a 5 mm circle are 0.196 mm long: leaving
-  // one out moves the rim by 3.9 um, more than the tolerance of 1 um.
+  // The vertices of convex rims touch first. 160 segments of a 5 mm circle are 0.196 mm long: leaving one out
+  // moves the rim by 3.9 um, more than the tolerance of 1 um.
   for (const std::size_t which : {0, 1, 2, 5})
     for (const Vec3& vertex : samples()[which].mesh.vertices) {
       if (vertex.head<2>().norm() < kRounding) continue;  // a fan's centre on the peg's end is flat
@@ -279,7 +279,7 @@ TEST(PointShell, UnusableInputIsRefusedAndTheRemedyNamed) {
   EXPECT_NE(messageOf(box, 0.5 * kMm).find("699 um would do"), std::string::npos)
       << messageOf(box, 0.5 * kMm);
   EXPECT_NE(messageOf(box, 0.5 * kMm).find("part 'hub'"), std::string::npos);
-  // A needle has little area but edges without end.
+  // A needle has little area but long edges.
   EXPECT_NE(messageOf(makeBox({1e6, 1e-9, 1e-9}), 0.5 * kMm).find("too many points"), std::string::npos);
 }
 

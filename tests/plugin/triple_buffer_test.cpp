@@ -21,7 +21,7 @@ TEST(TripleBuffer, TheReaderGetsTheInitialValueThenOnlyTheLatest) {
   buffer.write(1);
   buffer.write(2);
   EXPECT_EQ(buffer.read(), 2);
-  EXPECT_EQ(buffer.read(), 2);  // nothing new: the same again
+  EXPECT_EQ(buffer.read(), 2);  // nothing new: the same value
 }
 
 TEST(TripleBuffer, WritingDoesNotChangeTheValueBeingRead) {
@@ -79,8 +79,7 @@ TEST(NoAllocScope, FailsATestThatAllocates) {
 }
 
 TEST(NoAllocScope, CountsNestedScopesAndForgetsWhatWasBefore) {
-  const auto before =
-      std::make_unique<int>(1);  // made before and released after the scopes: not their business
+  const auto before = std::make_unique<int>(1);  // made before and released after the scopes, so not counted
   const vps_test::NoAllocScope outer;
   {
     const vps_test::NoAllocScope inner;

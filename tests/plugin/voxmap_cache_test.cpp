@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cache gives what building gives, to the bit, whatever has happened to its files.
+// The cache gives the same maps as building, to the bit, in spite of any damage to its files.
 #include "vps/voxmap_cache.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void write(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// Everything that can be asked of two maps is the same, to the bit.
+/// Compares everything that can be read from two maps, to the bit.
 void expectSame(const VoxMap& a, const VoxMap& b) {
   ASSERT_EQ(a.brickCount(), b.brickCount());
   EXPECT_EQ(a.voxel_m(), b.voxel_m());
@@ -58,7 +58,7 @@ class VoxMapCacheTest : public testing::Test {
   VoxMap build(const Mesh& mesh, MeshReport* report = nullptr) {
     return cache_.build(mesh, kSettings, "hub", {}, report);
   }
-  /// What is built from `bytes` in place of the file of part().
+  /// The map that is built if `bytes` replace the file of part().
   VoxMap rebuilt(const std::string& bytes) {
     warnings_.clear();
     write(cache_.fileOf(part(), kSettings), bytes);

@@ -12,7 +12,7 @@
 namespace vps::test {
 namespace {
 
-/// One arc tangent a triangle, straight from the paper: the reference of the reference.
+/// One arc tangent per triangle, as in the paper: a reference for the exact sum.
 double byArcTangents(const Mesh& mesh, const Vec3& p) {
   double angle_sr = 0;
   for (const auto& t : mesh.triangles) {
