@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/crop.h"
+#include "vps/box.h"
+#include "vps/shell_crop.h"
+#include "vps/voxmap_crop.h"
 
 #include <gtest/gtest.h>
 

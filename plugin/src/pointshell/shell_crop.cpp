@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pointshell/shell_hierarchy.h"
-#include "vps/crop.h"
+#include "vps/shell_crop.h"
 
 namespace vps {
 namespace {
