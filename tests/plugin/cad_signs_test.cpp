@@ -108,7 +108,7 @@ int crossings(const Mesh& mesh, const Vec3& p, const Vec3& way) {
 
 struct Agreement {
   MeshReport report;
-  std::size_t asked = 0, against_windings = 0, doubtful = 0, against_rays = 0;
+  std::size_t tested = 0, against_windings = 0, doubtful = 0, against_rays = 0;
 };
 
 /// Compares the signs of a map's nodes, at random positions in and around the part, with the winding number
@@ -134,7 +134,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
     p = voxel_m * (p / voxel_m).array().round().matrix();
     if (std::abs(map.distance(p)) < 1e-6 * voxel_m) continue;  // on the surface
     const bool is_inside = map.distance(p) < 0;
-    ++found.asked;
+    ++found.tested;
     const double w = winding.exact(p);
     found.against_windings += std::abs(w - 0.5) > 0.02 && is_inside != (w > 0.5);
     int inside = 0;
@@ -147,7 +147,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
   std::printf(
       "%s: %s; by %s; of %zu nodes %zu against all windings, %zu against rays, rays of %zu disagree\n",
       name.c_str(), describe(found.report).c_str(),
-      found.report.signed_by_winding ? "winding" : "pseudonormals", found.asked, found.against_windings,
+      found.report.signed_by_winding ? "winding" : "pseudonormals", found.tested, found.against_windings,
       found.against_rays, found.doubtful);
   return found;
 }

@@ -487,15 +487,15 @@ TEST(FaultyMesh, TwoOverlappingShellsAmongManyAreFound) {
   const Mesh apart = tetrahedra(12);
   for (const std::uint32_t shell : {1u, 700u, 1727u}) {
     // One reaches into its neighbour, one faces in and lies within its neighbour: a cavity.
-    Mesh sync_event = apart, hollow = apart;
+    Mesh overlapping = apart, hollow = apart;
     for (std::uint32_t v = 4 * shell; v < 4 * shell + 4; ++v) {
-      sync_event.vertices[v].z() -= 1.5e-3;
+      overlapping.vertices[v].z() -= 1.5e-3;
       hollow.vertices[v] = apart.vertices[4 * shell - 4] + Vec3::Constant(0.1e-3) +
                            0.2 * (apart.vertices[v] - apart.vertices[4 * shell]);
     }
     for (std::uint32_t i = 4 * shell; i < 4 * shell + 4; ++i)
       std::swap(hollow.triangles[i][1], hollow.triangles[i][2]);
-    EXPECT_FALSE(repairMesh(sync_event).is_sound) << shell;
+    EXPECT_FALSE(repairMesh(overlapping).is_sound) << shell;
     const RepairedMesh cavity = repairMesh(hollow);
     EXPECT_FALSE(cavity.is_sound) << shell;
     EXPECT_EQ(cavity.report.turned_shells, 0u) << shell;

@@ -29,7 +29,7 @@ class BoxTree {
   /// Calls visit(index) for the boxes that overlap `box`, in no particular order, until visit returns false.
   /// Returns true if it never did.
   template <typename Visit>
-  bool forEachSyncEvent(const Box& box, Visit visit) const {
+  bool forEachOverlap(const Box& box, Visit visit) const {
     std::uint32_t stack[64];  // halved by count: 32 levels at most, one waiting child each
     int waiting = 0;
     if (!nodes_.empty()) stack[waiting++] = 0;
@@ -48,9 +48,9 @@ class BoxTree {
   }
 
   /// True if any two boxes overlap.
-  [[nodiscard]] bool hasSyncEvent() const {
+  [[nodiscard]] bool hasOverlap() const {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-      if (!forEachSyncEvent(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
+      if (!forEachOverlap(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
     return false;
   }
 

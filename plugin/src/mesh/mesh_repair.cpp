@@ -68,7 +68,7 @@ bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std:
   for (std::uint32_t i = 0; i < shell_of.size(); ++i)
     volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
   return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
-         !BoxTree(boxes).hasSyncEvent();
+         !BoxTree(boxes).hasOverlap();
 }
 
 class Repairer {
@@ -126,7 +126,7 @@ class Repairer {
   [[nodiscard]] bool isSound() const {
     const auto facesOut = [](const Patch& p) { return p.is_closed && p.volume_m3 > 0; };
     const std::vector<Box> boxes = boxesOfClosed();
-    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasSyncEvent();
+    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasOverlap();
   }
   [[nodiscard]] std::vector<Box> boxesOfClosed() const {
     std::vector<Box> boxes;
@@ -231,7 +231,7 @@ class Repairer {
       Patch& patch = patches_[closed[i]];
       const Vec3& p = mesh().vertices[mesh().triangles[patch.triangles[0]][0]];
       around.clear();
-      tree.forEachSyncEvent({p, p}, [&](std::uint32_t k) {
+      tree.forEachOverlap({p, p}, [&](std::uint32_t k) {
         if (is_outermost[k]) around.push_back(k);
         return true;
       });
@@ -368,7 +368,7 @@ class Repairer {
   bool mayOverlap(const WindingNumber& w) {
     if (is_crossing_) return true;
     const std::vector<Box> boxes = boxesOfClosed();
-    if (BoxTree(boxes).hasSyncEvent()) return true;
+    if (BoxTree(boxes).hasOverlap()) return true;
     for (const Patch& patch : patches_)
       for (const Facet& f : samplesOf(patch, kSamples))
         if (inPlane(w, f) > kInternal) return true;

@@ -29,7 +29,7 @@ class Bricks {
     checkSize();
     layout_.resizeCells();
     findConstants();
-    findSyncEvents();
+    addBorderCells();
     const auto count =
         static_cast<std::size_t>(std::count(is_wanted_.begin(), is_wanted_.end(), std::uint8_t{1}));
     requireMemory(static_cast<double>(count) * VoxPool::kBytes, " for its bricks",
@@ -68,7 +68,7 @@ class Bricks {
 
   /// A cell's last nodes are the first ones of its neighbours: where those belong to another brick, the cell
   /// needs one too.
-  void findSyncEvents() {
+  void addBorderCells() {
     std::vector<std::uint8_t> is_met(is_wanted_.size(), 0);
     tbb::parallel_for(std::size_t{0}, is_met.size(), [&](std::size_t i) {
       const Index3 cell = layout_.cellAt(i);
