@@ -66,7 +66,7 @@ TEST(SplatRows, ContainEveryNodeOfTheRegionAndNoneFarBeyondIt) {
           // Beyond the region: the margin, 2e-3 of a node along z, and the tilt of vertical planes over a
           // tile.
           if (has) {
-            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kContactMargin + 2e-3 + 1e-6 * kTile)) << least;
+            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kRoundingMargin + 2e-3 + 1e-6 * kTile)) << least;
           }
           held += has;
         }

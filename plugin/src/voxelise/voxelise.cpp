@@ -276,19 +276,19 @@ void Voxeliser::boundCenters() {
 }
 
 std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
-  const auto tell = [&](double share) {
+  const auto report = [&](double share) {
     if (progress) progress("voxelising", share);
   };
-  tell(0);
+  report(0);
   layOutDirectory();
   {
     const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
-    tell(0.1);
+    report(0.1);
     gather(features);
-    tell(0.3);
+    report(0.3);
     splatTiles(features);
   }
-  tell(0.8);
+  report(0.8);
   if (signer_ != nullptr)
     signer_->signBricks(*layout_, h_, quantumOf(band_m_));
   else
@@ -296,9 +296,9 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   markFarCells(*layout_);
-  tell(0.9);
+  report(0.9);
   boundCenters();
-  tell(1);
+  report(1);
   return layout_;
 }
 
