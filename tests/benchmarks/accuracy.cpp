@@ -23,8 +23,8 @@ struct Shape {
   bool is_sharp = false;
   Mesh mesh;
   std::function<bool(const Vec3&)> isCounted;  ///< where samples are taken
-  /// Of the surface that a smooth shape's facets stand for: their own normals are up to 0.4 degrees off it,
-  /// more than the field's. Empty: that of the way to the nearest point of the mesh.
+  /// The normal of the smooth surface that the facets approximate: theirs differ from it by up to 0.4
+  /// degrees, more than the field's error. Empty: the direction to the nearest point of the mesh.
   std::function<Vec3(const Vec3&)> trueNormal;
 };
 
@@ -43,12 +43,12 @@ Mesh makeWedge(double length_m, double width_m) {
   return wedge;
 }
 
-/// Nothing lies on the grid: a face on a plane of nodes would look better than it is.
+/// A rotation, so that no face lies on the grid: a face on a plane of nodes would be more exact than usual.
 Pose askew() {
   return {rotationFromVector({0.3, 0.5, 0.2}), {0.31 * kMm, 0.17 * kMm, 0.23 * kMm}};
 }
 
-/// A function of a point in the shape's own frame, for points and directions of the frame it lies askew in.
+/// A function of a point in the shape's own frame, for points and directions of the rotated frame.
 template <typename NormalOf>
 std::function<Vec3(const Vec3&)> device::inFrame(NormalOf normalOf) {
   return [=, X_AM = askew()](const Vec3& p) { return Vec3(X_AM.R * normalOf(X_AM.inverse() * p)); };

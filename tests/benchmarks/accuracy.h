@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a voxmap's distance and normal are from those of the mesh it was built from.
+// The errors of a voxmap's distance and normal against the mesh it was built from.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace vps::bench {
 
-/// Mean, the value that 99 of 100 samples are not above, and the greatest.
+/// Mean, 99th percentile and greatest value.
 struct Spread {
   double mean = 0, p99 = 0, most = 0;
 };

@@ -59,8 +59,8 @@ void requireAgreement(const std::string& name, const VoxMap& map, const PointShe
                       const SubjectOptions& options, const Motion& motion, int steps) {
   const auto rival = openVdbQuery(sameField(map), shell, true);
   Subject subject(map, shell, options);
-  // Nodes of 16 bits over the band err by half of band / 32767 (6e-5 voxel); positions and weights in single
-  // precision by a few 2^-24 of up to 1000 voxels (1e-4 voxel).
+  // Nodes of 16 bits over the band are off by half of band / 32767 (6e-5 voxel); positions and weights in
+  // single precision by a few 2^-24 of up to 1000 voxels (1e-4 voxel).
   const double tol_m = 3e-4 * map.voxel_m();
   const double area_m2 =
       std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0) / static_cast<double>(shell.size());

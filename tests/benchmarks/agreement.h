@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing is timed before both sides have given the same answers.
+// Checks that both sides give the same answers before anything is timed.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 namespace vps::bench {
 
 /// Walks `steps` steps of a motion with our engine and with OpenVDB reading the same values (the map, saved
-/// as a .vdb file). Throws std::runtime_error that names the first difference: points that touch, least
-/// distance, wrench. meshToVolume's own field is no judge: it errs by up to half a voxel near edges.
+/// as a .vdb file). Throws std::runtime_error that names the first difference: touching points, least
+/// distance or wrench. meshToVolume's own field is not a reference: its error is up to half a voxel near
+/// edges.
 void requireAgreement(const std::string& name, const VoxMap& map, const PointShell& shell,
                       const SubjectOptions& options, const Motion& motion, int steps);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What both sides of a comparison give back for a pose, so that they can be checked against each other.
+// The answer of either side for a pose, so that they can be compared.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace vps::bench {
 
-/// Stiffness of every wrench here [N/m^3]; any value would do.
+/// Stiffness of every wrench here [N/m^3]; any value would serve.
 inline constexpr double kStiffness_N_per_m3 = 1e12;
 
 struct Answer {

@@ -21,7 +21,8 @@ struct StepRow {
   std::size_t patch = 0;
 };
 
-/// Models and the case made of them; scenes are shared and only one is kept, so a row asks anew each time.
+/// Models and the case made of them. Scenes are shared and only one is kept, so a row builds its own each
+/// time.
 struct Prepared {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const PointShell> patch;
@@ -76,7 +77,7 @@ class Rows {
               const Motion& motion) {
     add(name, words, bar_ratio, {pair, size_, motion, {}, true, 0});
   }
-  /// 5.4 times the points: a million where the others have the paper's load. Our time alone.
+  /// 5.4 times the points: a million where the others have the paper's load. Our time only.
   void million(const std::string& name, const std::string& words, Pair pair, const Motion& motion) {
     SceneSize size = size_;
     size.points = size_.points * 1'000'000 / SceneSize{}.points;
@@ -180,7 +181,7 @@ std::vector<Case> tableCases(const SceneSize& size) {
   rows.culled("free/0.1mm", "free motion, 0.1 mm a step", 0, Pair::PlanetInRing, freeMotion(0.1 * kMm));
   rows.culled("peg/0.1mm", "peg in hole, 0.1 mm a step", 150, Pair::PegInPlate, pegMotion(0.1 * kMm));
   rows.culled("peg/0.01mm", "peg in hole, 0.01 mm a step", 0, Pair::PegInPlate, pegMotion(0.01 * kMm));
-  // A nut is bulky: at 256^3 its map is as large as the other parts' at 512^3.
+  // A nut has much surface: at 256^3 its map is as large as the other parts' at 512^3.
   SceneSize half = size;
   half.voxels /= 2;
   rows.setSize(half);

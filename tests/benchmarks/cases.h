@@ -10,7 +10,7 @@
 
 namespace vps::bench {
 
-/// What a row is judged by.
+/// The criterion of a row.
 enum class Bar {
   None,
   RatioAtLeast,  ///< their time / ours
@@ -28,7 +28,7 @@ struct Case {
   std::function<Counters(int repetition)> measure;
 };
 
-/// All rows; nothing is built before a row is checked or measured. Rows on the same scene follow each other.
+/// All rows. Models are built when a row is checked or measured; rows on the same scene follow each other.
 std::vector<Case> tableCases(const SceneSize& size);
 
 }  // namespace vps::bench

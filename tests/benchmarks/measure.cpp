@@ -58,16 +58,16 @@ void timeStep(Side& side, const Motion& motion, int step, Times& times) {
   times.add(wallSeconds() - before_s, answer);
 }
 
-/// Steps that fit in the budget, as one of them takes.
+/// The number of steps that fit in the time, estimated from one of them.
 template <typename Side>
-int affordable(Side& side, const Motion& motion, int first, int wanted, double budget_s) {
+int affordable(Side& side, const Motion& motion, int first, int wanted, double time_limit_s) {
   Times times;
   for (int k = 0; k < 3; ++k) timeStep(side, motion, first + k, times);
-  return std::clamp(static_cast<int>(1e6 * budget_s / times.median()), std::min(wanted, 12), wanted);
+  return std::clamp(static_cast<int>(1e6 * time_limit_s / times.median()), std::min(wanted, 12), wanted);
 }
 
-/// Both walk the same stretch in `kTurns` turns. What one side leaves in the caches slows the other's first
-/// step after it: one step is taken before the clock starts.
+/// Both sides walk the same steps in `kTurns` turns. The data of one side in the caches slows the other's
+/// first step: one step is taken before the clock starts.
 class Stretch {
  public:
   Stretch(const StepCase& steps, int repetition) : case_(steps), first_(repetition * steps.steps) {}
@@ -79,7 +79,7 @@ class Stretch {
     side.step(case_.motion(from - 1));
     for (int k = 0; k < in_turn; ++k) timeStep(side, case_.motion, from + k * apart, times);
   }
-  /// A side with a memory takes every step of its turn.
+  /// A side with temporal coherence takes every step of its turn.
   void runOurs(Subject& side, int turn, int steps, Times& times) const {
     const int in_turn = std::max(1, steps / kTurns), from = first_ + turn * (case_.steps / kTurns);
     side.step(case_.motion(from - 1));
@@ -100,7 +100,7 @@ Counters measureSteps(const StepCase& steps, int repetition) {
   Subject subject(*steps.map, *steps.shell, steps.options);
   const auto rival = steps.field ? openVdbQuery(*steps.field, *steps.shell, true) : nullptr;
   const auto nano = steps.field && steps.with_nano ? nanoVdbQuery(*steps.field, *steps.shell) : nullptr;
-  const int ours_steps = affordable(subject, steps.motion, stretch.first(), steps.steps, steps.budget_s);
+  const int ours_steps = affordable(subject, steps.motion, stretch.first(), steps.steps, steps.time_limit_s);
   Times ours, theirs, nanos;
   for (int turn = 0; turn < Stretch::kTurns; ++turn) {
     const bool ours_first = (turn + repetition) % 2 == 0;
@@ -166,7 +166,7 @@ Counters measureBuildErrors(const Mesh& mesh, double voxel_m, int node_count) {
     const auto judge = [&](const std::string& side, double read_voxels) {
       double& worst = c[side + "_error_voxels"];
       worst = std::max(worst, std::abs(std::abs(read_voxels) - std::abs(true_voxels)));
-      // Within 1e-3 voxel of the surface either sign is a right answer to within the stated error.
+      // Within 1e-3 voxel of the surface either sign is right within the stated error.
       if (std::abs(true_voxels) > 1e-3) c[side + "_wrong_signs"] += (read_voxels < 0) != (true_voxels < 0);
     };
     judge("ours", map.distance(p) / voxel_m);

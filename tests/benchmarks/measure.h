@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How things are timed: both sides in one process, in turns, the order of turns alternating.
+// Timing: both sides in one process, alternating.
 #pragma once
 
 #include <map>
@@ -11,10 +11,10 @@
 
 namespace vps::bench {
 
-/// What one repetition of a case found, by name: ours_us, rival_us, ratio, ...
+/// Results of one repetition of a case, by name: ours_us, rival_us, ratio, ...
 using Counters = std::map<std::string, double>;
 
-/// The value that a share of the values is not above. 0 for none.
+/// The quantile of the values at a share; 0 for none.
 double quantile(std::vector<double> values, double share);
 
 /// CPU seconds of this process, all its threads.
@@ -22,7 +22,7 @@ double cpuSeconds();
 /// Wall clock [s].
 double wallSeconds();
 
-/// While it lives TBB has one thread, for us and for OpenVDB alike.
+/// Limits TBB to one thread while it exists, for us and for OpenVDB.
 class OneThread {
  public:
   OneThread();
@@ -39,14 +39,13 @@ struct StepCase {
   const RivalField* field = nullptr;  ///< null: ours alone
   Motion motion;
   SubjectOptions options;
-  int steps = 1000;      ///< of ours in a repetition, at most
-  int rival_steps = 24;  ///< spread over the same stretch of the motion; it has no memory of earlier steps
-  double budget_s =
-      2;  ///< of a repetition, for each side: fewer steps are taken where they would take longer
-  bool with_nano = false;  ///< time NanoVDB too
+  int steps = 1000;         ///< of ours in a repetition, at most
+  int rival_steps = 24;     ///< spread over the same range of the motion; it uses no earlier steps
+  double time_limit_s = 2;  ///< of a repetition, for each side: fewer steps if they would take longer
+  bool with_nano = false;   ///< time NanoVDB too
 };
 
-/// One repetition: steps of the motion from `repetition` x steps on, in turns with the rival.
+/// One repetition: steps of the motion from `repetition` x steps on, alternating with the rival.
 Counters measureSteps(const StepCase& steps, int repetition);
 
 /// CPU seconds to build, on one thread.

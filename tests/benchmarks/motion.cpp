@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGear_m = 1e-3;  // module
 
-/// Runs to and fro between 0 and 1 as x grows; one way takes 1.
+/// Moves to and fro between 0 and 1 as x grows; one direction takes 1.
 double toAndFro(double x) {
   const double within = x - 2 * std::floor(x / 2);
   return within < 1 ? within : 2 - within;
@@ -27,7 +27,7 @@ double ringPlanetDistance() {
 }  // namespace
 
 Motion pegMotion(double step_m) {
-  // 2 % past the clearance: an arc of 2 acos(1 / 1.02) = 23 degrees touches, by 0.2 um at most.
+  // 2 % more than the clearance: an arc of 2 acos(1 / 1.02) = 23 degrees touches, by 0.2 um at most.
   constexpr double kPressed_m = 1.02 * kPegClearance_m;
   constexpr double kShallow_m = 6e-3, kDeep_m = 18e-3;
   const double above_m = plateShape(1).height_m / 2 + pegShape(1).length_m / 2;
@@ -77,7 +77,7 @@ Motion hoverMotion(double step_m) {
   return [=](int step) {
     const double turn_rad = step * step_m / tip_m;
     const double gap_m = 0.5e-3 + 3.5e-3 * toAndFro(step * step_m / 20e-3);
-    // The tilt takes less of the gap than the gap: 0.4 mm at the rim at most.
+    // The tilt uses only a part of the gap: 0.4 mm at the rim at most.
     const double tilt_rad = 0.02 * std::sin(3 * turn_rad) + 1e-3;
     return Pose(Mat3(rotationFromVector({tilt_rad, 0, 0}) * turned(turn_rad)),
                 {ringPlanetDistance() + 17e-3, 0, touching_m + gap_m + 0.4e-3});

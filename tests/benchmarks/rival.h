@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The libraries we are measured against, each used as a careful user of it would.
+// The libraries that we compare with, each used as a careful user would.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace vps::bench {
 
-/// A field of someone else's: OpenVDB's, made by meshToVolume.
+/// A field of another library: OpenVDB's, made by meshToVolume.
 class RivalField {
  public:
   virtual ~RivalField() = default;
@@ -20,8 +20,8 @@ class RivalField {
   [[nodiscard]] virtual double node(int x, int y, int z) const = 0;
 };
 
-/// All points of a shell against a field, one after the other: transform, trilinear distance, and for
-/// touching points its gradient, force and torque. No hierarchy, no memory of earlier poses.
+/// Reads all points of a shell in a field, one after the other: transform, trilinear distance, and for
+/// touching points its gradient, force and torque. No hierarchy, no temporal coherence.
 class RivalQuery {
  public:
   virtual ~RivalQuery() = default;
@@ -40,13 +40,13 @@ struct RivalFieldSettings {
 std::unique_ptr<RivalField> buildOpenVdb(const Mesh& mesh, const RivalFieldSettings& settings);
 /// The level set in a file, as saveVdb() writes it: the same values that a voxmap holds.
 std::unique_ptr<RivalField> readOpenVdb(const std::string& file);
-/// Ways to read it: an accessor with tools::BoxSampler for each point (`shared` reads the eight values once
-/// for distance and gradient; the other reads them again for the gradient of touching points).
+/// Ways to read the field: an accessor with tools::BoxSampler for each point (`shared` reads the eight values
+/// once for distance and gradient; the other reads them again for the gradient of touching points).
 std::unique_ptr<RivalQuery> openVdbQuery(const RivalField& field, const PointShell& shell, bool shared);
 /// The same field as NanoVDB, with its cached trilinear sampler; null where NanoVDB is not installed.
 std::unique_ptr<RivalQuery> nanoVdbQuery(const RivalField& field, const PointShell& shell);
-/// Union with a second field at a pose, as OpenVDB's tools do it: resample, then csgUnion. The two stay as
-/// they were. Returns the number of active voxels, so that nothing is optimised away.
+/// Union with a second field at a pose with OpenVDB's tools: resample, then csgUnion. Both fields are
+/// unchanged. Returns the number of active voxels, so that nothing is optimised away.
 std::size_t mergeOpenVdb(const RivalField& base, const RivalField& mounted, const Pose& X_BM);
 
 }  // namespace vps::bench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB as the rival; with NanoVDB where it is there. The only file here with their slow headers.
+// OpenVDB as the rival, with NanoVDB where it is installed. Only this file includes their headers, which are
+// slow to compile.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/GridTransformer.h>
@@ -26,7 +27,7 @@ void initializeOpenVdb() {
   std::call_once(once, [] { openvdb::initialize(); });
 }
 
-/// A mesh as meshToVolume asks for it: vertices in units of voxels.
+/// A mesh in the form of meshToVolume: vertices in units of voxels.
 class MeshInVoxels {
  public:
   MeshInVoxels(const Mesh& mesh, double voxel_m) : mesh_(mesh), per_voxel_(1 / voxel_m) {}
@@ -74,7 +75,7 @@ const OpenVdbField& asOpenVdb(const RivalField& field) {
   return dynamic_cast<const OpenVdbField&>(field);
 }
 
-/// What every way of reading shares: the transform into voxels, and the sums over touching points.
+/// Shared by all ways of reading: the transform into voxels, and the sums over touching points.
 class PointLoop : public RivalQuery {
  public:
   PointLoop(const PointShell& shell, double voxel_m, double far_m)

@@ -12,8 +12,8 @@
 namespace vps::bench {
 namespace {
 
-/// A shell of some of another's points. Written as a file and read back, which is the public way to a shell
-/// of given points: it sorts them and builds their spheres.
+/// A shell of some of another's points. It is written to a file and read back, the public way to a shell of
+/// given points: reading sorts them and builds their spheres.
 PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept) {
   const auto count = std::count(is_kept.begin(), is_kept.end(), true);
   const std::filesystem::path file =
@@ -36,7 +36,7 @@ PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept
   return some;
 }
 
-/// The last scene made, and what it was made of.
+/// The last scene, and its key.
 struct Kept {
   Pair pair = Pair::PegInPlate;
   SceneSize size;

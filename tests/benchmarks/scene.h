@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pairs of parts that are timed, with their models; and how the second moves.
+// The timed pairs of parts with their models, and the motion of the second part.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace vps::bench {
 
 enum class Pair { PegInPlate, PlanetInRing, RodInNut, RingOnItself };
 
-/// How large models are. The defaults are those of the table; tests of the program take less.
+/// The size of the models. The defaults are those of the table; tests of the program use less.
 struct SceneSize {
   std::size_t points = 185'030;  ///< the paper's load; the shell has exactly as many
   int voxels = 512;              ///< along the longest side of the map's part
@@ -27,7 +27,7 @@ struct Scene {
   VoxMapSettings settings;
   VoxMap map;
   PointShell shell;
-  std::shared_ptr<const RivalField> field;  ///< meshToVolume's, as it comes
+  std::shared_ptr<const RivalField> field;  ///< of meshToVolume with default settings
 };
 
 inline constexpr double kBandVoxels = 4;
@@ -36,16 +36,16 @@ inline constexpr double kBandVoxels = 4;
 std::pair<Mesh, Mesh> meshesOf(Pair pair, int coarser);
 /// Size of a voxel [m] of which `voxels` span the longest side.
 double voxelFor(const Mesh& mesh, int voxels);
-/// A shell of exactly `points` points: the spacing is searched for, the few too many are the last of its
-/// progressive order.
+/// A shell of exactly `points` points: the spacing is searched for, and the surplus points at the end of the
+/// progressive order are removed.
 PointShell shellOfSize(const Mesh& mesh, std::size_t points);
 /// The points first to first + count of a shell, as a shell.
 PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count);
-/// Takes seconds. Deterministic. The last one is kept, and so are its map or its shell where the next has the
-/// same.
+/// Takes seconds. Deterministic. The last scene is kept, and the next one reuses its map or shell if they are
+/// the same.
 std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size);
 
-/// Pose of the shell's part in the map's part at a step; deterministic, never twice the same in a run.
+/// Pose of the shell's part in the map's part at a step; deterministic, never the same twice in a run.
 using Motion = std::function<Pose(int step)>;
 
 /// A peg that slides in and out of a bore, turning a little, pressed to one side. step_m: travel of its
@@ -59,7 +59,7 @@ Motion screwMotion(double step_m);
 Motion hoverMotion(double step_m);
 /// A planet wheel that tumbles far from the ring.
 Motion freeMotion(double step_m);
-/// A part that trembles within its own surface by up to 30 um.
+/// A part that vibrates within its own surface by up to 30 um.
 Motion trembleMotion(double step_m);
 
 }  // namespace vps::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sizes of the parts that are timed, which their motions must know too.
+// Sizes of the timed parts, which their motions use too.
 #pragma once
 
 #include "support/fit.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our side of every comparison, behind one door: the only file here that changes when vps/query.h does.
+// Our side of every comparison: the only file here that depends on vps/query.h.
 #pragma once
 
 #include <memory>
@@ -13,18 +13,18 @@ namespace vps::bench {
 
 struct SubjectOptions {
   bool is_exhaustive = false;  ///< read every point
-  bool is_coherent = true;     ///< remember the last step; ignored when exhaustive
+  bool is_coherent = true;     ///< use temporal coherence; ignored when exhaustive
   std::string path = "best";   ///< one of instructionPaths()
 };
 
-/// The ways this build of the engine can run on this machine; "best" first.
+/// The instruction sets that this build can use on this machine; "best" first.
 std::vector<std::string> instructionPaths();
 
 /// A shell against a map, step by step. Answers are those of one-sided contact with the trilinear gradient,
-/// as the rivals'.
+/// like the rivals'.
 class Subject {
  public:
-  /// Both must outlive it.
+  /// Map and shell must outlive it.
   Subject(const VoxMap& map, const PointShell& shell, const SubjectOptions& options);
   ~Subject();
   Answer step(const Pose& X_MP);
@@ -34,7 +34,7 @@ class Subject {
   std::unique_ptr<State> state_;
 };
 
-/// A base part with a second one mounted at a pose, timed alone: what is needed before is made once.
+/// Times mounting a second part on a base part at a pose; everything else is done before.
 class Mounting {
  public:
   Mounting(const Mesh& base, const Mesh& mounted, const VoxMapSettings& settings);

@@ -13,7 +13,7 @@ std::string formatted(const char* format, double value) {
   return text;
 }
 
-/// Three digits, in the unit that suits.
+/// Formats three digits in a suitable unit.
 std::string timeText(double us) {
   if (us < 1e3) return formatted(us < 10 ? "%.2f us" : us < 100 ? "%.1f us" : "%.0f us", us);
   return us < 1e6 ? formatted("%.3g ms", us * 1e-3) : formatted("%.3g s", us * 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Google Benchmark's numbers as the table of a README.
+// Prints Google Benchmark's results as a Markdown table.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -13,7 +13,7 @@
 
 namespace vps::bench {
 
-/// Prints as the console does, and keeps what the table needs.
+/// Prints to the console and keeps the values of the table.
 class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : benchmark::ConsoleReporter(OO_Tabular) {}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a mesh: whatever requireUsable() accepts can be repaired, voxelised and asked.
+// Reads the bytes as a mesh: every mesh that requireUsable() accepts can be repaired, voxelised and read.
 //
-// The first byte is the form: an exponent of the scale in its low six bits, and if the top bit is set corners
-// are doubles and indices go past the end; else they lie on a small grid, where facets coincide, touch and
-// vanish. The second is the number of corners, then come corners and facets.
+// The first byte is the form: its low six bits are an exponent of the scale; if the top bit is set corners
+// are doubles and indices may be out of range, otherwise corners lie on a small grid, where facets coincide,
+// touch and collapse. The second byte is the number of corners; corners and facets follow.
 #include <tbb/global_control.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ vps::Mesh meshOf(const std::uint8_t* data, std::size_t size) {
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Meshes this small are done before a second thread has woken.
+  // Meshes this small are finished before a second thread has started.
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const vps::Mesh mesh = meshOf(data, size);
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a point shell's .ply.
+// Reads the bytes as a pointshell's .ply.
 #include <cmath>
 
 #include "fuzz.h"

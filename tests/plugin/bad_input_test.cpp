@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes that nobody should send: each gets a clear LoadError or the right answer.
+// Invalid and extreme meshes: each gives a clear LoadError or the right answer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::string refusal(const Mesh& mesh, const VoxMapSettings& settings) {
   return "accepted";
 }
 
-TEST(BadInput, WhatIsNoMeshIsRefusedWithAReason) {
+TEST(BadInput, InvalidMeshesAreRefusedWithAReason) {
   const VoxMapSettings settings = {0.5e-3, 4};
   EXPECT_EQ(refusal(Mesh{}, settings), "part 'hub': has no triangles; export it as a triangle mesh");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
@@ -39,14 +39,14 @@ TEST(BadInput, WhatIsNoMeshIsRefusedWithAReason) {
   EXPECT_NE(refusal(makeBox({1e200, 1e200, 1e200}), settings).find("too large"), std::string::npos);
 }
 
-TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsTaken) {
+TEST(BadInput, TooFineAVoxelIsRefusedBeforeMemoryIsAllocated) {
   for (const double size_m : {1e-6, 0.01, 100.0}) {
     const std::string text = refusal(makeBox(Vec3::Constant(size_m)), {1e-6 * size_m, 4});
     EXPECT_NE(text.find("would fit"), std::string::npos) << text;
   }
 }
 
-/// What is said when something is refused.
+/// The message of the error.
 template <typename Do>
 std::string refusalOf(Do what) {
   try {
@@ -57,7 +57,7 @@ std::string refusalOf(Do what) {
   return "accepted";
 }
 
-TEST(BadInput, ResamplingTooFinelyIsRefusedBeforeMemoryIsTaken) {
+TEST(BadInput, ResamplingTooFinelyIsRefusedBeforeMemoryIsAllocated) {
   const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.1)), {1e-3, 4});
   // Bricks of 8 um over 50 mm and the band on each side: floor(6250.4) + 2 to the right, the same to the
   // left.
@@ -69,7 +69,7 @@ TEST(BadInput, ResamplingTooFinelyIsRefusedBeforeMemoryIsTaken) {
   EXPECT_LT(times, 40);
 }
 
-TEST(BadInput, ResamplingOntoNoGridIsRefused) {
+TEST(BadInput, ResamplingOntoAnInvalidGridIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.01)), {0.5e-3, 4});
   const auto refusal = [&](const VoxMapSettings& settings) {
@@ -81,7 +81,7 @@ TEST(BadInput, ResamplingOntoNoGridIsRefused) {
     EXPECT_NE(refusal({0.1e-3, band_voxels}).find("band must be"), std::string::npos) << band_voxels;
 }
 
-TEST(BadInput, MountingOnNoMapOrNoMapIsRefused) {
+TEST(BadInput, MountingOnAnEmptyMapOrAnEmptyMapIsRefused) {
   const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.01)), {0.5e-3, 4});
   const VoxMap none;
   const auto refusal = [](const VoxMap& cooked, const VoxMap& part) {
@@ -92,7 +92,7 @@ TEST(BadInput, MountingOnNoMapOrNoMapIsRefused) {
   EXPECT_NE(refusal(box, none).find("distances up to 0"), std::string::npos) << refusal(box, none);
 }
 
-TEST(BadInput, APoseThatIsNowhereIsRefused) {
+TEST(BadInput, APoseThatIsNotFiniteIsRefused) {
   const Mesh mesh = makeBox(Vec3::Constant(0.01));
   const VoxMap box = buildVoxMap(mesh, {0.5e-3, 4});
   const auto expect = [&](const Pose& X_MP, const char* text) {
@@ -120,7 +120,7 @@ TEST(BadInput, APoseThatIsNowhereIsRefused) {
   expect(Pose::translation({1e9, 0, 0}), "too far");
 }
 
-TEST(BadInput, PartsTooFarApartForOneDirectoryAreRefusedBeforeMemoryIsTaken) {
+TEST(BadInput, PartsTooFarApartForOneDirectoryAreRefusedBeforeMemoryIsAllocated) {
   const Mesh mesh = makeBox(Vec3::Constant(0.01));
   const VoxMap box = buildVoxMap(mesh, {0.1e-3, 4});
   const Pose X_MP = Pose::translation({1.2, -1.2, 1.2});  // 2.1 m
@@ -133,7 +133,7 @@ TEST(BadInput, PartsTooFarApartForOneDirectoryAreRefusedBeforeMemoryIsTaken) {
     EXPECT_NE(said.find("for its directory"), std::string::npos) << said;
 }
 
-TEST(BadInput, MoreBricksThanCanBeNamedAreRefusedBeforeMemoryIsTaken) {
+TEST(BadInput, MoreBricksThanHaveNamesAreRefusedBeforeMemoryIsAllocated) {
   VoxLayout layout;
   layout.pool = std::make_shared<VoxPool>(0);
   const std::string said = refusalOf([&] { takeBricks(layout, VoxPool::kMost + 1); });
@@ -142,12 +142,12 @@ TEST(BadInput, MoreBricksThanCanBeNamedAreRefusedBeforeMemoryIsTaken) {
   EXPECT_NE(takeBricks(layout, 1), 0u);
 }
 
-TEST(BadInput, AVoxelThatNoFloatHoldsIsRefused) {  // found by fuzzing: the band became zero
+TEST(BadInput, AVoxelSizeBeyondTheRangeOfFloatsIsRefused) {  // found by fuzzing: the band became zero
   Mesh mesh = makeSphere(1e-70, 1);
   EXPECT_NE(refusal(mesh, {1e-71, 4}).find("is the unit right"), std::string::npos);
 }
 
-/// A turned tube of any size: signs and distances as exact as at the usual size.
+/// A rotated tube of any size: signs and distances are as exact as at the usual size.
 void expectRightAtSize(double size_m) {
   const Mesh unit = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(2).pose(1));
   Mesh mesh = unit;
@@ -161,7 +161,7 @@ void expectRightAtSize(double size_m) {
     const Vec3 at = (bounds(unit).center() + random.inBox(0.7 * bounds(unit).size())) * 20;
     const Vec3 p = at.array().round() / 20;
     const double expected = std::clamp(truth.signedDistance(p), -0.2, 0.2) * size_m;
-    // Half a quantum, a float's rounding at the band, and the node's own place.
+    // Half a quantum, the rounding of floats at the band, and of the node's position.
     ASSERT_NEAR(map.distance(size_m * p), expected, 0.51 * map.quantum_m()) << size_m;
   }
 }

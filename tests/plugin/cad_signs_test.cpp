@@ -108,11 +108,12 @@ int crossings(const Mesh& mesh, const Vec3& p, const Vec3& way) {
 
 struct Agreement {
   MeshReport report;
-  std::size_t asked = 0, against_windings = 0, doubtful = 0, against_rays = 0;
+  std::size_t tested = 0, against_windings = 0, doubtful = 0, against_rays = 0;
 };
 
-/// Compares a map's nodes, at random places in and around the part, with the winding number of all triangles
-/// (of the cleaned mesh) and with the parity of eleven rays (of the mesh as it came), where nine agree.
+/// Compares the signs of a map's nodes, at random positions in and around the part, with the winding number
+/// of all triangles (of the cleaned mesh) and with the parity of eleven rays (of the mesh as given), where
+/// nine agree.
 Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels) {
   Agreement found;
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
@@ -123,7 +124,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
   std::vector<Vec3> ways;
   for (int i = 0; i < 11; ++i) ways.push_back(random.inBox(Vec3::Ones()).normalized());
   for (int n = 0; n < 400; ++n) {
-    // Half beside the surface, half anywhere.
+    // Half of them near the surface, half anywhere.
     Vec3 p = bounds(mesh).center() + random.inBox(0.6 * bounds(mesh).size());
     if (n % 2) {
       const auto pick = static_cast<std::size_t>((0.5 + 0.5 * random.unit()) * 0.999 *
@@ -133,7 +134,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
     p = voxel_m * (p / voxel_m).array().round().matrix();
     if (std::abs(map.distance(p)) < 1e-6 * voxel_m) continue;  // on the surface
     const bool is_inside = map.distance(p) < 0;
-    ++found.asked;
+    ++found.tested;
     const double w = winding.exact(p);
     found.against_windings += std::abs(w - 0.5) > 0.02 && is_inside != (w > 0.5);
     int inside = 0;
@@ -146,7 +147,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
   std::printf(
       "%s: %s; by %s; of %zu nodes %zu against all windings, %zu against rays, rays of %zu disagree\n",
       name.c_str(), describe(found.report).c_str(),
-      found.report.signed_by_winding ? "winding" : "pseudonormals", found.asked, found.against_windings,
+      found.report.signed_by_winding ? "winding" : "pseudonormals", found.tested, found.against_windings,
       found.against_rays, found.doubtful);
   return found;
 }
@@ -160,7 +161,7 @@ class CadSigns : public testing::Test {
 };
 
 #define SKIP_WITHOUT(file) \
-  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " is not here; set VPS_CAD_DIR"
+  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " does not exist; set VPS_CAD_DIR"
 
 TEST_F(CadSigns, Bearing) {
   const fs::path file = find("occt-bearing-motor/bearing.stl");
@@ -199,7 +200,7 @@ TEST_F(CadSigns, Nut) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
+TEST_F(CadSigns, PinHeaderWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinHeader_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("PinHeader", readWrl(file, 2.54e-3), 128);
@@ -207,7 +208,7 @@ TEST_F(CadSigns, PinHeaderOfOneShellAFace) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, PinSocketOfOneShellAFace) {
+TEST_F(CadSigns, PinSocketWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinSocket_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("PinSocket", readWrl(file, 2.54e-3), 128);
@@ -215,12 +216,12 @@ TEST_F(CadSigns, PinSocketOfOneShellAFace) {
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
 }
-TEST_F(CadSigns, SoupHasNoInsideWorthItsName) {
+TEST_F(CadSigns, TriangleSoupReportsUncertainSigns) {
   const fs::path file = find("cad-trimesh/soup.stl");
   SKIP_WITHOUT(file);
   const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.shells, 100u);
-  EXPECT_LT(found.report.certain_share, 0.9);  // and says so
+  EXPECT_LT(found.report.certain_share, 0.9);
   EXPECT_EQ(found.against_windings, 0u);
 }
 TEST_F(CadSigns, SharedEdge) {

@@ -12,7 +12,7 @@
 namespace vps {
 namespace {
 
-constexpr double kEps = 1e-12;  // a handful of roundings of numbers of order ten
+constexpr double kEps = 1e-12;  // a few roundings of numbers of order ten
 
 CouplingState at(const Vec3& p_W, const Vec3& rotation = Vec3::Zero()) {
   CouplingState state;
@@ -61,7 +61,7 @@ TEST(CouplingLaw, TheSpringIsLimitedInItsOwnDirectionAndDampingIsAddedAfter) {
   EXPECT_LT((F.tau - Vec3(0, 0, 1)).norm(), kEps);
 }
 
-TEST(CouplingLaw, HalfATurnIsTheGreatestRotationAndStaysFinite) {
+TEST(CouplingLaw, HalfATurnIsTheLargestRotationAndStaysFinite) {
   CouplingGains gains;
   gains.k_Nm_per_rad = 1;
   gains.max_torque_Nm = 100;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/crop.h"
+#include "vps/box.h"
+#include "vps/shell_crop.h"
+#include "vps/voxmap_crop.h"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +23,7 @@ Box boxOf(const Vec3& min, const Vec3& max) {
   return box;
 }
 
-/// A tube of 20 mm, and the half of it that a peg of 6 mm may visit: its upper half, with room around.
+/// A tube of 20 mm, and its upper half with a margin, where a peg of 6 mm moves.
 struct TubeAndPeg {
   Mesh tube = makeTube(10 * kMm, 3.02 * kMm, 20 * kMm, 48), peg = makeCylinder(3 * kMm, 12 * kMm, 48);
   VoxMap map = buildVoxMap(tube, {0.25 * kMm, 4}), peg_map = buildVoxMap(peg, {0.25 * kMm, 4});
@@ -61,7 +63,7 @@ ContactSet contactsOf(const VoxMap& map, const PointShell& shell, const Pose& X_
   return set;
 }
 
-TEST(Crop, AMapReadsTheSameToTheBitInItsBoxesAndTakesLess) {
+TEST(Crop, ACroppedMapReadsTheSameBitsInItsBoxesAndUsesLessMemory) {
   const TubeAndPeg pair;
   const VoxMap cropped = croppedVoxMap(pair.map, pair.boxes);
   test::RandomPoints random(3);
@@ -76,7 +78,7 @@ TEST(Crop, AMapReadsTheSameToTheBitInItsBoxesAndTakesLess) {
   EXPECT_LT(cropped.memoryBytes(), pair.map.memoryBytes());
 }
 
-TEST(Crop, APartThatStaysInTheBoxesMeetsTheSameContactsBothWays) {
+TEST(Crop, APartThatStaysInTheBoxesHasTheSameContactsBothWays) {
   const TubeAndPeg pair;
   const VoxMap map = croppedVoxMap(pair.map, pair.boxes);
   const PointShell shell = croppedShell(pair.shell, pair.boxes);
@@ -89,10 +91,10 @@ TEST(Crop, APartThatStaysInTheBoxesMeetsTheSameContactsBothWays) {
     expectSameContacts(of_tube, contactsOf(pair.peg_map, shell, X_TP.inverse()));
     found += of_peg.contacts.size() + of_tube.contacts.size();
   }
-  EXPECT_GT(found, 10000u) << "the poses must touch for this to say something";
+  EXPECT_GT(found, 10000u) << "the poses must touch, or the test shows nothing";
 }
 
-TEST(Crop, AShellKeepsEachPointOfItsBoxesAndNoOther) {
+TEST(Crop, ACroppedShellKeepsThePointsInItsBoxesOnly) {
   const TubeAndPeg pair;
   const PointShell shell = croppedShell(pair.shell, pair.boxes);
   std::size_t next = 0;
@@ -124,7 +126,7 @@ TEST(Crop, ACroppedMapCanBeMountedUpon) {
   }
 }
 
-TEST(Crop, WhatAMountedMapKeepsBesideTheOneItStandsOnIsLessThanItsAll) {
+TEST(Crop, AMountedMapSharesMemoryWithTheMapBelow) {
   const TubeAndPeg pair;
   const VoxMap mounted = mountVoxMap(pair.map, PlacedMesh{&pair.peg, Pose::translation({0, 0, 6 * kMm})});
   EXPECT_EQ(pair.map.additionalMemoryBytes(pair.map), 0u);

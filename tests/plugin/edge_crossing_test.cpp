@@ -39,7 +39,7 @@ Mat3 turned(const Vec3& axis, double angle_rad) {
   return rotationFromVector(angle_rad * axis);
 }
 
-TEST(EdgeSet, ABoxHasTwelveAndNoneOnItsDiagonals) {
+TEST(EdgeSet, ABoxHasTwelveEdgesAndNoneOnItsDiagonals) {
   const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
   ASSERT_EQ(edges.segments().size(), 12U);
   double length = 0;
@@ -47,7 +47,7 @@ TEST(EdgeSet, ABoxHasTwelveAndNoneOnItsDiagonals) {
   EXPECT_NEAR(length, 4 * (1 + 2 + 3), kRounding);
 }
 
-TEST(EdgeSet, GroovesAndTheFacetsOfRoundFacesAreNone) {
+TEST(EdgeSet, GroovesAndFacetBordersOfRoundFacesAreNotEdges) {
   // A flanged bush of 24 flats, 15 degrees apart. Its five convex rims, and not the root of the flange.
   const EdgeSet edges = edgesOf(test::lathe({{6, 0}, {15, 0}, {15, 4}, {9, 4}, {9, 20}, {6, 20}}, 24));
   EXPECT_EQ(edges.segments().size(), 5U * 24U);
@@ -65,8 +65,8 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
 }
 
-// Two bars on edge, one across the other.
-TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
+// Two bars standing on edge, one across the other.
+TEST(EdgeCrossing, OfTwoBarsLiesAtTheirContact) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const double half = std::sqrt(0.5);  // from the axis to an edge
   for (const double gap : {0.01, 0.0, -0.01}) {
@@ -82,7 +82,7 @@ TEST(EdgeCrossing, OfTwoBarsIsWhereTheyMeet) {
   }
 }
 
-TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
+TEST(EdgeCrossing, IsFoundUpToTheGivenDepth) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, 2 * std::sqrt(0.5) - 0.1)),
       X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3::Zero());
@@ -94,8 +94,9 @@ TEST(EdgeCrossing, IsFoundAsDeepAsAskedFor) {
   EXPECT_NEAR(out[0].gap_m, -0.1, kRounding);
 }
 
-TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {
-  // Upper bar flat over the lower one's edge: its own edges cross that edge nowhere near the ends it has.
+TEST(EdgeCrossing, DoesNotExistWhereAFaceLiesOnAnEdge) {
+  // The upper bar lies flat on the lower one's edge: its own edges do not cross that edge except near its
+  // ends.
   const EdgeSet bar = edgesOf(makeBox({10, 1, 1}));
   const double half = std::sqrt(0.5);
   const Pose X_01(Mat3(turned(Vec3::UnitZ(), 0.5) * turned(Vec3::UnitX(), std::numbers::pi / 4)),
@@ -104,7 +105,7 @@ TEST(EdgeCrossing, IsNoneWhereAFaceLiesOnAnEdge) {
     EXPECT_NEAR(std::abs(c.n.z()), 1, 0.02 + kRounding) << "the rims of the face that lies on it, at most";
 }
 
-TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
+TEST(EdgeCrossing, IsTheSameWithThePartsExchanged) {
   const EdgeSet a = edgesOf(makeBox({1, 2, 3})),
                 b = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 2}, {0, 2}}, 17));
   std::mt19937 random(1);
@@ -126,7 +127,7 @@ TEST(EdgeCrossing, IsTheSameSeenFromTheOtherPart) {
   EXPECT_GT(seen, 100U);
 }
 
-TEST(EdgeCrossing, TheHierarchyMissesNone) {
+TEST(EdgeCrossing, TheHierarchyFindsWhatAnExhaustiveSearchFinds) {
   const Mesh part = test::lathe({{0.6, 0}, {1.5, 0}, {1.5, 0.4}, {0.9, 0.4}, {0.9, 2}, {0.6, 2}}, 40);
   const EdgeSet edges = edgesOf(part);
   std::vector<EdgeSet> alone;
@@ -164,9 +165,9 @@ bool pierces(const Vec3& from, const Vec3& to, const Vec3& size) {
   return first < last;
 }
 
-// Of boxes apart, the distance is that of a corner to the other, or of two edges: so where no corner is
-// nearest, a crossing is.
-TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
+// The distance of separate boxes is that of a corner to the other box or that of two edges; where no corner
+// is nearest, a crossing gives it.
+TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   const Vec3 size0(1, 2, 3), size1(2, 1.5, 1);
   const Mesh box0 = makeBox(size0), box1 = makeBox(size1);
   const MeshDistance to0(box0), to1(box1);
@@ -178,7 +179,7 @@ TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
     double corner = 1e300, edge = 1e300, sine = 0;
     for (const Vec3& v : box1.vertices) corner = std::min(corner, to0.signedDistance(X_01 * v));
     for (const Vec3& v : box0.vertices) corner = std::min(corner, to1.signedDistance(X_01.inverse() * v));
-    // Exhaustively: nearest points of segments, by how near the lines are and where.
+    // Exhaustive: nearest points of segments, and the distance of their lines.
     for (const EdgeSegment& s0 : edges0.segments())
       for (const EdgeSegment& s1 : edges1.segments()) {
         const Vec3 a = s0.from, d0 = s0.to - s0.from, b = X_01 * s1.from, d1 = X_01.R * (s1.to - s1.from);
@@ -190,8 +191,8 @@ TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
         edge = apart;
         sine = d0.normalized().cross(d1.normalized()).norm();
       }
-    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // left to points
-    // Boxes that overlap without a corner inside have no distance: an edge then pierces a face.
+    if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // found by points
+    // Overlapping boxes without a corner inside have no distance: an edge pierces a face.
     bool overlaps = false;
     for (const EdgeSegment& s : edges0.segments())
       overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
@@ -206,8 +207,8 @@ TEST(EdgeCrossing, IsTheDistanceOfBoxesWhereNoCornerIsNearest) {
   EXPECT_GT(edge_cases, 100);
 }
 
-// A rim of chords: a bar's edge that goes round it is always crossed, at the joints too.
-TEST(EdgeCrossing, IsNotLostAtTheJointsOfARim) {
+// A bar's edge that goes around a rim of chords always crosses it, at the joints too.
+TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
   const EdgeSet disc = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 96)),
                 bar = edgesOf(makeBox({1, 4, 1}));
   // The bar lies on edge across the rim of the disc's top face.

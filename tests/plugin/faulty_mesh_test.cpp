@@ -22,7 +22,7 @@ constexpr VoxMapSettings kSettings = {kVoxel_m, 4};
 
 using Inside = std::function<bool(const Vec3&)>;
 
-/// Counts grid nodes around a map, up to 8 voxels off, on the wrong side; `skip` says which do not count.
+/// Counts grid nodes around a map, up to 8 voxels away, with a wrong sign; `skip` excludes nodes.
 std::size_t wrongSigns(const VoxMap& map, const Inside& isInside, const Inside& skip = {}) {
   const double h = map.voxel_m();
   const Eigen::Array3i low = (map.bounds().min / h).array().floor().cast<int>() - 8;
@@ -37,7 +37,7 @@ std::size_t wrongSigns(const VoxMap& map, const Inside& isInside, const Inside& 
   return wrong;
 }
 
-/// Of a closed mesh.
+/// The true inside of a closed mesh.
 Inside insideOf(const Mesh& closed) {
   return [truth = std::make_shared<MeshDistance>(closed)](const Vec3& p) {
     return truth->signedDistance(p) < 0;
@@ -51,7 +51,7 @@ MeshReport reportOf(const Mesh& mesh, VoxMap* map = nullptr) {
   return report;
 }
 
-/// A turned tube: nothing of it lies on the grid.
+/// A rotated tube: no face is aligned with the grid.
 Mesh tube() {
   return transformed(makeTube(0.01, 0.006, 0.012, 48), RandomPoints(2).pose(0.01));
 }
@@ -87,9 +87,10 @@ Mesh plateWithHole(double hole_m, bool is_closed, const Pose& X) {
 }
 
 TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
-  // What is missing is plane, so it fills less than half the view from either side: w stays above 0.5 inside
-  // and below outside, all the way to the hole. Only the series' error (0.02 with a margin) blurs the hole's
-  // own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and more at its rim.
+  // The missing part is plane, so it covers less than half of the solid angle from either side: w stays above
+  // 0.5 inside and below outside, up to the hole. Only the error of the series (0.02 with a margin) blurs the
+  // hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and larger at
+  // its rim.
   for (const double hole_voxels : {0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
     const double hole_m = hole_voxels * kVoxel_m;
     const Pose X = RandomPoints(3).pose(0.01), X_inverse = X.inverse();
@@ -103,7 +104,8 @@ TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
     EXPECT_EQ(report.open_edges, 4u);
     EXPECT_EQ(report.holes, 1u);
     EXPECT_TRUE(report.signed_by_winding);
-    // Unsure is what sees the hole under more than pi, a quarter of the whole: nearer than its size.
+    // Uncertain are the nodes from which the hole covers more than pi, a quarter of the full solid angle:
+    // those nearer than its size.
     EXPECT_EQ(report.certain_share < 1, hole_voxels >= 3) << hole_voxels;
     EXPECT_GT(report.certain_share, 0.8);
   }
@@ -160,7 +162,7 @@ TEST(FaultyMesh, AShellThatFacesInIsTurnedAndACavityIsNot) {
   EXPECT_EQ(report.overlapping_shells, 0u);
   EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, isInside), 0u);
-  for (auto& t : hollow.triangles) std::swap(t[0], t[1]);  // all inside out
+  for (auto& t : hollow.triangles) std::swap(t[0], t[1]);  // all shells face in
   EXPECT_EQ(reportOf(hollow, &map).turned_shells, 2u);
   EXPECT_EQ(wrongSigns(map, isInside), 0u);
 }
@@ -193,7 +195,7 @@ TEST(FaultyMesh, AShellWithinAnotherIsLeftOut) {
 }
 
 TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
-  // One shell: a hose that is bent into itself, rings of 8 around a curve.
+  // One shell: a hose bent into itself, rings of 8 vertices around a curve.
   Mesh hose;
   constexpr int kRings = 40, kSegments = 12;
   for (int i = 0; i < kRings; ++i) {
@@ -223,7 +225,7 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
   VoxMap map;
   const MeshReport report = reportOf(hose, &map);
   EXPECT_TRUE(report.signed_by_winding);
-  // Truth: crossings of a ray, counted with their direction.
+  // Truth: crossings of a ray, counted with their sign.
   const auto isInside = [&](const Vec3& p) {
     int windings = 0;
     const Vec3 way = Vec3(0.3, 0.2, 0.93).normalized();
@@ -239,7 +241,7 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
   EXPECT_EQ(wrongSigns(map, isInside), 0u);
 }
 
-TEST(FaultyMesh, AnInternalWallIsNoSurface) {
+TEST(FaultyMesh, AnInternalWallIsRemovedFromTheSurface) {
   // A cuboid in two halves that share the four corners of a wall, once with one wall and once with two back
   // to back.
   Mesh closed;
@@ -300,7 +302,7 @@ TEST(FaultyMesh, ASurfaceExportedForBothSidesIsASolid) {
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
-TEST(FaultyMesh, TJunctionsAreNoHoles) {
+TEST(FaultyMesh, TJunctionsAreNotHoles) {
   Mesh mesh = tube();
   for (const std::size_t i : {7u, 20u, 50u}) {  // a facet is cut and its neighbour is not
     const auto [a, b, c] = mesh.triangles[i];
@@ -317,8 +319,8 @@ TEST(FaultyMesh, TJunctionsAreNoHoles) {
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
-TEST(FaultyMesh, OneShellAFaceIsASolidEvenIfSomeFaceIn) {
-  // A box of six faces with corners of their own, a hair apart, each face of 2 x 8 x 8 triangles.
+TEST(FaultyMesh, OneShellPerFaceIsASolidEvenIfSomeShellsFaceIn) {
+  // A box of six faces with their own corners, slightly apart, each face of 2 x 8 x 8 triangles.
   RandomPoints random(7);
   const Pose X = random.pose(0.01);
   const Mesh box = transformed(makeBox({0.016, 0.012, 0.01}), X);
@@ -345,7 +347,7 @@ TEST(FaultyMesh, OneShellAFaceIsASolidEvenIfSomeFaceIn) {
     const MeshReport report = reportOf(faces, &map);
     EXPECT_EQ(report.shells, 6u);
     EXPECT_EQ(report.turned_shells, has_flipped ? 1u : 0u);
-    // Cracks of 2 sqrt(3) 1e-7: nodes that near a face may be on either side.
+    // Cracks of 2 sqrt(3) 1e-7: nodes that near a face may have either sign.
     const MeshDistance truth(box);
     EXPECT_EQ(wrongSigns(map, insideOf(box),
                          [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4e-7; }),
@@ -372,7 +374,8 @@ Mesh pipeWithAFlippedWall() {
   return pipe;
 }
 
-/// Readings a band or more from the surface's box, up to beyond the directory. Normals look into two voxels.
+/// Tests readings a band or more from the surface's box, up to beyond the directory. Normals read two voxels
+/// away.
 void expectOutsideBeyondTheBox(const VoxMap& map, double coarsest_m) {
   RandomPoints random(71);
   const Box& box = map.bounds();
@@ -385,7 +388,7 @@ void expectOutsideBeyondTheBox(const VoxMap& map, double coarsest_m) {
   }
 }
 
-/// Culled and coherent answers are the exhaustive one, about the mouth of a part that lies along z.
+/// Compares culled and coherent answers with the exhaustive one, around the mouth of a part along z.
 void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
   QueryMemory memory(map, shell);
   RandomPoints random(72);
@@ -409,7 +412,7 @@ void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
   EXPECT_GT(touching, 1000u);
 }
 
-TEST(FaultyMesh, BeyondTheBandAllIsOutsideWhateverTheWindingNumberSays) {
+TEST(FaultyMesh, BeyondTheBandEveryPointIsOutsideForAnyWindingNumber) {
   const Mesh pipe = pipeWithAFlippedWall();
   ASSERT_GT(WindingNumber(pipe).at({0, 0, 0.0235}).w, 0.5);  // the rim is nearer than that, at 0.25 mm
   const PointShell shell = buildPointShell(makeSphere(0.003, 4), {0.2e-3, 0.35});
@@ -430,10 +433,10 @@ TEST(FaultyMesh, AFreeSheetHasNoInside) {
   EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
   const Vec3 on_sheet = o + Vec3(0.003, 0.003, 0.0003);
-  EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // it is there all the same
+  EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // the sheet is part of the surface
 }
 
-TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
+TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOneThread) {
   Mesh mesh = tube();
   mesh.triangles.erase(mesh.triangles.begin() + 10, mesh.triangles.begin() + 30);
   append(mesh, transformed(makeBox({0.02, 0.004, 0.004}), Pose(Mat3::Identity(), bounds(mesh).center())));
@@ -464,8 +467,8 @@ Mesh tetrahedra(int along) {
   return mesh;
 }
 
-TEST(FaultyMesh, ManyShellsApartAreSoundAndAreTurned) {
-  // Where every two were compared, half a million took minutes.
+TEST(FaultyMesh, ManySeparateShellsAreSoundAndAreTurned) {
+  // Comparing all pairs took minutes for half a million shells.
   const Mesh apart = tetrahedra(31);
   const RepairedMesh sound = repairMesh(apart);
   EXPECT_TRUE(sound.is_sound);
@@ -480,19 +483,19 @@ TEST(FaultyMesh, ManyShellsApartAreSoundAndAreTurned) {
   EXPECT_EQ(turned.surface.triangles, apart.triangles);
 }
 
-TEST(FaultyMesh, TwoOfManyShellsThatMeetAreFound) {
+TEST(FaultyMesh, TwoOverlappingShellsAmongManyAreFound) {
   const Mesh apart = tetrahedra(12);
   for (const std::uint32_t shell : {1u, 700u, 1727u}) {
     // One reaches into its neighbour, one faces in and lies within its neighbour: a cavity.
-    Mesh sync_event = apart, hollow = apart;
+    Mesh overlapping = apart, hollow = apart;
     for (std::uint32_t v = 4 * shell; v < 4 * shell + 4; ++v) {
-      sync_event.vertices[v].z() -= 1.5e-3;
+      overlapping.vertices[v].z() -= 1.5e-3;
       hollow.vertices[v] = apart.vertices[4 * shell - 4] + Vec3::Constant(0.1e-3) +
                            0.2 * (apart.vertices[v] - apart.vertices[4 * shell]);
     }
     for (std::uint32_t i = 4 * shell; i < 4 * shell + 4; ++i)
       std::swap(hollow.triangles[i][1], hollow.triangles[i][2]);
-    EXPECT_FALSE(repairMesh(sync_event).is_sound) << shell;
+    EXPECT_FALSE(repairMesh(overlapping).is_sound) << shell;
     const RepairedMesh cavity = repairMesh(hollow);
     EXPECT_FALSE(cavity.is_sound) << shell;
     EXPECT_EQ(cavity.report.turned_shells, 0u) << shell;
@@ -500,7 +503,7 @@ TEST(FaultyMesh, TwoOfManyShellsThatMeetAreFound) {
   }
 }
 
-TEST(FaultyMesh, ItsReportReadsAsASentence) {
+TEST(FaultyMesh, TheReportReadsAsASentence) {
   MeshReport report;
   report.shells = 12;
   report.open_edges = 34;

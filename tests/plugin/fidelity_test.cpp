@@ -10,7 +10,7 @@
 namespace vps {
 namespace {
 
-TEST(Fidelity, NormalIsWhatAFidelityIsByDefault) {
+TEST(Fidelity, NormalIsTheDefault) {
   const Fidelity by_name = fidelityPreset("normal"), by_default;
   EXPECT_EQ(by_name.voxel_m, by_default.voxel_m);
   EXPECT_EQ(by_name.spacing_m, by_default.spacing_m);
@@ -28,7 +28,7 @@ TEST(Fidelity, EachPresetIsFinerThanTheOneBefore) {
   EXPECT_LE(normal.contact_limit, fine.contact_limit);
 }
 
-TEST(Fidelity, AnUnknownNameIsRefusedWithTheNamesThatWouldDo) {
+TEST(Fidelity, AnUnknownNameIsRefusedWithTheKnownNames) {
   try {
     static_cast<void>(fidelityPreset("ultra"));
     FAIL() << "accepted";

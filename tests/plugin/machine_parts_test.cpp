@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts that benchmarks run on: closed, outward, of the size they say, and not touching where they fit.
+// The parts of the benchmarks: closed, outward, of the stated size, and not touching where they have
+// clearance.
 #include <gtest/gtest.h>
 
 #include <numbers>

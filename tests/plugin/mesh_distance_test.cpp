@@ -36,7 +36,7 @@ TEST(ClosestOnTriangle, NoPointOfTheTriangleIsCloser) {
   }
 }
 
-TEST(ClosestOnTriangle, CollinearCornersAreTheirEdges) {
+TEST(ClosestOnTriangle, ATriangleWithCollinearCornersIsItsEdges) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(3, 0, 0);
   for (const double x : {-1.0, 0.5, 1.0, 2.0, 4.0}) {
     const Vec3 q = closestOnTriangle({x, 1, 0}, a, b, c).q;
@@ -45,7 +45,7 @@ TEST(ClosestOnTriangle, CollinearCornersAreTheirEdges) {
   EXPECT_EQ(closestOnTriangle({1, 2, 3}, a, a, a).q, a);
 }
 
-TEST(MeshDistance, FindsWhatVisitingEveryTriangleFinds) {
+TEST(MeshDistance, EqualsAnExhaustiveSearchOfTheTriangles) {
   const Mesh mesh = transformed(makeTube(0.02, 0.01, 0.03, 37), RandomPoints(3).pose(0.01));
   const MeshDistance distance(mesh);
   RandomPoints random(4);
@@ -72,7 +72,7 @@ TEST(MeshDistance, SignedDistanceToABoxIsItsFormula) {
 }
 
 TEST(MeshDistance, SignIsRightAtSharpSpikesWhereFaceNormalsFail) {
-  // A needle: near its tip the nearest feature is the vertex, and some faces that share it look away.
+  // A needle: near its tip the nearest feature is the vertex, and some faces around it face away.
   Mesh needle;
   needle.vertices = {{-0.1, -0.1, 0}, {0.1, -0.1, 0}, {0, 0.1, 0}, {0.5, 0.3, 2}};
   needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -104,12 +104,12 @@ Mesh bladeWithCollinearFiller(double half_width) {
   return mesh;
 }
 
-TEST(MeshDistance, SignIsRightBesideTrianglesWithoutArea) {
+TEST(MeshDistance, SignIsRightNextToTrianglesWithoutArea) {
   const Mesh plain = bladeWithCollinearFiller(0.1);
   ASSERT_TRUE(checkMesh(plain).isClosed());
   ASSERT_GT(massProperties(plain).volume_m3, 0);
   for (const int seed : {1, 2, 3}) {
-    const Pose X = RandomPoints(seed).pose(1);  // rounds C off the line
+    const Pose X = RandomPoints(seed).pose(1);  // rounding moves C off the line
     const MeshDistance blade(transformed(plain, X));
     RandomPoints random(seed + 10);
     for (int n = 0; n < 20000; ++n) {
@@ -129,7 +129,7 @@ TEST(MeshDistance, BeyondTheLimitNothingIsFound) {
   EXPECT_EQ(distance.signedDistance({0, 0, 0}), -1);
 }
 
-TEST(MeshDistance, LowerBoundKeepsItsWord) {
+TEST(MeshDistance, LowerBoundIsWithinItsSlack) {
   const MeshDistance distance(makeSphere(0.02, 4));
   RandomPoints random(7);
   for (int n = 0; n < 2000; ++n) {
@@ -140,7 +140,7 @@ TEST(MeshDistance, LowerBoundKeepsItsWord) {
   }
 }
 
-TEST(MeshDistance, AnEmptyMeshIsFarFromEverything) {
+TEST(MeshDistance, AnEmptyMeshIsInfinitelyFar) {
   EXPECT_FALSE(MeshDistance(Mesh{}).closest(Vec3::Zero()).found);
 }
 

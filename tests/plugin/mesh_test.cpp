@@ -98,7 +98,7 @@ TEST(Mesh, WeldingSharesVerticesAgain) {
   expectClosed(exact);
 }
 
-TEST(Mesh, WeldingWithToleranceForgivesNoise) {
+TEST(Mesh, WeldingWithToleranceMergesNoisyVertices) {
   const Mesh sphere = makeSphere(0.01, 3);
   const Mesh soup = unshared(sphere, 1e-8);
   EXPECT_FALSE(checkMesh(welded(soup)).isClosed());
@@ -108,7 +108,7 @@ TEST(Mesh, WeldingWithToleranceForgivesNoise) {
   expectClosed(close);
 }
 
-TEST(Mesh, WeldingTakesBothZerosAsOne) {
+TEST(Mesh, WeldingMergesBothZeros) {
   Mesh mesh;
   mesh.vertices = {{0.0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
@@ -122,7 +122,7 @@ TEST(Mesh, WeldingDropsTrianglesThatCollapse) {
   EXPECT_EQ(welded(mesh, 1e-6).triangles.size(), 12u);
 }
 
-TEST(Mesh, ReportCountsWhatIsWrong) {
+TEST(Mesh, ReportCountsFaults) {
   Mesh open = makeBox({1, 1, 1});
   open.triangles.pop_back();
   EXPECT_EQ(checkMesh(open).open_edges, 3u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both sides of a pair, and contacts as patches.
+// Contact of a pair both ways.
 #include "vps/pair_query.h"
 
 #include <gtest/gtest.h>

@@ -51,7 +51,7 @@ const std::string kAscii =
     "property double area\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 1 0.5 0 0 255 4\n0 0 -1 1e-3 2 -3 0 1\n0.7071068 0.7071068 0 1 1 1 9 4\n3 0 1 2\n";
 
-TEST_F(PlyIo, AShellComesBackToTheBit) {
+TEST_F(PlyIo, AShellIsReadBackToTheBit) {
   const PointShell saved = buildPointShell(makeCylinder(5e-3, 8e-3, 60), {0.7e-3, 0.35});
   savePly(saved, path());
   const PointShell loaded = loadPly(path());
@@ -68,14 +68,14 @@ TEST_F(PlyIo, AShellComesBackToTheBit) {
   }
 }
 
-TEST_F(PlyIo, AsciiOfAnotherProgramIsReadWhateverItsOrderOfProperties) {
+TEST_F(PlyIo, AsciiOfAnotherProgramIsReadInAnyOrderOfProperties) {
   write(kAscii);
   const PointShell shell = loadPly(path());
   ASSERT_EQ(shell.size(), 3u);
   EXPECT_EQ(shell.points[1], Vec3(1e-3, 2, -3));
   EXPECT_EQ(shell.inward[1], Vec3(0, 0, -1));
   EXPECT_EQ(shell.area_m2[0], 4);
-  EXPECT_NEAR(shell.inward[2].norm(), 1, 1e-15);  // written with seven digits, made unit
+  EXPECT_NEAR(shell.inward[2].norm(), 1, 1e-15);  // written with seven digits, normalised on reading
   EXPECT_EQ(shell.spacing_m, std::sqrt(3.0));     // of the mean area
   EXPECT_EQ(shell.nodes.size(), 1u);
 }
@@ -95,7 +95,7 @@ TEST_F(PlyIo, AFileCutAtAnyByteIsRefused) {
   }
 }
 
-TEST_F(PlyIo, AnyDamagedByteIsRefusedOrStillAShell) {
+TEST_F(PlyIo, AnyDamagedByteIsRefusedOrGivesAValidShell) {
   savePly(buildPointShell(makeBox({1e-3, 1e-3, 1e-3}), {2e-3, 0.35}), path());
   const std::string whole = content();
   for (std::size_t i = 0; i < whole.size(); ++i)
@@ -112,7 +112,7 @@ TEST_F(PlyIo, AnyDamagedByteIsRefusedOrStillAShell) {
     }
 }
 
-TEST_F(PlyIo, WhatIsWrongIsSaidWithTheFilesName) {
+TEST_F(PlyIo, ErrorsNameTheFile) {
   const auto refusalOf = [this](const std::string& from, const std::string& to) {
     std::string text = kAscii;
     text.replace(text.find(from), from.size(), to);
@@ -136,7 +136,7 @@ TEST_F(PlyIo, WhatIsWrongIsSaidWithTheFilesName) {
   EXPECT_NE(refusal().find("cannot be opened"), std::string::npos);
 }
 
-TEST_F(PlyIo, AFailedWriteLeavesTheOldFileAndNoRest) {
+TEST_F(PlyIo, AFailedWriteLeavesTheOldFileAndNoOther) {
   const PointShell shell = buildPointShell(makeBox({1e-3, 1e-3, 1e-3}), {1e-3, 0.35});
   EXPECT_THROW(savePly(shell, path("no/such/folder.ply")), LoadError);
   fs::create_directory(path("taken.ply"));  // a folder cannot be replaced by a file

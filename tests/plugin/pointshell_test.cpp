@@ -85,8 +85,8 @@ TEST_P(EveryShell, PointsLieOnTheMeshWithUnitInwardNormals) {
     const MeshDistance::Closest closest = exact.closest(shell.points[i]);
     ASSERT_LT(closest.distance_m, 10 * kRounding);
     ASSERT_NEAR(shell.inward[i].norm(), 1, 1e-14);
-    // A point that rounding puts beside an edge of facets may be given either facet: 20 degrees at most
-    // apart; on sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's.
+    // Rounding may assign a point near a border of facets to either facet: they are at most 20 degrees apart;
+    // on sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's.
     ASSERT_LT(shell.inward[i].dot(closest.normal), -0.55);
   }
 }
@@ -97,7 +97,7 @@ TEST_P(EveryShell, AreasSumToTheMeshsArea) {
   for (const double a : shell.area_m2) ASSERT_GE(a, 0);
 }
 
-TEST_P(EveryShell, NoSurfaceIsFartherThanTheSpacingFromAPoint) {
+TEST_P(EveryShell, NoSurfacePointIsFartherThanTheSpacingFromAShellPoint) {
   double greatest = 0;
   for (const Vec3& p : probes(sample.mesh, 5000))
     greatest = std::max(greatest, nearestDistance(p, shell.points));
@@ -105,7 +105,7 @@ TEST_P(EveryShell, NoSurfaceIsFartherThanTheSpacingFromAPoint) {
   RecordProperty("greatest_gap_over_spacing", std::to_string(greatest / sample.spacing_m));
 }
 
-TEST_P(EveryShell, SpheresHoldTheirPointsAndSkipTheirNodes) {
+TEST_P(EveryShell, SpheresContainTheirPointsAndSkipTheirNodes) {
   std::size_t next_point = 0;
   for (std::size_t i = 0; i < shell.nodes.size(); ++i) {
     const ShellNode& node = shell.nodes[i];
@@ -166,8 +166,8 @@ TEST(PointShell, FacePointsKeepThreeQuartersOfTheSpacingFromEachOther) {
 }
 
 TEST(PointShell, CornersAndRimVerticesAreKept) {
-  // Of convex rims the mesh's vertices touch first. 160 segments of a 5 mm circle are 0.196 mm long: leaving
-  // one out moves the rim by 3.9 um, more than the tolerance of 1 um.
+  // The vertices of convex rims touch first. 160 segments of a 5 mm circle are 0.196 mm long: leaving one out
+  // moves the rim by 3.9 um, more than the tolerance of 1 um.
   for (const std::size_t which : {0, 1, 2, 5})
     for (const Vec3& vertex : samples()[which].mesh.vertices) {
       if (vertex.head<2>().norm() < kRounding) continue;  // a fan's centre on the peg's end is flat
@@ -230,7 +230,7 @@ TEST(PointShell, AMeshWithRepeatedVerticesGivesTheSameShell) {
   EXPECT_EQ(buildPointShell(soup, {0.5 * kMm, 0.35}).size(), samples()[0].shell.size());
 }
 
-TEST(PointShell, MergingKeepsPlacesSoThatIdsMapBack) {
+TEST(PointShell, MergingKeepsTheOrderSoThatIdsMapBack) {
   const PointShell &a = samples()[5].shell, &b = samples()[3].shell;
   const Pose X_MA(rotationFromVector({0.3, 0.2, 0.1}), Vec3(1, 2, 3) * kMm),
       X_MB = Pose::translation({0.02, 0, 0});
@@ -279,7 +279,7 @@ TEST(PointShell, UnusableInputIsRefusedAndTheRemedyNamed) {
   EXPECT_NE(messageOf(box, 0.5 * kMm).find("699 um would do"), std::string::npos)
       << messageOf(box, 0.5 * kMm);
   EXPECT_NE(messageOf(box, 0.5 * kMm).find("part 'hub'"), std::string::npos);
-  // A needle has little area but edges without end.
+  // A needle has little area but long edges.
   EXPECT_NE(messageOf(makeBox({1e6, 1e-9, 1e-9}), 0.5 * kMm).find("too many points"), std::string::npos);
 }
 

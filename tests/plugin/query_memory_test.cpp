@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temporal coherence gives the exhaustive answer, to the bit, whatever the motion.
+// With temporal coherence the answer equals the exhaustive one to the bit, for any motion.
 #include "vps/query_memory.h"
 
 #include <gtest/gtest.h>
@@ -41,8 +41,8 @@ const std::vector<Scene>& scenes() {
   return all;
 }
 
-/// Steps of every length from a nanometre to the part's size, drifting and jumping back, turning on the spot,
-/// and standing still.
+/// Steps of every length from a nanometre to the part's size, drifting and jumping back, rotating in place,
+/// and at rest.
 std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -70,7 +70,7 @@ class QueryMemoryTest : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
 
-TEST_P(QueryMemoryTest, CreepingIsNoticedAfterAJumpToTheEndOfTheWorld) {
+TEST_P(QueryMemoryTest, SlowMotionIsNoticedAfterAVeryLongJump) {
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary coherent, all;
   const auto ask = [&](const Pose& X_MP) {
@@ -78,7 +78,7 @@ TEST_P(QueryMemoryTest, CreepingIsNoticedAfterAJumpToTheEndOfTheWorld) {
   };
   ask(scene.start);
   ask({scene.start.R, scene.start.p + Vec3(1e9, 0, 0)});
-  // A double near that way, in voxels, has steps of 2^-11 at least: 100 nm or more, and steps are 50 nm.
+  // Doubles near that distance, in voxels, are at least 2^-11 apart: 100 nm or more, and steps are 50 nm.
   const Vec3 aside(0.6, 0, 0.8);
   std::set<std::size_t> counts;
   for (int i = 0; i <= 6000; ++i) {
@@ -172,8 +172,8 @@ TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
       }
       ASSERT_EQ(sum.count, touching);
       const Wrench expected = penaltyWrench(set.contacts, kStiffness, p_MO);
-      // Floats in normals and arms: 1e-7 of each force, and where two normals nearly cancel a few quanta.
-      // Places are floats of up to 16 voxels from a leaf's base, so depths to 2e-6 voxel.
+      // Normals and arms are floats: 1e-7 of each force, and some quanta where two normals nearly cancel.
+      // Positions are floats of up to 16 voxels from a leaf's base, so depths are exact to 2e-6 voxel.
       const double tol_N = 3e-6 * total_N + kStiffness * area_m2 * 2e-6 * scene.map.voxel_m();
       ASSERT_LE((sum.F_O_M.f - expected.f).norm(), tol_N);
       ASSERT_LE((sum.F_O_M.tau - expected.tau).norm(), tol_N * 20 * kMm);
@@ -181,7 +181,7 @@ TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
 }
 
 TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
-  // Alike in all but place: what one pair remembers to be far touches in the other, at the same pose.
+  // Equal except for the position: what is far in one pair touches in the other, at the same pose.
   const Pose moved = Pose::translation({40 * kMm, 0, 0}), X_MP = Pose::translation({30 * kUm, 0, 0});
   const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
   const VoxMap here = buildVoxMap(bore, {0.25 * kMm, 4}),
@@ -213,7 +213,7 @@ TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
   }
 }
 
-TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
+TEST(QueryMemory, AtRestOnlyNearPointsAreRead) {
   const Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary sum;
@@ -224,7 +224,7 @@ TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
   for (int i = 0; i < 3; ++i)
     again = queryWrench(scene.map, scene.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
   EXPECT_GT(first.points_tested, 1000u);
-  // Facets and interpolation leave some leaves within the rounding that is allowed for.
+  // Facets and interpolation leave some leaves within the margin for rounding.
   EXPECT_LT(again.points_tested, first.points_tested / 4);
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double kMm = 1e-3, kUm = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Queries place points in floats of a few voxels about their leaf, which may be off by 3e-5 voxel.
+/// Queries store positions as floats of a few voxels from the leaf, which may be off by 3e-5 voxel.
 double readingTolerance(const VoxMap& map) {
   return 1e-4 * map.voxel_m();
 }
@@ -101,7 +101,7 @@ TEST(Query, PegInBoreReportsDepthAndNormalWithinHalfAMicron) {
   ASSERT_GT(set.contacts.size(), 20u);
   double deepest_m = 0;
   for (const Contact& c : set.contacts) {
-    if (std::abs(c.p_M.z()) > 4.5 * kMm) continue;  // the bore's rims round the field
+    if (std::abs(c.p_M.z()) > 4.5 * kMm) continue;  // edges are rounded near the bore's rims
     const double rho_m = c.p_M.head<2>().norm();
     EXPECT_NEAR(c.distance_m, bore_m - rho_m, tol_m);
     EXPECT_NEAR(c.n_M.x(), -c.p_M.x() / rho_m, tol_rad);
@@ -122,8 +122,9 @@ TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
     const Vec3 center_M(1.1 * kMm, 0.7 * kMm, 5 * kMm + R - delta_m);
     const ContactSet set = contactsOf(map, shell, Pose::translation(center_M));
     const Wrench F = penaltyWrench(set.contacts, k, center_M);
-    // A cap of area A = 2 pi R delta holds n = A / 0.8 s^2 points; each stands for its cell to within the
-    // cell's size, so the sum errs like random cells of the rim: s * perimeter of d/2 ~ (s / cap radius)^1.5.
+    // A cap of area A = 2 pi R delta has n = A / 0.8 s^2 points; each represents its cell up to the cell's
+    // size, so the error of the sum is that of random cells at the rim: s * perimeter of d/2 ~ (s / cap
+    // radius)^1.5.
     const double cap_m = std::sqrt(2 * R * delta_m);
     const double tol = std::pow(spacing_m / cap_m, 1.5) + 0.01;  // facets: 2 sagitta / delta
     EXPECT_NEAR(F.f.z() / exact_N, 1, tol) << spacing_m;
@@ -177,7 +178,7 @@ struct Pair {
   const char* name;
   VoxMap map;
   PointShell shell;
-  double size_m;  ///< how far poses roam
+  double size_m;  ///< range of the poses
 };
 
 const std::vector<Pair>& pairs() {
@@ -199,8 +200,8 @@ const std::vector<Pair>& pairs() {
   return all;
 }
 
-/// Poses everywhere: free, near, touching, deep; half of them nearly aligned, where whole faces meet the
-/// cutoff.
+/// Poses of all kinds: free, near, touching, deep; half of them nearly aligned, where whole faces are near
+/// the cutoff.
 std::vector<Pose> manyPoses(const Pair& pair, int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -221,7 +222,7 @@ class EveryPair : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Query, EveryPair, testing::Range(0, 5));
 
-TEST_P(EveryPair, CullingFindsExactlyWhatVisitingEveryPointFinds) {
+TEST_P(EveryPair, CullingFindsExactlyWhatAnExhaustiveQueryFinds) {
   const double band_m = pair.map.band_m();
   ContactSet culled(pair.shell.size()), all(pair.shell.size());
   std::size_t touching = 0, tested = 0, visited = 0;
@@ -250,8 +251,8 @@ TEST_P(EveryPair, CullingFindsExactlyWhatVisitingEveryPointFinds) {
       tested += a.points_tested;
       visited += b.points_tested;
     }
-  EXPECT_GT(touching, 1000u);  // the poses do meet the part
-  EXPECT_LT(tested, visited);  // half of the poses are contact all over
+  EXPECT_GT(touching, 1000u);  // the poses do touch
+  EXPECT_LT(tested, visited);  // half of the poses are in contact everywhere
 }
 
 TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
@@ -269,7 +270,7 @@ TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
       if (!is_listed) continue;
       const Contact& c = set.contacts[next++];
       ASSERT_NEAR(c.distance_m, distance_m, tol_m);
-      // On the middle between two parts' nodes either may be meant.
+      // Between nodes of two parts either owner is right.
       if (pair.map.owner(p_M - Vec3::Constant(tol_m)) == pair.map.owner(p_M + Vec3::Constant(tol_m))) {
         ASSERT_EQ(c.owner, pair.map.owner(p_M));
       }
@@ -283,7 +284,7 @@ TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
   }
 }
 
-TEST_P(EveryPair, DistanceIsTheLeastReadingOrAnHonestBound) {
+TEST_P(EveryPair, DistanceIsTheLeastReadingOrALowerBound) {
   std::size_t tested = 0, exact = 0;
   const auto poses = manyPoses(pair, 400);
   for (const Pose& X_MP : poses) {
@@ -308,7 +309,7 @@ TEST_P(EveryPair, DistanceIsTheLeastReadingOrAnHonestBound) {
   EXPECT_LT(tested, poses.size() * pair.shell.size());
 }
 
-TEST(Query, OnlyPointsNearContactAreVisited) {
+TEST(Query, OnlyPointsNearContactAreRead) {
   const VoxMap map = buildVoxMap(makeBox({30 * kMm, 30 * kMm, 10 * kMm}), {0.25 * kMm, 4});
   const PointShell shell = shellOf(makeBox({10 * kMm, 10 * kMm, 10 * kMm}), 0.2 * kMm);
   ContactSet set(shell.size());
@@ -325,7 +326,7 @@ TEST(Query, OnlyPointsNearContactAreVisited) {
   EXPECT_GT(free.min_distance_m, 0);
 }
 
-TEST(Query, FarAwayTheDistanceIsALowerBoundThatKeepsMostOfTheWay) {
+TEST(Query, FarAwayTheDistanceIsALowerBoundWithASmallError) {
   const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64);
   const VoxMap map = buildVoxMap(bore, {0.25 * kMm, 4});
   const PointShell shell = shellOf(makeCylinder(5 * kMm, 12 * kMm, 64), 0.6 * kMm);
@@ -352,13 +353,13 @@ TEST(Query, AFullContactSetKeepsTheFirstIdsAndCountsTheRest) {
   ASSERT_EQ(few.contacts.size(), 10u);
   EXPECT_EQ(few.contacts.size() + few.left_out, all.contacts.size());
   for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(few.contacts[i].id, all.contacts[i].id);
-  // Nothing of it remains in the next query.
+  // The next query starts from an empty set.
   EXPECT_EQ(queryContacts(pair.map, pair.shell, Pose::translation({1, 0, 0}), {}, few).status, Status::Ok);
   EXPECT_TRUE(few.contacts.empty());
   EXPECT_EQ(few.left_out, 0u);
 }
 
-TEST(Query, ABadPoseGivesNothing) {
+TEST(Query, ABadPoseGivesNoContacts) {
   const Pair& pair = pairs()[0];
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity}) {
     Pose moved, turned;
@@ -384,7 +385,7 @@ TEST(Query, AnEmptyShellTouchesNothing) {
   EXPECT_EQ(queryDistance(pairs()[0].map, PointShell{}, Pose()).min_distance_m, kInfinity);
 }
 
-TEST(Query, DeeperThanTheBandThePointsOwnNormalShowsAWayOut) {
+TEST(Query, DeeperThanTheBandThePointsOwnNormalIsUsed) {
   const Pair& pair =
       pairs()[2];  // a ball in the middle of a block, 15 mm of material around it, 3 mm of band
   const ContactSet set = contactsOf(pair.map, pair.shell, Pose());
@@ -395,10 +396,10 @@ TEST(Query, DeeperThanTheBandThePointsOwnNormalShowsAWayOut) {
   }
 }
 
-TEST(Query, OwnersTellMountedPartsApart) {
+TEST(Query, OwnersDistinguishMountedParts) {
   const Pair& pair = pairs()[4];
   const PointShell& ball = pairs()[2].shell;
-  // On the ball at x = 4 mm from its far side, then on the box from the other.
+  // First on the ball at x = 4 mm from its far side, then on the box from the other side.
   const ContactSet on_ball = contactsOf(pair.map, ball, Pose::translation({7.95 * kMm, 0, 0}));
   ASSERT_FALSE(on_ball.contacts.empty());
   for (const Contact& c : on_ball.contacts) EXPECT_EQ(c.owner, 1);

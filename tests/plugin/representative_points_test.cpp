@@ -16,7 +16,7 @@ namespace {
 constexpr double kRadius_m = 10e-3, kAir_m = 20e-6, kSpacing_m = 0.15e-3, kTile_m = 12 * kSpacing_m;
 constexpr double kVoxel_m = 0.25e-3;
 
-// A peg in its bore with 20 um of air all around: every point of its side is near.
+// A peg in its bore with 20 um of clearance all around: every point of its side is near.
 struct Fit {
   VoxMap map = buildVoxMap(makeTube(12e-3, kRadius_m + kAir_m, 20e-3, 1024), {kVoxel_m, 4});
   PointShell shell = buildPointShell(makeCylinder(kRadius_m, 5e-3, 1024), {kSpacing_m, 0.35});
@@ -64,7 +64,7 @@ double gapAfter(const Contact& c, const Twist& step_M) {
   return c.distance_m + c.n_M.dot(step_M.v + step_M.w.cross(c.p_M));
 }
 
-TEST(RepresentativePoints, EachIsTheQuerysOwnAndTheyAreFew) {
+TEST(RepresentativePoints, EachEqualsTheQuerysContactAndTheyAreFew) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
   ASSERT_TRUE(fit().leading.reducesContacts());
   ASSERT_GT(all.size(), 10000u);
@@ -77,7 +77,7 @@ TEST(RepresentativePoints, EachIsTheQuerysOwnAndTheyAreFew) {
   }
 }
 
-TEST(RepresentativePoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
+TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsTileNowAndAfterTheStep) {
   std::map<std::uint32_t, std::pair<double, double>> led;  // least gaps by tile, now and after the step
   std::map<std::uint32_t, bool> is_given;
   for (const Contact& c : fit().lead(fit().X_MP)) {
@@ -86,10 +86,11 @@ TEST(RepresentativePoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
     now_m = std::min(now_m, c.distance_m);
     then_m = std::min(then_m, gapAfter(c, fit().request.step_M));
   }
-  // Readings are compared where points are placed, to 1/16384 voxel, by slopes of at most sqrt 3.
+  // Readings are compared at the rounded positions, to 1/16384 voxel, times slopes of at most sqrt 3.
   const double tol_m = 2 * 1.8 * kVoxel_m / 16384 + fit().map.quantum_m();
-  // To first order: a facet's normal is off the linear one by half a facet (2 pi / 1024 / 2) and by what the
-  // tile bends beyond it, (size / 2 radius)^2 / 2; so is the field's. The step is 0.04 mm at most.
+  // To first order: a facet's normal differs from the linear one by half a facet (2 pi / 1024 / 2) and by the
+  // curvature of the tile beyond it, (size / 2 radius)^2 / 2; so does the field's. The step is at most 0.04
+  // mm.
   const double lean_rad = 2 * (3.1e-3 + std::pow(kTile_m / (2 * kRadius_m), 2) / 2);
   const double then_tol_m = tol_m + RepresentativePoints::kSame_m + 40e-6 * lean_rad;
   ASSERT_LT(then_tol_m, 0.8e-6);
@@ -97,7 +98,7 @@ TEST(RepresentativePoints, WhatIsLeftOutHasOneOfItsTileAsNearNowAndThen) {
   for (const Contact& c : fit().all(fit().X_MP)) {
     if (is_given.contains(c.id)) continue;
     const std::uint32_t tile = fit().tileOf(c.id);
-    ASSERT_NE(tile, RepresentativePoints::kNone) << "points of edges are all given";
+    ASSERT_NE(tile, RepresentativePoints::kNone) << "points of edges are all reported";
     ++left_out;
     ASSERT_TRUE(led.contains(tile));
     EXPECT_LE(led[tile].first, c.distance_m + tol_m);
@@ -122,7 +123,7 @@ TEST(RepresentativePoints, MemoryAndVectorsChangeNoBit) {
   }
 }
 
-TEST(RepresentativePoints, PointsAskedForAreGivenWhereTheyAreNear) {
+TEST(RepresentativePoints, RequiredPointsAreReportedIfTheyAreNear) {
   const std::vector<Contact> all = fit().all(fit().X_MP), few = fit().lead(fit().X_MP);
   const auto has = [](const std::vector<Contact>& list, std::uint32_t id) {
     return std::any_of(list.begin(), list.end(), [&](const Contact& c) { return c.id == id; });
@@ -143,11 +144,11 @@ TEST(RepresentativePoints, PointsAskedForAreGivenWhereTheyAreNear) {
   EXPECT_EQ(more.size(), few.size() + near);
 }
 
-TEST(RepresentativePoints, FewNearPointsAreGivenAll) {
+TEST(RepresentativePoints, FewNearPointsAreAllReported) {
   // Lifted along x, the peg touches along a line.
   const Pose X_MP(fit().X_MP.R, {kAir_m, 0, 1e-3});
   fit().request.options.cutoff_m = 2e-6;
-  fit().request.full_count = fit().all(X_MP).size() * 3;  // counted by the sixteen
+  fit().request.full_count = fit().all(X_MP).size() * 3;  // counted in leaves of sixteen
   const std::vector<Contact> some = fit().lead(X_MP), all = fit().all(X_MP);
   fit().request.full_count = 0;
   EXPECT_LT(fit().lead(X_MP).size(), all.size());
@@ -156,7 +157,7 @@ TEST(RepresentativePoints, FewNearPointsAreGivenAll) {
   EXPECT_TRUE(isSame(some, all));
 }
 
-TEST(RepresentativePoints, NeitherAllocatesNorAnswersABadPose) {
+TEST(RepresentativePoints, DoesNotAllocateAndRejectsABadPose) {
   ContactSet set(fit().shell.size());
   const vps_test::NoAllocScope guard;
   EXPECT_EQ(fit().leading.find(fit().map, fit().X_MP, fit().request, set).status, Status::Ok);
@@ -165,7 +166,7 @@ TEST(RepresentativePoints, NeitherAllocatesNorAnswersABadPose) {
   EXPECT_TRUE(set.contacts.empty());
 }
 
-TEST(RepresentativePoints, TilesThatAreTooSmallGiveAllAndASizeMustBePositive) {
+TEST(RepresentativePoints, TilesThatAreTooSmallReportAllPointsAndASizeMustBePositive) {
   RepresentativePoints small(fit().shell, 1e-6);
   EXPECT_FALSE(small.reducesContacts());
   ContactSet set(fit().shell.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels for every processor give the same bits, and what they read is the trilinear formula.
+// The kernels give the same bits on every processor, and their readings equal the trilinear formula.
 #include "vps/simd.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 constexpr int kCells = 8, kExtent = VoxMap::kBrick * kCells;  // of the field's directory, along each axis
 constexpr Simd kWider[] = {Simd::Avx2, Simd::Avx512};
 
-/// A field with the steepest nodes there can be, within a rim of empty cells as every map has.
+/// A field with the steepest possible nodes, within a rim of empty cells as in every map.
 class SteepField {
  public:
   /// @param lone if given, the only cell with nodes
@@ -58,7 +58,7 @@ class SteepField {
   [[nodiscard]] const FieldView& view() const { return view_; }
   [[nodiscard]] const VoxLayout& layout() const { return layout_; }
 
-  /// Trilinear between nodes, by the book [quanta]; p in voxels from the directory's corner.
+  /// The trilinear formula [quanta]; p in voxels from the directory's corner.
   [[nodiscard]] double at(const Vec3& p) const {
     if (!((p.array() >= 0).all() && (p.array() < kExtent).all())) return kFullBand;
     const Index3 low = p.cast<int>();
@@ -78,7 +78,7 @@ class SteepField {
     if (random() % 2 == 0) return static_cast<NodeValue>(random() % 2 ? kFullBand : -kFullBand);
     return static_cast<NodeValue>(static_cast<int>(random() % (2 * kFullBand + 1)) - kFullBand);
   }
-  /// Nodes that an empty cell shares are its constant: so the field is continuous.
+  /// Nodes that an empty cell shares have its constant, so that the field is continuous.
   [[nodiscard]] NodeValue node(const Index3& at) const {
     for (int corner = 0; corner < 8; ++corner) {
       const Index3 cell =
@@ -131,8 +131,7 @@ ShellBlock randomBlock(std::mt19937& random, const Vec3& center, double radius_m
   return block;
 }
 
-/// A field, a pose, and a batch of blocks: inside, across the rim, on cells' corners, and as far as numbers
-/// go.
+/// A field, a pose, and a batch of blocks: inside, across the rim, on corners of cells, and very far away.
 struct Trial {
   explicit Trial(unsigned seed)
       : random(seed), voxel_m(std::pow(10.0, -9 + static_cast<double>(seed % 13))), field(seed, voxel_m) {
@@ -197,14 +196,15 @@ TEST(SimdKernels, ReadingsAreTheTrilinearFormula) {
     const auto batch = trial.read(Simd::Best);
     for (int i = 0; i < kBatch; ++i) {
       const ShellBlock& block = trial.blocks[static_cast<std::size_t>(i)];
-      // Points go to whole steps. Before, in floats: the matrix and the point are rounded, then three
-      // products and three sums of numbers up to the block's radius and a cell, each to 2^-24 of itself.
+      // Positions are rounded to whole steps. Before that, in floats: the matrix and the point are rounded,
+      // then three products and three sums of numbers up to the block's radius and a cell, each to 2^-24 of
+      // itself.
       const double radius = block.radius_m / trial.voxel_m;
       const double off_steps = 0.5 + (3 * 3 * radius + 3 * (8 + 2 * radius)) * kSteps * std::exp2(-24);
-      // Doubles: the centre, found from the far corner of the pose.
+      // In doubles: the centre, computed from the far corner of the pose.
       const double c = Vec3(block.center[0], block.center[1], block.center[2]).norm() / trial.voxel_m;
       const double off_voxels = off_steps / kSteps + 1e-15 * (c + 1000);
-      // Neighbouring nodes differ by twice the band at most, along each axis; then sums of floats below it.
+      // Neighbouring nodes differ by at most twice the band along each axis; then sums of floats below it.
       const double tol = 3 * 2 * kFullBand * off_voxels + 12 * kFullBand * std::exp2(-24);
       float least = kFullBand;
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -220,7 +220,7 @@ TEST(SimdKernels, ReadingsAreTheTrilinearFormula) {
   }
 }
 
-TEST(SimdKernels, LeavesWithNothingAroundReadAsIfPlaced) {
+TEST(SimdKernels, LeavesInEmptySurroundingsReadTheSameWithoutPlacement) {
   std::size_t saved = 0;
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const Trial trial(seed);
@@ -233,7 +233,7 @@ TEST(SimdKernels, LeavesWithNothingAroundReadAsIfPlaced) {
   EXPECT_GT(saved, 20u);
 }
 
-TEST(SimdKernels, ALeafThatReachesPastTheCellsAroundItIsRead) {
+TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
   const Index3 lone(4, 4, 4);
   const SteepField field(1, 1, &lone);
   std::mt19937 random(1);

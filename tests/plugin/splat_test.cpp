@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the voxeliser, each against exhaustive search; the whole is tested in voxmap_test.cpp.
+// The parts of the voxeliser, each compared with an exhaustive search; voxmap_test.cpp tests the whole.
 #include "voxelise/splat.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ struct Plane {
   [[nodiscard]] double at(const Vec3& p) const { return n.dot(p) + d; }
 };
 
-/// A random region of up to eight planes, some of them vertical or level, and its box.
+/// A random region of up to eight planes, some of them vertical or horizontal, and its box.
 SplatRegion randomRegion(RandomPoints& random, std::vector<Plane>& planes) {
   SplatRegion region;
   for (int axis = 0; axis < 3; ++axis) {
@@ -39,7 +39,7 @@ SplatRegion randomRegion(RandomPoints& random, std::vector<Plane>& planes) {
   return region;
 }
 
-TEST(SplatRows, HoldEveryNodeOfTheRegionAndNoneFarBeyondIt) {
+TEST(SplatRows, ContainEveryNodeOfTheRegionAndNoneFarBeyondIt) {
   RandomPoints random(1);
   std::vector<Plane> planes;
   std::array<SplatRow, kMaxRows + 8> rows;
@@ -63,9 +63,10 @@ TEST(SplatRows, HoldEveryNodeOfTheRegionAndNoneFarBeyondIt) {
           if (is_in_box && least >= 0) {
             ASSERT_TRUE(has) << node.transpose();
           }
-          // Beyond: the slack, 2e-3 of a node along z, and the lean of vertical planes over a tile.
+          // Beyond the region: the margin, 2e-3 of a node along z, and the tilt of vertical planes over a
+          // tile.
           if (has) {
-            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kContactMargin + 2e-3 + 1e-6 * kTile)) << least;
+            ASSERT_TRUE(is_in_box && least > -(SplatRegion::kRoundingMargin + 2e-3 + 1e-6 * kTile)) << least;
           }
           held += has;
         }
@@ -91,7 +92,7 @@ TEST(SplatRows, AreTheSameWithoutVectorInstructions) {
 }
 
 /// Splats a mesh in voxels into the one tile at the origin and compares each node with exhaustive search:
-/// the distance always, the sign where the mesh says one.
+/// always the distance, and the sign if the mesh determines one.
 void expectTileExact(const Mesh& mesh, bool has_sign, const Mesh& truth_mesh) {
   constexpr double kBand = 4;
   const SurfaceFeatures features(mesh, 1, Vec3::Zero());

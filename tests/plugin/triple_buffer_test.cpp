@@ -15,16 +15,16 @@
 namespace vps {
 namespace {
 
-TEST(TripleBuffer, ReaderSeesTheInitialValueThenTheLatestOnly) {
+TEST(TripleBuffer, TheReaderGetsTheInitialValueThenOnlyTheLatest) {
   TripleBuffer<int> buffer(7);
   EXPECT_EQ(buffer.read(), 7);
   buffer.write(1);
   buffer.write(2);
   EXPECT_EQ(buffer.read(), 2);
-  EXPECT_EQ(buffer.read(), 2);  // nothing new: the same again
+  EXPECT_EQ(buffer.read(), 2);  // nothing new: the same value
 }
 
-TEST(TripleBuffer, WritingDoesNotDisturbWhatTheReaderHolds) {
+TEST(TripleBuffer, WritingDoesNotChangeTheValueBeingRead) {
   TripleBuffer<int> buffer(0);
   buffer.write(1);
   const int& held = buffer.read();
@@ -79,8 +79,7 @@ TEST(NoAllocScope, FailsATestThatAllocates) {
 }
 
 TEST(NoAllocScope, CountsNestedScopesAndForgetsWhatWasBefore) {
-  const auto before =
-      std::make_unique<int>(1);  // made before and released after the scopes: not their business
+  const auto before = std::make_unique<int>(1);  // made before and released after the scopes, so not counted
   const vps_test::NoAllocScope outer;
   {
     const vps_test::NoAllocScope inner;

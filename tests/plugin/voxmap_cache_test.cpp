@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cache gives what building gives, to the bit, whatever has happened to its files.
+// The cache gives the same maps as building, to the bit, in spite of any damage to its files.
 #include "vps/voxmap_cache.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void write(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// Everything that can be asked of two maps is the same, to the bit.
+/// Compares everything that can be read from two maps, to the bit.
 void expectSame(const VoxMap& a, const VoxMap& b) {
   ASSERT_EQ(a.brickCount(), b.brickCount());
   EXPECT_EQ(a.voxel_m(), b.voxel_m());
@@ -58,7 +58,7 @@ class VoxMapCacheTest : public testing::Test {
   VoxMap build(const Mesh& mesh, MeshReport* report = nullptr) {
     return cache_.build(mesh, kSettings, "hub", {}, report);
   }
-  /// What is built from `bytes` in place of the file of part().
+  /// The map that is built if `bytes` replace the file of part().
   VoxMap rebuilt(const std::string& bytes) {
     warnings_.clear();
     write(cache_.fileOf(part(), kSettings), bytes);
@@ -70,7 +70,7 @@ class VoxMapCacheTest : public testing::Test {
   VoxMapCache cache_{folder_.path() / "maps", [this](const std::string& w) { warnings_.push_back(w); }};
 };
 
-TEST_F(VoxMapCacheTest, TheSecondMapIsTheFirstToTheBitAndIsNotBuilt) {
+TEST_F(VoxMapCacheTest, TheSecondMapIsReadFromTheFileWithTheSameBits) {
   const VoxMap direct = buildVoxMap(part(), kSettings);
   expectSame(build(part()), direct);
   ASSERT_TRUE(fs::exists(cache_.fileOf(part(), kSettings)));
@@ -92,7 +92,7 @@ TEST_F(VoxMapCacheTest, AFaultyMeshKeepsItsReport) {
   EXPECT_EQ(first.certain_share, second.certain_share);
 }
 
-TEST_F(VoxMapCacheTest, ADifferenceInTheLastBitIsAnotherPart) {
+TEST_F(VoxMapCacheTest, ADifferenceInTheLastBitGivesAnotherFile) {
   Mesh other = part();
   other.vertices[5].x() = std::nextafter(other.vertices[5].x(), 1.0);
   Mesh turned = part();
@@ -132,7 +132,7 @@ TEST_F(VoxMapCacheTest, AFileOfAnotherPartUnderItsNameIsNotTrusted) {
   expectSame(map, buildVoxMap(part(), kSettings));
 }
 
-TEST_F(VoxMapCacheTest, AFolderThatCannotBeMadeCostsAWarningNotTheMap) {
+TEST_F(VoxMapCacheTest, AFolderThatCannotBeCreatedGivesAWarningAndTheMap) {
   write(folder_.path() / "maps", "a file where the folder should be");
   expectSame(build(part()), buildVoxMap(part(), kSettings));
   ASSERT_EQ(warnings_.size(), 1u);
@@ -140,12 +140,12 @@ TEST_F(VoxMapCacheTest, AFolderThatCannotBeMadeCostsAWarningNotTheMap) {
   EXPECT_EQ(bytesOf(folder_.path() / "maps"), "a file where the folder should be");
 }
 
-TEST_F(VoxMapCacheTest, WhatBuildingRefusesIsRefusedAndNotKept) {
+TEST_F(VoxMapCacheTest, InputThatBuildingRefusesIsRefusedAndNotStored) {
   EXPECT_THROW(build(Mesh{}), LoadError);
   EXPECT_FALSE(fs::exists(folder_.path() / "maps"));
 }
 
-TEST_F(VoxMapCacheTest, ManyAtOnceLeaveOneWholeFile) {
+TEST_F(VoxMapCacheTest, ConcurrentWritersLeaveOneWholeFile) {
   std::vector<std::thread> threads;
   std::vector<VoxMap> maps(4);
   for (VoxMap& map : maps)

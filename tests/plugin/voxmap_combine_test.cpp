@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Union and resampling against the fields they are made of.
+// Union and resampling, compared with the fields they are made from.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kVoxel_m = 0.25e-3;
 constexpr VoxMapSettings kSettings = {kVoxel_m, 3};
 
-/// A node's place is rounded, which moves the reading by 1e-15 of the distance between nodes.
+/// A node's position is rounded, which changes the reading by 1e-15 of the distance between nodes.
 constexpr double kRounding_m = 1e-15;
 
 /// Grid nodes at random within a box.
@@ -42,7 +42,7 @@ TEST(CombinedVoxMap, TheUnionIsTheMinimumAtEveryNode) {
         std::abs(block.distance(p) - ball.distance(p)) > kRounding_m) {
       ASSERT_EQ(both.owner(p), block.distance(p) <= ball.distance(p) ? 0 : 1);
     }
-    // Bounds tell far from near for the field that stands there.
+    // Bounds distinguish far from near in the merged field.
     const double block_m = boxDistance(p, {0.006, 0.005, 0.004});
     const double ball_m = (p - Vec3(0.005, 0, 0.002)).norm() - 0.004;
     const double sagitta_m = 2e-5;  // of a ball of 5120 triangles
@@ -65,9 +65,9 @@ TEST(ResampledVoxMap, EveryNodeIsTheSourceReadThere) {
     const Pose X_PM = X_MP.inverse();
     forRandomNodes(40000, 0.012, [&](const Vec3& p) {
       const double expected_m = std::clamp(source.distance(X_PM * p), -moved.band_m(), moved.band_m());
-      // Half a quantum of its own, and the rounding of positions in the fast reading: 1e-4 voxel.
+      // Half a quantum of its own, and the rounding of positions in the vectorised reading: 1e-4 voxel.
       ASSERT_NEAR(moved.distance(p), expected_m, 0.51 * moved.quantum_m() + 1e-4 * kVoxel_m);
-      // At every distance; the hair is for the rounding of doubles.
+      // At every distance; the margin is for the rounding of doubles.
       ASSERT_LE(moved.lowerBound(p), truth.closest(X_PM * p).distance_m + 1e-12) << p.transpose();
     });
   }
@@ -101,12 +101,12 @@ TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
     ASSERT_EQ(mounted.owner(p), expected.owner(p));
   });
   EXPECT_EQ(mounted.partCount(), 2u);
-  // The map it was mounted on is as before.
+  // The map below is unchanged.
   const VoxMap again = buildVoxMap(makeBox({0.02, 0.02, 0.004}), kSettings);
   forRandomNodes(5000, 0.013, [&](const Vec3& p) { ASSERT_EQ(plate.distance(p), again.distance(p)); });
 }
 
-TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
+TEST(ResampledVoxMap, DiscardedMountingsFreeTheirMemory) {
   const Mesh block = makeBox({0.012, 0.01, 0.008});
   const VoxMap base = cookVoxMap({{&block, Pose()}}, kSettings);
   const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
@@ -123,7 +123,7 @@ TEST(ResampledVoxMap, MountingsThatWereOnlyTriedTakeNoMemory) {
   VoxMap kept;
   for (int n = 0; n < 40; ++n) {
     const VoxMap tried = mounted(0.003 + 1e-4 * n);
-    // One that is mounted on a map outlives it.
+    // A map that is mounted on another outlives it.
     kept = mountVoxMap(tried, PlacedMap{&ball, Pose::translation({0.005, 0, 0.002})});
   }
   const std::vector<double> kept_reads = readings(kept);
@@ -150,26 +150,27 @@ TEST(ResampledVoxMap, AChainOfMountingsKeepsTheBricksThatItNeeds) {
     ASSERT_EQ(chain.distance(p), once.distance(p));
     ASSERT_EQ(chain.owner(p), once.owner(p));
   });
-  // A pool has room for twice the bricks that the map has and the mounting brings, no more than it has; each
-  // has 736 nodes and owners of 2 bytes and 10 bytes more. The cells are those of `once`.
+  // A pool has memory for twice the bricks of the map and the mounting, and no more; each has 736 nodes and
+  // owners of 2 bytes and 10 bytes more. The cells are those of `once`.
   const double cells_bytes = static_cast<double>(once.memoryBytes());
   EXPECT_LT(static_cast<double>(chain.memoryBytes()),
             2 * 2 * static_cast<double>(chain.brickCount()) * (2 * 736 * 2 + 10) + cells_bytes);
 }
 
-TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsNearIt) {
+TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsOneNearIt) {
   const VoxMap ball = buildVoxMap(makeSphere(0.004, 4), kSettings);
   const auto moved = [&](double cells) {
     return resampledVoxMap({&ball, Pose::translation(cells * 8 * kVoxel_m * Vec3::Ones())}, kSettings);
   };
-  // By whole cells: the same grid about the part, and the same bricks but for the rounding of places.
+  // Moved by whole cells: the same grid about the part, and the same bricks except for the rounding of
+  // positions.
   EXPECT_LT(static_cast<double>(moved(50).memoryBytes()), 1.01 * static_cast<double>(moved(0).memoryBytes()));
   EXPECT_LT(moved(50).distance(50 * 8 * kVoxel_m * Vec3::Ones()), 0);
 }
 
 TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
-  // What is laid out as constant without reading it must read so: every node of the resampled map, beyond the
-  // band too, is the source there.
+  // Cells that are set to a constant without reading must read so: every node of the resampled map, also
+  // beyond the band, equals the source there.
   for (const int seed : {3, 4, 5}) {
     const Pose X = RandomPoints(seed).pose(0.003), X_inverse = X.inverse();
     const VoxMap ring = buildVoxMap(makeTube(0.005, 0.003, 0.006, 64), kSettings);
@@ -183,7 +184,7 @@ TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
   }
 }
 
-TEST(ResampledVoxMap, CullingIsExactOnItToo) {
+TEST(ResampledVoxMap, CullingIsExactOnAResampledMap) {
   const VoxMap source = buildVoxMap(makeBox({0.01, 0.008, 0.006}), kSettings);
   const VoxMap moved = resampledVoxMap({&source, RandomPoints(8).pose(0.003)}, kSettings);
   const PointShell shell = buildPointShell(makeSphere(0.003, 3), {0.3e-3, 0.35});

@@ -29,15 +29,15 @@ void forEachNode(const VoxMap& map, int reach, const std::function<void(const Ve
       for (int z = low.z(); z <= high.z(); ++z) visit(h * Vec3(x, y, z));
 }
 
-/// Every node holds the exact distance to the mesh, rounded to a quantum, clamped to the band and rightly
-/// signed. The hundredth of a quantum is for the floats in which distances are computed.
+/// Every node has the exact distance to the mesh, rounded to a quantum, clamped to the band and with the
+/// right sign. The hundredth of a quantum is for the floats in which distances are computed.
 void expectNodesExact(const Mesh& mesh, const VoxMapSettings& settings = kSettings) {
   const VoxMap map = buildVoxMap(mesh, settings);
   const MeshDistance truth(welded(mesh));
   forEachNode(map, 8, [&](const Vec3& p) {
     const double expected_m = std::clamp(truth.signedDistance(p), -map.band_m(), map.band_m());
     ASSERT_NEAR(map.distance(p), expected_m, 0.51 * map.quantum_m()) << p.transpose() / map.voxel_m();
-    // Where the node lies on the surface but for rounding, the sign says nothing.
+    // On the surface up to rounding the sign is arbitrary.
     if (std::abs(expected_m) > 0.51 * map.quantum_m()) {
       ASSERT_EQ(map.distance(p) < 0, expected_m < 0) << p.transpose() / map.voxel_m();
     }
@@ -71,7 +71,7 @@ TEST(VoxMap, NodesOfASpikeAreExact) {
   needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   expectNodesExact(needle);
 }
-TEST(VoxMap, NodesAreExactAtEveryScale) {  // a part of 1 um, one of 100 m, and one of atoms
+TEST(VoxMap, NodesAreExactAtEveryScale) {  // parts of 1 um, of 100 m and of atomic size
   const Mesh tube = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(26).pose(1));
   for (const double scale : {0.5e-6, 50.0, 1e-12}) {
     Mesh scaled = tube;
@@ -122,14 +122,14 @@ TEST(VoxMap, CylinderAndBoxReportTheirAnalyticDistanceOnFaces) {
   const VoxMap box = buildVoxMap(makeBox(2 * half), kSettings);
   RandomPoints random(6);
   for (int n = 0; n < 20000; ++n) {
-    // Beside the middle of the mantle: curvature 1/r in one direction.
+    // Near the middle of the mantle: curvature 1/r in one direction.
     const double angle_rad = 3.2 * random.unit(), depth_m = kVoxel_m * random.unit();
     const double r = kRadius_m - depth_m;
     const Vec3 p(r * std::cos(angle_rad), r * std::sin(angle_rad), 0.005 * random.unit());
     const double tolerance_m =
         kVoxel_m * kVoxel_m / (8 * (kRadius_m - 3 * kVoxel_m)) + sagitta(kRadius_m, kSegments);
     ASSERT_NEAR(cylinder.distance(p), depth_m * -1, tolerance_m);
-    // Beside a face, away from its edges, distance is linear: exact but for its nodes' rounding.
+    // Near a face and away from its edges the distance is linear: exact except for the nodes' rounding.
     const Vec3 q(0.005 * random.unit(), 0.003 * random.unit(), half.z() + kVoxel_m * random.unit());
     ASSERT_NEAR(box.distance(q), boxDistance(q, half), 0.51 * box.quantum_m());
     // Equal nodes round equally: across the plane there is no slope.
@@ -179,7 +179,7 @@ TEST(VoxMap, TrilinearNormalIsTheDerivativeOfTheDistance) {
   EXPECT_GT(compared, 2000);
 }
 
-TEST(VoxMap, DistanceNeverJumps) {
+TEST(VoxMap, DistanceIsContinuous) {
   const VoxMap map =
       buildVoxMap(transformed(makeTube(0.01, 0.006, 0.02, 64), RandomPoints(10).pose(0.01)), kSettings);
   RandomPoints random(11);
@@ -199,7 +199,7 @@ TEST(VoxMap, DistanceNeverJumps) {
   }
 }
 
-TEST(VoxMap, ContinuousNormalNeverJumps) {
+TEST(VoxMap, TheContinuousNormalIsContinuous) {
   constexpr double kRadius_m = 0.01;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
   RandomPoints random(12);
@@ -237,7 +237,7 @@ TEST(VoxMap, BoundsHoldEverywhere) {
       if (std::abs(d) > map.band_m()) {
         ASSERT_EQ(map.isInsideCoarse(p), d < 0);
       }
-      // Farther off, only the way to the directory counts in full.
+      // Farther away, only the distance to the directory counts in full.
       if (n % 2) shortfall_m = std::max(shortfall_m, std::abs(d) - map.lowerBound(p));
     }
     // A cell's half diagonal, twice (from the centre to the point, and the surface beyond it), and a tenth of
@@ -246,7 +246,7 @@ TEST(VoxMap, BoundsHoldEverywhere) {
   }
 }
 
-TEST(VoxMap, FarOffAndNotANumberAreOutside) {
+TEST(VoxMap, FarPointsAndNaNAreOutside) {
   const VoxMap map = buildVoxMap(makeBox({0.01, 0.01, 0.01}), kSettings);
   EXPECT_EQ(map.distance({1e9, 0, 0}), map.band_m());
   EXPECT_EQ(map.distance({std::nan(""), 0, 0}), map.band_m());
@@ -272,7 +272,7 @@ TEST(VoxMap, SampleIsDistanceAndNormal) {
   }
 }
 
-TEST(VoxMap, ManyThreadsGiveTheBitsOfOne) {
+TEST(VoxMap, ManyThreadsGiveTheBitsOfOneThread) {
   const Mesh mesh = transformed(makeTube(0.01, 0.006, 0.02, 200), RandomPoints(17).pose(0.01));
   const VoxMap many = buildVoxMap(mesh, kSettings);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -333,7 +333,7 @@ TEST_F(CookedVoxMap, NodesAreTheMinimumOverTheParts) {
     }
     ASSERT_NEAR(cooked.distance(p), least_m, 0.51 * cooked.quantum_m());
     if (cooked.band_m() - std::abs(least_m) > cooked.quantum_m() &&
-        second_m - least_m > 1.1 * cooked.quantum_m()) {  // else they round to one number
+        second_m - least_m > 1.1 * cooked.quantum_m()) {  // otherwise they round to one number
       ASSERT_EQ(cooked.owner(p), owner) << p.transpose();
     }
     ASSERT_LE(cooked.lowerBound(p), std::abs(least_m) < cooked.band_m() ? std::abs(least_m) : 1);
@@ -404,7 +404,7 @@ TEST(VoxMap, UnusableSettingsAreRefusedWithARemedy) {
   EXPECT_THROW(cookVoxMap({}, kSettings), LoadError);
 }
 
-TEST(VoxMap, TheVoxelSizeThatIsSaidToFitDoes) {
+TEST(VoxMap, TheVoxelSizeNamedInTheErrorFits) {
   const Mesh box = makeBox({0.1, 0.1, 0.1});
   try {
     buildVoxMap(box, {1e-8, 4});

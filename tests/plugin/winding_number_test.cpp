@@ -12,7 +12,7 @@
 namespace vps::test {
 namespace {
 
-/// One arc tangent a triangle, straight from the paper: the reference of the reference.
+/// One arc tangent per triangle, as in the paper: a reference for the exact sum.
 double byArcTangents(const Mesh& mesh, const Vec3& p) {
   double angle_sr = 0;
   for (const auto& t : mesh.triangles) {
@@ -45,7 +45,7 @@ TEST(WindingNumber, ClosedMeshesWindOnceInsideAndNeverOutside) {
   }
 }
 
-TEST(WindingNumber, ADiscIsSeenUnderItsSolidAngle) {
+TEST(WindingNumber, ADiscHasItsSolidAngle) {
   // From height z over a disc of radius r: 2 pi (1 - z / sqrt(z^2 + r^2)), negative in front of it. A polygon
   // of n corners has the disc's area to 2 pi^2 / 3 n^2.
   constexpr int kSegments = 2000;
@@ -84,7 +84,7 @@ TEST(WindingNumber, MultiplyCoveredPointsAreCounted) {
   EXPECT_NEAR(WindingNumber(nested).exact({0, 0, 0}), -6, 1e-9);
 }
 
-TEST(WindingNumber, ClustersKeepTheirPromisedError) {
+TEST(WindingNumber, ClustersStayWithinTheirErrorBound) {
   RandomPoints random(4);
   for (const double cluster_error : {1e-2, 1e-3, 1e-5, 1e-7}) {
     const Mesh mesh = riddled(makeSphere(0.01, 5), 7);
@@ -102,7 +102,7 @@ TEST(WindingNumber, ClustersKeepTheirPromisedError) {
   }
 }
 
-TEST(WindingNumber, NeitherUnitNorPlaceMatters) {
+TEST(WindingNumber, UnitAndPositionDoNotMatter) {
   const Mesh mesh = riddled(makeSphere(1, 3), 5);
   const WindingNumber w(mesh);
   RandomPoints random(5);
@@ -117,7 +117,7 @@ TEST(WindingNumber, NeitherUnitNorPlaceMatters) {
   }
 }
 
-TEST(WindingNumber, PointsOnTheMeshGiveANumber) {
+TEST(WindingNumber, PointsOnTheMeshGiveAFiniteNumber) {
   const Mesh mesh = makeBox({1, 1, 1});
   const WindingNumber w(mesh);
   for (const Vec3& p : mesh.vertices) EXPECT_TRUE(std::isfinite(w.at(p).w));

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "vps/crop.h"
+#include "vps/box.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/simulate.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two voxmaps that should be one.
+// Compares voxmaps.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace vps::test {
 
-/// Equal to the bit, as far as sampling can tell.
+/// Expects equal readings, to the bit.
 inline void expectSame(const VoxMap& a, const VoxMap& b) {
   EXPECT_EQ(a.voxel_m(), b.voxel_m());
   EXPECT_EQ(a.band_m(), b.band_m());

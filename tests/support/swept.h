@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A closed mesh from sections around the z axis: what gears, threads, pegs and bores have in common.
+// Closed meshes from sections around the z axis: the basis of gears, threads, pegs and bores.
 #pragma once
 
 #include <cmath>

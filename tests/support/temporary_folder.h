@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder for one test, gone with it.
+// A temporary folder that is removed with its object.
 #pragma once
 
 #include <unistd.h>

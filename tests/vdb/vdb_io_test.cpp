@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmaps on disk: files of ours, what other programs see in them, and level sets that others made.
+// Voxmaps as .vdb files: our own, what other programs read from them, and level sets of other programs.
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -55,7 +55,7 @@ TEST_F(VdbFile, ReloadsToTheSameBits) {
   expectSame(map, loaded);
 }
 
-TEST_F(VdbFile, ACookedMapKeepsItsOwnersAndTakesFurtherParts) {
+TEST_F(VdbFile, ACookedMapKeepsItsOwnersAndMorePartsCanBeMounted) {
   const Mesh tube = makeTube(0.01, 0.006, 0.012, 64), pin = makeCylinder(0.005, 0.03, 64);
   const Mesh box = makeBox({0.01, 0.01, 0.01});
   const Pose X_box = Pose::translation({0.02, 0.01, 0});
@@ -83,7 +83,7 @@ TEST_F(VdbFile, AResampledMapKeepsItsErrorAndItsBounds) {
   RandomPoints random(27);
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p = moved.bounds().center() + random.inBox(moved.bounds().size());
-    // Resampling rounds a node of two bricks twice; a file has it once.
+    // Resampling rounds a node that two bricks share twice; a file has it once.
     ASSERT_NEAR(loaded.distance(p), moved.distance(p), 1.01 * moved.quantum_m());
     ASSERT_NEAR(loaded.leastDistance(p), moved.leastDistance(p), 1.01 * moved.quantum_m());
   }
@@ -91,7 +91,7 @@ TEST_F(VdbFile, AResampledMapKeepsItsErrorAndItsBounds) {
   expectSame(loaded, loadVdb(file_));
 }
 
-TEST_F(VdbFile, OtherProgramsSeeAPlainLevelSet) {
+TEST_F(VdbFile, OtherProgramsReadAPlainLevelSet) {
   constexpr double kRadius_m = 0.008;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
   saveVdb(map, file_);
@@ -171,21 +171,7 @@ TEST_F(VdbFile, OtherFilesAreRefused) {
   EXPECT_THROW(saveVdb(VoxMap(), file_), LoadError);
 }
 
-TEST_F(VdbFile, AMapThatIsFineInRegionsOnlyIsRefusedWithItsReason) {
-  FineRegions regions;
-  regions.boxes_M.push_back({{0, 0, 0}, {3e-3, 3e-3, 3e-3}});
-  const VoxMap map = buildVoxMapInRegions(makeBox({4e-3, 4e-3, 4e-3}), kSettings, regions);
-  try {
-    saveVdb(map, file_);
-    FAIL() << "was written";
-  } catch (const LoadError& error) {
-    EXPECT_NE(std::string(error.what()).find("fine in regions only cannot be"), std::string::npos)
-        << error.what();
-  }
-}
-
-// Level sets of others
-// -------------------------------------------------------------------------------------------------------------
+// Level sets of other programs
 
 using openvdb::FloatGrid;
 
@@ -200,7 +186,7 @@ FloatGrid::Ptr ball(double half_width = 4) {
       static_cast<float>(kVoxel_m), static_cast<float>(half_width));
 }
 
-/// A grid's lattice moved: its nodes lie at p_F = X_FM p_M.
+/// Moves a grid's lattice: its nodes are at p_F = X_FM p_M.
 void place(openvdb::GridBase& grid, const Pose& X_FM) {
   openvdb::Mat4d m = openvdb::Mat4d::identity();
   for (int axis = 0; axis < 3; ++axis)
@@ -225,7 +211,7 @@ class ForeignVdb : public VdbFile {
     store({grid});
     return loadVdb(file_);
   }
-  /// Why the file is refused.
+  /// The reason why the file is refused.
   [[nodiscard]] std::string complaint(const std::string& name = "") const {
     try {
       static_cast<void>(loadVdb(file_, name));
@@ -239,7 +225,7 @@ class ForeignVdb : public VdbFile {
     return complaint();
   }
 
-  /// The greatest error against the ball in the band but for its last two voxels, which mix with saturated
+  /// The greatest error against the ball in the band except its last two voxels, which mix with saturated
   /// nodes.
   static double worstError_m(const VoxMap& map, const Pose& X_FM, double band_m) {
     RandomPoints random(40);
@@ -252,8 +238,8 @@ class ForeignVdb : public VdbFile {
     }
     return worst_m;
   }
-  /// Trilinear on a ball: h^2/8 times 2/r, r least at the inner edge; half a quantum; and the floats of
-  /// voxel size and radius, 6e-8 of the way from the grid's origin.
+  /// Trilinear on a ball: h^2/8 times 2/r, r least at the inner edge; half a quantum; and voxel size and
+  /// radius as floats, 6e-8 of the distance from the grid's origin.
   static double interpolation_m(const VoxMap& map, double band_m) {
     return kVoxel_m * kVoxel_m / 8 * 2 / (kRadius_m - band_m) + 0.51 * map.quantum_m() + 2e-9;
   }
@@ -282,11 +268,11 @@ TEST_F(ForeignVdb, ABallReadsItsAnalyticDistanceInAnyNumberType) {
 TEST_F(ForeignVdb, AWideBandIsKeptUpTo32Voxels) {
   const VoxMap map = stored(ball(40));
   EXPECT_NEAR(map.band_m(), 32 * kVoxel_m, 1e-6 * kVoxel_m);
-  // Deep inside all ways meet at the centre; the surface is far from it.
+  // Deep inside all paths meet at the centre; the surface is far from it.
   EXPECT_LT(worstError_m(map, Pose(), 6 * kVoxel_m), interpolation_m(map, 6 * kVoxel_m));
 }
 
-TEST_F(ForeignVdb, ATurnedOrMovedGridIsReadWhereItLies) {
+TEST_F(ForeignVdb, ARotatedOrMovedGridIsReadAtItsPose) {
   for (const Pose& X_FM :
        {Pose::translation({0.25e-3, 0.1e-3, -0.4e-3}), Pose::translation(Vec3(3, 16, -5) * kVoxel_m),
         RandomPoints(41).pose(0.02), Pose(Quat(0, 1, 0, 0), Vec3::Zero())}) {
@@ -295,9 +281,9 @@ TEST_F(ForeignVdb, ATurnedOrMovedGridIsReadWhereItLies) {
     store({grid});
     const double band_m = 4 * kVoxel_m;
     const VoxMap map = loadVdb(file_);
-    // Interpolated twice; and the rounding of positions in the fast reading: 1e-4 voxel.
+    // Interpolated twice, and the rounding of positions in the vectorised reading: 1e-4 voxel.
     EXPECT_LT(worstError_m(map, X_FM, band_m), 2 * interpolation_m(map, band_m) + 1e-4 * kVoxel_m);
-    // As it is, nothing is resampled.
+    // Without resampling.
     const PlacedVdb placed = loadPlacedVdb(file_);
     EXPECT_LT(worstError_m(placed.map, Pose(), band_m), interpolation_m(map, band_m));
     EXPECT_LT((placed.X_FM.R - X_FM.R).cwiseAbs().maxCoeff(), 1e-12);
@@ -316,11 +302,11 @@ TEST_F(ForeignVdb, AThinBandIsExtended) {
       const double error_m =
           std::abs(map.distance(kCenter_M + (kRadius_m + d) * random.inBox(Vec3::Ones()).normalized()) - d);
       worst_m = std::max(worst_m, error_m);
-      // In a cell whose nodes were all within the old band.
+      // In a cell whose nodes were all in the old band.
       if (std::abs(d) < (half_width - std::sqrt(3.0)) * kVoxel_m) known_m = std::max(known_m, error_m);
     }
     EXPECT_LT(known_m, interpolation_m(map, 3 * kVoxel_m)) << half_width;
-    // A solution of first order, as measured: 0.11 to 0.2 voxel, too far, and only as deep as it was unknown.
+    // A first-order solution, as measured: 0.11 to 0.2 voxel too far, and only as deep as the new band.
     EXPECT_LT(worst_m, 0.25 * kVoxel_m) << half_width;
   }
 }
@@ -331,7 +317,7 @@ TEST_F(ForeignVdb, AnInsideWithoutSignsGetsThem) {
   expectSame(stored(ball()), stored(grid));
 }
 
-TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetIsTakenOrTheOneNamed) {
+TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetOrTheNamedOneIsRead) {
   const FloatGrid::Ptr a = ball(), b = ball(5), fog = FloatGrid::create(0);
   const auto colour = openvdb::Vec3SGrid::create();
   a->setName("a"), b->setName("b"), fog->setName("density"), colour->setName("Cd");
@@ -347,7 +333,7 @@ TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetIsTakenOrTheOneNamed) {
       << complaint("c");
   EXPECT_NE(complaint("density").find("'density' is a fog volume"), std::string::npos)
       << complaint("density");
-  // A grid whose class is not told is taken for what it looks like.
+  // A grid without a class is classified by its values.
   a->setGridClass(openvdb::GRID_UNKNOWN);
   store({a});
   expectSame(loadVdb(file_), map_a);
@@ -364,7 +350,7 @@ TEST_F(ForeignVdb, OfSeveralGridsTheOnlyLevelSetIsTakenOrTheOneNamed) {
   expectSame(loadVdb(file_, "shared"), map_b);
 }
 
-TEST_F(ForeignVdb, WhatIsNoLevelSetIsRefusedWithARemedy) {
+TEST_F(ForeignVdb, OtherGridsAreRefusedWithARemedy) {
   const auto expect = [&](const openvdb::GridBase::Ptr& grid, const char* text) {
     const std::string said = complaintAbout(grid);
     EXPECT_NE(said.find(text), std::string::npos) << said;
@@ -419,7 +405,7 @@ TEST_F(ForeignVdb, WhatIsNoLevelSetIsRefusedWithARemedy) {
   expect(grid, "sheared");
 }
 
-TEST_F(ForeignVdb, WhatWouldNotFitInMemoryIsRefusedBeforeItIsTaken) {
+TEST_F(ForeignVdb, AFileThatWouldNotFitInMemoryIsRefusedBeforeItIsRead) {
   FloatGrid::Ptr grid = ball();
   grid->insertMeta("file_mem_bytes", openvdb::Int64Metadata(std::int64_t{1} << 40));
   store({grid}, false);
@@ -444,7 +430,7 @@ TEST_F(ForeignVdb, EveryCutIsRefused) {
   }
 }
 
-/// Level sets whose values are no distances.
+/// Level sets whose values are not distances.
 std::vector<std::pair<const char*, FloatGrid::Ptr>> notMetric() {
   const auto of = [](double band, auto value) {  // on the nodes of a box, where it is below the band
     const FloatGrid::Ptr grid = FloatGrid::create(static_cast<float>(band * kVoxel_m));
@@ -460,7 +446,7 @@ std::vector<std::pair<const char*, FloatGrid::Ptr>> notMetric() {
         }
     return grid;
   };
-  const auto balls = [](const Vec3& p) {  // two that overlap, melted into one
+  const auto balls = [](const Vec3& p) {  // two that overlap, blended into one
     const double a = sphereDistance(p - Vec3(0.003, 0, 0), 0.005),
                  b = sphereDistance(p + Vec3(0.003, 0, 0), 0.004);
     const double k = 0.002, t = std::clamp(0.5 + 0.5 * (b - a) / k, 0.0, 1.0);
@@ -526,7 +512,7 @@ TEST_F(NonMetricVdb, CulledAndCoherentAnswersAreTheExhaustiveOne) {
   }
 }
 
-TEST_F(NonMetricVdb, NoReadingIsBelowWhatABoundAllows) {
+TEST_F(NonMetricVdb, NoReadingIsBelowItsBound) {
   for (const auto& [name, grid] : notMetric()) {
     const VoxMap map = stored(grid);
     RandomPoints random(45);
@@ -540,11 +526,11 @@ TEST_F(NonMetricVdb, NoReadingIsBelowWhatABoundAllows) {
   }
 }
 
-TEST_F(NonMetricVdb, TrueDistancesAreProvenAlmostAsTrueDistances) {
+TEST_F(NonMetricVdb, BoundsOfTrueDistancesAreNearlyTight) {
   const VoxMap map = stored(ball());
-  // Ways over grid cells cost 0.1135 of the band, whatever the distances (field_proof.h).
+  // Paths over grid cells cost 0.1135 of the band, whatever the distances (field_proof.h).
   EXPECT_LT(map.sampleError_m(), (0.8661 + 0.1137 * 4) * kVoxel_m + map.quantum_m());
-  // Far off, bounds still tell far from near, outside and in.
+  // Far away, bounds still distinguish far from near, outside and inside.
   saveVdb(buildVoxMap(makeSphere(kRadius_m, 4), {0.1e-3, 4}), file_);
   openvdb::io::File file(file_);
   file.open();

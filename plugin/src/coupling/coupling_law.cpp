@@ -4,7 +4,7 @@
 namespace vps {
 namespace {
 
-/// v, shortened to at most `limit`, its direction kept: the pull never turns because it is strong.
+/// Shortens v to at most `limit` and keeps its direction, so that saturation does not turn the force.
 Vec3 limited(const Vec3& v, double limit) {
   const double length = v.norm();
   return length > limit ? Vec3(v * (limit / length)) : v;
@@ -23,7 +23,7 @@ Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
       limited(gains.k_N_per_m * p_error_W, gains.max_force_N) + gains.b_Ns_per_m * (proxy.V_W.v - part.V_W.v);
   F_part_W.tau = limited(gains.k_Nm_per_rad * r_error_W, gains.max_torque_Nm) +
                  gains.b_Nms_per_rad * (proxy.V_W.w - part.V_W.w);
-  // One look at the result catches velocities and gains that are not finite, and overflow.
+  // One test of the result catches velocities and gains that are not finite, and overflow.
   return F_part_W.isFinite() ? F_part_W : Wrench{};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of many boxes meet: for shells, of which a soup of facets may have half a million.
+// Searches among many boxes: a mesh may have half a million shells.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace vps {
 
-/// Whether two boxes have a point in common; touching ones do.
+/// True if two boxes share a point; touching boxes do.
 inline bool meet(const Box& a, const Box& b) {
   return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
 }
 
-/// Boxes halved by their middles; they must outlive it. O(n log n) to make; a search is O(log n + found)
-/// where few overlap.
+/// A tree over boxes, split at their middles; the boxes must outlive it. Construction O(n log n); a search
+/// O(log n + found) where few overlap.
 class BoxTree {
  public:
   explicit BoxTree(std::span<const Box> boxes) : boxes_(boxes), order_(boxes.size()) {
@@ -26,10 +26,10 @@ class BoxTree {
     for (std::size_t n = 0; n < nodes_.size(); ++n) halve(n);
   }
 
-  /// Calls visit(index) for the boxes that meet one, in no particular order, until it returns false; whether
-  /// it never did.
+  /// Calls visit(index) for the boxes that overlap `box`, in no particular order, until visit returns false.
+  /// Returns true if it never did.
   template <typename Visit>
-  bool forEachSyncEvent(const Box& box, Visit visit) const {
+  bool forEachOverlap(const Box& box, Visit visit) const {
     std::uint32_t stack[64];  // halved by count: 32 levels at most, one waiting child each
     int waiting = 0;
     if (!nodes_.empty()) stack[waiting++] = 0;
@@ -47,10 +47,10 @@ class BoxTree {
     return true;
   }
 
-  /// Whether any two boxes meet.
-  [[nodiscard]] bool hasSyncEvent() const {
+  /// True if any two boxes overlap.
+  [[nodiscard]] bool hasOverlap() const {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i)
-      if (!forEachSyncEvent(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
+      if (!forEachOverlap(boxes_[i], [i](std::uint32_t other) { return other == i; })) return true;
     return false;
   }
 
@@ -74,7 +74,7 @@ class BoxTree {
     middles.size().maxCoeff(&axis);
     const std::uint32_t half = first + (end - first) / 2;
     const auto at = [&](std::uint32_t i) { return boxes_[i].min[axis] + boxes_[i].max[axis]; };
-    // A total order, so that every library makes the same halves.
+    // A total order, so that every standard library makes the same halves.
     std::nth_element(
         order_.begin() + first, order_.begin() + half, order_.begin() + end,
         [&](std::uint32_t a, std::uint32_t b) { return at(a) != at(b) ? at(a) < at(b) : a < b; });

@@ -68,7 +68,7 @@ struct Merger {
     while (size < 2 * mesh.vertices.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
     for (const Vec3& p : mesh.vertices) {
-      // Squares of numbers below 1e-150 vanish, and lengths with them (found by fuzzing). +0: -0 becomes +0.
+      // Squares of numbers below 1e-150 underflow, and lengths with them. Adding +0 turns -0 into +0.
       const Vec3 q = (p.array().abs() < 1e-150).select(0.0, p.array()).matrix() + Vec3::Zero();
       CellKey key;
       for (int i = 0; i < 3; ++i) key[i] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(q[i]));
@@ -79,7 +79,7 @@ struct Merger {
     }
   }
 
-  /// Cells as wide as the tolerance: whatever is near enough lies in the 27 cells around.
+  /// Cells as wide as the tolerance: all near vertices are in the 27 cells around a vertex.
   void within(double tolerance_m) {
     std::unordered_map<CellKey, std::vector<std::uint32_t>, CellHash> cells(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) {
@@ -118,7 +118,8 @@ double area(const Mesh& mesh) {
 }
 
 MassProperties massProperties(const Mesh& mesh) {
-  // Tetrahedra from a point amid the body to each triangle; far from the origin the sums would cancel.
+  // Tetrahedra from a point in the middle of the body to each triangle: far from the origin the sums would
+  // cancel.
   const Vec3 o = bounds(mesh).center();
   double det_sum = 0;
   Vec3 first = Vec3::Zero();

@@ -15,16 +15,18 @@
 namespace vps {
 namespace {
 
-/// Twice the area over the longest edge's square, below which corners are collinear but for rounding.
+/// Twice the area over the square of the longest edge, below which corners are collinear up to rounding.
 constexpr double kLeastSlimness = 1e-10;
-/// Faces this far apart are facets of one curved surface: 20 degrees, as PointShellSettings::edge_angle_rad.
+/// Faces whose normals differ by less are facets of one curved surface: 20 degrees, as
+/// PointShellSettings::edge_angle_rad.
 constexpr double kCosSmooth = 0.94;
-/// Corners with more faces than this are the hubs of fans, flat or nearly so; each face against each would
-/// cost its square.
+/// Corners with more faces than this are the hubs of nearly flat fans; comparing all pairs of faces would
+/// take quadratic time.
 constexpr std::size_t kMostFaces = 64;
-/// How near is touching, in sizes of the mesh: above the height of what is thin.
+/// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
+/// triangle.
 constexpr double kTouch = 1e-9;
-/// Quartering by count makes the depth log4(2^31) at most; three waiting children a level.
+/// Four children by count limit the depth to log4(2^31), with three waiting children on each level.
 constexpr int kStack = 64;
 
 /// Unit v, or zero where v is too short to have a direction.
@@ -128,7 +130,7 @@ namespace {
 
 using Range = std::span<std::uint32_t>;
 
-/// Halves a range of triangles at the median of the boxes' longest side.
+/// Splits a range of triangles at the median of the boxes' longest side.
 std::pair<Range, Range> halved(Range range, const std::vector<Box>& boxes) {
   if (range.size() < 2) return {range, {}};
   Box centers;
@@ -157,8 +159,8 @@ void MeshDistance::buildTree() {
       all.add(mesh_.vertices[v]);
     }
   center_ = all.center();
-  // Boxes and points are rounded to floats about the centre: a point no farther off than the mesh's size by
-  // 2^-24 of that, a corner by half as much.
+  // Boxes and points are rounded to floats relative to the centre: a point as far away as the mesh is large
+  // has an error of 2^-24 of that, a corner of a box half as much.
   constexpr double kRounding = 2.5e-7;
   const double margin_m = kRounding * 0.5 * all.size().norm();
   std::vector<std::uint32_t> order(count);
@@ -213,18 +215,18 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
   child[lane] = to;
 }
 
-/// Squared distances from a point to the four boxes, never too great.
+/// Squared distances from a point to the four boxes, rounded down.
 [[gnu::always_inline]] inline Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
-  // What is far off the mesh, rounded to floats, is off by a share of the distance.
+  // A point far from the mesh, rounded to floats, has an error proportional to its distance.
   constexpr float kRounding = 1 - 2e-6f;
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int k = 0; k < 3; ++k) sum += (min[k] - p[k]).max(p[k] - max[k]).max(0.0f).square();
   return kRounding * sum;
 }
 
-/// Visits triangles near first and calls onNearer(triangle, point) for each that is nearer than all before
-/// and max_m; returns the least squared distance. Skips boxes whose squared distance times box_weight is not
-/// less.
+/// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
+/// before and than max_m; returns the least squared distance. Skips boxes whose squared distance times
+/// box_weight is not less.
 template <typename Visit>
 double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
   double best2 = max_m * max_m;
@@ -257,7 +259,7 @@ double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visi
     for (int lane = 0; lane < 4; ++lane) {
       const Waiting child{node.child[lane], distance2[lane]};
       if (!(box_weight * static_cast<double>(child.distance2) < best2)) continue;
-      int at = waiting++;  // the nearest ends on top
+      int at = waiting++;  // the nearest is on top
       for (; at > first && stack[at - 1].distance2 < child.distance2; --at) stack[at] = stack[at - 1];
       stack[at] = child;
     }
@@ -282,7 +284,7 @@ MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const n
 }
 
 double MeshDistance::lowerBound(const Vec3& p, double slack, double max_m) const noexcept {
-  // What was skipped is at least best / (1 + slack) away.
+  // Skipped triangles are at least best / (1 + slack) away.
   const double weight = (1 + slack) * (1 + slack);
   return std::sqrt(search(p, max_m, weight, [](std::uint32_t, const TrianglePoint&) {})) / (1 + slack);
 }
@@ -300,8 +302,8 @@ bool MeshDistance::isNextToThin(std::uint32_t triangle, int feature) const noexc
   return is_corner_of_thin_[mesh_.triangles[triangle][feature - 4]] != 0;
 }
 
-/// The pseudonormal at a point of the surface, from all facets that touch it: each by the angle that it takes
-/// of the directions around.
+/// The pseudonormal at a point of the surface from all facets that touch it, each weighted by the angle that
+/// it covers around the point.
 Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
   Vec3 sum = Vec3::Zero();
   const Eigen::Vector3f from_center = (q - center_).cast<float>();
@@ -342,7 +344,7 @@ Vec3 MeshDistance::smoothNormal(std::uint32_t triangle, const Vec3& q) const noe
   Vec3 sum = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 to_a = mesh_.vertices[t[(k + 1) % 3]] - q, to_b = mesh_.vertices[t[(k + 2) % 3]] - q;
-    // The corner's barycentric coordinate times twice the area; rounding may put q a hair outside.
+    // The corner's barycentric coordinate times twice the area; rounding may move q slightly outside.
     sum += std::max(0.0, face.dot(to_a.cross(to_b))) * smooth_corners_[triangle][k].cast<double>();
   }
   const double length = sum.norm();
@@ -361,7 +363,7 @@ Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
     const auto& corners = smooth_corners_[triangle];
     return (corners[static_cast<std::size_t>(corner)] - corners[0]).cast<double>();
   };
-  // The edges' dual vectors take a way along the triangle to its shares of the edges.
+  // The dual vectors of the edges split a displacement in the triangle into its shares of the edges.
   const Mat3 S =
       (turn(1) * e2.cross(face).transpose() + turn(2) * face.cross(e1).transpose()) / twice_area_m2;
   const Mat3 along = Mat3::Identity() - face * face.transpose();

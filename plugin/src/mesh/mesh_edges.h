@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The edges of a mesh, each with the triangles that share it; and triangles with the same corners.
+// The edges of a mesh with the triangles that share them, and triangles with equal corners.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ struct HalfEdge {
   bool is_forward;  ///< the triangle runs from low to high
 };
 
-/// All sides of all triangles, those of one edge together and by triangle. Triangles with a repeated corner
-/// have none. O(n): counted by their low vertex, which has few each, then sorted.
+/// All half-edges of all triangles, grouped by edge and sorted by triangle. Triangles with a repeated corner
+/// have none. O(n): counted by low vertex, which has few each, then sorted.
 inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   const auto forEachSide = [&](auto visit) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -49,7 +49,7 @@ inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   return edges;
 }
 
-/// Disjoint sets, each with its lowest member for a root. By path halving O(log n) a call, over many.
+/// Disjoint sets; the root of a set is its lowest member. With path halving O(log n) a call, amortised.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -61,7 +61,7 @@ class Groups {
     a = find(a), b = find(b);
     if (a != b) parent_[std::max(a, b)] = std::min(a, b);
   }
-  /// Of each member its set's number, counted from 0 by lowest members.
+  /// The number of each member's set, counted from 0 by lowest members.
   [[nodiscard]] std::vector<std::uint32_t> numbered() {
     std::vector<std::uint32_t> number(parent_.size());
     std::uint32_t next = 0;
@@ -76,8 +76,9 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-/// checkMesh() for who has the edges already.
-/// @param shell_of  if given, each triangle's shell, counted from 0; of no meaning with repeated corners
+/// checkMesh() for callers that have the edges already.
+/// @param shell_of  if given, each triangle's shell, counted from 0; undefined for triangles with repeated
+/// corners
 MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
                      std::vector<std::uint32_t>* shell_of = nullptr);
 

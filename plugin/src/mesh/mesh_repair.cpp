@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Repairs meshes for the sign of distances: orientation, duplicates, internal facets and sheets. One file of
+// more than 400 lines, since its steps share the state of one repair.
 #include "vps/mesh_repair.h"
 
 #include <tbb/parallel_for.h>
@@ -17,23 +19,23 @@
 namespace vps {
 namespace {
 
-/// Facets that stand for a patch where it is judged whole. Assumed: enough for a mean, few enough to be
-/// quick.
+/// Number of facets sampled to classify a whole patch. Assumed: enough for a mean, and fast.
 constexpr std::size_t kSamples = 48;
-/// Rays that judge the sides of open patches, in all meshes. Assumed: seconds, in a soup of 100,000 facets.
+/// Number of rays that classify the sides of open patches, over the whole mesh. Assumed: seconds, in a soup
+/// of 100,000 facets.
 constexpr std::size_t kMostRays = 20000;
-/// How far from 0.5 a mean winding number on a patch must be to call it other than a surface.
+/// How far a patch's mean winding number must be from 0.5 to be classified as not being surface.
 constexpr double kClearly = 0.35;
-/// Winding number in a facet's plane beyond which both sides are clearly inside: 0.5 more is its back, 0.5
-/// less its front, and a threshold of 0.75 there keeps a quarter of margin at both.
+/// Winding number in a facet's plane above which both sides are clearly inside: it is 0.5 more behind the
+/// facet and 0.5 less in front, and a threshold of 0.75 leaves a quarter of margin on both sides.
 constexpr double kInternal = 1.25;
 
-/// Facets joined over edges of two: what must face the same way.
+/// Facets that are connected by edges of two facets, and so must have one orientation.
 struct Patch {
   std::vector<std::uint32_t> triangles;
   Box box;
   double volume_m3 = 0;
-  bool is_closed = false;  ///< every edge is run through as often forwards as backwards
+  bool is_closed = false;  ///< every edge has as many facets in one direction as in the other
 };
 
 struct Facet {
@@ -56,7 +58,8 @@ double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
   return a.dot(b.cross(c));
 }
 
-/// Whether shells that are closed, and whose facets agree, all face out, and no two shells' boxes meet.
+/// True if all of the given closed and consistently oriented shells face out, and no two shells' boxes
+/// overlap.
 bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std::size_t count) {
   std::vector<Box> boxes(count);
   for (std::size_t i = 0; i < shell_of.size(); ++i)
@@ -65,7 +68,7 @@ bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std:
   for (std::uint32_t i = 0; i < shell_of.size(); ++i)
     volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
   return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
-         !BoxTree(boxes).hasSyncEvent();
+         !BoxTree(boxes).hasOverlap();
 }
 
 class Repairer {
@@ -97,7 +100,7 @@ class Repairer {
       setAsideWallsAndSheets();
     }
     dropInternalFacets();
-    // Facets that only faced the wrong way, or were there twice, leave a sound mesh.
+    // A mesh whose only faults were turned or duplicate facets is sound now.
     const bool has_dropped = std::find_if(is_kept_.begin(), is_kept_.end(),
                                           [](Keep k) { return k != Keep::Both; }) != is_kept_.end();
     const bool is_sound =
@@ -123,7 +126,7 @@ class Repairer {
   [[nodiscard]] bool isSound() const {
     const auto facesOut = [](const Patch& p) { return p.is_closed && p.volume_m3 > 0; };
     const std::vector<Box> boxes = boxesOfClosed();
-    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasSyncEvent();
+    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasOverlap();
   }
   [[nodiscard]] std::vector<Box> boxesOfClosed() const {
     std::vector<Box> boxes;
@@ -141,7 +144,7 @@ class Repairer {
     return agrees;
   }
 
-  /// Turns facets to agree within each patch, the fewer to the more.
+  /// Turns facets to agree within each patch; the minority is turned.
   void findPatches() {
     const std::size_t count = mesh().triangles.size();
     std::vector<std::array<std::uint32_t, 3>> across(
@@ -187,7 +190,7 @@ class Repairer {
       const Vec3 o = patch.box.center();
       for (const std::uint32_t i : patch.triangles) patch.volume_m3 += determinant(mesh(), i, o) / 6;
     }
-    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and which way
+    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and in which direction
     forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
       uses.clear();
       for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
@@ -201,7 +204,7 @@ class Repairer {
     });
   }
 
-  /// As the triangle runs now; the half-edge remembers how it ran before it was turned.
+  /// The direction in the triangle as it is now; the half-edge has the direction from before it was turned.
   [[nodiscard]] bool isForward(const HalfEdge& e) {
     const auto& t = mesh().triangles[e.triangle];
     for (int i = 0; i < 3; ++i)
@@ -209,7 +212,7 @@ class Repairer {
     return true;
   }
 
-  /// Turns closed patches that face in and lie in no other, and all that lies in them.
+  /// Turns closed patches that face in and lie in no other patch, with everything inside them.
   void turnClosed() {
     std::vector<std::size_t> closed;
     for (std::size_t i = 0; i < patches_.size(); ++i)
@@ -228,7 +231,7 @@ class Repairer {
       Patch& patch = patches_[closed[i]];
       const Vec3& p = mesh().vertices[mesh().triangles[patch.triangles[0]][0]];
       around.clear();
-      tree.forEachSyncEvent({p, p}, [&](std::uint32_t k) {
+      tree.forEachOverlap({p, p}, [&](std::uint32_t k) {
         if (is_outermost[k]) around.push_back(k);
         return true;
       });
@@ -243,7 +246,7 @@ class Repairer {
     }
   }
 
-  /// Facets that stand for a patch: spread evenly over its area.
+  /// Samples of a patch: facets spread evenly over its area.
   [[nodiscard]] std::vector<Facet> samplesOf(const Patch& patch, std::size_t most) {
     double area_m2 = 0;
     for (const std::uint32_t i : patch.triangles) area_m2 += facetOf(mesh(), i).area_m2;
@@ -259,7 +262,7 @@ class Repairer {
     return samples;
   }
 
-  /// In the plane of a facet of the mesh that w winds about: half a turn more than a hair in front.
+  /// The winding number in the plane of a facet of the mesh: half a turn more than just in front of it.
   static double inPlane(const WindingNumber& w, const Facet& f) {
     return w.at(f.center + 1e-5 * std::sqrt(f.area_m2) * f.normal).w + 0.5;
   }
@@ -283,7 +286,7 @@ class Repairer {
       if (!patches_[i].is_closed && mean[i] < 0.5 - kClearly - 0.25) flip(patches_[i]);
   }
 
-  /// What a ray first meets: outside if nothing or a front, inside if a back, 0 if its own patch.
+  /// What a ray hits first: outside if nothing or a front, inside if a back, 0 if its own patch.
   int sideSeen(const MeshDistance& all, const Facet& from, const Vec3& way, std::uint32_t own,
                double size_m) {
     Vec3 p = from.center + 1e-3 * std::sqrt(from.area_m2) * way;
@@ -299,7 +302,7 @@ class Repairer {
     return 0;
   }
 
-  /// Turns patches whose front looks into the solid and whose back looks out, by what rays meet there.
+  /// Turns patches whose front faces the solid and whose back faces out, as rays show.
   void turnOpenByRays() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < patches_.size(); ++i)
@@ -317,7 +320,7 @@ class Repairer {
           const auto own = static_cast<std::uint32_t>(open[k]);
           votes += sideSeen(all, f, f.normal, own, size_m) - sideSeen(all, f, -f.normal, own, size_m);
         }
-        is_wrong[k] = votes < -static_cast<int>(samples.size());  // of twice as many
+        is_wrong[k] = votes < -static_cast<int>(samples.size());  // of twice as many rays
       });
       for (std::size_t k = 0; k < open.size(); ++k)
         if (is_wrong[k]) flip(patches_[open[k]]);
@@ -325,8 +328,8 @@ class Repairer {
     }
   }
 
-  /// A patch that bends round nothing, with solid on both sides or with none, bounds no solid; in the sum it
-  /// would pull one side up and the other down by a half.
+  /// A nearly flat patch with solid on both sides or on none does not bound a solid; in the sum it would
+  /// raise one side and lower the other by a half.
   void setAsideWallsAndSheets() {
     const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
     for (std::size_t i = 0; i < patches_.size(); ++i) {
@@ -347,7 +350,7 @@ class Repairer {
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
       if (is_kept_[i] == Keep::Both) bounding.push_back(i);
     const WindingNumber w(mesh(), bounding);
-    // Only where shells' boxes meet or a patch shows it, need every facet be asked.
+    // Every facet needs a test only where shells' boxes overlap or a patch shows it.
     if (!mayOverlap(w)) return;
     tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
       if (isInternal(w, bounding[k])) is_kept_[bounding[k]] = Keep::Solid;
@@ -365,7 +368,7 @@ class Repairer {
   bool mayOverlap(const WindingNumber& w) {
     if (is_crossing_) return true;
     const std::vector<Box> boxes = boxesOfClosed();
-    if (BoxTree(boxes).hasSyncEvent()) return true;
+    if (BoxTree(boxes).hasOverlap()) return true;
     for (const Patch& patch : patches_)
       for (const Facet& f : samplesOf(patch, kSamples))
         if (inPlane(w, f) > kInternal) return true;
@@ -406,7 +409,7 @@ class Repairer {
 
   const bool is_crossing_;
   RepairedMesh result_;
-  std::vector<HalfEdge> edges_;  // as the facets ran at first
+  std::vector<HalfEdge> edges_;  // as the facets were at first
   std::vector<Patch> patches_;
   std::vector<std::uint32_t> patch_of_;  // by triangle
   std::vector<Keep> is_kept_;            // by triangle
@@ -438,7 +441,7 @@ std::string describe(const MeshReport& report) {
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
   char certain[64];
-  // Rounded down: 100 % is all.
+  // Rounded down, so that 100 % means all.
   std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
                 std::floor(1e4 * report.certain_share) / 1e2);
   return text + certain;

@@ -6,7 +6,8 @@
 namespace vps {
 
 void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
-  // Of each set of twins what stays: the majority's first, or, back to back, a pair to be judged below.
+  // Of each set of duplicates the first of the majority is kept, or, if they are back to back, a pair that is
+  // decided below.
   std::vector<char> is_dropped(mesh.triangles.size(), 0), is_pair(mesh.triangles.size(), 0);
   forEachTwin(mesh, [&](std::span<const Twin> same) {
     const auto even = static_cast<std::size_t>(
@@ -20,7 +21,7 @@ void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
       is_pair[t.triangle] = is_balanced;
     }
   });
-  // A pair that other facets end at is a wall between solids; joined pairs share their fate.
+  // A pair at which other facets end is a wall between solids; connected pairs are treated alike.
   Groups groups(mesh.triangles.size());
   std::vector<char> is_wall(mesh.triangles.size(), 0);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the edges of a mesh tell of its faults, whichever way it faces: facets that are there twice, and
-// borders.
+// Faults of a mesh that its edges show independently of orientation: duplicate facets and borders.
 #pragma once
 
 #include <vector>
@@ -9,9 +8,9 @@
 
 namespace vps {
 
-/// Keeps one of each set of triangles with the same corners, the majority's first. Of pairs back to back none
-/// where other facets end at them, or at pairs they are joined to: a wall between two solids. Elsewhere one,
-/// which way it faces to be judged: a surface that was exported for both sides. O(n log n).
+/// Keeps one of each set of triangles with the same corners, the first of the majority. Of back-to-back pairs
+/// none is kept if other facets end at them or at pairs connected to them: that is a wall between two solids.
+/// Otherwise one is kept, of undecided orientation: a surface that was exported for both sides. O(n log n).
 void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges);
 
 /// Counts holes (connected open edges) and T-junctions (corners within an open edge).

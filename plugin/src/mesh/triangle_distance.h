@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The inner loop of mesh_distance.cpp and voxelise.cpp, in a header so that both inline the same arithmetic
+// The inner loop of mesh_distance.cpp and the voxeliser, in a header so that both inline the same arithmetic
 // and get the same bits.
 #pragma once
 
@@ -17,8 +17,8 @@ inline TrianglePoint closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& 
   return {a + (along / length2) * ab, segment};
 }
 
-/// See closestOnTriangle(). The plane is cut into the seven regions nearest to each feature; dot products
-/// with two edges from each corner tell which one p projects into. Source: Ericson, section 5.1.5.
+/// See closestOnTriangle(). The plane is divided into the seven regions nearest to each feature; dot products
+/// with two edges from each corner decide into which one p projects. Source: Ericson, section 5.1.5.
 inline TrianglePoint closestOnTriangleInline(const Vec3& p, const Vec3& a, const Vec3& b,
                                              const Vec3& c) noexcept {
   const Vec3 ab = b - a, ac = c - a;
@@ -46,7 +46,7 @@ inline TrianglePoint closestOnTriangleInline(const Vec3& p, const Vec3& a, const
     return {b + (toward_c / (toward_c + toward_b)) * (c - b), 2};
 
   const double sum = weight_a + weight_b + weight_c;
-  // Collinear corners leave only rounding noise here: then the triangle is its edges.
+  // With collinear corners only rounding noise is left here; the nearest point is then on an edge.
   const double noise = 1e-14 * ab.squaredNorm() * ac.squaredNorm();
   if (sum > noise) return {a + (weight_b / sum) * ab + (weight_c / sum) * ac, 0};
   const TrianglePoint sides[3] = {closestOnSegment(p, a, b, 1, 4, 5), closestOnSegment(p, b, c, 2, 5, 6),

@@ -10,14 +10,14 @@ namespace vps {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 8;
-/// Halving by count makes the depth 32 at most; one waiting child a level.
+/// Halving by count limits the depth to 32, with one waiting child on each level.
 constexpr int kTreeStack = 64;
 
 using Corners = std::array<Vec3, 3>;
 
-/// Distance beyond which a cluster's series errs by at most `error`. The term of degree l of 1 / |d - s| is
-/// s^l P_l / R^(l + 1); its slope in s is at most l s^(l - 1) / R^(l + 1) (inequality of Bernstein and Szegö
-/// for the trigonometric polynomial P_l(cos)). What follows degree 3 sums to
+/// The distance beyond which a cluster's series has an error of at most `error`. The term of degree l of 1 /
+/// |d - s| is s^l P_l / R^(l + 1); its slope in s is at most l s^(l - 1) / R^(l + 1) (inequality of Bernstein
+/// and Szegö for the trigonometric polynomial P_l(cos)). The terms after degree 3 sum to
 ///   integral s^3 dA / (4 pi R^5) * (4 - 3t) / (1 - t)^2,   t = radius / R.
 double acceptDistance(double radius, double third_moment, double error) {
   if (!(radius > 0)) return 0;
@@ -55,9 +55,9 @@ void halve(const Corners& t, double limit, std::vector<Corners>& out) {
   halve({middle, t[(i + 1) % 3], t[(i + 2) % 3]}, limit, out);
 }
 
-/// Cuts long triangles: a cluster is as wide as its longest one, and exporters make rods of slivers, which
-/// would all be near everywhere. The limit is the least that
-/// makes three times as many at most.
+/// Cuts long triangles: a cluster is at least as wide as its longest triangle, and CAD exports make rods of
+/// slivers, for which no point would be far. The limit is the least that at most triples the number of
+/// triangles.
 void cutSlivers(std::vector<Corners>& triangles) {
   std::vector<std::array<double, 2>> sides(triangles.size());  // the longest edge, and the height on it
   double low = 0, high = 0;
@@ -84,7 +84,7 @@ void cutSlivers(std::vector<Corners>& triangles) {
 
 }  // namespace
 
-/// Integrals of the normal n over a cluster, with the place s from a centre: n_i, s_i n_j, s_i s_j n_k.
+/// Integrals over a cluster of the normal n and the position s from a centre: n_i, s_i n_j, s_i s_j n_k.
 struct WindingNumber::Moments {
   Vec3 center = Vec3::Zero();
   Vec3 n = Vec3::Zero();
@@ -152,8 +152,8 @@ struct WindingNumber::Moments {
   }
 };
 
-/// Adds solid angles by multiplying complex numbers, whose arguments are half the angles, and counts full
-/// turns: one arc tangent at the end instead of one a triangle.
+/// Adds solid angles by multiplying complex numbers whose arguments are half the angles, and counts full
+/// turns: one arc tangent at the end instead of one per triangle.
 struct WindingNumber::Turn {
   double x = 1, y = 0;
   int turns = 0;
@@ -211,7 +211,7 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
   expand(cluster_error);
 }
 
-/// Halves the triangles along the longest side of their centres' box until a leaf holds few.
+/// Splits the triangles along the longest side of their centres' box until a leaf has few.
 void WindingNumber::split(std::vector<Corners>& triangles) {
   const auto count = static_cast<std::uint32_t>(triangles.size());
   std::vector<Vec3> middles(count);
@@ -231,7 +231,8 @@ void WindingNumber::split(std::vector<Corners>& triangles) {
     const auto range = order.begin() + first;
     std::nth_element(range, range + half, range + size, [&](std::uint32_t a, std::uint32_t b) {
       const double at_a = middles[a][axis], at_b = middles[b][axis];
-      return at_a != at_b ? at_a < at_b : a < b;  // a strict order, so that the tree is the same everywhere
+      return at_a != at_b ? at_a < at_b
+                          : a < b;  // a strict order, so that the tree is the same with every library
     });
     nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
     nodes_[n].count = 0;
@@ -261,7 +262,7 @@ void WindingNumber::expand(double cluster_error) {
         m.place += moments[child].place;
       }
     }
-    // The middle of the area: for flat clusters the second term then vanishes.
+    // The centroid of the area: the second term of flat clusters is then zero.
     m.center = node.center = m.area > 0 ? Vec3(m.place / m.area) : corners_[range[n][0]][0];
     if (node.count > 0) {
       for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) m.add(corners_[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointshells as PLY (Turk 1994): doubles, little endian, so that a shell comes back to the bit.
+// Pointshells as PLY files (Turk 1994): little-endian doubles, so that a shell is read back to the bit.
 #include <array>
 #include <bit>
 #include <charconv>
@@ -23,10 +23,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "binary PLY is written and read as it lies in memory");
 
-/// The properties we write and need, in this order.
+/// The properties that are written and required, in this order.
 constexpr std::array<std::string_view, 7> kNames = {"x", "y", "z", "nx", "ny", "nz", "area"};
 using Row = std::array<double, kNames.size()>;
-/// Our own comments: the spacing the shell was built with; that points already lie in the hierarchy's order.
+/// Comments of our own: the spacing of the shell, and that points are in the hierarchy's order.
 constexpr std::string_view kSpacing = "comment vps spacing_m ", kSorted = "comment vps sorted";
 
 enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
@@ -128,7 +128,7 @@ class PlyReader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw LoadError(file_, "", what); }
 
-  /// The next line without its end; a line that the file's end cuts is damage.
+  /// The next line without its end; a line without an end means a cut file.
   std::string_view line() {
     const std::size_t end = rest_.find('\n');
     if (end == std::string_view::npos) fail("ends early; the file is cut, write it again");
@@ -162,7 +162,7 @@ class PlyReader {
         has_vertex = true;
       } else if (word == "property" && is_in_vertex) {
         readProperty(words);
-      }  // comments, and what other elements hold, do not concern us
+      }  // comments and other elements are ignored
     }
     if (!has_format) fail("does not state its format");
     if (header_.count == 0) fail("has no points");
@@ -203,7 +203,7 @@ class PlyReader {
     }
   }
 
-  /// Before memory is asked for: a damaged count can be anything.
+  /// Checked before memory is allocated: a damaged count can be any number.
   void requireSize() const {
     const std::size_t least_bytes = header_.is_binary ? row_bytes_ : 2 * header_.properties.size();
     if (header_.count > rest_.size() / least_bytes)
@@ -256,7 +256,7 @@ class PlyReader {
       fail(where() + " has a normal of length " + std::to_string(length) + ", not 1");
   }
 
-  /// Normals that are unit to rounding keep their bits; those written with few digits are made unit.
+  /// Normals of unit length up to rounding keep their bits; normals written with few digits are normalised.
   static Vec3 unit(const Vec3& n) { return std::abs(n.squaredNorm() - 1) < 1e-14 ? n : n.normalized(); }
 
   std::string_view rest_;

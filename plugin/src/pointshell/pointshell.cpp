@@ -13,12 +13,12 @@
 namespace vps {
 namespace {
 
-/// Points on edges lie at half the spacing (assumed): edges are where tight fits touch, and cost only in
-/// proportion to their length. A chain's vertex is left out where that moves the rim by less than a
-/// five-hundredth of the spacing: 1 um at 0.5 mm, a fifth of what a fit of 20 um is allowed.
+/// Spacing of points on edges over the spacing on faces (assumed): tight fits touch at edges, and their cost
+/// is proportional to their length. A vertex of a chain is left out where that moves the rim by less than
+/// 1/500 of the spacing: 1 um at 0.5 mm, a fifth of the allowance of a 20 um fit.
 constexpr double kEdgeStep = 0.5;
 constexpr double kEdgeTolerance = 1.0 / 500;
-/// Face points for each square of spacing (measured 1.25), rounded up for the estimate.
+/// Face points per square of spacing (measured 1.25), rounded up for the estimate.
 constexpr double kDensity = 1.3;
 /// Assumed: about 1.5 GB of shell.
 constexpr double kMaxPoints = 16e6;
@@ -32,7 +32,7 @@ void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const
   if (!(settings.edge_angle_rad > 0 && settings.edge_angle_rad <= std::numbers::pi))
     throw LoadError("", part,
                     "edge angle must lie between 0 and pi, not " + std::to_string(settings.edge_angle_rad));
-  // The box's edges stand for those of a needle, which has little area.
+  // A needle has little area: the edges of its box replace its own.
   const double by_area = kDensity * area(mesh) / (settings.spacing_m * settings.spacing_m);
   const double by_length = bounds(mesh).size().sum() / settings.spacing_m;
   if (std::max(by_area, by_length) > kMaxPoints) {
@@ -65,8 +65,8 @@ PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {
   return shell;
 }
 
-/// One node over all shells, then each shell's own nodes, moved: points keep their places, so ids run on in
-/// order.
+/// One node over all shells, then the nodes of each shell. Points keep their order, so that ids are
+/// consecutive.
 std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
                                    const std::vector<Pose>& X_MPs, std::size_t point_count) {
   std::vector<ShellNode> nodes(1);
@@ -76,7 +76,7 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
     const auto first_node = static_cast<std::uint32_t>(nodes.size());
     for (ShellNode node : shells[s]->nodes) {
       node.center = X_MPs[s] * node.center;
-      node.radius_m *= 1 + 1e-12;  // the points and the centre were rounded apart
+      node.radius_m *= 1 + 1e-12;  // points and centre were rounded separately
       node.first += first_point;
       node.skip += first_node;
       nodes.push_back(node);
@@ -110,7 +110,7 @@ PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
   requireUsable(mesh, "", part);
   requireSettings(mesh, settings, part);
   report(0);
-  const Mesh shared = welded(mesh);  // else every edge would look open, and so sharp
+  const Mesh shared = welded(mesh);  // otherwise every edge would be open, and so sharp
   const std::vector<Vec3> normals = triangleNormals(shared);
   std::vector<ShellSample> samples =
       sampleFeatures(shared, normals, kEdgeStep * settings.spacing_m, kEdgeTolerance * settings.spacing_m,

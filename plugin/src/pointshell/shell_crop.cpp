@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "pointshell/shell_hierarchy.h"
-#include "vps/crop.h"
+#include "vps/shell_crop.h"
 
 namespace vps {
 namespace {
 
-/// Counts of what is kept before each index, and in all.
+/// The number of kept entries before each index, and the total.
 std::vector<std::uint32_t> keptBefore(const std::vector<std::uint8_t>& is_kept) {
   std::vector<std::uint32_t> before(is_kept.size() + 1, 0);
   for (std::size_t i = 0; i < is_kept.size(); ++i) before[i + 1] = before[i] + is_kept[i];
@@ -26,8 +26,8 @@ std::vector<std::uint8_t> pointsWithin(const PointShell& shell, const std::vecto
   return is_kept;
 }
 
-/// The nodes that keep a point. Their spheres stay as they are: a leaf's points are read as offsets from its
-/// centre, rounded, and must round as before.
+/// The nodes that keep a point. Their spheres do not change: a leaf's points are stored as offsets from its
+/// centre, and must be rounded as before.
 std::vector<ShellNode> keptNodes(const PointShell& shell, const std::vector<std::uint32_t>& points_before) {
   const auto countOf = [&](const ShellNode& node) {
     return points_before[node.first + node.count] - points_before[node.first];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Blue-noise points on faces: dart throwing (Cook 1986) from area-stratified candidates, then a fill pass
-// that proves the covering radius triangle by triangle. Random darts alone leave holes; the fill alone would
-// look like the triangulation. Together: random, with a least and a greatest gap.
+// that proves the covering radius triangle by triangle. Darts alone leave holes, and filling alone would
+// reproduce the triangulation; together they give random points with a least and a greatest gap.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,17 +14,17 @@
 namespace vps {
 namespace {
 
-/// Least gap over spacing (assumed): leaves a quarter of the spacing for the pieces of the fill pass.
+/// Least gap over spacing (assumed): leaves a quarter of the spacing to the fill pass.
 constexpr double kLeastGap = 0.75;
-/// Candidates for each square of spacing (assumed): about five for each point kept; more change little.
+/// Candidates per square of spacing (assumed): about five for each point kept; more change little.
 constexpr double kCandidates = 6;
-/// Greatest extent of a piece of surface when areas are dealt out, over spacing (assumed): some 15 pieces a
+/// Greatest extent over spacing of a piece of surface that is assigned to a point (assumed): some 15 pieces a
 /// point.
 constexpr double kAreaPiece = 0.3;
 
-/// A convex piece of a triangle. Pieces are halved across the longest side of their box, so that slivers fall
-/// into short pieces. (Halving triangles at an edge keeps slivers slivers: 18 times as many pieces on a
-/// cylinder's wall.)
+/// A convex piece of a triangle. Pieces are cut across the longest side of their box, so that slivers become
+/// short pieces. (Cutting triangles at an edge keeps slivers slivers: 18 times as many pieces on a cylinder's
+/// wall.)
 class Piece {
  public:
   Piece(const Vec3& a, const Vec3& b, const Vec3& c) : corners_{a, b, c}, count_(3) {}
@@ -115,11 +115,12 @@ class FaceSampler {
       grid_.insert(samples_[i].p, static_cast<std::uint32_t>(i));
   }
 
-  /// A few candidates for each block of the surface, kept where nothing is too near. Block by block, not all
-  /// over the surface: as random, and ten times as fast, since what is near in space stays near in memory.
+  /// A few candidates for each block of the surface, kept where no point is too near. Proceeding block by
+  /// block is as random as over the whole surface and ten times as fast, since near points are near in
+  /// memory.
   void throwDarts() {
     const double darts_per_m2 = kCandidates / (spacing_m_ * spacing_m_);
-    double owed = 0;  // the fractions that small triangles leave
+    double owed = 0;  // fractions left over from small triangles
     std::uint64_t index = 0;
     forEachBlock([&](const Piece& block, const Vec3& n) {
       for (owed += darts_per_m2 * block.area(); owed >= 1; --owed) {
@@ -142,7 +143,7 @@ class FaceSampler {
   /// Edge of the grid's cells over the spacing.
   static constexpr double kCell = 2;
 
-  /// Samples near a block of surface, gathered once and searched for each of its pieces.
+  /// Samples near a block of surface, collected once and searched for each of its pieces.
   struct Candidate {
     Vec3 p;
     std::uint32_t id;
@@ -156,7 +157,7 @@ class FaceSampler {
     return samples_[id].outward.dot(n) > 0;
   }
 
-  /// Gathers what faces as n and is within the spacing of any point of the block.
+  /// Collects the samples that face as n and are within the spacing of any point of the block.
   void gather(const Piece& block, const Vec3& n) {
     candidates_.clear();
     grid_.visitNear(block.center(), block.extent() + spacing_m_, [&](std::uint32_t id, double) {
@@ -165,7 +166,7 @@ class FaceSampler {
     });
   }
 
-  /// The nearest of the gathered samples.
+  /// The nearest of the collected samples.
   [[nodiscard]] Near nearest(const Vec3& p) const {
     Near near;
     double least = std::numeric_limits<double>::infinity();
@@ -187,7 +188,7 @@ class FaceSampler {
     samples_.push_back({p, n, 0});
   }
 
-  /// Calls visit with each block of the surface, its candidates gathered.
+  /// Calls visit with each block of the surface after collecting its candidates.
   template <class Visit>
   void forEachBlock(const Visit& visit) {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {

@@ -18,7 +18,7 @@ struct SharpEdge {
   bool is_visited = false;
 };
 
-/// Vertices in a row, and the sharp edge between each and the next. A closed chain repeats its first vertex.
+/// A chain of vertices with the sharp edges between them. A closed chain repeats its first vertex.
 struct Chain {
   std::vector<std::uint32_t> vertices, edges;
 };
@@ -40,7 +40,7 @@ class FeatureSampler {
   std::vector<ShellSample> run() {
     for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
       if (is_corner_[v]) addVertex(v);
-    // Chains between corners first; what is left then are loops without a corner.
+    // First chains between corners; the remaining chains are loops without a corner.
     for (const bool starts_at_corner : {true, false})
       for (std::uint32_t e = 0; e < edges_.size(); ++e)
         for (const std::uint32_t start : {edges_[e].low, edges_[e].high})
@@ -66,7 +66,7 @@ class FeatureSampler {
     forEachEdge(sortedHalfEdges(mesh_), [this](std::span<const HalfEdge> sides) {
       Vec3 sum = Vec3::Zero();
       for (const HalfEdge& side : sides) sum += normals_[side.triangle];
-      // A triangle without a normal hides what is behind it: its edges count as sharp.
+      // A triangle without a normal hides the facet behind it: its edges count as sharp.
       if (sides.size() == 2 && normals_[sides[0].triangle].dot(normals_[sides[1].triangle]) >= cos_limit_)
         return;
       edges_.push_back({sides[0].low, sides[0].high, unitOr(sum, normals_[sides[0].triangle])});
@@ -95,7 +95,7 @@ class FeatureSampler {
       if (range.count == 0) continue;
       is_corner_[v] = range.count != 2 || turnsAt(v);
     }
-    // Tips: no sharp edge, but a normal far from that of a triangle around it.
+    // Tips: vertices without a sharp edge, but with a normal far from that of a triangle around it.
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (const std::uint32_t v : mesh_.triangles[t])
         if (edges_of_[v].count == 0 && !normals_[t].isZero(0) &&
@@ -123,7 +123,7 @@ class FeatureSampler {
     return chain;
   }
 
-  /// Keeps the farthest vertex that the step and the tolerance allow, again and again.
+  /// Repeatedly keeps the farthest vertex that the step and the tolerance allow.
   void sample(const Chain& chain) {
     addVertex(chain.vertices.front());
     for (std::size_t i = 0; i + 1 < chain.vertices.size();) {
@@ -152,8 +152,7 @@ class FeatureSampler {
   /// Points inside one long segment, evenly.
   void addBetween(const Chain& chain, std::size_t i) {
     const Vec3 &a = mesh_.vertices[chain.vertices[i]], &b = mesh_.vertices[chain.vertices[i + 1]];
-    const double parts =
-        std::ceil((b - a).norm() / step_m_ * (1 - 1e-9));  // a rounding is no reason for one more
+    const double parts = std::ceil((b - a).norm() / step_m_ * (1 - 1e-9));  // rounding must not add a point
     for (double k = 1; k < parts; ++k)
       samples_.push_back({a + (k / parts) * (b - a), edges_[chain.edges[i]].normal});
   }
@@ -183,7 +182,7 @@ class FeatureSampler {
   [[nodiscard]] double edgeLength(const Chain& chain, std::size_t i) const {
     return (mesh_.vertices[chain.vertices[i + 1]] - mesh_.vertices[chain.vertices[i]]).norm();
   }
-  /// v as a unit vector; where it is too short to have a direction (two faces back to back), the fallback.
+  /// Normalises v; returns the fallback where v is too short to have a direction (two faces back to back).
   static Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
     const double length = v.norm();
     if (length > 1e-9) return v / length;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points in a hash grid: who is within a radius of here? Serves sampling, area weights and the progressive
+// Points in a hash grid, for searches within a radius: used for sampling, area weights and the progressive
 // order.
 #pragma once
 
@@ -18,7 +18,7 @@ namespace vps {
 class PointGrid {
  public:
   /// @param cell_m    edge of a cell; best near twice the search radius (measured)
-  /// @param expected  points to make room for; more are welcome
+  /// @param expected  number of points for which memory is reserved; there may be more
   explicit PointGrid(double cell_m, std::size_t expected = 64) : inverse_cell_(1 / cell_m) {
     std::size_t slots = 64;
     while (slots < 2 * expected) slots *= 2;

@@ -12,10 +12,9 @@ namespace {
 
 constexpr std::size_t kLeafPoints = kLanes;
 
-/// Where a range of `count` points is cut: near the middle, at a multiple of the leaf size, so that leaves
-/// are full, and of the largest power of 16 that leaves both halves something, so that sixteen leaves in a
-/// row are neighbours too. Sorting and hierarchy must agree on it, and a saved shell finds its leaves again
-/// by it.
+/// Where a range of `count` points is split: near the middle, at a multiple of the leaf size, so that leaves
+/// are full, and of the largest power of 16 that leaves both halves non-empty, so that sixteen consecutive
+/// leaves are neighbours. Sorting and hierarchy use the same rule, and a saved shell finds its leaves by it.
 std::size_t cut(std::size_t count) {
   std::size_t unit = kLeafPoints;
   while (2 * unit * kLanes <= count) unit *= kLanes;
@@ -59,9 +58,9 @@ double greatestDistance2(std::span<const Vec3> points, const Vec3& center, std::
   return greatest;
 }
 
-/// Nearly the least enclosing sphere: from the box's centre, steps towards the farthest point that shrink as
-/// 1/k. Source: Badoiu and Clarkson 2003, Smaller core-sets for balls. Large spheres only cull what is far
-/// away: for those the box's centre will do.
+/// Nearly the smallest enclosing sphere: steps from the box's centre towards the farthest point that shrink
+/// as 1/k. Source: Badoiu and Clarkson 2003, Smaller core-sets for balls. Large spheres only cull distant
+/// shells; for them the box's centre is good enough.
 Sphere enclosingSphere(std::span<const Vec3> points) {
   constexpr std::size_t kWorthSteps = 1024;
   constexpr int kSteps = 24;
@@ -78,7 +77,7 @@ Sphere enclosingSphere(std::span<const Vec3> points) {
       best = center;
     }
   }
-  return {best, std::sqrt(best2) * (1 + 1e-12)};  // outward by more than the roundings above
+  return {best, std::sqrt(best2) * (1 + 1e-12)};  // more than the rounding errors above
 }
 
 void addNodes(std::span<const Vec3> points, std::size_t first, std::size_t count,
@@ -95,13 +94,13 @@ void addNodes(std::span<const Vec3> points, std::size_t first, std::size_t count
   nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
 }
 
-/// A block's sphere as the kernels read it: offsets are rounded to floats, so it grows by their error.
+/// A block's sphere as kernels read it: offsets are rounded to floats, so the radius grows by their error.
 void setSphere(ShellBlock& block, const Vec3& center, double radius_m) {
   for (int k = 0; k < 3; ++k) block.center[k] = center[k];
   block.radius_m = radius_m * (1 + 1e-6);
 }
 
-/// Lane i of a block, and of all lanes after it, until those are set.
+/// Sets lane i of a block, and all lanes after it until those are set.
 void setLane(ShellBlock& block, std::uint32_t lane, const Vec3& p, double weight) {
   const Vec3 offset = p - Vec3(block.center[0], block.center[1], block.center[2]);
   block.x[lane] = static_cast<float>(offset.x());
@@ -119,7 +118,7 @@ void repeatFirstLane(ShellBlock& block) {
   }
 }
 
-/// Around up to sixteen blocks in a row.
+/// A block around up to sixteen consecutive blocks.
 ShellBlock parentBlock(std::span<const ShellBlock> children, std::size_t first) {
   const auto centerOf = [](const ShellBlock& b) { return Vec3(b.center[0], b.center[1], b.center[2]); };
   Box box;
@@ -140,7 +139,7 @@ ShellBlock parentBlock(std::span<const ShellBlock> children, std::size_t first) 
   return block;
 }
 
-/// 0 to count - 1, each next one far from those before (van der Corput: the index with its bits reversed).
+/// The numbers 0 to count - 1, each far from those before (van der Corput: the index with its bits reversed).
 std::vector<std::uint32_t> bitReversed(std::size_t count) {
   int bits = 0;
   while ((std::size_t{1} << bits) < count) ++bits;
@@ -198,13 +197,13 @@ void layOutBlocks(PointShell& shell) {
 }
 
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
-  // Level by level with half the radius: a point joins when nothing that has joined is within the radius.
+  // Level by level with half the radius: a point joins if no joined point is within the radius.
   std::vector<std::uint32_t> waiting = bitReversed(points.size()), order;
   order.reserve(points.size());
   Box box;
   for (const Vec3& p : points) box.add(p);
   double radius_m = points.empty() ? 0 : box.size().norm();
-  constexpr int kLevels = 32;  // from metres to below a nanometre; what still waits repeats a point
+  constexpr int kLevels = 32;  // from metres to below a nanometre; remaining points are duplicates
   for (int level = 0; level < kLevels && !waiting.empty() && radius_m > 0; ++level, radius_m /= 2) {
     PointGrid grid(2 * radius_m, order.size());
     for (const std::uint32_t i : order) grid.insert(points[i], i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The two halves of sampling a surface: its sharp features, then its faces. Private to buildPointShell().
+// The two parts of sampling a surface: sharp features, then faces. Private to buildPointShell().
 #pragma once
 
 #include <vector>
@@ -21,19 +21,18 @@ std::vector<Vec3> triangleNormals(const Mesh& mesh);
 /// Corners first, then the points of sharp edges.
 ///
 /// A corner is a vertex where sharp edges end, meet or turn by more than edge_angle_rad, or the tip of a
-/// cone. Between corners, sharp edges form chains. A chain of segments stands for a curve, and of a convex
-/// curve (the rim of a peg) the vertices are what touches first: so points are put on the chain's vertices
-/// wherever these bend, at most step_m apart along the chain, and evenly on segments that are longer. A
-/// vertex is left out only where the chain stays within tolerance_m of the chord that skips it. All points
-/// lie on the mesh's edges. Normals are angle-weighted pseudonormals (Baerentzen and Aanaes 2005). Expects
-/// shared vertices. O(n log n).
+/// cone. Between corners, sharp edges form chains. A chain approximates a curve; the vertices of a convex
+/// curve (the rim of a peg) touch first. Therefore points are put on the chain's vertices where it bends, at
+/// most step_m apart along the chain, and evenly on longer segments. A vertex is left out only where the
+/// chain stays within tolerance_m of the chord that skips it. All points lie on the mesh's edges. Normals are
+/// angle-weighted pseudonormals (Baerentzen and Aanaes 2005). Expects shared vertices. O(n log n).
 std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3>& normals, double step_m,
                                         double tolerance_m, double edge_angle_rad);
 
-/// Adds points on faces to samples (which may hold features already) such that every point of the surface has
-/// a sample within spacing_m that faces its way (normals less than 90 degrees apart, so that a thin wall is
-/// sampled on both sides), and no new point is nearer than 0.75 spacing_m to another that faces its way. Then
-/// gives each sample the area that is nearest to it. Deterministic. O(area / spacing^2).
+/// Adds points on faces to samples (which may contain features already) such that every point of the surface
+/// has a sample within spacing_m that faces the same way (normals less than 90 degrees apart, so that a thin
+/// wall is sampled on both sides), and no new point is within 0.75 spacing_m of another that faces the same
+/// way. Then assigns to each sample the area nearest to it. Deterministic. O(area / spacing^2).
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 

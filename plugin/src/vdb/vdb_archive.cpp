@@ -34,7 +34,7 @@ VdbArchive::VdbArchive(std::string bytes, double limit_bytes) : stream_(std::mov
   }
 }
 
-/// Metadata and transform; the stream is left where the grid begins.
+/// Reads metadata and transform; leaves the stream where the grid begins.
 void VdbArchive::list(Entry& entry) {
   entry.grid = entry.descriptor.read(stream_);
   entry.grid->setSaveFloatAsHalf(entry.descriptor.saveFloatAsHalf());

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What our .vdb files hold. Only vdb_*.cpp include OpenVDB: its headers are slow to compile.
+// The content of our .vdb files. Only files of this folder include OpenVDB: its headers are slow to compile.
 //
-// The grid "surface" is what other programs read. Two more make a reload exact: "vps_center" (one value a
-// directory cell: the bound at its centre) and, where parts are merged, "vps_owner". A mark with a checksum
-// ends the file. Files of others have none of these; their bounds are proven from the nodes (field_proof.h).
+// Other programs read the grid "surface". Two more make a reload exact: "vps_center" (one value per directory
+// cell: the bound at its centre) and, where parts are merged, "vps_owner". A mark with a checksum ends the
+// file. Files of other programs have none of these; their bounds are proven from the nodes (field_proof.h).
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -27,16 +27,16 @@ inline std::string partKey(std::size_t part, const char* what) {
 /// Throws LoadError: what was found in the file, and what would help.
 [[noreturn]] void refuseVdb(const std::string& file, const std::string& found_and_remedy);
 
-/// Thread-safe; does its work once.
+/// Initialises OpenVDB once. Thread-safe.
 void initializeOpenVdb();
 
-/// What stands at the end of our files: OpenVDB's reader trusts what it reads, and a wrong byte can make it
-/// write where it must not, so we look first.
+/// The end of our files. OpenVDB's reader trusts the file, and a wrong byte can make it write out of bounds,
+/// so the checksum is verified first.
 std::string endOf(std::string_view bytes);
 
 enum class Origin {
-  Ours,     ///< whole, as it was written
-  Changed,  ///< ours, but not as it was written
+  Ours,     ///< unchanged
+  Changed,  ///< ours, but changed
   Others
 };
 Origin originOf(std::string_view bytes);

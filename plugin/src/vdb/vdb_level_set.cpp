@@ -38,7 +38,7 @@ std::string namesOf(const std::vector<Entry>& entries) {
   return names;
 }
 
-/// What stands in the way of a grid's being a level set, as far as its kind tells; empty if nothing does.
+/// The reason why a grid cannot be a level set, as far as its type shows; empty if there is none.
 std::string objection(const Entry& entry) {
   const std::string grid = "grid '" + entry.name() + "' ";
   if (entry.descriptor.gridType().find("ptdataidx") != std::string::npos ||
@@ -53,7 +53,7 @@ std::string objection(const Entry& entry) {
   return "";
 }
 
-/// The one entry of a class; of several, none can be chosen.
+/// The only entry of a class; if there are several, none can be chosen.
 const Entry* onlyOf(const std::vector<Entry>& entries, openvdb::GridClass wanted, const std::string& file) {
   std::vector<Entry> found;
   for (const Entry& entry : entries)
@@ -87,7 +87,7 @@ FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
 // Where its lattice lies
 // -------------------------------------------------------------------------------------------------------------
 
-/// Half of the digits that a matrix of floats has, over a thousand voxels, is a thousandth of a voxel.
+/// A matrix of floats keeps half of its digits, which over a thousand voxels is a thousandth of a voxel.
 constexpr double kSameLength = 1e-6;
 
 void findLattice(const std::string& file, LevelSet& out) {
@@ -96,7 +96,7 @@ void findLattice(const std::string& file, LevelSet& out) {
   if (affine == nullptr)
     refuseVdb(file, "has voxels that widen with depth (a frustum); resample it to cubes");
   const openvdb::Mat4R m = affine->getMat4();
-  Mat3 steps;  // columns: where a step along each axis of the lattice leads
+  Mat3 steps;  // columns: a step along each axis of the lattice
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 3; ++k) steps(k, axis) = m(axis, k);
   const Vec3 lengths = steps.colwise().norm();
@@ -112,7 +112,7 @@ void findLattice(const std::string& file, LevelSet& out) {
   const Vec3 p(m(3, 0), m(3, 1), m(3, 2));
   if (!p.allFinite()) refuseVdb(file, "has a grid that lies nowhere; set its transform");
   out.voxel_m = h;
-  // What rounding alone can make is not worth a resampling.
+  // Deviations that rounding alone can cause do not justify a resampling.
   const bool is_straight = (R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9;
   const bool is_home = is_straight && p.cwiseAbs().maxCoeff() <= 1e-6 * h;
   if (!is_home) out.X_FM = is_straight ? Pose::translation(p) : Pose(Quat(R), p);
@@ -127,7 +127,7 @@ constexpr double kLeastBand = 3, kMostBand = 32;  // voxels: half a quantum of t
   refuseVdb(file, "holds values that are not numbers; export it again");
 }
 
-/// Values that stand for many voxels, where the tree has no leaf; values of leaves are looked at one by one.
+/// Values of tiles, which cover many voxels; values of leaves are tested one by one.
 void requireTiles(const std::string& file, const FloatGrid& grid) {
   auto tile = grid.tree().cbeginValueAll();
   tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
@@ -156,7 +156,7 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
                         "; a fog volume or a distance without sign must be converted to a level set");
 }
 
-/// Some programs leave the inside beyond the band as it was: outside.
+/// Some programs leave the inside beyond the band marked as outside.
 void signInside(FloatGrid& grid) {
   for (auto value = grid.cbeginValueOff(); value; ++value)
     if (*value < 0) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A level set out of a file of any program.
+// A level set from a file of any program.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct LevelSet {
   double band_m = 0;
 };
 
-/// Throws LoadError where the file holds none, or several and no name, or one that is no distance to a
-/// surface; the text tells what would help.
+/// Throws LoadError if the file has no level set, several and no name is given, or one that is not a distance
+/// to a surface; the message says what would help.
 LevelSet levelSetOf(VdbArchive& archive, const std::string& file, const std::string& name);
 
 /// Takes a grid of floats as a level set; the file's name is for errors.

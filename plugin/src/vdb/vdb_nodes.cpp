@@ -28,7 +28,7 @@ class Bricks {
     checkSize();
     layout_.resizeCells();
     findConstants();
-    findSyncEvents();
+    addBorderCells();
     const auto count =
         static_cast<std::size_t>(std::count(is_wanted_.begin(), is_wanted_.end(), std::uint8_t{1}));
     requireMemory(static_cast<double>(count) * VoxPool::kBytes, " for its bricks",
@@ -50,7 +50,7 @@ class Bricks {
     return nodeOf(std::clamp<double>(per_m_ * static_cast<double>(distance_m), -kFullBand, kFullBand));
   }
 
-  /// Cells under one value; the others are wanted.
+  /// Cells covered by one value; the others need nodes.
   void findConstants() {
     is_wanted_.assign(layout_.bricks.size(), 0);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, layout_.bricks.size()), [&](const auto& range) {
@@ -65,8 +65,9 @@ class Bricks {
     });
   }
 
-  /// A cell's last nodes are the first ones of its neighbours: where they are another's, it is wanted too.
-  void findSyncEvents() {
+  /// A cell's last nodes are the first ones of its neighbours: where those belong to another brick, the cell
+  /// needs one too.
+  void addBorderCells() {
     std::vector<std::uint8_t> is_met(is_wanted_.size(), 0);
     tbb::parallel_for(std::size_t{0}, is_met.size(), [&](std::size_t i) {
       const Index3 cell = layout_.cellAt(i);
@@ -81,7 +82,7 @@ class Bricks {
   }
 
   void makeBricks(const std::vector<std::size_t>& cells) {
-    std::vector<std::uint32_t> slot(cells.size());  // 1 if the brick is kept, then its place
+    std::vector<std::uint32_t> slot(cells.size());  // 1 if the brick is kept, later its index
     overCells(cells, [&](std::size_t i, const NodeValue* nodes) {
       const NodeValue first = nodes[0];
       const bool is_constant =
@@ -136,7 +137,7 @@ class Bricks {
   const double per_m_;
   const std::string& file_;
   VoxLayout& layout_;
-  std::vector<std::uint8_t> is_wanted_;  // by cell: has nodes of its own
+  std::vector<std::uint8_t> is_wanted_;  // by cell: needs nodes
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ std::string bytesOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A file of ours, as it was.
+/// Reads an unchanged file of ours.
 class OwnFile {
  public:
   OwnFile(const std::string& file, VdbArchive& archive) : file_(file) {
@@ -169,7 +169,7 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   const PlacedVdb placed = loadPlacedVdb(file, grid);
   if (placed.X_FM.R.isIdentity(0) && placed.X_FM.p.isZero(0)) return placed.map;
   const VoxMap& map = placed.map;
-  // Not resampledVoxMap(): a band that is 3 voxels but for the rounding of floats would be none.
+  // Not resampledVoxMap(), which would refuse a band that is 3 voxels up to the rounding of floats.
   const VoxMapSettings settings = {map.voxel_m(), map.band_m() / map.voxel_m()};
   return mountVoxMap(VoxMapAccess::empty(settings), PlacedMap{&map, placed.X_FM});
 }

@@ -31,7 +31,7 @@ openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, dou
       tree.addTile(1, origin, static_cast<float>(-band_m), false);
       continue;
     }
-    // A leaf has the order of our own nodes. Values beyond the band are inactive, of the right sign.
+    // A leaf stores nodes in our order. Values beyond the band are inactive and have the right sign.
     auto* leaf = tree.touchLeaf(origin);
     const NodeValue* nodes = layout.nodesOf(i);
     for (int n = 0; n < kOwnNodes; ++n) {
@@ -63,7 +63,8 @@ openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
   const auto grid = openvdb::Int32Grid::create(0);
   grid->setName(kOwner);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
-  // Every node of a brick, border too: the neighbour that owns a border node may have no brick to keep it in.
+  // Every node of a brick, with its border: the neighbour that owns a border node may have no brick to store
+  // it in.
   auto accessor = grid->getAccessor();
   for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
     const std::uint32_t brick = layout.bricks[i];
@@ -80,7 +81,7 @@ openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
   return grid;
 }
 
-/// What a reload needs to give the same bits, beside the nodes.
+/// The data besides the nodes that a reload needs for the same bits.
 void addExactData(const VoxLayout& layout, double band_m, const Box& bounds, openvdb::MetaMap& out) {
   out.insertMeta("vps_band", openvdb::DoubleMetadata(band_m));
   out.insertMeta("vps_low", openvdb::Vec3IMetadata(toVdb(layout.low)));

@@ -10,8 +10,8 @@ namespace {
 
 constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
 
-/// Takes over the sign of `from` where a node is far and `from` is not. On the bits, since compilers do not
-/// put comparisons of floats into vectors by default.
+/// Copies the sign of `from` to a far node if `from` is not far. Works on the bits, since compilers do not
+/// vectorise comparisons of floats by default.
 float signedFar(float d, float from, float band_m) {
   const auto bits = std::bit_cast<std::uint32_t>(d), other = std::bit_cast<std::uint32_t>(from);
   const std::uint32_t saturated = std::bit_cast<std::uint32_t>(band_m) | (other & 0x80000000U);
@@ -30,8 +30,8 @@ class Filler {
  public:
   explicit Filler(VoxLayout& layout) : layout_(layout) {}
 
-  /// Empty cells meet the surface nowhere, so a sign spreads from cell to cell. From the rim first, which is
-  /// outside: a flaw in the mesh then cannot turn the outside in.
+  /// The surface does not pass through empty cells, so a sign spreads from cell to cell. It starts at the
+  /// rim, which is outside, so that a fault of the mesh cannot turn the outside in.
   void run() {
     is_filled_.resize(layout_.bricks.size());
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);
@@ -39,7 +39,7 @@ class Filler {
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) {
       if (isConstant(layout_.bricks[i])) continue;
       const NodeValue* nodes = layout_.nodesOf(i);
-      // An empty neighbour shares a face with the brick, whose middle node tells the sign.
+      // An empty neighbour shares a face with the brick, whose middle node has the sign.
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           Index3 node = Index3::Constant(kBrick / 2);
@@ -72,7 +72,7 @@ class Filler {
     }
   }
 
-  /// Remembers one cell of each empty run in part of a row along z.
+  /// Queues one cell of each empty run in part of a row along z.
   void wait(const Index3& at, int begin, int end) {
     if (!layout_.holds(at)) return;
     const std::uint8_t* is_filled = &is_filled_[layout_.cellIndex({at.x(), at.y(), layout_.low.z()})];
@@ -98,7 +98,7 @@ void saturate(BrickNodes& distance, float band) {
     for (int y = 1; y < kNodes; ++y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, kNodes, band);
     for (int y = kNodes - 2; y >= 0; --y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, -kNodes, band);
   }
-  // Now a plane across z is known whole, or not at all.
+  // Each plane across z is now known completely, or not at all.
   for (int z = 1; z < kNodes; ++z) {
     if (distance[z] != kFar || distance[z - 1] == kFar) continue;
     for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, 1, band);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From distances at nodes within the band to a sampled map: borders, signs beyond the band, inside and
-// outside.
+// Completes bricks whose nodes within the band are known: borders, signs beyond the band, inside and outside.
 #pragma once
 
 #include <cfloat>
@@ -10,28 +9,28 @@
 
 namespace vps {
 
-/// Beyond the band, not signed yet.
+/// Marks nodes beyond the band that have no sign yet.
 inline constexpr float kFar = FLT_MAX;
 
 /// All nodes of a brick, border included.
 using BrickNodes = std::array<float, kBrickNodes>;
 
-/// Gives far nodes of a brick the band's distance, with the sign of a node beside them: where one of two
-/// neighbours is far, the surface does not pass between, since the band is wider than a voxel. At least one
-/// node must be known.
+/// Sets far nodes of a brick to the band's distance with the sign of a neighbour node: if one of two
+/// neighbours is far, the surface does not pass between them, since the band is wider than a voxel. At least
+/// one node must be known.
 void saturate(BrickNodes& distance, float band);
 
-/// Takes bricks that are whole, a batch at a time; the order of batches is the order of the bricks. Distances
-/// may be in any unit: `per_unit` quanta.
+/// Writes complete bricks into a layout, a batch at a time, in the order of the batches. Distances may be in
+/// any unit of `per_unit` quanta.
 class BrickWriter {
  public:
-  /// @param expected  bricks to make room for at first; more cost a copy
+  /// @param expected  bricks for which memory is reserved; more cost a copy
   BrickWriter(VoxLayout& layout, double per_unit, std::size_t expected);
 
-  /// Makes room for a batch; as takeBricks(), so that the bricks of batches before must be in the layout.
+  /// Allocates a batch as takeBricks(); the bricks of earlier batches must be in the layout by then.
   void take(std::size_t count);
-  /// Stores a brick in place `slot` of the last batch, saturated; its name. Thread-safe for different slots.
-  /// Known nodes must be within the band.
+  /// Stores a brick, saturated, in `slot` of the last batch and returns its name. Thread-safe for different
+  /// slots. Known nodes must be within the band.
   std::uint32_t write(std::size_t slot, BrickNodes& distance);
 
  private:
@@ -40,7 +39,7 @@ class BrickWriter {
   std::uint32_t first_ = 0;  // of the last batch
 };
 
-/// Empty cells, after all bricks are in: outside or inside.
+/// Decides whether empty cells are outside or inside, after all bricks are stored.
 void fillEmptyCells(VoxLayout& layout);
 
 }  // namespace vps

@@ -7,10 +7,10 @@
 namespace vps {
 namespace {
 
-/// How far beyond its region a feature is still asked: more than rounding moves a border, so that no node
-/// falls between two regions, and less than the float that holds a distance can tell.
+/// How far beyond its region a feature is still used: more than rounding moves a border, so that no node
+/// falls between two regions, and less than a float distance can resolve.
 constexpr double kBorder = 1e-7;
-/// Faces that turn less than this at an edge leave it no room of its own: the band is narrower than kBorder
+/// Faces that turn less than this at an edge leave the edge no region: the band is narrower than kBorder
 /// divided by it.
 constexpr double kFlat = 1e-9;
 
@@ -83,7 +83,7 @@ struct Splatter::Edge {
   Box box;
   std::span<const TriangleSide> sides;
   const SurfaceFeatures& features;
-  const Vec3 from;  // where the tile lies
+  const Vec3 from;  // the tile's origin
   bool is_by_thin;
 
   Edge(const SurfaceFeatures& surface, std::uint32_t i, const Vec3& origin, double band_voxels)
@@ -102,15 +102,15 @@ struct Splatter::Edge {
     bound();
   }
 
-  /// Where a triangle beside the edge has no normal. Within the edge, even if t is at its end or past it by
-  /// rounding: only what meets along the edge counts.
+  /// Used where a triangle at the edge has no normal. The foot counts as within the edge even if t is at its
+  /// end, or past it by rounding: only facets along the edge matter.
   [[nodiscard]] Vec3 normalAt(double t) const {
     const double margin = std::min(2 * SurfaceFeatures::kTouch, 0.5 * length);
     const double within = std::clamp(t, margin, length - margin);
     return features.pseudonormalThrough(from + a + within * along, sides);
   }
 
-  /// Into a face from the edge, at a right angle to it; zero for a face without a normal.
+  /// The direction into a face, at a right angle to the edge; zero for a face without a normal.
   [[nodiscard]] Vec3 into(TriangleSide side) const {
     const auto& t = features.triangle(side.triangle);
     const Vec3 m = features.normal(side.triangle).cross(along);
@@ -126,8 +126,8 @@ struct Splatter::Edge {
           box = Box();
           return;
         }
-        // Below both faces at a convex edge lies the body: only the outer side can be nearest to the edge,
-        // and only the inner one at a hollow edge. The arc between the normals is within its two tangents.
+        // The body is below both faces at a convex edge: only the outer side can be nearest to the edge, and
+        // only the inner side at a concave edge. The arc between the normals lies within its two tangents.
         const double tangent = (rise < 0 ? band : -band) * std::sqrt(2 / (1 + cosine));
         const Vec3 low = (tangent * n1).cwiseMin(tangent * n2).cwiseMin(0.0);
         const Vec3 high = (tangent * n1).cwiseMax(tangent * n2).cwiseMax(0.0);
@@ -184,7 +184,7 @@ struct Splatter::Corner {
     for (const TriangleSide corner : features.sidesFrom(i)) {
       const auto& t = features.triangle(corner.triangle);
       work.push_back(features.point(t[(corner.side + 1) % 3]) - features.point(i));
-      // Where two triangles share each edge, every edge was met as one's first side.
+      // If two triangles share each edge, every edge is the first side of one of them.
       if (!is_regular) work.push_back(features.point(t[(corner.side + 2) % 3]) - features.point(i));
     }
     spokes = work;
@@ -240,7 +240,7 @@ auto Splatter::withFeature(std::uint32_t feature, const Vec3& origin, Visit visi
 
 Box Splatter::reach(std::uint32_t feature) {
   if (feature < features_.faceCount()) return Face(features_, feature, Vec3::Zero(), band_).box;
-  // Most edges and vertices of a smooth surface have a region so thin that no node lies in it.
+  // Most edges and vertices of a smooth surface have a region that is too thin to contain a node.
   return withFeature(feature, Vec3::Zero(), [&](const auto& f) {
     const Vec3 low = (f.box.min.array() - kBorder).ceil();
     const Vec3 size = (f.box.max.array() + kBorder).floor() - low.array();

@@ -2,8 +2,8 @@
 // Writes the features of a surface into tiles of grid nodes: each node gets the signed distance to the
 // nearest feature whose region it lies in, which is the distance to the surface (surface_features.h).
 //
-// Cost follows the nodes within the band, not their number times the triangles around: most nodes lie in the
-// region of one or two features only.
+// The cost is proportional to the nodes within the band, not to their number times the triangles around: most
+// nodes are in the region of one or two features only.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ constexpr int tileIndex(int x, int y, int z) {
   return (x * kTileNodes + y) * kTileNodes + z;
 }
 
-/// Reads features; one for each thread.
+/// Reads features; use one per thread.
 class Splatter {
  public:
   /// @param band  greatest distance that is written, in voxels
@@ -32,11 +32,11 @@ class Splatter {
 
   /// Box around the nodes that a feature can be nearest to, empty (min > max) if there are none [voxels].
   [[nodiscard]] Box reach(std::uint32_t feature);
-  /// Whether a feature comes within the band of a ball; may say yes wrongly, never no.
+  /// True if a feature may come within the band of a ball; never false if it does.
   [[nodiscard]] bool reaches(std::uint32_t feature, const Vec3& center, double radius) const;
 
   /// Writes to the nodes of a tile, whose first one lies at `origin`. Nodes hold FLT_MAX or a signed distance
-  /// in voxels, negative inside; of two that are equally far the first stays.
+  /// in voxels, negative inside; of two equal distances the first is kept.
   void splat(std::uint32_t feature, const Vec3& origin, float* tile);
 
  private:

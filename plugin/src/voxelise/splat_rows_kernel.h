@@ -17,7 +17,7 @@ inline constexpr int kRowLanes = 8;
 
 inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
   constexpr Floats kLane = {0, 1, 2, 3, 4, 5, 6, 7};
-  // Both ends outwards by what a z of this size may be off.
+  // Both ends are moved outwards by the rounding error of a z of this size.
   constexpr float kMargin = 1e-3F;
   const Floats first = static_cast<float>(region.low[2]) - kMargin - Floats{};
   const Floats last = static_cast<float>(region.high[2]) + kMargin - Floats{};
@@ -38,8 +38,7 @@ inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
       high = high > kBelow ? high : kBelow;
       const Ints from = __builtin_convertvector(low + (1 - 2 * kMargin), Ints);
       const Ints end = __builtin_convertvector(high + (1 + 2 * kMargin), Ints);
-      // What is not a number, from features too thin or far for floats, converts to the least integer: no
-      // row.
+      // NaN, from features too thin or too far away for floats, converts to the least integer: no row.
       const Ints is_row = (from < end) & (from >= 0);
       using Pairs = long long __attribute__((vector_size(32)));
       const auto pairs = reinterpret_cast<Pairs>(is_row);

@@ -9,9 +9,9 @@
 namespace vps {
 namespace {
 
-/// A triangle less high than this share of a voxel is its edges: they are as near.
+/// A triangle lower than this share of a voxel is replaced by its edges, which are as near.
 constexpr double kLeastHeight = 1e-7;
-/// And so is one less high than this share of its longest side: its normal is rounding noise.
+/// So is one lower than this share of its longest side: its normal is rounding noise.
 constexpr double kLeastSlimness = 1e-12;
 
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -63,7 +63,7 @@ void SurfaceFeatures::collectCorners() {
   corners_.resize(sum);
   for (std::uint32_t i = 0; i < triangles_.size(); ++i)
     for (std::uint32_t k = 0; k < 3; ++k) corners_[first_corner_[triangles_[i][k]]++] = {i, k};
-  // Filling moved each start to the next one's.
+  // Filling has moved each start to the next one.
   for (std::size_t v = points_.size(); v > 0; --v) first_corner_[v] = first_corner_[v - 1];
   first_corner_[0] = 0;
 }
@@ -122,7 +122,7 @@ bool SurfaceFeatures::hasThin(std::span<const TriangleSide> sides) const {
                                   [&](TriangleSide side) { return normals_[side.triangle].isZero(); });
 }
 
-/// The angle under which a triangle meets a point q of its boundary; 0 where it does not touch q.
+/// The angle that a triangle covers at a point q of its boundary; 0 where it does not touch q.
 double SurfaceFeatures::angleAt(const Vec3& q, std::uint32_t triangle) const {
   const auto& t = triangles_[triangle];
   const Vec3 p[3] = {points_[t[0]], points_[t[1]], points_[t[2]]};

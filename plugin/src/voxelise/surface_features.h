@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh as its features: faces, edges and vertices, each with its neighbours, so that the part of space that
-// is nearest to one of them has a plain description.
+// A mesh as its features: faces, edges and vertices with their neighbours. The part of space that is nearest
+// to a feature then has a simple description.
 //
 // The point q of a surface that is nearest to p lies within a face, within an edge, or at a vertex. Then
 //   face:   p lies above or below the triangle, within its three sides;
 //   edge:   p lies between the edge's two ends, and beyond the edge from every face that meets there;
 //   vertex: p lies beyond the vertex along every edge that meets there.
-// So every point is in the region of its own nearest feature, whatever the mesh: closed or not, with any
-// number of faces at an edge. Where the surface is smooth the regions of edges and vertices are thin.
-// Source of the idea: Mauch, Efficient algorithms for solving static Hamilton-Jacobi equations, 2003.
+// So every point is in the region of its own nearest feature, for any mesh, closed or not, with any number of
+// faces at an edge. Where the surface is smooth the regions of edges and vertices are thin.
 #pragma once
 
 #include <array>
@@ -33,7 +32,7 @@ class SurfaceFeatures {
     std::uint32_t first;  ///< of its sides
   };
 
-  /// A point so near a corner or a side lies on it [voxels].
+  /// A point within this distance of a corner or a side lies on it [voxels].
   static constexpr double kTouch = 1e-6;
 
   /// Positions are p / voxel_m - origin: voxels. Expects welded vertices and at most 2^30 triangles. O(n).
@@ -45,7 +44,7 @@ class SurfaceFeatures {
 
   [[nodiscard]] const Vec3& point(std::uint32_t vertex) const { return points_[vertex]; }
   [[nodiscard]] const std::array<std::uint32_t, 3>& triangle(std::uint32_t i) const { return triangles_[i]; }
-  /// Unit outward; zero for a triangle too thin to have one, which its edges then stand for.
+  /// Unit outward; zero for a triangle too thin to have one, which its edges then replace.
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] const Edge& edge(std::uint32_t i) const { return edges_[i]; }
   /// The sides that make up an edge.
@@ -61,11 +60,11 @@ class SurfaceFeatures {
   [[nodiscard]] bool isRegular(std::uint32_t vertex) const { return is_regular_[vertex] != 0; }
   /// Sum of the normals at a vertex, weighted by angle. Source: Baerentzen and Aanaes 2005.
   [[nodiscard]] Vec3 pseudonormal(std::uint32_t vertex) const;
-  /// The same at a point q of the surface, from the triangles `around` it and from those that touch q beyond
-  /// triangles without a normal: a collinear triangle that closes a T-junction has the face it stands for
-  /// only behind it. Slower.
+  /// As above, at a point q of the surface, from the triangles `around` it and from those that touch q behind
+  /// triangles without a normal: a collinear triangle that closes a T-junction hides the face that it belongs
+  /// to. Slower.
   [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const TriangleSide> around) const;
-  /// Whether one of some triangles has no normal.
+  /// True if one of the triangles has no normal.
   [[nodiscard]] bool hasThin(std::span<const TriangleSide> sides) const;
 
  private:
@@ -75,11 +74,11 @@ class SurfaceFeatures {
   void nameSides();
   [[nodiscard]] double angleAt(const Vec3& q, std::uint32_t triangle) const;
 
-  const std::vector<std::array<std::uint32_t, 3>>& triangles_;  // the mesh's
+  const std::vector<std::array<std::uint32_t, 3>>& triangles_;  // of the mesh
   std::vector<Vec3> points_, normals_;
   std::vector<std::uint32_t> first_corner_;
   std::vector<TriangleSide> corners_;
-  std::vector<Edge> edges_;  // and one more for the end
+  std::vector<Edge> edges_;  // with one entry more for the end
   std::vector<TriangleSide> sides_;
   std::vector<std::uint8_t> is_regular_;
   bool has_thin_ = false;

@@ -2,14 +2,14 @@
 // Mesh to voxmap: the exact distance at every node within the band.
 //
 // 1. Features: faces, edges and vertices with their neighbours (surface_features.h).
-// 2. Gather: for each feature the tiles of 32^3 nodes it can reach; turned round into a list for each tile.
+// 2. Gather: the tiles of 32^3 nodes that each feature can reach, then the features of each tile.
 // 3. Splat: tile by tile, each feature writes to the nodes that may be nearest to it (splat.h). Bricks are
-//    cut from the tile while it is in the cache.
+// cut from the tile while it is in the cache.
 // 4. Bricks: the neighbours' border, a sign for the nodes beyond the band (brick_assembly.h), and a bound of
-//    the distance at every cell's centre (center_bounds.h).
+// the distance at every cell's centre (center_bounds.h).
 //
-// Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
-// every number of threads gives the same bits.
+// Parallel over features, tiles and rows; each result has one writer and a fixed order, so that every number
+// of threads gives the same bits.
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -42,7 +42,7 @@ struct CutBrick {
   std::size_t cell;
 };
 
-/// As kFar == d, on the bits: compilers do not put comparisons of floats into vectors by default.
+/// As kFar == d, but on the bits: compilers do not vectorise comparisons of floats by default.
 bool isFar(float d) {
   return std::bit_cast<std::uint32_t>(d) == std::bit_cast<std::uint32_t>(kFar);
 }
@@ -55,12 +55,12 @@ class Voxeliser {
         box_(box),
         h_(settings.voxel_m),
         band_m_(bandHeld(settings.band_voxels * settings.voxel_m)),
-        // What rounds to the full band need not be computed.
+        // Distances that round to the full band need not be computed.
         reach_((kFullBand - 0.5) * quantumOf(band_m_) / h_),
         signer_(signer) {}
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
-  /// False if pseudonormals turned out to contradict each other.
+  /// False if pseudonormals contradict each other.
   [[nodiscard]] bool areSignsConsistent() const { return are_signs_consistent_; }
 
  private:
@@ -110,8 +110,8 @@ void Voxeliser::layOutDirectory() {
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
 }
 
-/// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
-/// triangle costs what its surface costs, not its box.
+/// Halves the range of tiles until one is left and drops halves that the feature cannot reach: the cost of a
+/// large oblique triangle is that of its surface, not of its box.
 void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low,
                             const Index3& size, std::vector<Reached>& out) const {
   const Vec3 half = 0.5 * kTile * size.cast<double>();
@@ -137,7 +137,7 @@ void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::ve
   const Index3 high = (box.max / kTile).cast<int>();
   const Index3 size = high - low + Index3::Ones();
   if (size.maxCoeff() > 2) return gatherRange(splatter, feature, low, size, out);
-  // Few: cheaper to take all of them than to look.
+  // For few tiles taking all of them is faster than testing.
   for (int x = low.x(); x <= high.x(); ++x)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int z = low.z(); z <= high.z(); ++z) out.push_back({tileNumber({x, y, z}), feature});
@@ -209,7 +209,7 @@ std::uint8_t nearBits(const float* row) {
   return static_cast<std::uint8_t>(bits);
 }
 
-/// Copies a brick from its tile, and notes where the surface is.
+/// Copies a brick from its tile and records where the surface is.
 void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer) {
   BrickNodes distance;
   SurfaceBits& surface = surface_[static_cast<std::size_t>(brick_of_[brick.cell])];
@@ -223,7 +223,8 @@ void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t sl
   layout_->bricks[brick.cell] = writer.write(slot, distance);
 }
 
-/// A batch of tiles at a time, in the same memory: fresh pages for all of them would cost more than the work.
+/// Processes a batch of tiles at a time in the same memory: first access to new pages for all of them would
+/// cost more than the computation.
 void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   constexpr std::size_t kBatch = 16;
   std::vector<std::size_t> wanted;
@@ -274,19 +275,19 @@ void Voxeliser::boundCenters() {
 }
 
 std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
-  const auto tell = [&](double share) {
+  const auto report = [&](double share) {
     if (progress) progress("voxelising", share);
   };
-  tell(0);
+  report(0);
   layOutDirectory();
   {
     const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
-    tell(0.1);
+    report(0.1);
     gather(features);
-    tell(0.3);
+    report(0.3);
     splatTiles(features);
   }
-  tell(0.8);
+  report(0.8);
   if (signer_ != nullptr)
     signer_->signBricks(*layout_, h_, quantumOf(band_m_));
   else
@@ -294,13 +295,13 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   markFarCells(*layout_);
-  tell(0.9);
+  report(0.9);
   boundCenters();
-  tell(1);
+  report(1);
   return layout_;
 }
 
-/// Ready to be voxelised: signs need shared vertices.
+/// Prepares a mesh for voxelising: signs need shared vertices.
 RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
   Mesh shared = welded(mesh);
   requireUsable(shared, "", part);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cache file: a Header, the MeshReport, the cells' bricks and centre bounds, the nodes of all bricks, and a
-// hash of everything before. Numbers lie as they do in memory.
+// A cache file has a Header, the MeshReport, the cells' bricks and centre bounds, the nodes of all bricks,
+// and a hash of everything before it. Numbers are stored as in memory.
 #define XXH_INLINE_ALL
 #include "vps/voxmap_cache.h"
 
@@ -21,10 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Counts up whenever the file's layout changes, or building gives other bits.
+/// Incremented when the file's layout changes, or building gives other bits.
 constexpr std::uint32_t kVersion = 4;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
-/// Reads as something else on a machine whose bytes run the other way.
+/// Reads as another number on a machine of the other byte order.
 constexpr std::uint32_t kByteOrder = 0x01020304;
 
 using Digest = std::array<std::uint64_t, 2>;
@@ -56,7 +56,7 @@ struct Header {
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 144);  // no gaps
 
-/// All members of a report: a gap between them would put chance bytes into the file.
+/// All members of a report, one by one: gaps between them would put undefined bytes into the file.
 template <typename Report>
 auto membersOf(Report& r) {
   static_assert(sizeof(MeshReport) == 16 * 8, "a member was added");
@@ -86,7 +86,7 @@ std::string nameOf(const Digest& key) {
   return std::string(text.data()) + ".voxmap";
 }
 
-/// Reads and hashes; isGood() turns false at the first byte that is missing.
+/// Reads and hashes; isGood() becomes false at the first missing byte.
 class Reader {
  public:
   explicit Reader(const fs::path& file) : in_(file, std::ios::binary) {}
@@ -99,7 +99,7 @@ class Reader {
   void read(std::vector<T>& to) {
     read(to.data(), to.size() * sizeof(T));
   }
-  /// The hash at the end is that of all that was read, and nothing follows.
+  /// True if the file ends with the hash of all that was read, and nothing follows.
   [[nodiscard]] bool endsWell() {
     const Digest found = hash_.digest();
     Digest kept = {};
@@ -123,7 +123,7 @@ class Writer {
   void write(const std::vector<T>& from) {
     write(from.data(), from.size() * sizeof(T));
   }
-  /// True if all of it has been written.
+  /// True if everything has been written.
   bool finish() {
     const Digest digest = hash_.digest();
     out_.write(reinterpret_cast<const char*>(digest.data()), sizeof digest);
@@ -136,7 +136,8 @@ class Writer {
   Hash hash_;
 };
 
-/// Bytes of a file with this header, or nothing if its numbers cannot be: checked before memory is taken.
+/// Size of a file with this header; nothing if the numbers are impossible. Checked before memory is
+/// allocated.
 std::optional<std::uint64_t> bytesOf(const Header& header) {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 40;
   constexpr std::int64_t kFarthest =
@@ -162,10 +163,10 @@ bool areNamesGood(const VoxLayout& layout) {
 
 }  // namespace
 
-/// Puts maps into files and takes them out.
+/// Writes maps to files and reads them.
 class VoxMapCacheFile {
  public:
-  /// Nothing, and a reason in `why`, if the file cannot be trusted.
+  /// Returns nothing, and a reason in `why`, if the file cannot be trusted.
   static std::optional<VoxMap> read(const fs::path& file, const Digest& key, MeshReport& report,
                                     std::string& why) {
     Reader reader(file);
@@ -230,7 +231,7 @@ class VoxMapCacheFile {
     reader.read(layout->bricks);
     reader.read(layout->centers_m);
     layout->pool = std::make_shared<VoxPool>(header.bricks);
-    (void)layout->pool->take(header.bricks);  // all of a new pool, so from its first place on
+    (void)layout->pool->take(header.bricks);  // all of a new pool, so from its first brick on
     reader.read(layout->pool->nodes(2 * kBrickStride), header.bricks * kBrickStride * sizeof(NodeValue));
     if (!reader.isGood() || !reader.endsWell() || !areNamesGood(*layout)) return std::nullopt;
     report = kept;

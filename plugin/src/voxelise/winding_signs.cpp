@@ -17,28 +17,28 @@ namespace vps {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// A winding number this far from 0.5 is sure, and may be handed on to neighbours.
+/// A winding number this far from 0.5 is certain, and may be passed to neighbours.
 constexpr double kCertainMargin = 0.25;
-/// Off a value before it is handed on: many times the clusters' measured error.
+/// Subtracted from the margin before a value is passed on: many times the clusters' measured error.
 constexpr double kDoubt = 0.02;
-/// Values are taken as at most this far from 0.5: crossing a facet within the solid, which no distance tells
-/// of, takes one from 2 to 1.
+/// Values are limited to this distance from 0.5: crossing a facet inside the solid, which distances do not
+/// show, changes the winding number from 2 to 1.
 constexpr double kMostMargin = 0.5;
 
 double boxGap2(const Box& a, const Box& b) {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
 }
 
-/// Nodes that may be inside. A band or more from the box of the surface nothing is, whatever the winding
-/// number says: walls that face the wrong way put it above 0.5 far out in the open. It makes the directory's
-/// rim outside, whose lowest and highest nodes are that far; and with it what lies beyond, which reads as the
-/// rim. A coarser map of the surface agrees, so that where it stands for a finer one the rim is outside too.
+/// Nodes that may be inside. Nothing is inside at a band or more from the box of the surface, whatever the
+/// winding number: walls that face the wrong way raise it above 0.5 far from the part. So the directory's
+/// rim, whose outermost nodes are that far, is outside, and with it everything beyond, which reads as the
+/// rim.
 class Within {
  public:
   Within(const VoxLayout& layout, double voxel_m, double quantum_m) {
     const Box& box = layout.parts.front().bounds;
     const double band_m = kFullBand * quantum_m;
-    // As the directory is laid out: a cell is eight voxels, so that both round alike.
+    // Computed like the directory: a cell is eight voxels, so that both are rounded alike.
     low_ = ((box.min.array() - band_m) / voxel_m).floor().cast<int>();
     high_ = ((box.max.array() + band_m) / voxel_m).ceil().cast<int>();
   }
@@ -57,7 +57,7 @@ class Within {
   Index3 low_, high_;
 };
 
-/// Calls visit(other) for the up to six neighbours of one of size^3 nodes.
+/// Calls visit(other) for the up to six neighbours of a node among size^3 nodes.
 template <typename Visit>
 void forEachNeighbour(const Index3& at, const Index3& size, Visit visit) {
   for (int axis = 0; axis < 3; ++axis)
@@ -138,7 +138,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
-  const double loss = slope_.bound(box) * voxel_m;  // of margin, a step
+  const double loss = slope_.bound(box) * voxel_m;  // of margin, per step
   Count count;
   std::array<int, kBrickNodes> size;
   std::array<float, kBrickNodes> margin;
@@ -160,7 +160,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
     for (int next = 0; next < end; ++next) {
       const int i = queue[next];
       const double left = margin[i] - loss - (i == seed ? kDoubt : 0);
-      // On the surface itself both signs are right, and the winding number says so.
+      // On the surface itself both signs are right, and the winding number leaves it open.
       count.certain += size[i] < kFullBand && (margin[i] > kCertainMargin || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
       if (!(left > kCertainMargin)) continue;
@@ -177,7 +177,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
 
 namespace {
 
-/// Makes those nodes of a brick outside that cannot be inside.
+/// Sets those nodes of a brick outside that cannot be inside.
 void clip(NodeValue* nodes, const Index3& cell, const Within& within) {
   if (within.holdsAllOf(cell)) return;
   for (int i = 0; i < kBrickNodes; ++i) {
@@ -272,7 +272,7 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
       layout.bricks[i] = brick;
       forEachNeighbour(layout.cellAt(i) - layout.low, layout.size, [&](const Index3& at) {
         const std::size_t j = layout.cellIndex(layout.low + at);
-        // Empty cells touch, and no surface is nearer than the band to either.
+        // Empty cells are adjacent, and the surface is at least a band away from both.
         const float left = margin[i] - std::max(loss[i], loss[j]) - (i == seed ? float{kDoubt} : 0.0f);
         if (!isConstant(layout.bricks[j]) || margin[j] >= 0 || !(left > float{kCertainMargin})) return;
         margin[j] = left;
@@ -289,7 +289,8 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
       layout.bricks[i] = kOutside;
       continue;
     }
-    // From a cell's centre to its corners: half its diagonal. Where it is cut off, corners may disagree.
+    // The distance from a cell's centre to its corners: half its diagonal. Where passing values on ends,
+    // corners may disagree.
     is_uncertain[i] = margin[i] < 0.87f * loss[i] + float{kDoubt} || !within.holdsAllOf(layout.cellAt(i));
   }
   const std::vector<std::size_t> cut = cutCells(layout, voxel_m, quantum_m, is_uncertain);
@@ -310,8 +311,8 @@ double WindingSigner::certainShare() const noexcept {
 
 namespace {
 
-/// Whether any of `count` neighbours in the band have opposite signs and are more than a step apart in all;
-/// a mask of 0 leaves a pair out. On 16 bits and without branches: many at a time.
+/// True if any of `count` pairs of neighbours in the band have opposite signs and are more than a step apart
+/// in sum; a mask of 0 leaves a pair out. In 16 bits and without branches, so that it is vectorised.
 bool hasJump(const NodeValue* a, const NodeValue* b, int count, std::uint16_t step,
              const std::uint16_t* mask) {
   using U16 = std::uint16_t;
@@ -331,7 +332,7 @@ bool hasJump(const NodeValue* a, const NodeValue* b, int count, std::uint16_t st
 bool hasJump(const NodeValue* nodes, std::uint16_t step) {
   constexpr int kPlane = kNodes * kNodes;
   using Mask = std::array<std::uint16_t, kBrickNodes>;
-  // Pairs that run over the end of a row or a plane are none.
+  // Pairs across the end of a row or a plane do not count.
   static constexpr auto kHasNext = [] {
     std::array<Mask, 3> mask = {};
     for (int i = 0; i < kBrickNodes; ++i) {
@@ -356,7 +357,7 @@ bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m) {
   const std::vector<std::size_t> cells = cellsWithBricks(layout);
   std::atomic<bool> agree = true;
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
-    // Beyond the band signs are only spread.
+    // Beyond the band signs are only copied from neighbours.
     if (hasJump(layout.nodesOf(cells[i]), step)) agree.store(false, std::memory_order_relaxed);
   });
   return agree;

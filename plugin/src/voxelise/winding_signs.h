@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signs of a voxmap's nodes by winding number, for meshes whose pseudonormals cannot be trusted.
+// Signs of a voxmap's nodes by winding number, for meshes whose pseudonormals are not reliable.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace vps {
 
-/// How fast the winding number can change where no triangle is. Its gradient is the field of a current along
-/// the mesh's border (Biot and Savart), so at most sum of length / distance^2 over border edges, over 4 pi;
-/// zero for a closed mesh. The border: edges not run through as often forwards as backwards.
+/// A bound of the gradient of the winding number away from triangles. The gradient is the field of a current
+/// along the mesh's border (Biot and Savart), so it is at most the sum of length / distance^2 over border
+/// edges, over 4 pi; zero for a closed mesh. The border consists of the edges that do not have as many facets
+/// in one direction as in the other.
 class WindingSlope {
  public:
   explicit WindingSlope(const Mesh& mesh);
@@ -30,21 +31,23 @@ class WindingSlope {
   std::vector<std::pair<Box, double>> edges_;  // box and length [m]
 };
 
-/// Signs nodes: inside is where the winding number exceeds 0.5, less than a band from the surface's box.
-/// Beyond all is outside, so the directory's rim is. Between neighbouring nodes farther from the
-/// surface than their step it changes by no more than its slope, so one value serves many nodes: all of a
-/// brick's on one side of a closed surface. Near a border, every node has its own.
+/// Signs nodes: inside is where the winding number exceeds 0.5 and the distance to the surface's box is less
+/// than a band. Everything else is outside, the directory's rim too. Between neighbouring nodes that are
+/// farther from the surface than their step, the winding number changes at most by its slope, so that one
+/// value serves many nodes: all nodes of a brick on one side of a closed surface. Near a border every node
+/// needs its own.
 class WindingSigner {
  public:
   /// @param solid faces out (see RepairedMesh), with shared vertices
   explicit WindingSigner(const Mesh& solid) : winding_(solid), slope_(solid) {}
 
-  /// Overwrites the signs of all bricks' nodes, and notes how steep the field is then: near a hole signs
-  /// change without a surface. Parallel over bricks, each with an order of its own.
+  /// Overwrites the signs of all bricks' nodes and updates the layout's slope: near a hole signs change
+  /// without a surface. Parallel over bricks; the result does not depend on the threads.
   void signBricks(VoxLayout& layout, double voxel_m, double quantum_m);
-  /// Makes empty cells inside or outside by the winding number at their centres; after fillEmptyCells(),
-  /// whose filling goes through holes that are wider than the band. Cells whose corners disagree, in the
-  /// middle of such a hole, become bricks with a sign at each node. Nothing to do for a closed mesh.
+  /// Decides by the winding number at their centres whether empty cells are inside. Call after
+  /// fillEmptyCells(), whose signs spread through holes that are wider than the band. Cells whose corners
+  /// disagree, in the middle of such a hole, become bricks with a sign for each node. Does nothing for a
+  /// closed mesh.
   void signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m);
   /// Share of the nodes signed so far, in the band, whose winding number is more than 0.25 from 0.5.
   [[nodiscard]] double certainShare() const noexcept;
@@ -53,7 +56,7 @@ class WindingSigner {
   struct Count {
     std::size_t nodes = 0, certain = 0;
   };
-  /// The cells, ascending, that a hole's middle passes; `is_uncertain` by cell.
+  /// The cells, ascending, through which the middle of a hole passes; `is_uncertain` by cell.
   [[nodiscard]] std::vector<std::size_t> cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
                                                   const std::vector<std::uint8_t>& is_uncertain) const;
   /// Signs the nodes of these cells' bricks.
@@ -65,8 +68,8 @@ class WindingSigner {
   Count count_;
 };
 
-/// Whether no two neighbours within a brick that the surface cannot pass between have different signs. False
-/// tells that pseudonormals were misled: by a mesh that crosses itself, most likely.
+/// True if no two neighbours within a brick have different signs unless the surface can pass between them.
+/// False means that pseudonormals were wrong, most likely because the mesh crosses itself.
 bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m);
 
 }  // namespace vps

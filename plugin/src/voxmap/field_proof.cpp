@@ -147,14 +147,14 @@ class Proof {
   /// by the distance. boundCellCenters() measures to cubes around nodes: sqrt(3)/2 more than to the cell that
   /// has them.
   void boundCenters() {
-    constexpr double kContactMargin = 0.7072 + 0.8661;
+    constexpr double kMargin = 0.7072 + 0.8661;
     const std::vector<float> outside = wayOutOf(kOutside), inside = wayOutOf(kInside);
     tbb::parallel_for(std::size_t{0}, layout_.bricks.size(), [&](std::size_t i) {
       const int center = layout_.nodesOf(i)[nodeIndex(kBrick / 2, kBrick / 2, kBrick / 2)];
       double least = quantum_ * std::abs(center);
       if (isConstant(layout_.bricks[i]))
         least =
-            std::max(least, band_ - kContactMargin +
+            std::max(least, band_ - kMargin +
                                 static_cast<double>(layout_.bricks[i] == kOutside ? outside[i] : inside[i]));
       // Rounding down keeps it a bound.
       const double least_m = std::max(0.0, least - error_) * voxel_m_ * (1 - 1e-6);

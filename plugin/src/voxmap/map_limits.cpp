@@ -27,7 +27,7 @@ void requireSettings(const VoxMapSettings& settings, const std::string& part) {
 
 void requirePose(const Pose& X_MP) {
   if (!X_MP.isFinite())
-    throw LoadError("", "", "the pose of a part to be placed holds what is not a number; place it anew");
+    throw LoadError("", "", "the pose of a part to be placed is not finite; place it again");
 }
 
 void requireNear(const Box& bounds_M, double voxel_m, const std::string& part) {

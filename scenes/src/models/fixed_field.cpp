@@ -5,7 +5,9 @@
 
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
-#include "vps/crop.h"
+#include "vps/box.h"
+#include "vps/shell_crop.h"
+#include "vps/voxmap_crop.h"
 
 namespace vps::scenes {
 

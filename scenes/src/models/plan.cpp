@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "models/scene_models.h"
-#include "vps/crop.h"
+#include "vps/box.h"
 
 namespace vps::scenes {
 

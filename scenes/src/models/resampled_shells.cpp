@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "models/scene_models.h"
-#include "vps/crop.h"
 #include "vps/query.h"
+#include "vps/shell_crop.h"
 
 namespace vps::scenes {
 
@@ -25,8 +25,7 @@ struct Side {
 };
 
 /// Least distance of a part to the field, which lies in W; none beyond the band.
-std::optional<double> leastDistance(const Side& field, const Side& part, const Pose& X_WP,
-                                    Sides sides) {
+std::optional<double> leastDistance(const Side& field, const Side& part, const Pose& X_WP, Sides sides) {
   std::optional<double> least_m;
   const auto ask = [&](const Side& of, const Side& to, const Pose& X) {
     if (to.map == nullptr || of.shell == nullptr) return;

@@ -4,9 +4,10 @@
 #include <set>
 
 #include "core/wall_clock.h"
-#include "vps/crop.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
+#include "vps/shell_crop.h"
+#include "vps/voxmap_crop.h"
 
 namespace vps::scenes {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "models/scene_models.h"
-#include "vps/crop.h"
+#include "vps/box.h"
 
 namespace vps::scenes {
 

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "models/scene_models.h"
-#include "vps/crop.h"
+#include "vps/box.h"
 #include "vps/friction.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
