@@ -1,31 +1,106 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What every target of ours has in common, and how the package is installed. Kept in one place so that a
-# folder's CMakeLists.txt says only what is its own.
+# What every target of ours has in common. Kept in one place so that a folder's CMakeLists.txt says only what
+# is its own. VpsInstall.cmake has the installed package.
 
-# A library: alias vps::<name>, header folder, warnings, install rule.
+# vps_add_library(NAME SOURCES ... [PUBLIC target...] [PRIVATE target...] [PRECOMPILE header...]
+#                 [PACKAGES name...] [PRIVATE_PACKAGES name...] [HEADERS file... | EXCLUDE_HEADERS file...]
+#                 [PC_FILE [PC_REQUIRES module...] [PC_CFLAGS flag...]
+#                  [PC_PRIVATE_REQUIRES module...] [PC_PRIVATE_LIBS flag...]])
+# A library with alias vps::NAME, warnings, visibility, precompiled headers and install rules.
+#   PUBLIC, PRIVATE    what it links; a vps:: target in PUBLIC is a component that this one requires
+#   PRECOMPILE         slow headers of its own to precompile beside the usual ones
+#   PACKAGES           what find_package(vps COMPONENTS NAME) looks for
+#   PRIVATE_PACKAGES   the same, but only where the library is static and its users must link them
+#   HEADERS            its public headers, below plugin/include; by default all of its folder's include/
+#   PC_FILE            installs vps-NAME.pc, with modules and flags beside those of the components it requires; the
+#                      private ones only where the library is static
 function(vps_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(vps_${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "PC_FILE" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PACKAGES;PRIVATE_PACKAGES;HEADERS;EXCLUDE_HEADERS;\
+PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
+  add_library(vps_${name} ${ARG_SOURCES})  # shared with BUILD_SHARED_LIBS
   add_library(vps::${name} ALIAS vps_${name})
-  set_target_properties(vps_${name} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(vps_${name} PROPERTIES
+    EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(vps_${name} PUBLIC cxx_std_20)
   target_include_directories(vps_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(vps_${name} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  vps_export_header(${name})
   vps_compile_options(vps_${name})
-  install(TARGETS vps_${name} EXPORT vpsTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  set_property(GLOBAL APPEND PROPERTY VPS_INSTALLED_COMPONENTS ${name})
+  vps_precompile(vps_${name} ${ARG_PRECOMPILE})
+  vps_unite_rooms(vps_${name} "${ARG_SOURCES}")
+  vps_install_library(${name} "${ARG_PUBLIC}" ${ARGN})
+endfunction()
+
+# The macro that marks what a library exports, VPS_API in vps/export.h for plugin and VPS_<NAME>_API in
+# vps_<name>/export.h for others: all else is hidden, and costs neither a symbol nor an indirect call.
+function(vps_export_header name)
+  string(TOUPPER ${name} upper)
+  set(macro VPS_${upper}_API)
+  set(header vps_${name}/export.h)
+  if(name STREQUAL "plugin")
+    set(macro VPS_API)
+    set(header vps/export.h)
+  elseif(name STREQUAL "vdb")
+    set(header vps/vdb_export.h)
+  endif()
+  include(GenerateExportHeader)
+  generate_export_header(vps_${name} BASE_NAME VPS_${upper} EXPORT_MACRO_NAME ${macro}
+    EXPORT_FILE_NAME ${PROJECT_BINARY_DIR}/include/${header})
+  target_include_directories(vps_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
+  if(NOT BUILD_SHARED_LIBS)
+    target_compile_definitions(vps_${name} PUBLIC VPS_${upper}_STATIC_DEFINE)
+  endif()
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_BINARY_DIR}/include/${header}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT ${name})
+endfunction()
+
+# Standard headers and Eigen take half of the time that one of our files takes to compile. The first library compiles
+# them, the others use its result; a target with other options or slow headers of its own names these, and compiles
+# its own.
+function(vps_precompile target)
+  get_property(owner GLOBAL PROPERTY VPS_PRECOMPILED)
+  if(owner AND NOT ARGN)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE "${PROJECT_SOURCE_DIR}/plugin/cmake/precompiled.h" ${ARGN})
+  if(NOT owner)
+    set_property(GLOBAL PROPERTY VPS_PRECOMPILED ${target})
+  endif()
+endfunction()
+
+# Compiles the sources of one folder of src/ together, eight at a time: what headers instantiate is compiled once for
+# all of them. A source with compile options of its own stays alone. File-local names of one folder must differ.
+function(vps_unite_rooms target sources)
+  if(NOT VPS_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS sources)
+    get_filename_component(room "${source}" DIRECTORY)
+    get_filename_component(room "${room}" NAME)
+    math(EXPR batch "0${count_${room}} / 8")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${room}_${batch}")
+    math(EXPR count_${room} "0${count_${room}} + 1")
+  endforeach()
 endfunction()
 
 function(vps_compile_options target)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   if(PROJECT_IS_TOP_LEVEL)
-    # -Wrestrict: GCC 12 sees overlaps in "text" + std::string that are not there (its bug 105651).
+    # GCC 12 sees overlaps and overflows in "text" + std::string that are not there (its bugs 105651 and 105329).
+    # -Wsubobject-linkage forbids file-local types as members only where a source is included by another.
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter
-      $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> $<$<BOOL:${VPS_WERROR}>:-Werror>)
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>
+      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${VPS_UNITY}>>:-Wno-subobject-linkage>
+      $<$<BOOL:${VPS_WERROR}>:-Werror>)
   endif()
   # Fused multiply-adds differ from machine to machine; without them the same input gives the same bits.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
+  # ccache needs to see which precompiled header a file uses.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   if(VPS_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${VPS_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${VPS_SANITIZE})
@@ -46,22 +121,10 @@ function(vps_add_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE VPS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   vps_compile_options(${name})
+  target_precompile_headers(${name} REUSE_FROM vps_test_support)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()
   include(GoogleTest)
-  gtest_discover_tests(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} DISCOVERY_TIMEOUT 60)
-endfunction()
-
-function(vps_install_package)
-  include(CMakePackageConfigHelpers)
-  get_property(VPS_INSTALLED_COMPONENTS GLOBAL PROPERTY VPS_INSTALLED_COMPONENTS)
-  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/vps)
-  install(EXPORT vpsTargets NAMESPACE vps:: DESTINATION ${destination})
-  configure_package_config_file(${PROJECT_SOURCE_DIR}/plugin/cmake/vpsConfig.cmake.in
-    ${PROJECT_BINARY_DIR}/vpsConfig.cmake INSTALL_DESTINATION ${destination})
-  write_basic_package_version_file(${PROJECT_BINARY_DIR}/vpsConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-  install(FILES ${PROJECT_BINARY_DIR}/vpsConfig.cmake ${PROJECT_BINARY_DIR}/vpsConfigVersion.cmake
-    ${PROJECT_SOURCE_DIR}/plugin/cmake/VpsFindOpenVDB.cmake ${PROJECT_SOURCE_DIR}/plugin/cmake/VpsFindBullet.cmake
-    DESTINATION ${destination})
+  gtest_discover_tests(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name} DISCOVERY_TIMEOUT 60)
 endfunction()

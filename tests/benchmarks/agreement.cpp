@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "vps/vdb.h"
+
 namespace vps::bench {
 namespace {
 

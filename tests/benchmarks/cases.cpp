@@ -2,7 +2,6 @@
 #include "cases.h"
 
 #include <memory>
-#include <optional>
 
 #include "agreement.h"
 
@@ -24,7 +23,7 @@ struct StepRow {
 
 /// Models and the case made of them; scenes are shared and only one is kept, so a row asks anew each time.
 struct Prepared {
-  std::shared_ptr<const scenes::Scene> scene;
+  std::shared_ptr<const Scene> scene;
   std::shared_ptr<const PointShell> patch;
   StepCase steps;
 };
@@ -55,8 +54,7 @@ Case stepCase(const std::string& name, const std::string& words, Bar bar, double
     requireAgreement(name, *p.steps.map, *p.steps.shell, row.options, row.motion, kCheckedSteps);
   };
   c.measure = [=](int repetition) {
-    std::optional<OneThread> one_thread;
-    if (row.options.threads == 1) one_thread.emplace();
+    const OneThread one_thread;
     const Prepared p = prepared(row);
     return measureSteps(p.steps, repetition);
   };
@@ -79,11 +77,10 @@ class Rows {
     add(name, words, bar_ratio, {pair, size_, motion, {}, true, 0});
   }
   /// 5.4 times the points: a million where the others have the paper's load. Our time alone.
-  void million(const std::string& name, const std::string& words, Pair pair, const Motion& motion,
-               int threads) {
+  void million(const std::string& name, const std::string& words, Pair pair, const Motion& motion) {
     SceneSize size = size_;
     size.points = size_.points * 1'000'000 / SceneSize{}.points;
-    StepRow row{pair, size, motion, {.threads = threads}, false, 0};
+    StepRow row{pair, size, motion, {}, false, 0};
     cases.push_back(stepCase(name, words, Bar::P99Below_us, 1000, row));
   }
 
@@ -192,14 +189,14 @@ std::vector<Case> tableCases(const SceneSize& size) {
   rows.culled("screw/0.01mm", "bolt in nut, full thread, 256^3, 0.01 mm a step", 0, Pair::RodInNut,
               screwMotion(0.01 * kMm));
   rows.cases.push_back(memoryCase("nut 256^3", Pair::RodInNut, half));
-  rows.million("million/screw", "1,000,000 points, full thread, 256^3, two threads", Pair::RodInNut,
-               screwMotion(0.1 * kMm), 2);
+  rows.million("million/screw", "1,000,000 points, full thread, 256^3", Pair::RodInNut,
+               screwMotion(0.1 * kMm));
   rows.setSize(size);
   rows.culled("screw512/0.1mm", "bolt in nut, full thread, 512^3, 0.1 mm a step", 0, Pair::RodInNut,
               screwMotion(0.1 * kMm));
   rows.cases.push_back(memoryCase("nut 512^3", Pair::RodInNut, size));
-  rows.million("million/gears", "1,000,000 points, gears", Pair::PlanetInRing, gearMotion(0.1 * kMm), 1);
-  rows.million("million/peg", "1,000,000 points, peg", Pair::PegInPlate, pegMotion(0.1 * kMm), 1);
+  rows.million("million/gears", "1,000,000 points, gears", Pair::PlanetInRing, gearMotion(0.1 * kMm));
+  rows.million("million/peg", "1,000,000 points, peg", Pair::PegInPlate, pegMotion(0.1 * kMm));
   rows.cases.push_back(buildCase(size.voxels / 2, 12, size.coarser));
   rows.cases.push_back(buildCase(size.voxels, 15, size.coarser));
   rows.cases.push_back(mountCase(size));

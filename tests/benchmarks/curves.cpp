@@ -23,8 +23,7 @@ std::string number(double value) {
 }
 
 /// Median and p99 of the query, and the rival's median, as a line of a data file.
-void writeLine(std::ostream& out, double x, const scenes::Scene& scene, const Motion& motion,
-               double build_s) {
+void writeLine(std::ostream& out, double x, const Scene& scene, const Motion& motion, double build_s) {
   const OneThread one_thread;
   StepCase c;
   c.map = &scene.map;
@@ -66,7 +65,7 @@ void timeAgainstTriangles(const std::filesystem::path& dir) {
   plate.bore_rows = 5;
   plate.face_steps = 3;
   plate.side_rows = 2;
-  scenes::Scene scene;
+  Scene scene;
   scene.map_mesh = test::makeBoredPlate(plate);
   scene.shell = shellOfSize(test::makePeg(pegShape(1)), SceneSize{}.points);
   for (; scene.map_mesh.triangles.size() < 12'000'000; scene.map_mesh = subdivided(scene.map_mesh)) {

@@ -33,7 +33,7 @@ double cpuSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-double scenes::wallSeconds() {
+double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
@@ -53,9 +53,9 @@ struct Times {
 template <typename Side>
 void timeStep(Side& side, const Motion& motion, int step, Times& times) {
   const Pose X_MP = motion(step);
-  const double before_s = scenes::wallSeconds();
+  const double before_s = wallSeconds();
   const Answer answer = side.step(X_MP);
-  times.add(scenes::wallSeconds() - before_s, answer);
+  times.add(wallSeconds() - before_s, answer);
 }
 
 /// Steps that fit in the budget, as one of them takes.
@@ -169,8 +169,8 @@ Counters measureBuildErrors(const Mesh& mesh, double voxel_m, int node_count) {
       // Within 1e-3 voxel of the surface either sign is a right answer to within the stated error.
       if (std::abs(true_voxels) > 1e-3) c[side + "_wrong_signs"] += (read_voxels < 0) != (true_voxels < 0);
     };
-    scenes::judge("ours", map.distance(p) / voxel_m);
-    scenes::judge("rival", field->node(node[0], node[1], node[2]) / voxel_m);
+    judge("ours", map.distance(p) / voxel_m);
+    judge("rival", field->node(node[0], node[1], node[2]) / voxel_m);
   }
   return c;
 }
@@ -181,14 +181,14 @@ Counters measureMounting(const Mounting& mounting, const RivalField& base, const
   Counters c;
   const Pose X = X_BM * Pose(rotationFromVector(0.01 * repetition * Vec3(1, 2, 3)), Vec3::Zero());
   const auto ours = [&] {
-    const double before_s = scenes::wallSeconds();
+    const double before_s = wallSeconds();
     const VoxMap map = mounting.mount(X);
-    c["ours_us"] = 1e6 * (scenes::wallSeconds() - before_s);
+    c["ours_us"] = 1e6 * (wallSeconds() - before_s);
   };
   const auto theirs = [&] {
-    const double before_s = scenes::wallSeconds();
+    const double before_s = wallSeconds();
     c["rival_voxels"] = static_cast<double>(mergeOpenVdb(base, mounted, X));
-    c["rival_us"] = 1e6 * (scenes::wallSeconds() - before_s);
+    c["rival_us"] = 1e6 * (wallSeconds() - before_s);
   };
   if (repetition % 2 == 0) ours();
   theirs();

@@ -20,7 +20,7 @@ double quantile(std::vector<double> values, double share);
 /// CPU seconds of this process, all its threads.
 double cpuSeconds();
 /// Wall clock [s].
-double scenes::wallSeconds();
+double wallSeconds();
 
 /// While it lives TBB has one thread, for us and for OpenVDB alike.
 class OneThread {

@@ -40,10 +40,10 @@ PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept
 struct Kept {
   Pair pair = Pair::PegInPlate;
   SceneSize size;
-  std::shared_ptr<const scenes::Scene> scene;
+  std::shared_ptr<const Scene> scene;
 };
 
-void makeMap(scenes::Scene& scene, int voxels) {
+void makeMap(Scene& scene, int voxels) {
   scene.settings = {voxelFor(scene.map_mesh, voxels), kBandVoxels};
   scene.map = buildVoxMap(scene.map_mesh, scene.settings);
   scene.field = buildOpenVdb(scene.map_mesh, {scene.settings.voxel_m, kBandVoxels, true});
@@ -94,12 +94,12 @@ PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count
   return shellOfSome(shell, is_kept);
 }
 
-std::shared_ptr<const scenes::Scene> sceneOf(Pair pair, const SceneSize& size) {
+std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size) {
   static Kept kept;
   if (kept.scene && kept.pair == pair && kept.size == size) return kept.scene;
   const bool has_parts = kept.scene && kept.pair == pair && kept.size.coarser == size.coarser;
   if (!has_parts) kept.scene.reset();  // before the next is built: both may be large
-  auto scene = std::make_shared<scenes::Scene>();
+  auto scene = std::make_shared<Scene>();
   if (has_parts)
     *scene = *kept.scene;
   else

@@ -22,7 +22,7 @@ struct SceneSize {
   bool operator==(const SceneSize&) const = default;
 };
 
-struct scenes::Scene {
+struct Scene {
   Mesh map_mesh, shell_mesh;
   VoxMapSettings settings;
   VoxMap map;
@@ -43,7 +43,7 @@ PointShell shellOfSize(const Mesh& mesh, std::size_t points);
 PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count);
 /// Takes seconds. Deterministic. The last one is kept, and so are its map or its shell where the next has the
 /// same.
-std::shared_ptr<const scenes::Scene> sceneOf(Pair pair, const SceneSize& size);
+std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size);
 
 /// Pose of the shell's part in the map's part at a step; deterministic, never twice the same in a run.
 using Motion = std::function<Pose(int step)>;

@@ -20,7 +20,6 @@ struct Subject::State {
   const PointShell& shell;
   SubjectOptions options;
   QueryMemory memory;
-  QueryTeam team;
 };
 
 std::vector<std::string> instructionPaths() {
@@ -31,7 +30,7 @@ std::vector<std::string> instructionPaths() {
 }
 
 Subject::Subject(const VoxMap& map, const PointShell& shell, const SubjectOptions& options)
-    : state_(new State{map, shell, options, QueryMemory(map, shell), QueryTeam(options.threads)}) {}
+    : state_(new State{map, shell, options, QueryMemory(map, shell)}) {}
 Subject::~Subject() = default;
 
 Answer Subject::step(const Pose& X_MP) {
@@ -39,7 +38,6 @@ Answer Subject::step(const Pose& X_MP) {
   query.is_exhaustive = state_->options.is_exhaustive;
   query.gradient = Gradient::Trilinear;
   query.simd = pathOf(state_->options.path);
-  query.team = state_->options.threads > 1 ? &state_->team : nullptr;
   TouchSummary sum;
   const QueryResult result =
       queryWrench(state_->map, state_->shell, X_MP, query, kStiffness_N_per_m3, Vec3::Zero(), sum,

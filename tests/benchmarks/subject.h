@@ -15,7 +15,6 @@ struct SubjectOptions {
   bool is_exhaustive = false;  ///< read every point
   bool is_coherent = true;     ///< remember the last step; ignored when exhaustive
   std::string path = "best";   ///< one of instructionPaths()
-  int threads = 1;
 };
 
 /// The ways this build of the engine can run on this machine; "best" first.

@@ -1,16 +1,98 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# run.sh BUILD_DIR WORK_DIR CMAKE [SANITIZE]
+# run.sh static|shared BUILD_DIR WORK_DIR CMAKE [SANITIZE]
+# static: installs BUILD_DIR; shared: builds and installs plugin and bullet as shared libraries. Then builds and runs
+# programs outside of the tree that know the installed package alone: by find_package(vps) where the packages of
+# components that nobody asks for cannot be found, and by pkg-config.
 set -euo pipefail
-build=$1 work=$2 cmake=$3 sanitize=${4:-}
+kind=$1 build=$2 work=$3/$1 cmake=$4 sanitize=${5:-}
 source=$(cd "$(dirname "$0")" && pwd)
-rm -rf "$work/prefix" "$work/app"
+root=$source/../..
+rm -rf "$work"
+mkdir -p "$work"
+
+if [ "$kind" = shared ]; then
+  double=$(sed -n 's/^VPS_BULLET_DOUBLE:BOOL=//p' "$build/CMakeCache.txt")
+  build=$work/build
+  "$cmake" -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Debug -DBUILD_SHARED_LIBS=ON -DVPS_COMPONENTS=bullet \
+    -DVPS_TESTS=OFF -DVPS_BULLET_DOUBLE="$double" -DCMAKE_DISABLE_FIND_PACKAGE_VpsOpenVDB=ON >/dev/null
+  "$cmake" --build "$build" >/dev/null
+fi
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
+prefix=$work/prefix
+libs=$(dirname "$(find "$prefix" -name 'libvps_plugin.*' | head -1)")
+export LD_LIBRARY_PATH=$libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 flags=""
 [ -n "$sanitize" ] && flags="-fsanitize=$sanitize"
-"$cmake" -G Ninja -S "$source/app" -B "$work/app" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" \
-  -DCMAKE_CXX_FLAGS="$flags" >/dev/null
-"$cmake" --build "$work/app"
+
+missing() { for package in "$@"; do echo "-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON"; done; }
+configure() {  # configure FOLDER NAME [OPTION...]: FOLDER as a project of its own, in $work/NAME
+  local folder=$1 name=$2
+  shift 2
+  "$cmake" -G Ninja -S "$source/$folder" -B "$work/$name" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_CXX_FLAGS="$flags" "$@" 2>&1
+}
+refused() {  # refused WORDS CONFIGURE-ARGUMENT...: must fail, and say these words
+  local words=$1 said
+  shift
+  if said=$(configure "$@"); then
+    echo "should have been refused: $*"
+    exit 1
+  fi
+  tr -s ' \n' ' ' <<<"$said" | grep -qF "$words" || { echo "does not say '$words': $said"; exit 1; }
+}
+others=(VpsOpenVDB assimp PNG Freetype VpsEpoxy OpenCASCADE Coin)  # packages of components nobody asks for here
+
+echo "== find_package(vps COMPONENTS bullet)"
+configure app app $(missing "${others[@]}" tomlplusplus) >/dev/null
+"$cmake" --build "$work/app" >/dev/null
 "$work/app/app"
 "$work/app/hello_vps"
-[ ! -e "$work/app/haptic_bullet" ] || "$work/app/haptic_bullet"  # not where device is not built
+
+echo "== find_package(vps COMPONENTS plugin)"
+configure plugin_alone plugin_alone $(missing "${others[@]}" tomlplusplus VpsBullet) >/dev/null
+"$cmake" --build "$work/plugin_alone" >/dev/null
+"$work/plugin_alone/plugin_alone"
+
+echo "== what is missing is named"
+refused "vps::bullet needs VpsBullet" plugin_alone refused_1 -DVPS_ASKED=bullet $(missing VpsBullet)
+refused "vps::nonsense is not installed here" plugin_alone refused_2 -DVPS_ASKED=nonsense
+if [ -e "$prefix/include/vps/vdb.h" ] && [ "$kind" = static ]; then
+  refused "vps::vdb needs VpsOpenVDB" plugin_alone refused_3 -DVPS_ASKED=vdb $(missing VpsOpenVDB)
+fi
+
+if [ "$kind" = static ] && [ -e "$prefix/include/vps_device" ]; then
+  echo "== find_package(vps COMPONENTS bullet OPTIONAL_COMPONENTS device)"
+  configure app haptic $(missing "${others[@]}") >/dev/null
+  "$cmake" --build "$work/haptic" --target haptic_bullet >/dev/null
+  "$work/haptic/haptic_bullet"
+
+  echo "== an installed component without those that it does not require"
+  whole=$prefix
+  prefix=$work/one
+  "$cmake" --install "$build" --prefix "$prefix" --component plugin >/dev/null
+  configure plugin_alone plugin_only $(missing "${others[@]}" tomlplusplus VpsBullet) >/dev/null
+  "$cmake" --build "$work/plugin_only" >/dev/null
+  "$work/plugin_only/plugin_alone"
+  refused "its install component 'bullet'" plugin_alone refused_4 -DVPS_ASKED=bullet
+  prefix=$whole
+fi
+
+echo "== pkg-config"
+export PKG_CONFIG_PATH=$libs/pkgconfig
+${CXX:-c++} -std=c++20 $flags "$source/plugin_alone/plugin_alone.cpp" -o "$work/by_pkg_config" \
+  $(pkg-config --cflags --libs vps-plugin)
+"$work/by_pkg_config"
+${CXX:-c++} -std=c++20 -O2 $flags "$source/app/app.cpp" -o "$work/app_by_pkg_config" $(pkg-config --cflags --libs vps-bullet)
+"$work/app_by_pkg_config"
+
+if [ "$kind" = shared ]; then
+  echo "== the shared libraries"
+  version=$(pkg-config --modversion vps-plugin)
+  readelf -d "$libs/libvps_plugin.so" | grep -q "soname: \[libvps_plugin.so.${version%.*}\]"
+  readelf -d "$work/app/app" | grep -q "NEEDED.*libvps_bullet.so.${version%.*}"
+  if nm -DC --defined-only "$libs/libvps_plugin.so" | grep 'vps::RepairedMesh\|vps::LeafWalk\|vps::(anonymous'; then
+    echo "these are private, and are exported"
+    exit 1
+  fi
+fi

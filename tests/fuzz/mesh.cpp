@@ -52,7 +52,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     vps::requireUsable(shared, "", "");
     const vps::RepairedMesh repaired = vps::repairMesh(std::move(shared));
     vps::fuzz::require(!repaired.surface.triangles.empty(), "a surface is left");
-    vps::fuzz::require(!vps::scenes::describe(repaired.report).empty(), "a report reads as a sentence");
+    vps::fuzz::require(!vps::describe(repaired.report).empty(), "a report reads as a sentence");
     const double voxel_m = vps::bounds(mesh).size().maxCoeff() / 6;
     vps::MeshReport report;
     const vps::VoxMap map = vps::buildVoxMap(mesh, {voxel_m, 3}, "", {}, &report);

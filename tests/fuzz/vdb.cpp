@@ -5,7 +5,7 @@
 
 #include "fuzz.h"
 #include "vps/load_error.h"
-#include "vps/voxmap.h"
+#include "vps/vdb.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);

@@ -145,7 +145,7 @@ Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels)
   }
   std::printf(
       "%s: %s; by %s; of %zu nodes %zu against all windings, %zu against rays, rays of %zu disagree\n",
-      name.c_str(), scenes::describe(found.report).c_str(),
+      name.c_str(), describe(found.report).c_str(),
       found.report.signed_by_winding ? "winding" : "pseudonormals", found.asked, found.against_windings,
       found.against_rays, found.doubtful);
   return found;

@@ -132,11 +132,5 @@ TEST(Crop, WhatAMountedMapKeepsBesideTheOneItStandsOnIsLessThanItsAll) {
   EXPECT_EQ(pair.peg_map.memoryBytesBeside(pair.map), pair.peg_map.memoryBytes());
 }
 
-TEST(Crop, AMapFineInRegionsOnlyIsRefused) {
-  const TubeAndPeg pair;
-  const VoxMap map = buildVoxMapInRegions(pair.tube, {0.25 * kMm, 4}, {pair.boxes, 4});
-  EXPECT_THROW(croppedVoxMap(map, pair.boxes), LoadError);
-}
-
 }  // namespace
 }  // namespace vps

@@ -416,18 +416,6 @@ TEST(FaultyMesh, BeyondTheBandAllIsOutsideWhateverTheWindingNumberSays) {
   const VoxMap map = buildVoxMap(pipe, {0.25e-3, 4});
   expectOutsideBeyondTheBox(map, 0.25e-3);
   expectSameAnswers(map, shell);
-  // Where a coarse map stands for the fine one, its rim is nearer than the fine one's or farther.
-  for (const int coarsening : {2, 8}) {
-    FineRegions regions;
-    Box mouth;
-    mouth.add({0.005, -0.002, 0.018});
-    mouth.add({0.012, 0.002, 0.03});
-    regions.boxes_M = {mouth};
-    regions.coarsening = coarsening;
-    const VoxMap by_regions = buildVoxMapInRegions(pipe, {0.25e-3, 4}, regions);
-    expectOutsideBeyondTheBox(by_regions, coarsening * 0.25e-3);
-    expectSameAnswers(by_regions, shell);
-  }
 }
 
 TEST(FaultyMesh, AFreeSheetHasNoInside) {
@@ -453,7 +441,7 @@ TEST(FaultyMesh, ManyThreadsGiveTheBitsOfOne) {
   const VoxMap many = buildVoxMap(mesh, kSettings, "", {}, &report_many);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const VoxMap one = buildVoxMap(mesh, kSettings, "", {}, &report_one);
-  EXPECT_EQ(scenes::describe(report_many), scenes::describe(report_one));
+  EXPECT_EQ(describe(report_many), describe(report_one));
   EXPECT_EQ(report_many.sure, report_one.sure);
   RandomPoints random(8);
   for (int n = 0; n < 20000; ++n) {
@@ -518,7 +506,7 @@ TEST(FaultyMesh, ItsReportReadsAsASentence) {
   report.open_edges = 34;
   report.flipped_facets = 1;
   report.sure = 0.99876;
-  EXPECT_EQ(scenes::describe(report),
+  EXPECT_EQ(describe(report),
             "12 shells, 34 open edges, 1 flipped facet turned; the sign is sure for 99.87 %");
 }
 

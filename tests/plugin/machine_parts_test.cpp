@@ -22,7 +22,7 @@ void expectClosedSolid(const Mesh& mesh) {
   EXPECT_GT(massProperties(mesh).volume_m3, 0);  // outward
 }
 
-double scenes::leastDistance(const Mesh& of, const Mesh& points, const Pose& X_MP) {
+double leastDistance(const Mesh& of, const Mesh& points, const Pose& X_MP) {
   const MeshDistance distance(of);
   double least_m = 1e300;
   for (const Vec3& p : points.vertices) least_m = std::min(least_m, distance.signedDistance(X_MP * p));
@@ -61,7 +61,7 @@ TEST(MachineParts, GearsInMeshKeepHalfTheirBacklashOnEachFlankAtEveryAngle) {
     // Both give half of 0.02 mm to each side of a tooth, measured along the pitch circle: 0.02 cos 20 degrees
     // across the flanks. In steps of 0.19 mm chords lie 0.19^2 / 8r off the involute: 0.9 um on the planet
     // (r = 5 mm at the pitch circle), 0.4 um in the ring (12 mm). Measured: 0.4 um.
-    const double least_m = scenes::leastDistance(ring_mesh, planet_mesh, X_WR.inverse() * X_WP);
+    const double least_m = leastDistance(ring_mesh, planet_mesh, X_WR.inverse() * X_WP);
     EXPECT_NEAR(least_m, 0.02 * kMm * std::cos(20 * std::numbers::pi / 180), 0.0013 * kMm) << k;
   }
 }
@@ -76,7 +76,7 @@ TEST(MachineParts, RodTurnsInItsNutWithHalfTheRadialClearanceAcrossTheFlanks) {
     // Flanks stand at 30 degrees to the radius, and climb the helix (5.5 degrees at the root), which takes a
     // further share 1 - cos. Chords lie inside of circles by 6 mm (1 - cos(pi / 96)) = 3.2 um; half of that
     // across.
-    const double least_m = scenes::leastDistance(nut_mesh, rod_mesh, X_MP);
+    const double least_m = leastDistance(nut_mesh, rod_mesh, X_MP);
     EXPECT_NEAR(least_m, 0.05 * kMm * std::sin(std::numbers::pi / 6), 0.002 * kMm) << turn_rad;
   }
 }

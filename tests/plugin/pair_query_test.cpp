@@ -9,7 +9,6 @@
 
 #include "support/analytic.h"
 #include "support/no_alloc.h"
-#include "vps/contact_patch.h"
 
 namespace vps::test {
 namespace {
@@ -90,72 +89,10 @@ TEST(PairQuery, AMemoryChangesNoBit) {
   }
 }
 
-class ContactPatches : public testing::Test {
- protected:
-  ContactSet contacts_{200000};
-  PatchSet patches_{4096};
-
-  void summarise(const Pose& X_MP, std::uint32_t run, PatchSet& out) {
-    queryContacts(block().map, ball().shell, X_MP, {}, contacts_);
-    contactPatches(contacts_.contacts, ball().shell, kStiffness, run, out);
-  }
-};
-
-TEST_F(ContactPatches, SumToThePenaltyWrench) {
-  for (const std::uint32_t run : {1u, 16u, 256u, 4096u, 1u << 20}) {
-    summarise(sunkBall(0.3 * kMm), run, patches_);
-    ASSERT_FALSE(patches_.patches.empty());
-    Wrench sum;
-    std::size_t count = 0;
-    for (const ContactPatch& p : patches_.patches) {
-      sum += shifted(p.F_p_M, p.p_M);
-      count += p.count;
-      EXPECT_GT(p.n_M.z(), 0.5);
-      EXPECT_NEAR(p.n_M.norm(), 1, 1e-12);
-      EXPECT_LE(p.depth_m, p.max_depth_m * (1 + 1e-12));
-    }
-    const Wrench expected = penaltyWrench(contacts_.contacts, kStiffness, Vec3::Zero());
-    EXPECT_EQ(count, contacts_.contacts.size());
-    EXPECT_LT((sum.f - expected.f).norm(), 1e-12 * expected.f.norm());
-    EXPECT_LT((sum.tau - expected.tau).norm(), 1e-12 * expected.f.norm() * 10 * kMm);
-  }
-  EXPECT_LE(patches_.patches.size(), 6u);  // one run of all points: one patch for each direction
-}
-
-TEST_F(ContactPatches, AFullSetKeepsTheWrench) {
-  PatchSet few(3);
-  summarise(sunkBall(0.3 * kMm), 64, few);
-  ASSERT_GT(few.left_out, 0u);
-  Wrench sum = few.rest;
-  for (const ContactPatch& p : few.patches) sum += shifted(p.F_p_M, p.p_M);
-  const Wrench expected = penaltyWrench(contacts_.contacts, kStiffness, Vec3::Zero());
-  EXPECT_LT((sum.f - expected.f).norm(), 1e-12 * expected.f.norm());
-}
-
-TEST_F(ContactPatches, GrowFromNothingAndKeepTheirIds) {
-  // Sinking by a micrometre adds at most k times touching area times it to any patch's force, and turns no
-  // normal by more than the field does: what a patch gains stays below the whole's share.
-  PatchSet before(4096), after(4096);
-  const double step_m = 0.1 * kUm;
-  for (double depth_m = 0; depth_m < 60 * kUm; depth_m += step_m) {
-    summarise(sunkBall(depth_m), 256, before);
-    summarise(sunkBall(depth_m + step_m), 256, after);
-    for (const ContactPatch& p : after.patches) {
-      const auto same = std::find_if(before.patches.begin(), before.patches.end(),
-                                     [&](const ContactPatch& q) { return q.id == p.id; });
-      const Vec3 old_f = same == before.patches.end() ? Vec3(Vec3::Zero()) : same->F_p_M.f;
-      // Slope of the field along the step is 1 at most over a flat face; its normal does not turn there.
-      // Floats in readings: 1e-4 voxel.
-      EXPECT_LE((p.F_p_M.f - old_f).norm(), kStiffness * p.area_m2 * (step_m * 1.01 + 2e-4 * 0.2 * kMm));
-    }
-  }
-}
-
-TEST_F(ContactPatches, NothingAllocates) {
+TEST(PairQuery, NothingAllocates) {
   const Pose X_MP = sunkBall(0.3 * kMm);
   const PairSide on_block = block().side(), on_ball = ball().side();  // built here, if not before
   vps_test::NoAllocScope guard;
-  summarise(X_MP, 256, patches_);
   TouchSummary sum;
   queryBothSides(on_block, on_ball, X_MP, {}, kStiffness, Vec3::Zero(), sum);
 }

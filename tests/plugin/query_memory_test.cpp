@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temporal coherence and shared queries give the exhaustive answer, to the bit, whatever the motion.
+// Temporal coherence gives the exhaustive answer, to the bit, whatever the motion.
 #include "vps/query_memory.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
 
-struct scenes::Scene {
+struct Scene {
   const char* name;
   VoxMap map;
   PointShell shell;
@@ -24,11 +24,11 @@ struct scenes::Scene {
   double size_m;
 };
 
-const std::vector<scenes::Scene>& scenes() {
-  static const std::vector<scenes::Scene> all = [] {
+const std::vector<Scene>& scenes() {
+  static const std::vector<Scene> all = [] {
     const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
     const Mesh box = makeBox({6 * kMm, 5 * kMm, 4 * kMm}), plate = makeBox({12 * kMm, 12 * kMm, 0.3 * kMm});
-    std::vector<scenes::Scene> s;
+    std::vector<Scene> s;
     s.push_back({"peg in bore", buildVoxMap(bore, {0.25 * kMm, 4}), buildPointShell(peg, {0.15 * kMm, 0.35}),
                  Pose(), 9 * kMm});
     s.push_back({"box on thin plate", buildVoxMap(plate, {0.2 * kMm, 3}),
@@ -43,7 +43,7 @@ const std::vector<scenes::Scene>& scenes() {
 
 /// Steps of every length from a nanometre to the part's size, drifting and jumping back, turning on the spot,
 /// and standing still.
-std::vector<Pose> motion(const scenes::Scene& scene, int count, unsigned seed) {
+std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
@@ -66,7 +66,7 @@ std::vector<Pose> motion(const scenes::Scene& scene, int count, unsigned seed) {
 
 class QueryMemoryTest : public testing::TestWithParam<int> {
  protected:
-  const scenes::Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
+  const Scene& scene = scenes()[static_cast<std::size_t>(GetParam())];
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, QueryMemoryTest, testing::Range(0, 3));
 
@@ -123,10 +123,9 @@ TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotion) {
   }
 }
 
-TEST_P(QueryMemoryTest, TheWrenchHasTheSameBitsCulledCoherentAndShared) {
+TEST_P(QueryMemoryTest, TheWrenchHasTheSameBitsExhaustiveCulledAndCoherent) {
   for (const Gradient gradient : {Gradient::Trilinear, Gradient::Continuous}) {
-    QueryMemory memory(scene.map, scene.shell), shared_memory(scene.map, scene.shell);
-    QueryTeam two(2), three(3);
+    QueryMemory memory(scene.map, scene.shell);
     const Vec3 p_MO(1 * kMm, 2 * kMm, -3 * kMm);
     std::size_t touching = 0;
     for (const Pose& X_MP : motion(scene, 300, 6)) {
@@ -143,16 +142,7 @@ TEST_P(QueryMemoryTest, TheWrenchHasTheSameBitsCulledCoherentAndShared) {
         ASSERT_EQ(got.volume_m3, expected.volume_m3) << how;
         ASSERT_EQ(got.max_depth_m, expected.max_depth_m) << how;
       };
-      options.team = &three;
-      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
-      expectSame("exhaustive, three threads");
       options.is_exhaustive = false;
-      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
-      expectSame("culled, three threads");
-      options.team = &two;
-      queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got, &shared_memory);
-      expectSame("coherent, two threads");
-      options.team = nullptr;
       queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got);
       expectSame("culled");
       queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, p_MO, got, &memory);
@@ -224,7 +214,7 @@ TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
 }
 
 TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
-  const scenes::Scene& scene = scenes()[0];
+  const Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
   TouchSummary sum;
   const Pose X_MP = Pose::translation({15 * kUm, 0, 0});  // free: 20 um of clearance
@@ -239,19 +229,15 @@ TEST(QueryMemory, StandingStillReadsOnlyWhatTouches) {
 }
 
 TEST(QueryMemory, NothingAllocates) {
-  const scenes::Scene& scene = scenes()[0];
+  const Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);
-  QueryTeam team(2);
   ContactSet set(scene.shell.size());
   TouchSummary sum;
   const auto poses = motion(scene, 50, 8);
-  QueryOptions shared;
-  shared.team = &team;
   vps_test::NoAllocScope guard;
   for (const Pose& X_MP : poses) {
     queryContacts(scene.map, scene.shell, X_MP, {}, set, &memory);
     queryWrench(scene.map, scene.shell, X_MP, {}, kStiffness, Vec3::Zero(), sum, &memory);
-    queryWrench(scene.map, scene.shell, X_MP, shared, kStiffness, Vec3::Zero(), sum, &memory);
   }
 }
 

@@ -88,7 +88,7 @@ TEST_F(VoxMapCacheTest, AFaultyMeshKeepsItsReport) {
   const VoxMap built = build(open, &first);
   expectSame(build(open, &second), built);
   EXPECT_TRUE(first.signed_by_winding);
-  EXPECT_EQ(scenes::describe(first), scenes::describe(second));
+  EXPECT_EQ(describe(first), describe(second));
   EXPECT_EQ(first.sure, second.sure);
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Union, difference and resampling against the fields they are made of.
+// Union and resampling against the fields they are made of.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "support/analytic.h"
+#include "voxmap/voxmap_merge.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
 #include "vps/query.h"
@@ -30,14 +31,13 @@ void forRandomNodes(int count, double reach_m, Visit visit) {
   }
 }
 
-TEST(CombinedVoxMap, UnionAndDifferenceAreMinAndMaxAtEveryNode) {
+TEST(CombinedVoxMap, TheUnionIsTheMinimumAtEveryNode) {
   const VoxMap block = buildVoxMap(makeBox({0.012, 0.01, 0.008}), kSettings);
   const VoxMap ball =
       buildVoxMap(transformed(makeSphere(0.004, 4), Pose::translation({0.005, 0, 0.002})), kSettings);
-  const VoxMap both = unionOf(block, ball), cut = differenceOf(block, ball);
+  const VoxMap both = mergedVoxMap(block, ball);
   forRandomNodes(40000, 0.011, [&](const Vec3& p) {
     ASSERT_NEAR(both.distance(p), std::min(block.distance(p), ball.distance(p)), kRounding_m);
-    ASSERT_NEAR(cut.distance(p), std::max(block.distance(p), -ball.distance(p)), kRounding_m);
     if (std::abs(both.distance(p)) < both.band_m() - kRounding_m &&
         std::abs(block.distance(p) - ball.distance(p)) > kRounding_m) {
       ASSERT_EQ(both.owner(p), block.distance(p) <= ball.distance(p) ? 0 : 1);
@@ -47,14 +47,11 @@ TEST(CombinedVoxMap, UnionAndDifferenceAreMinAndMaxAtEveryNode) {
     const double ball_m = (p - Vec3(0.005, 0, 0.002)).norm() - 0.004;
     const double sagitta_m = 2e-5;  // of a ball of 5120 triangles
     ASSERT_LE(both.lowerBound(p), std::abs(std::min(block_m, ball_m)) + sagitta_m);
-    ASSERT_LE(cut.lowerBound(p), std::abs(std::max(block_m, -ball_m)) + sagitta_m);
   });
 }
 
-TEST(CombinedVoxMap, MapsOnDifferentGridsAreRefused) {
+TEST(ResampledVoxMap, AMapWithANarrowerBandIsRefused) {
   const VoxMap a = buildVoxMap(makeBox({0.004, 0.004, 0.004}), kSettings);
-  const VoxMap b = buildVoxMap(makeBox({0.004, 0.004, 0.004}), {kVoxel_m, 4});
-  EXPECT_THROW(unionOf(a, b), LoadError);
   EXPECT_THROW(resampledVoxMap({&a, Pose()}, {kVoxel_m, 4}), LoadError);
 }
 
@@ -98,7 +95,7 @@ TEST(ResampledVoxMap, MountingIsTheUnionWithTheResampledPart) {
   const VoxMap pin = buildVoxMap(makeCylinder(0.003, 0.01, 48), kSettings);
   const Pose X_MP = RandomPoints(7).pose(0.003);
   const VoxMap mounted = mountVoxMap(plate, PlacedMap{&pin, X_MP});
-  const VoxMap expected = unionOf(plate, resampledVoxMap({&pin, X_MP}, kSettings));
+  const VoxMap expected = mergedVoxMap(plate, resampledVoxMap({&pin, X_MP}, kSettings));
   forRandomNodes(40000, 0.013, [&](const Vec3& p) {
     ASSERT_EQ(mounted.distance(p), expected.distance(p));
     ASSERT_EQ(mounted.owner(p), expected.owner(p));

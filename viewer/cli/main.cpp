@@ -5,6 +5,7 @@
 
 #include "command.h"
 #include "terminal.h"
+#include "vps/version.h"
 
 namespace vps::viewer {
 
@@ -32,7 +33,7 @@ int run(int argc, char** argv) {
   line.app.name("vps");
   line.app.description(
       "Voxmap-PointShell contact on CAD parts: assemble, replay, simulate, query, import, show.");
-  line.app.set_version_flag("--version", std::string("vps ") + VPS_VERSION);
+  line.app.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
   line.app.require_subcommand(1);
   line.app.footer(
       "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 could not.\n"

@@ -8,6 +8,7 @@
 
 #include <memory>
 
+#include "vps_bullet/export.h"
 #include "vps_bullet/install.h"
 
 namespace vps::bullet {
@@ -16,7 +17,7 @@ struct PairState;
 struct Context;
 
 /// A pair whose contacts can be chosen beside those of others.
-class PairAlgorithm : public btActivatingCollisionAlgorithm {
+class VPS_BULLET_API PairAlgorithm : public btActivatingCollisionAlgorithm {
  public:
   /// Chooses the contacts of the coming step: all of processCollision() but what goes into manifolds. Touches
   /// the pair alone, so that different pairs may be prepared at once; processCollision() then takes what is
@@ -45,7 +46,7 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
 /// threshold. gContactAddedCallback and the contact-stiffness flags are served all the same.
 /// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map), or,
 /// where edges cross, each body's edge.
-class Algorithm final : public PairAlgorithm {
+class VPS_BULLET_API Algorithm final : public PairAlgorithm {
  public:
   Algorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
             const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context);

@@ -6,6 +6,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include "vps/coupling_law.h"
+#include "vps_bullet/export.h"
 
 class btConstraintSolver;
 class btRigidBody;
@@ -20,7 +21,7 @@ namespace vps::bullet {
 /// Zero solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
 /// world.addConstraint(&coupling, true): `true` also tells the contact filter to look at the coupling's pull.
 /// Same inputs give the same bits: no state passes from step to step.
-class CouplingConstraint : public btTypedConstraint {
+class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 

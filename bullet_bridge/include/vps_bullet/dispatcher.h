@@ -6,6 +6,8 @@
 
 #include <memory>
 
+#include "vps_bullet/export.h"
+
 namespace vps::bullet {
 
 /// Drop-in for btCollisionDispatcher: before Bullet goes through the pairs one by one, the contacts of those
@@ -13,7 +15,7 @@ namespace vps::bullet {
 /// dispatcher, for any number of threads, and nothing in Bullet need be thread-safe: manifolds and callbacks
 /// are served in Bullet's own order, by the calling thread. A pair that is new in this step, and children of
 /// compounds, wait for their turn.
-class Dispatcher : public btCollisionDispatcher {
+class VPS_BULLET_API Dispatcher : public btCollisionDispatcher {
  public:
   /// @param threads  at least 1; 0: one for each core
   explicit Dispatcher(btCollisionConfiguration* config, int threads = 0);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include "vps/fidelity.h"
+#include "vps_bullet/export.h"
 #include "vps_bullet/tune.h"
 
 class btCollisionDispatcher;
@@ -45,15 +46,15 @@ struct Stats {
 /// Contact and closest-point queries, both orders, every shape type; README.md lists them. Installing again
 /// replaces the settings. Call before bodies meet: a pair that exists keeps the algorithm it has. See
 /// tuneWorld for the world's own parameters. Throws std::invalid_argument for settings out of range.
-void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
+VPS_BULLET_API void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
 
 /// Puts back the functions that were registered before, where nobody has registered others since. Pairs that
 /// exist keep VPS contact until their bodies part or are removed; that is said on stderr.
 /// Without an installation: nothing. A dispatcher may also die without it; one that comes to lie at the same
 /// address starts without an installation.
-void uninstall(btCollisionDispatcher& dispatcher);
+VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);
 
-[[nodiscard]] bool isInstalled(const btCollisionDispatcher& dispatcher);
-[[nodiscard]] Stats stats(const btCollisionDispatcher& dispatcher);
+[[nodiscard]] VPS_BULLET_API bool isInstalled(const btCollisionDispatcher& dispatcher);
+[[nodiscard]] VPS_BULLET_API Stats stats(const btCollisionDispatcher& dispatcher);
 
 }  // namespace vps::bullet

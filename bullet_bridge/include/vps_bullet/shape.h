@@ -15,6 +15,7 @@
 #include "vps/part.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
+#include "vps_bullet/export.h"
 
 namespace vps::bullet {
 
@@ -26,7 +27,7 @@ struct BodyFrame {
 };
 
 /// Throws LoadError for a volume or density that is not positive (an open or inside-out mesh gives such).
-BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
+VPS_BULLET_API BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
 
 class SheetBorder;
 
@@ -52,13 +53,13 @@ struct ShapeModels {
 };
 
 /// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
-ShapeModels makeModels(const Part& part);
+VPS_BULLET_API ShapeModels makeModels(const Part& part);
 
 /// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
 /// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;
 /// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. May be dynamic, unlike Bullet's mesh
 /// shapes. Shared by any number of bodies, and bound to no dispatcher: may outlive them all. Its margin is 0.
-class Shape : public btConcaveShape {
+class VPS_BULLET_API Shape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 

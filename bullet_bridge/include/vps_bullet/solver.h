@@ -6,6 +6,8 @@
 
 #include <memory>
 
+#include "vps_bullet/export.h"
+
 namespace vps::bullet {
 
 struct SolverSettings {
@@ -19,7 +21,7 @@ struct SolverSettings {
 /// folded into the bodies' effective mass (see solver.cpp). Islands with soft contact flags, rolling or
 /// spinning friction, or bodies with linear or angular factors or no inertia go to the stock solver
 /// unchanged.
-class Solver : public btSequentialImpulseConstraintSolver {
+class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   explicit Solver(const SolverSettings& settings = {});

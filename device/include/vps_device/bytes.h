@@ -10,10 +10,12 @@
 #include <string_view>
 #include <type_traits>
 
+#include "vps_device/export.h"
+
 namespace vps::device {
 
 /// Appends to a string. Length prefixes are what the caller's format says: a type of his choice.
-class ByteWriter {
+class VPS_DEVICE_API ByteWriter {
  public:
   explicit ByteWriter(std::string& out) : out_(out) {}
 
@@ -39,7 +41,7 @@ class ByteWriter {
 
 /// Reads from bytes that may be anything: what is missing reads as zero or empty and makes isGood() false,
 /// from then on. Never reads past the end, never allocates.
-class ByteReader {
+class VPS_DEVICE_API ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
 

@@ -15,10 +15,11 @@
 
 #include "vps/pose.h"
 #include "vps/wrench.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
-class Clutch {
+class VPS_DEVICE_API Clutch {
  public:
   /// Lets go, over fade_s.
   void open() noexcept { is_closing_ = false; }

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <string_view>
 
+#include "vps_device/export.h"
+
 namespace vps::device {
 
 /// CRC-32 (reflected polynomial 0xedb88320, as ISO-HDLC), over bytes that come piece by piece. O(bytes).
-class Crc32 {
+class VPS_DEVICE_API Crc32 {
  public:
   void add(std::string_view bytes) {
     for (const char c : bytes) crc_ = kTable[(crc_ ^ static_cast<unsigned char>(c)) & 0xff] ^ (crc_ >> 8);

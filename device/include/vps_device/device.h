@@ -7,6 +7,7 @@
 #include "vps/pose.h"
 #include "vps/status.h"
 #include "vps/wrench.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -50,7 +51,7 @@ struct DeviceLimits {
 ///
 /// A device that may fall silent stamps its samples, and says Fault once the last is too old.
 /// hand_controllers.h has devices without force, recording.h one that repeats what another did.
-class Device {
+class VPS_DEVICE_API Device {
  public:
   virtual ~Device() = default;
 

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "vps_device/export.h"
+
 namespace vps::device {
 
 enum class DeviceEventKind : std::uint8_t {
@@ -44,18 +46,18 @@ enum class DeviceEventKind : std::uint8_t {
 
 enum class Severity : std::uint8_t { Notice, Warning, Fault };
 
-Severity severityOf(DeviceEventKind kind) noexcept;
+VPS_DEVICE_API Severity severityOf(DeviceEventKind kind) noexcept;
 /// A few words for a person: "an arm's reading jumped".
-const char* toText(DeviceEventKind kind) noexcept;
+VPS_DEVICE_API const char* toText(DeviceEventKind kind) noexcept;
 /// What would help: "check the encoder's cable, then re-arm".
-const char* remedyOf(DeviceEventKind kind) noexcept;
+VPS_DEVICE_API const char* remedyOf(DeviceEventKind kind) noexcept;
 /// How it sounds: a beep's pitch [Hz] and how many; 0 beeps for a notice. assumed: an octave between warning
 /// and fault, both where hearing is best.
 struct Beep {
   double pitch_hz = 0;
   int count = 0;
 };
-Beep beepOf(DeviceEventKind kind) noexcept;
+VPS_DEVICE_API Beep beepOf(DeviceEventKind kind) noexcept;
 
 struct DeviceEvent {
   double time_s = 0;
@@ -65,7 +67,7 @@ struct DeviceEvent {
 
 /// From the haptic thread to one reader: neither waits. A full queue keeps the older events, where a trouble
 /// began, and counts what it turns away.
-class DeviceEventQueue {
+class VPS_DEVICE_API DeviceEventQueue {
  public:
   static constexpr std::size_t kCapacity = 256;
 

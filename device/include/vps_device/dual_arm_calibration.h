@@ -6,6 +6,7 @@
 #include <span>
 
 #include "vps_device/dual_arm.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -23,7 +24,7 @@ struct BaseCalibration {
 /// The handle keeps the gimbal centres L apart, wherever it is: six unknowns (shift and turn of the right
 /// base), one equation a reading, least squares by Gauss and Newton from `parameters`. L is taken as known.
 /// Allocates nothing; O(readings) each of a few iterations.
-BaseCalibration calibrateBases(const DualArmParameters& parameters,
-                               std::span<const DualArmJoints> readings) noexcept;
+VPS_DEVICE_API BaseCalibration calibrateBases(const DualArmParameters& parameters,
+                                              std::span<const DualArmJoints> readings) noexcept;
 
 }  // namespace vps::device

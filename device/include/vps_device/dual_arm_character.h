@@ -8,6 +8,7 @@
 #include "vps/progress.h"
 #include "vps_device/device.h"
 #include "vps_device/dual_arm_forces.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -63,13 +64,15 @@ struct DualArmCharacter {
 };
 
 /// Takes about a second. `progress` may be empty.
-DualArmCharacter characterise(const DualArmParameters& parameters, const Progress& progress = {});
+VPS_DEVICE_API DualArmCharacter characterise(const DualArmParameters& parameters,
+                                             const Progress& progress = {});
 
 /// Figure 5: the vertical force at each place of a grid over the workspace.
 struct VerticalForceAt {
   Vec3 p_DE;
   VerticalForce force;
 };
-std::vector<VerticalForceAt> verticalForces(const DualArmParameters& parameters, double peak_share = 0);
+VPS_DEVICE_API std::vector<VerticalForceAt> verticalForces(const DualArmParameters& parameters,
+                                                           double peak_share = 0);
 
 }  // namespace vps::device

@@ -9,6 +9,7 @@
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/dual_arm_hardware.h"
+#include "vps_device/export.h"
 #include "vps_device/motor_heat.h"
 
 namespace vps::device {
@@ -23,7 +24,7 @@ struct DualArmControllerSettings {
 
 /// A fault is latched: the pose is no longer given out (Status::Fault) and no wrench is given, until rearm().
 /// After a lost peer the motors still carry the handle; after any other fault they are let go.
-class DualArmController final : public Device {
+class VPS_DEVICE_API DualArmController final : public Device {
  public:
   /// hardware and events outlive the controller; events may be null.
   DualArmController(DualArmHardware& hardware, const DualArmControllerSettings& settings,
@@ -77,6 +78,7 @@ class DualArmController final : public Device {
 
 /// What the device can do at this rate, for gains and safety: least damping and dry friction over the
 /// workspace with the handle within 30 deg of straight.
-DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz, bool has_quantised_encoders);
+VPS_DEVICE_API DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz,
+                                          bool has_quantised_encoders);
 
 }  // namespace vps::device

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "vps_device/dual_arm.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -14,8 +15,8 @@ struct VerticalForce {
   double sum_N = 0;    ///< left_N + right_N less the weight: the hand would have to bear the couple
 };
 /// Zero where the device is singular.
-VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
-                            const JointVector& limits) noexcept;
+VPS_DEVICE_API VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
+                                           const JointVector& limits) noexcept;
 
 /// Motor efforts for forces along D's axes, or for torques about them: columns x, y, z.
 struct EffortMap {
@@ -23,16 +24,16 @@ struct EffortMap {
   Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< per N m about H
   JointVector weight = JointVector::Zero();                                  ///< to carry the handle
 };
-[[nodiscard]] Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
-                               EffortMap& map) noexcept;
+[[nodiscard]] VPS_DEVICE_API Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
+                                              EffortMap& map) noexcept;
 
 /// Greatest size that every direction of force (or torque) can have at once beside `weight`, exactly: a motor
 /// whose row is a asks |a| for its own worst direction. `efforts` is either map.
-double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
-                           const JointVector& limits) noexcept;
+VPS_DEVICE_API double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts,
+                                          const JointVector& weight, const JointVector& limits) noexcept;
 
 /// Greatest size along one direction.
-double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
-                      const JointVector& limits, const Vec3& direction) noexcept;
+VPS_DEVICE_API double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
+                                     const JointVector& limits, const Vec3& direction) noexcept;
 
 }  // namespace vps::device

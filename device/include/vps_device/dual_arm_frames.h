@@ -3,6 +3,7 @@
 #pragma once
 
 #include "vps_device/dual_arm.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -11,16 +12,18 @@ enum class DeviceFrame {
   Left,         ///< left arm's base: x towards the other arm, z up
   Right,        ///< right arm's base
 };
-const char* toText(DeviceFrame frame) noexcept;
+VPS_DEVICE_API const char* toText(DeviceFrame frame) noexcept;
 
 /// Pose of a frame in D; the right arm's as calibrated.
-Pose framePose(const DualArmParameters& parameters, DeviceFrame frame) noexcept;
+VPS_DEVICE_API Pose framePose(const DualArmParameters& parameters, DeviceFrame frame) noexcept;
 
 /// A pose, a velocity or a wrench given in `from`, said in `to`. Velocity and wrench stay those of the same
 /// point.
-Pose inFrame(const DualArmParameters& parameters, const Pose& X, DeviceFrame from, DeviceFrame to) noexcept;
-Twist inFrame(const DualArmParameters& parameters, const Twist& V, DeviceFrame from, DeviceFrame to) noexcept;
-Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame from,
-               DeviceFrame to) noexcept;
+VPS_DEVICE_API Pose inFrame(const DualArmParameters& parameters, const Pose& X, DeviceFrame from,
+                            DeviceFrame to) noexcept;
+VPS_DEVICE_API Twist inFrame(const DualArmParameters& parameters, const Twist& V, DeviceFrame from,
+                             DeviceFrame to) noexcept;
+VPS_DEVICE_API Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame from,
+                              DeviceFrame to) noexcept;
 
 }  // namespace vps::device

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "vps_device/dual_arm.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -15,7 +16,7 @@ struct DualArmReading {
 };
 
 /// One thread calls read() and drive() in turn; neither throws, allocates or waits.
-class DualArmHardware {
+class VPS_DEVICE_API DualArmHardware {
  public:
   virtual ~DualArmHardware() = default;
 

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "vps/pose.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
 /// Default: what data/dual_arm.toml says. Copies never allocate.
-struct DualArmParameters {
+struct VPS_DEVICE_API DualArmParameters {
   DualArmParameters();
 
   // Geometry.
@@ -82,13 +83,13 @@ struct DualArmFile {
 };
 
 /// data/dual_arm.toml, as built in. Allocates.
-const DualArmFile& builtInDualArm();
+VPS_DEVICE_API const DualArmFile& builtInDualArm();
 
 /// The built-in values with those of `file` over them. Throws LoadError: file, line, key, what was found and
 /// what would do.
-DualArmFile loadDualArm(const std::string& file);
+VPS_DEVICE_API DualArmFile loadDualArm(const std::string& file);
 
 /// The same from text; `name` stands for the file in messages.
-DualArmFile parseDualArm(const std::string& text, const std::string& name);
+VPS_DEVICE_API DualArmFile parseDualArm(const std::string& text, const std::string& name);
 
 }  // namespace vps::device

@@ -10,6 +10,7 @@
 #include <array>
 
 #include "vps_device/dual_arm_hardware.h"
+#include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/motor_heat.h"
 #include "vps_device/random.h"
@@ -25,7 +26,7 @@ struct DualArmPlantSettings {
 };
 
 /// Deterministic; nothing allocates after construction.
-class DualArmPlant final : public DualArmHardware {
+class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
  public:
   explicit DualArmPlant(const DualArmPlantSettings& settings = {});
 

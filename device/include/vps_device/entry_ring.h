@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "vps_device/export.h"
 #include "vps_device/run_log.h"
 
 namespace vps::device {
 
 /// One writer, one reader; neither waits. A full ring refuses.
-class EntryRing {
+class VPS_DEVICE_API EntryRing {
  public:
   struct Slot {
     std::uint32_t number = 0;

@@ -4,6 +4,7 @@
 
 #include "vps/coupling_law.h"
 #include "vps_device/device.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -17,18 +18,18 @@ struct CouplingTiming {
 
 /// Delay t_d [s] of a moving part: transport, and one physics step, since the part's state that is read
 /// answers a proxy of up to one step before.
-double couplingDelay_s(const CouplingTiming& timing) noexcept;
+VPS_DEVICE_API double couplingDelay_s(const CouplingTiming& timing) noexcept;
 
 /// The stiffest gains that keep the sampled coupling passive on this device, with a margin:
 ///   B = b / 5,   K = 0.8 min((b - B) / (T/2 + t_d), 2 b / T, 2 f_c / D)
 /// with the device's own delay in t_d, per kind of motion, springs limited to the device's peak. Translated
 /// into the scene by the scales. Source: [Colgate and Schenkel 1997] with t_d as in DESIGN section 7; [Abbott
 /// and Okamura 2005] for f_c and D. Terms whose device number is not known (zero) drop out.
-CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept;
+VPS_DEVICE_API CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept;
 
 /// Can a loop run with these at all? Finite, not negative, and no stiffer than anything that a hand could
 /// hold: 1 MN/m, 10 kN m/rad, dampers 10 kN s/m, 1 kN m s/rad, springs limited to 1 kN and 1 kN m. Whether
 /// they are stable on a device is another question: deriveGains() answers it.
-bool areUsable(const CouplingGains& gains) noexcept;
+VPS_DEVICE_API bool areUsable(const CouplingGains& gains) noexcept;
 
 }  // namespace vps::device

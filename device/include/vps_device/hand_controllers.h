@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "vps_device/export.h"
 #include "vps_device/rate_control.h"
 
 namespace vps::device {
@@ -16,11 +17,11 @@ namespace vps::device {
 /// The first space mouse of the spacenavd daemon (socket: SPNAV_SOCKET, /etc/spnavrc or /var/run/spnav.sock).
 /// Button 0 re-centres. Throws LoadError where this build lacks libspnav, or while another one lives: the
 /// library knows one connection a program.
-std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
+VPS_DEVICE_API std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
 
 /// The first game controller that SDL knows. Left stick: to the sides, to and fro; triggers: up (right) and
 /// down; right stick: turns about z and y; shoulders: about x; start: re-centres. Throws LoadError where this
 /// build lacks SDL2.
-std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
+VPS_DEVICE_API std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
 
 }  // namespace vps::device

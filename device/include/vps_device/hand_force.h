@@ -5,6 +5,7 @@
 
 #include "vps/pose.h"
 #include "vps/wrench.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -25,6 +26,6 @@ struct HandForce {
 };
 
 /// The wrench of `hand` on a handle at X with velocity V, all in the hand's frame.
-Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept;
+VPS_DEVICE_API Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept;
 
 }  // namespace vps::device

@@ -7,6 +7,7 @@
 
 #include "vps/coupling_law.h"
 #include "vps/query.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -40,7 +41,7 @@ struct LocalPart {
 /// system. Each of these only stores or dissipates, and backward Euler adds to what is dissipated: between
 /// snapshots the model gives the hand no energy of its own. What a new snapshot adds by moving the part is
 /// told by jump_J.
-class LocalContact {
+class VPS_DEVICE_API LocalContact {
  public:
   explicit LocalContact(const LocalContactSettings& settings = {});
 

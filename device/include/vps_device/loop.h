@@ -10,6 +10,7 @@
 #include "vps_device/clutch.h"
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
+#include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
@@ -18,7 +19,7 @@ namespace vps::device {
 
 /// How the device's space lies in the scene: p_W = X_WD (scale p_D). Forces on the hand are force_scale times
 /// the scene's. Powers then differ by scale / force_scale; the ledger is kept at the hand.
-struct WorkspaceMap {
+struct VPS_DEVICE_API WorkspaceMap {
   Pose X_WD;
   double scale = 1;        ///< scene metres per device metre, > 0
   double force_scale = 1;  ///< device newtons per scene newton, > 0
@@ -35,7 +36,7 @@ struct WorkspaceMap {
 /// grasping, so that grasping anywhere, at any attitude, gives no force. Handle turns turn G about its own
 /// origin:
 ///   p_WG = p_WH + offset_W,   R_WG = R_WH R_HG,   hence equal twists, and wrenches pass unchanged.
-struct Grasp {
+struct VPS_DEVICE_API Grasp {
   Vec3 offset_W = Vec3::Zero();
   Mat3 R_HG = Mat3::Identity();
 
@@ -51,7 +52,7 @@ struct Grasp {
 /// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
 /// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
 /// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
-struct PassivityObserver {
+struct VPS_DEVICE_API PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
   double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
@@ -98,7 +99,7 @@ struct TickReport {
 };
 
 /// Owned by the haptic thread (or the lockstep driver). tick() never throws, allocates, locks or waits.
-class HapticLoop {
+class VPS_DEVICE_API HapticLoop {
  public:
   /// device and port outlive the loop.
   HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings);

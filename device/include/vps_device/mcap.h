@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "vps_device/crc32.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -65,16 +66,16 @@ struct McapContent {
 };
 
 /// True for bytes that begin as every MCAP file does.
-bool isMcap(std::string_view bytes) noexcept;
+VPS_DEVICE_API bool isMcap(std::string_view bytes) noexcept;
 
 /// Reads front to back and keeps all before the first damage. A chunk whose checksum is wrong is left out
 /// whole, since nobody knows which of its bytes is wrong; of a chunk that the file's end cuts, the messages
 /// that are there are kept. Compressed chunks are not read. Never throws (but std::bad_alloc); memory: ten
 /// times the bytes at most, whatever lengths they claim. O(bytes).
-McapContent readMcap(std::string_view bytes);
+VPS_DEVICE_API McapContent readMcap(std::string_view bytes);
 
 /// Writes front to back; nothing is ever gone back to, so what is written stays good if the program dies.
-class McapWriter {
+class VPS_DEVICE_API McapWriter {
  public:
   using Sink = std::function<void(std::string_view)>;  ///< takes the next bytes; what it throws goes through
 

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
+#include "vps_device/export.h"
+
 namespace vps::device {
 
 /// A clock to wait by; another one in tests. Called by one thread at a time.
-class RealTimeClock {
+class VPS_DEVICE_API RealTimeClock {
  public:
   virtual ~RealTimeClock() = default;
   [[nodiscard]] virtual std::int64_t now_ns() noexcept = 0;
@@ -16,7 +18,7 @@ class RealTimeClock {
 };
 
 /// The system's monotonic clock, by absolute waits.
-RealTimeClock& monotonicClock() noexcept;
+VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
 
 /// One beat.
 struct Beat {
@@ -30,7 +32,7 @@ struct Beat {
 
 /// Waits for one beat after the other. Work that runs beyond a beat costs that beat: the next is the first
 /// that is still to come, never several at once. Never throws, allocates, locks.
-class Metronome {
+class VPS_DEVICE_API Metronome {
  public:
   /// @param period_ns  > 0
   Metronome(std::int64_t period_ns, RealTimeClock& clock) noexcept : period_ns_(period_ns), clock_(&clock) {}

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "vps_device/dual_arm.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
-class MotorHeat {
+class VPS_DEVICE_API MotorHeat {
  public:
   explicit MotorHeat(const DualArmParameters& parameters) noexcept;
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/random.h"
 
@@ -51,9 +52,9 @@ struct OperatorHabits {
 
 /// The hand's damping of a spring k against an inertia m: N s/m of N/m and kg, N m s/rad of N m/rad and kg
 /// m^2.
-double handDamping(const OperatorHabits& habits, double k, double m) noexcept;
+VPS_DEVICE_API double handDamping(const OperatorHabits& habits, double k, double m) noexcept;
 /// Such a hand, as stiff in every direction, about the identity.
-HandForce evenHand(const OperatorHabits& habits) noexcept;
+VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 
 /// One step of a procedure, for the hand. The hand holds the part at the grasp frame G, fixed in the part P;
 /// best at the part's centre of mass, whose weight it then carries without torque.
@@ -84,16 +85,16 @@ struct OperatorView {
 
 /// Regrasp: at a way point of OperatorTask::index_points, holding still until goOn().
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
-const char* toText(OperatorPhase phase) noexcept;
+VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 
 /// Minimum jerk from 0 to 1 over s in [0, 1]: 10 s^3 - 15 s^4 + 6 s^5, clamped outside. Source: [Flash and
 /// Hogan 1985].
-double minimumJerk(double s) noexcept;
+VPS_DEVICE_API double minimumJerk(double s) noexcept;
 /// Its derivative by s.
-double minimumJerkRate(double s) noexcept;
+VPS_DEVICE_API double minimumJerkRate(double s) noexcept;
 
 /// Same seed, task and views: same bits.
-class VirtualOperator {
+class VPS_DEVICE_API VirtualOperator {
  public:
   explicit VirtualOperator(const OperatorHabits& habits = {});
 

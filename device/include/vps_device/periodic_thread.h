@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "vps_device/export.h"
 #include "vps_device/metronome.h"
 
 namespace vps::device {
@@ -29,7 +30,7 @@ struct RealTimeReport {
 
 /// Beats in a thread of its own: absolute times, SCHED_FIFO and locked memory where wished and allowed, its
 /// stack touched beforehand, so that no page fault comes in the middle.
-class PeriodicThread {
+class VPS_DEVICE_API PeriodicThread {
  public:
   explicit PeriodicThread(const PeriodicSettings& settings);
   ~PeriodicThread();
@@ -56,8 +57,8 @@ class PeriodicThread {
 
 /// Asks the system for the calling thread's priority and the program's memory; words for what it refuses.
 /// Never throws but for want of memory.
-RealTimeReport askForRealTime(int priority, bool locks_memory);
+VPS_DEVICE_API RealTimeReport askForRealTime(int priority, bool locks_memory);
 /// The calling thread goes on as any other.
-void leaveRealTime() noexcept;
+VPS_DEVICE_API void leaveRealTime() noexcept;
 
 }  // namespace vps::device

@@ -6,11 +6,12 @@
 #include <cstdint>
 
 #include "vps/pose.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
 /// SplitMix64 [Steele, Lea and Flood 2014] and Box-Muller on top.
-class Random {
+class VPS_DEVICE_API Random {
  public:
   explicit Random(std::uint64_t seed = 1) : state_(seed) {}
   std::uint64_t next() noexcept;

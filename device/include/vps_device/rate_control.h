@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vps_device/device.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -27,7 +28,7 @@ struct RateSettings {
 };
 
 /// Deflections to a handle's pose. A pure function of its calls: same calls, same bits. Nothing allocates.
-class RateControl {
+class VPS_DEVICE_API RateControl {
  public:
   explicit RateControl(const RateSettings& settings = {}) : settings_(settings) {}
 
@@ -45,6 +46,6 @@ class RateControl {
 
 /// The share of full speed for a deflection from -1 to 1: zero within the dead zone, continuous at its edge,
 /// 1 at 1, odd.
-double rateShare(double deflection, const RateSettings& settings) noexcept;
+VPS_DEVICE_API double rateShare(double deflection, const RateSettings& settings) noexcept;
 
 }  // namespace vps::device

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 
+#include "vps_device/export.h"
 #include "vps_device/loop.h"
 #include "vps_device/periodic_thread.h"
 #include "vps_device/tick_statistics.h"
@@ -12,7 +13,7 @@
 namespace vps::device {
 
 /// Measures how long a device takes for read() and write().
-class TimedDevice final : public Device {
+class VPS_DEVICE_API TimedDevice final : public Device {
  public:
   TimedDevice(Device& device, RealTimeClock& clock) noexcept : device_(&device), clock_(&clock) {}
   DeviceSample read() noexcept override;
@@ -47,7 +48,7 @@ struct RealTimeSettings {
 
 /// Owns the loop. The one that commands it (grasp to rearm, observeStoredEnergy) is one thread; requests are
 /// done at the start of the next tick. Statistics are read by any thread, latest() by one.
-class RealTimeLoop {
+class VPS_DEVICE_API RealTimeLoop {
  public:
   /// device, port and settings.events outlive the loop. settings.period_s is the rate.
   RealTimeLoop(Device& device, CouplingPort& port, const LoopSettings& settings,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_device/export.h"
 #include "vps_device/mcap.h"
 #include "vps_device/run_log.h"
 
@@ -24,7 +25,7 @@ struct RecordingHead {
 /// A recording in the making. Entries pass through a ring without locks to a thread that writes them. Until
 /// finish() the file has another name beside its own, so that what stood there stays; a run that crashes
 /// leaves that other file, which replays up to about the last quarter second.
-class Recorder final : public RunLog {
+class VPS_DEVICE_API Recorder final : public RunLog {
  public:
   /// Makes the file and writes the head. Throws LoadError where it cannot be made, or where something stands
   /// that is no recording of ours.

@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "vps_device/export.h"
 #include "vps_device/recorder.h"
 
 namespace vps::device {
 
-struct RecordedRun {
+struct VPS_DEVICE_API RecordedRun {
   std::string file;
   RecordingHead head;
   std::vector<LogEntry> entries;
@@ -22,16 +23,16 @@ struct RecordedRun {
 
 /// Throws LoadError where there is no recording, or not even a head of one; a cut or damaged one is kept up
 /// to the damage, which it tells.
-RecordedRun loadRecording(const std::string& file);
+VPS_DEVICE_API RecordedRun loadRecording(const std::string& file);
 /// The same from bytes; `file` is for messages.
-RecordedRun recordingFrom(std::string_view bytes, const std::string& file);
+VPS_DEVICE_API RecordedRun recordingFrom(std::string_view bytes, const std::string& file);
 
 /// One CSV table of the entries of each kind: name without folder or ending, and its text.
-std::vector<std::pair<std::string, std::string>> csvTables(const RecordedRun& run);
+VPS_DEVICE_API std::vector<std::pair<std::string, std::string>> csvTables(const RecordedRun& run);
 
 /// A recorded device: each read() gives the next recorded sample, whatever is written. After the last one it
 /// is lost (Status::Fault).
-class Recording final : public Device {
+class VPS_DEVICE_API Recording final : public Device {
  public:
   /// As loadRecording(); the run is kept.
   explicit Recording(RecordedRun run);
@@ -56,7 +57,7 @@ class Recording final : public Device {
 };
 
 /// Compares a run with a recorded one, entry by entry, to the bit. For lockstep: it allocates.
-class ReplayCheck final : public RunLog {
+class VPS_DEVICE_API ReplayCheck final : public RunLog {
  public:
   explicit ReplayCheck(const RecordedRun& run) : run_(run) {}
   void add(const LogEntry& entry) noexcept override;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "vps_device/device.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -25,7 +26,7 @@ enum class RunEventKind : std::uint8_t {
   Note,   ///< anything else, in words
 };
 
-struct RunEvent {
+struct VPS_DEVICE_API RunEvent {
   double time_s = 0;
   std::int32_t step = -1;
   RunEventKind kind = RunEventKind::Note;
@@ -76,11 +77,11 @@ struct SyncEvent {
 
 using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, SyncEvent>;
 
-double timeOf(const LogEntry& entry) noexcept;
+VPS_DEVICE_API double timeOf(const LogEntry& entry) noexcept;
 
 /// Where entries go. add() is called on the haptic path: it neither throws, allocates, locks nor waits,
 /// unless an implementation that is for lockstep alone says so. One thread calls it.
-class RunLog {
+class VPS_DEVICE_API RunLog {
  public:
   virtual ~RunLog() = default;
   virtual void add(const LogEntry& entry) noexcept = 0;
@@ -94,7 +95,7 @@ class RunLog {
 };
 
 /// A device whose samples and wrenches are logged on their way. Both outlive it.
-class TappedDevice final : public Device {
+class VPS_DEVICE_API TappedDevice final : public Device {
  public:
   TappedDevice(Device& inner, RunLog& log) : inner_(inner), log_(log) {}
   DeviceSample read() noexcept override;

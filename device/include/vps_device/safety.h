@@ -7,6 +7,7 @@
 
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -31,9 +32,9 @@ enum class SafetyFault {
   BadGains,
   PhysicsStalled,  ///< the part in hand has not been heard of for too long
 };
-const char* toText(SafetyFault fault) noexcept;
+VPS_DEVICE_API const char* toText(SafetyFault fault) noexcept;
 /// How a fault is told; not for None.
-DeviceEventKind eventOf(SafetyFault fault) noexcept;
+VPS_DEVICE_API DeviceEventKind eventOf(SafetyFault fault) noexcept;
 
 struct SafetyState {
   SafetyFault fault = SafetyFault::None;  ///< latched until rearm()
@@ -42,7 +43,7 @@ struct SafetyState {
   std::uint64_t slewed = 0;               ///< ticks with the change cut back
 };
 
-class SafetyGuard {
+class VPS_DEVICE_API SafetyGuard {
  public:
   explicit SafetyGuard(const SafetyLimits& limits = {}) : limits_(limits) {}
 

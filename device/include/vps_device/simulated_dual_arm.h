@@ -5,6 +5,7 @@
 
 #include "vps_device/dual_arm_controller.h"
 #include "vps_device/dual_arm_plant.h"
+#include "vps_device/export.h"
 
 namespace vps::device {
 
@@ -19,10 +20,10 @@ struct SimulatedDualArmSettings {
 
 /// Nothing that the plant itself does not have: exact readings, a rigid structure, no delay. To tell their
 /// share.
-SimulatedDualArmSettings idealDualArm();
+VPS_DEVICE_API SimulatedDualArmSettings idealDualArm();
 
 /// Deterministic; nothing allocates after construction.
-class SimulatedDualArm final : public Device {
+class VPS_DEVICE_API SimulatedDualArm final : public Device {
  public:
   explicit SimulatedDualArm(const SimulatedDualArmSettings& settings = {});
   SimulatedDualArm(const SimulatedDualArm&) = delete;

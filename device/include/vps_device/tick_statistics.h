@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "vps_device/export.h"
+
 namespace vps::device {
 
 /// Counts times in buckets, 64 to the octave: a percentile is known to 1/64 of itself, from 1 ns to 18
 /// minutes (longer counts as that). One writer, any number of readers; neither waits. 18 kB.
-class TickHistogram {
+class VPS_DEVICE_API TickHistogram {
  public:
   static constexpr int kSplit = 64;    ///< buckets an octave
   static constexpr int kOctaves = 34;  ///< above the first 64 ns, which are exact
@@ -43,10 +45,10 @@ enum class TickCause : std::uint8_t {
   Beside,     ///< what else the thread was given to do, after the wrench was written
 };
 inline constexpr int kTickCauses = 4;
-const char* toText(TickCause cause) noexcept;
+VPS_DEVICE_API const char* toText(TickCause cause) noexcept;
 
 /// One tick's times [ns].
-struct TickTiming {
+struct VPS_DEVICE_API TickTiming {
   std::uint64_t tick = 0;        ///< its number
   std::int64_t late_ns = 0;      ///< from its due time to its start
   std::int64_t device_ns = 0;    ///< in the device's read and write
@@ -61,7 +63,7 @@ struct TickTiming {
 };
 
 /// All ticks of a loop. Written by its thread, read by any.
-class TickStatistics {
+class VPS_DEVICE_API TickStatistics {
  public:
   /// @param stale_ns  a snapshot that has been the same for longer counts as old; 0: never
   explicit TickStatistics(std::int64_t stale_ns = 0) noexcept : stale_ns_(stale_ns) {}

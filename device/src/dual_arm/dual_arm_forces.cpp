@@ -10,7 +10,7 @@
 namespace vps::device {
 namespace {
 
-constexpr double kNone = 1e-12;  // effort per newton below which a motor has no part in it
+constexpr double kNoEffort = 1e-12;  // effort per newton below which a motor has no part in it
 
 double armUp_N(const DualArmParameters& p, Side side, const Vec3& p_D, const Vec3& limits) {
   ArmJoints joints;
@@ -19,7 +19,7 @@ double armUp_N(const DualArmParameters& p, Side side, const Vec3& p_D, const Vec
   const Vec3 efforts = armJacobian(joints).transpose() * (X_DA.R.transpose() * Vec3::UnitZ());
   double most_N = std::numeric_limits<double>::max();
   for (int i = 0; i < 3; ++i)
-    if (std::abs(efforts[i]) > kNone) most_N = std::min(most_N, limits[i] / std::abs(efforts[i]));
+    if (std::abs(efforts[i]) > kNoEffort) most_N = std::min(most_N, limits[i] / std::abs(efforts[i]));
   return most_N;
 }
 
@@ -43,7 +43,7 @@ double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts, const Joi
   double least = std::numeric_limits<double>::max();
   for (int i = 0; i < 7; ++i) {
     const double room = std::max(0.0, limits[i] - std::abs(weight[i])), size = efforts.row(i).norm();
-    if (size > kNone) least = std::min(least, room / size);
+    if (size > kNoEffort) least = std::min(least, room / size);
   }
   return least;
 }
@@ -54,7 +54,7 @@ double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVec
   double most = std::numeric_limits<double>::max();
   for (int i = 0; i < 7; ++i) {
     const double room = std::max(0.0, limits[i] - (wanted[i] >= 0 ? weight[i] : -weight[i]));
-    if (std::abs(wanted[i]) > kNone) most = std::min(most, room / std::abs(wanted[i]));
+    if (std::abs(wanted[i]) > kNoEffort) most = std::min(most, room / std::abs(wanted[i]));
   }
   return most;
 }

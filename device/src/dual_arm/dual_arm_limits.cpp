@@ -12,7 +12,7 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 // Beyond it, in the workspace's corners, the gimbal nears its singularity, where the motor no longer brakes
 // all turns.
-constexpr double kTilt_rad = 0.5236;
+constexpr double kGreatestTilt_rad = 0.5236;
 
 double leastEigenvalue(const Mat3& m) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(m).eigenvalues()[0];
@@ -28,7 +28,7 @@ void leastFriction(const DualArmParameters& p, DeviceLimits& limits) {
   for (int i = 0; i < 3 * 3 * 3 * 3 * 3; ++i) {
     const auto third = [i](int power) { return i / power % 3 - 1.0; };
     const Vec3 corner(third(1), third(3), third(9));
-    const Vec3 tilt = Vec3(third(27), 0, third(81)).stableNormalized() * kTilt_rad;
+    const Vec3 tilt = Vec3(third(27), 0, third(81)).stableNormalized() * kGreatestTilt_rad;
     const Pose X_DH(rotationFromVector(tilt), Vec3(0.5 * p.workspace_m.cwiseProduct(corner)));
     JointMatrix J;
     if (handleJacobian(p, X_DH, J) != Status::Ok) continue;

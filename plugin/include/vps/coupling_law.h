@@ -3,6 +3,7 @@
 // haptic and the physics side meet. Neither side includes the other.
 #pragma once
 
+#include "vps/export.h"
 #include "vps/pose.h"
 #include "vps/triple_buffer.h"
 #include "vps/wrench.h"
@@ -31,8 +32,8 @@ struct CouplingState {
 /// Wrench on the part about its grasp point, in W: k times the pose error plus b times the velocity error,
 /// springs limited. The proxy gets the opposite. Zero if anything is not finite. Never throws or allocates.
 /// Source: Colgate, Stanley and Brown 1995 (virtual coupling); rotation error as a rotation vector.
-Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
-                      const CouplingState& part) noexcept;
+VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
+                              const CouplingState& part) noexcept;
 
 /// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads
 /// the other's latest without waiting.

@@ -4,28 +4,20 @@
 
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
 namespace vps {
 
-/// True if a box that may be empty shares a point with another.
-[[nodiscard]] bool overlap(const Box& a, const Box& b) noexcept;
-/// True if all of `inner` lies in `outer`; an empty box lies in all.
-[[nodiscard]] bool isWithin(const Box& inner, const Box& outer) noexcept;
-/// Grown by so much on each side; an empty one stays empty.
-[[nodiscard]] Box grown(const Box& box, double by_m) noexcept;
-/// The box of a box that was moved.
-[[nodiscard]] Box moved(const Box& box, const Pose& X) noexcept;
-
 /// The map with its nodes in and around the boxes only, in memory of its own; to the bit the same there.
 /// Elsewhere it reads as saturated, with the right sign by cells, and none of its bounds holds: only for
 /// queries whose points, and the centres of their clusters, stay in one of the boxes. May be mounted upon.
-/// O(cells). Throws LoadError for a map that is fine in regions only.
-VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
+/// O(cells).
+VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
 /// The shell's points in the boxes only, in their order and in their clusters: a query of fields that stay in
 /// the boxes finds the same contacts, to the bit, under smaller ids. O(points).
-PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
+VPS_API PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
 
 }  // namespace vps

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 
 namespace vps {
@@ -24,10 +25,11 @@ struct EdgeSegment {
 
 /// Appends a mesh's edges that stick out and turn by more than 20 degrees, placed by X_MP. Edges of one face
 /// or of more than two, and of faces without an area, are left out. O(n log n).
-void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::vector<EdgeSegment>& out);
+VPS_API void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner,
+                         std::vector<EdgeSegment>& out);
 
 /// Edges with a hierarchy of bounding spheres.
-class EdgeSet {
+class VPS_API EdgeSet {
  public:
   EdgeSet() = default;
   /// O(n log n).
@@ -79,7 +81,7 @@ struct EdgeCrossing {
 /// @param X_01  frame of set 1 in that of set 0
 /// Cost: the pairs of spheres that are near, and 30 ns a pair of segments. Allocates in `out` alone.
 /// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
-void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                   double depth_m, std::vector<EdgeCrossing>& out);
+VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
+                           double depth_m, std::vector<EdgeCrossing>& out);
 
 }  // namespace vps

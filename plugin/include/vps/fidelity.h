@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "vps/export.h"
 #include "vps/voxmap.h"
 
 namespace vps {
@@ -43,6 +44,6 @@ struct Fidelity {
 };
 
 /// Presets "fast", "normal", "fine"; throws LoadError for another name.
-Fidelity fidelityPreset(std::string_view name);
+VPS_API Fidelity fidelityPreset(std::string_view name);
 
 }  // namespace vps

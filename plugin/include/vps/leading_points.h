@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/query.h"
 
 namespace vps {
@@ -17,7 +18,7 @@ namespace vps {
 ///
 /// Reads what queryContacts() reads, but carries, gives normals to and reports a few of each thousand points:
 /// where 153,000 are near that takes a fifth of the time (plugin/README.md).
-class LeadingPoints {
+class VPS_API LeadingPoints {
  public:
   struct Ask {
     QueryOptions options;  ///< as queryContacts() takes them

@@ -5,11 +5,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "vps/export.h"
+
 namespace vps {
 
 /// Thrown while loading files, meshes and settings; never in the haptic path. what() is one line for a
 /// person: "gear.stl: part 'hub': vertex 17 is not a number; export it again".
-class LoadError : public std::runtime_error {
+class VPS_API LoadError : public std::runtime_error {
  public:
   LoadError(const std::string& file, const std::string& part, const std::string& found_and_remedy)
       : std::runtime_error((file.empty() ? std::string() : file + ": ") +

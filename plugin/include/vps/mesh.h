@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vps/box.h"
+#include "vps/export.h"
 #include "vps/pose.h"
 
 namespace vps {
@@ -15,18 +17,6 @@ namespace vps {
 struct Mesh {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-};
-
-struct Box {
-  Vec3 min = Vec3::Constant(1e300);
-  Vec3 max = Vec3::Constant(-1e300);
-  void add(const Vec3& p) {
-    min = min.cwiseMin(p);
-    max = max.cwiseMax(p);
-  }
-  [[nodiscard]] bool isEmpty() const { return (min.array() > max.array()).any(); }
-  [[nodiscard]] Vec3 center() const { return 0.5 * (min + max); }
-  [[nodiscard]] Vec3 size() const { return max - min; }
 };
 
 /// Of a body with unit density: volume [m^3], centre of mass [m] and inertia about it [m^5], in the mesh's
@@ -38,7 +28,7 @@ struct MassProperties {
 };
 
 /// What a mesh is made of; see checkMesh(), and repairMesh() in mesh_repair.h for the lower half.
-struct MeshReport {
+struct VPS_API MeshReport {
   std::size_t triangles = 0;
   std::size_t degenerate_triangles = 0;
   std::size_t duplicate_triangles = 0;  ///< beyond the first with the same three corners, either way round
@@ -63,38 +53,38 @@ struct MeshReport {
   double sure = 1;
 };
 
-Box bounds(const Mesh& mesh);
-double area(const Mesh& mesh);
+VPS_API Box bounds(const Mesh& mesh);
+VPS_API double area(const Mesh& mesh);
 
 /// By the divergence theorem; exact for a closed, outward-oriented mesh. O(triangles).
 /// Source: Mirtich 1996 in the tetrahedron form of Eberly 2002.
-MassProperties massProperties(const Mesh& mesh);
+VPS_API MassProperties massProperties(const Mesh& mesh);
 
 /// The mesh with every vertex moved by X_AB (from B to A).
-Mesh transformed(const Mesh& mesh, const Pose& X_AB);
+VPS_API Mesh transformed(const Mesh& mesh, const Pose& X_AB);
 
 /// Appends b's triangles to a.
-void append(Mesh& a, const Mesh& b);
+VPS_API void append(Mesh& a, const Mesh& b);
 
 /// Merges vertices that are equal to within tolerance_m (0: to the bit) and drops triangles that collapse.
 /// CAD exports repeat vertices for each face or triangle; connectivity needs them shared.
-Mesh welded(const Mesh& mesh, double tolerance_m = 0);
+VPS_API Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 
 /// Counts edges, shells, degenerate and duplicate triangles. O(n log n). Expects shared vertices (see
 /// welded()).
-MeshReport checkMesh(const Mesh& mesh);
+VPS_API MeshReport checkMesh(const Mesh& mesh);
 
 /// Refuses what nothing can be built from: no triangles, an index out of range, a coordinate that is not
 /// finite, zero area. Throws LoadError naming file and part.
-void requireUsable(const Mesh& mesh, const std::string& file, const std::string& part);
+VPS_API void requireUsable(const Mesh& mesh, const std::string& file, const std::string& part);
 
 /// Primitives with analytic truth, for tests and simple scenes; all centred at the origin, closed, outward.
-Mesh makeBox(const Vec3& size_m);
+VPS_API Mesh makeBox(const Vec3& size_m);
 /// Cylinder along z. Vertices lie on the true circle, so flats are inside it by r (1 - cos(pi / segments)).
-Mesh makeCylinder(double radius_m, double height_m, int segments);
+VPS_API Mesh makeCylinder(double radius_m, double height_m, int segments);
 /// Tube along z: outer and inner radius.
-Mesh makeTube(double outer_m, double inner_m, double height_m, int segments);
+VPS_API Mesh makeTube(double outer_m, double inner_m, double height_m, int segments);
 /// Sphere from a subdivided icosahedron: 20 * 4^level triangles, vertices on the sphere.
-Mesh makeSphere(double radius_m, int level);
+VPS_API Mesh makeSphere(double radius_m, int level);
 
 }  // namespace vps

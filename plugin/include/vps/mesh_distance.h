@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 
 namespace vps {
@@ -16,13 +17,13 @@ struct TrianglePoint {
   Vec3 q = Vec3::Zero();
   int feature = 0;  ///< 0 face; 1, 2, 3 edges ab, bc, ca; 4, 5, 6 vertices a, b, c
 };
-TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
+VPS_API TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 /// A bounding-volume hierarchy over a mesh. Answers are exact to floating point; the sign is that of the
 /// angle-weighted pseudonormal of the nearest feature, right for closed, consistently oriented meshes.
 /// Triangles without an area, which fill cracks of exports, have no normal: the facets beyond them count.
 /// Source: Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
-class MeshDistance {
+class VPS_API MeshDistance {
  public:
   struct Closest {
     Vec3 q = Vec3::Zero();       ///< nearest point on the mesh, in the mesh's frame

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 
 namespace vps {
@@ -35,10 +36,10 @@ enum class Crossing { Unknown, Seen };
 /// - facets with winding number above 0.5 on both sides are no surface.
 /// A sound mesh comes back as it was: O(n). Others need about two winding numbers a triangle.
 /// `surface` is never empty.
-RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);
+VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);
 
 /// In words, for a person: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign is sure
 /// for 99.8 %".
-std::string describe(const MeshReport& report);
+VPS_API std::string describe(const MeshReport& report);
 
 }  // namespace vps

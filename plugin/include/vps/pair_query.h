@@ -2,6 +2,7 @@
 // Two parts against each other, both ways: each part's points in the other's field.
 #pragma once
 
+#include "vps/export.h"
 #include "vps/query.h"
 
 namespace vps {
@@ -13,7 +14,7 @@ struct PairSide {
 };
 
 /// What one pair remembers from pose to pose, both ways.
-struct PairMemory {
+struct VPS_API PairMemory {
   QueryMemory b_in_a, a_in_b;
   PairMemory(const PairSide& a, const PairSide& b) : b_in_a(*a.map, *b.shell), a_in_b(*b.map, *a.shell) {}
 };
@@ -26,12 +27,12 @@ struct PairMemory {
 /// BadPose as queryWrench().
 /// @param X_AB  pose of B in A
 /// @param p_AO  the point the wrench is about, in A
-QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,
-                           const QueryOptions& options, double k_N_per_m3, const Vec3& p_AO,
-                           TouchSummary& out, PairMemory* memory = nullptr) noexcept;
+VPS_API QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,
+                                   const QueryOptions& options, double k_N_per_m3, const Vec3& p_AO,
+                                   TouchSummary& out, PairMemory* memory = nullptr) noexcept;
 
 /// The wrench on B, in A, of both ways: half of each. `F_B_A` is on B, in A; `F_A_B` on A, in B, about the
 /// same point.
-[[nodiscard]] Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB);
+[[nodiscard]] VPS_API Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB);
 
 }  // namespace vps

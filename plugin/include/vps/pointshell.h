@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 #include "vps/progress.h"
 #include "vps/shell_block.h"
@@ -30,7 +31,7 @@ struct ShellNode {
 /// Points on the surface, in the part's frame P. All arrays have one entry a point, in the order of a k-d
 /// tree's leaves, so that neighbours in space are neighbours in memory. `order` lists the points so that
 /// every prefix is an even, coarser sampling. A point's index is its stable id.
-struct PointShell {
+struct VPS_API PointShell {
   std::vector<Vec3> points;
   std::vector<Vec3> inward;          ///< unit normals into the part
   std::vector<double> area_m2;       ///< the surface each point stands for; sums to the mesh's area
@@ -52,17 +53,17 @@ struct PointShell {
 /// angle-weighted pseudonormal on edges and corners. Deterministic. O(area / spacing^2). Throws LoadError for
 /// unusable meshes and for a spacing that is not positive or would give more points than fit (says which
 /// would).
-PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings, const std::string& part = "",
-                           const Progress& progress = {});
+VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
+                                   const std::string& part = "", const Progress& progress = {});
 
 /// One shell out of several at poses (for mounted parts). Points keep their places: id i of shell s becomes
 /// i + the sizes of the shells before it. The shells' hierarchies hang side by side under one root.
-PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs);
+VPS_API PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs);
 
 /// PLY with x y z nx ny nz (nx.. inward) and area: written binary little-endian, to the bit, and replaced
 /// whole or not at all; read binary little-endian or ascii, any order and type of properties. Throws
 /// LoadError.
-void savePly(const PointShell& shell, const std::string& file);
-PointShell loadPly(const std::string& file);
+VPS_API void savePly(const PointShell& shell, const std::string& file);
+VPS_API PointShell loadPly(const std::string& file);
 
 }  // namespace vps

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "vps/export.h"
+
 namespace vps {
 
 using Vec3 = Eigen::Vector3d;
@@ -13,7 +15,7 @@ using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
 /// Rigid pose X_AB: p_A = R p_B + p. R is a rotation (det +1); p in metres.
-struct Pose {
+struct VPS_API Pose {
   Mat3 R = Mat3::Identity();
   Vec3 p = Vec3::Zero();
 
@@ -57,7 +59,7 @@ inline Mat3 rotationFromVector(const Vec3& r) {
 }
 
 /// Spatial velocity of a frame: angular w [rad/s] and linear v [m/s] of its origin, both in one stated frame.
-struct Twist {
+struct VPS_API Twist {
   Vec3 w = Vec3::Zero();
   Vec3 v = Vec3::Zero();
   [[nodiscard]] bool isFinite() const { return w.allFinite() && v.allFinite(); }

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/pointshell.h"
 #include "vps/query_memory.h"
-#include "vps/query_team.h"
 #include "vps/simd.h"
 #include "vps/status.h"
 #include "vps/voxmap.h"
@@ -30,13 +30,12 @@ struct QueryOptions {
   double cutoff_m = 0;  ///< report points with distance_m <= cutoff_m (> 0: also near ones, up to the band)
   bool is_exhaustive = false;  ///< visit every point, without culling: the reference for tests
   Gradient gradient = Gradient::Continuous;
-  Simd simd = Simd::Best;     ///< changes the time, not one bit of the answer
-  QueryTeam* team = nullptr;  ///< threads that share queryWrench(); the same bits for any number
+  Simd simd = Simd::Best;  ///< changes the time, not one bit of the answer
 };
 
 /// Room for contacts, sized once. When full, further contacts are counted in `left_out` and Status is
 /// Truncated.
-struct ContactSet {
+struct VPS_API ContactSet {
   std::vector<Contact> contacts;  ///< capacity is the limit; never grown by a query
   std::size_t left_out = 0;
   explicit ContactSet(std::size_t capacity = 0) { contacts.reserve(capacity); }
@@ -59,16 +58,16 @@ struct QueryResult {
 /// finite. With a memory, the leaves that cannot have come near since the last pose are not looked at:
 /// min_distance_m is then no more than the cutoff. O(points near contact). Source: McNeely et al. 1999 and
 /// the paper, section 4.1.
-QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
-                          const QueryOptions& options, ContactSet& out,
-                          QueryMemory* memory = nullptr) noexcept;
+VPS_API QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
+                                  const QueryOptions& options, ContactSet& out,
+                                  QueryMemory* memory = nullptr) noexcept;
 
 /// Least signed distance of the shell to the map, by branch and bound over the spheres: exact (the field's
 /// least reading) within the band; -band_m() means that deep or deeper. Beyond the band status is BeyondBand
 /// and min_distance_m a lower bound of the true distance, infinite for an empty shell. Never throws,
 /// allocates, locks.
-QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
-                          Simd simd = Simd::Best) noexcept;
+VPS_API QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
+                                  Simd simd = Simd::Best) noexcept;
 
 /// What touches, in sum.
 struct TouchSummary {
@@ -83,15 +82,15 @@ struct TouchSummary {
 /// Same points and distances as queryContacts() with cutoff 0 (the options' own is not used); sums in a fixed
 /// order, so that culling, coherence and processor change no bit. min_distance_m is as queryContacts() says:
 /// exact when something touches, else a bound; with a memory no more than 0.
-QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
-                        const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO, TouchSummary& out,
-                        QueryMemory* memory = nullptr) noexcept;
+VPS_API QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
+                                const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO,
+                                TouchSummary& out, QueryMemory* memory = nullptr) noexcept;
 
 /// Penalty wrench of a contact set: F = sum of k A d n over touching points (paper, section 4.1, with the
 /// point's area as weight, so that it converges under refinement).
 /// @param k_N_per_m3  stiffness per area, >= 0
 /// @param p_MO        the point the wrench is about, in M
 /// @return wrench on the shell's part about O, in M [N m, N]
-Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept;
+VPS_API Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept;
 
 }  // namespace vps

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
@@ -20,7 +21,7 @@ namespace vps {
 ///
 /// One memory serves one pair and one thread at a time. With another cutoff it starts anew; given to a query
 /// of another map or shell it is not used. Made once; queries with it do not allocate.
-class QueryMemory {
+class VPS_API QueryMemory {
  public:
   /// The shell must outlive the memory, and not change. Cost and room: about 10 bytes a leaf of 16 points.
   QueryMemory(const VoxMap& map, const PointShell& shell);

@@ -2,6 +2,8 @@
 // Which instructions the query uses: chosen at run time, with the same bits whichever it is.
 #pragma once
 
+#include "vps/export.h"
+
 namespace vps {
 
 /// `Best` is the widest that the processor has. The others are for tests and measurements; one that the
@@ -9,7 +11,7 @@ namespace vps {
 enum class Simd { Best, Scalar, Avx2, Avx512 };
 
 /// What `wanted` comes to on this processor; never `Best`.
-Simd availableSimd(Simd wanted = Simd::Best) noexcept;
-const char* toText(Simd simd) noexcept;
+VPS_API Simd availableSimd(Simd wanted = Simd::Best) noexcept;
+VPS_API const char* toText(Simd simd) noexcept;
 
 }  // namespace vps

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 #include "vps/progress.h"
 
@@ -24,13 +25,12 @@ struct VoxMapSettings {
 enum class Gradient { Continuous, Trilinear };
 
 struct VoxLayout;  // cells and bricks: src/voxmap_layout.h
-struct FieldView;  // what queries read: src/read_kernel.h
 
 /// Signed distance [m] to a part's surface in frame M, negative inside: at the grid's nodes within the band
 /// exact to half a quantum_m() (nodes are 16 bit), trilinear between them. Beyond the band the distance
 /// saturates at +-band_m() with the right sign, and lowerBound() gives a coarse bound that still tells far
 /// from near. Immutable once built; sampling is thread-safe, and never allocates or throws.
-class VoxMap {
+class VPS_API VoxMap {
  public:
   static constexpr int kBrick = 8;  ///< grid cells per brick edge
 
@@ -44,8 +44,6 @@ class VoxMap {
 
   [[nodiscard]] double voxel_m() const noexcept { return voxel_m_; }
   [[nodiscard]] double band_m() const noexcept { return band_m_; }
-  /// The voxel size at a point: larger than voxel_m() where a map is coarse, see buildVoxMapInRegions().
-  [[nodiscard]] double voxelAt(const Vec3& p_M) const noexcept;
   /// The step in which nodes store distances: band_m() / 32767.
   [[nodiscard]] double quantum_m() const noexcept { return quantum_m_; }
   /// Box of the part's surface, in M (without the band).
@@ -83,10 +81,7 @@ class VoxMap {
   [[nodiscard]] std::uint16_t owner(const Vec3& p_M) const noexcept;
 
  private:
-  friend class VoxMapBuilder;
-  friend class VoxMapCacheFile;
-  friend class VoxSampler;
-  friend struct FieldView;
+  friend class VoxMapAccess;
   double voxel_m_ = 0, band_m_ = 0, quantum_m_ = 0;
   Box bounds_;
   std::shared_ptr<const VoxLayout> layout_;  // never null
@@ -97,24 +92,8 @@ class VoxMap {
 /// of what repairMesh() makes of it, and `report`, if given, tells what was found and how sure the sign is.
 /// O(surface area / h^2). Throws LoadError for a mesh that requireUsable() refuses, a voxel size that is not
 /// positive, or a grid that would not fit in memory (says which voxel size would).
-VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
-                   const Progress& progress = {}, MeshReport* report = nullptr);
-
-/// Where a map is fine, and how much coarser it is elsewhere.
-struct FineRegions {
-  std::vector<Box> boxes_M;  ///< in the part's frame; each grows to whole bricks of 8 voxels
-  int coarsening = 4;        ///< 2, 4 or 8 times voxel_m outside
-};
-
-/// As buildVoxMap(), but fine only in regions, as where a path passes: memory and time follow what they hold
-/// of the surface. Elsewhere the field is that of a map with larger voxels; it meets the fine one without a
-/// jump. The band is at least 3 of the larger voxels wide. sampleError_m() and bounds hold for the larger
-/// voxels. Queries are as exact as on any map: culled is exhaustive. Points elsewhere cost more to read than
-/// fine ones. Such maps cannot be combined, resampled or saved: LoadError, which also refuses what is no
-/// region.
-VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
-                            const std::string& part = "", const Progress& progress = {},
-                            MeshReport* report = nullptr);
+VPS_API VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
+                           const Progress& progress = {}, MeshReport* report = nullptr);
 
 /// A part to be fused into one map, at its pose in the map's frame.
 struct PlacedMesh {
@@ -126,12 +105,12 @@ struct PlacedMesh {
 /// distances on one grid, so nothing is resampled and the order of mounting does not matter. owner() tells
 /// the parts apart. Throws LoadError as buildVoxMap(), for a pose that is not finite, and for parts so far
 /// apart that one map of them would not fit in memory; so do mounting, resampling and uniting.
-VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
-                  const Progress& progress = {});
+VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
+                          const Progress& progress = {});
 
 /// Adds one more part to a cooked map: returns the new map, leaves the old untouched. Cost follows the new
 /// part.
-VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
+VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 
 /// A map at its pose in another map's frame.
 struct PlacedMap {
@@ -142,39 +121,10 @@ struct PlacedMap {
 /// The field of a placed map on the grid of settings: every node is read from the map's own field, so it is
 /// off by that field's error and adds its own; sampleError_m() says how much. Much quicker than building
 /// anew. Throws LoadError if the map's band is narrower than the one asked for, or as buildVoxMap().
-VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
+VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
 /// As mountVoxMap() for a mesh, from the part's own field: milliseconds where the mesh takes a tenth of a
 /// second or more, for the price of one resampling.
-VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
-
-/// Of two maps on one grid (same voxel and band; else LoadError): what is in either, and what is in a but not
-/// in b. The distance is min(a, b) and max(a, -b): exact outside a union and inside a difference, elsewhere a
-/// bound near edges that did not exist before. Owners: a's parts, then b's.
-VoxMap unionOf(const VoxMap& a, const VoxMap& b);
-VoxMap differenceOf(const VoxMap& a, const VoxMap& b);
-
-/// Writes an ordinary OpenVDB level set ("surface", float, narrow band) that opens in Houdini and Blender.
-/// Goes to a temporary name first: an existing file is replaced whole or not at all. Throws LoadError.
-void saveVdb(const VoxMap& map, const std::string& file);
-
-/// Reads a level set of any program: values of 16, 32 or 64 bit; cubes for voxels. Files of ours come back to
-/// the bit. Of others, `grid` names the one to read; unnamed, the only level set is taken, or the only grid
-/// that looks like one. Its band is kept up to 32 voxels; one thinner than 3 is extended by fast sweeping, a
-/// first-order solution that leaves what is there as it is. Values need not be true distances: how far they
-/// are from any function that changes by the way gone is measured, and widens sampleError_m() and what
-/// culling allows for. A grid that is turned or moved off the lattice through the origin is resampled (see
-/// resampledVoxMap()); loadPlacedVdb() leaves it as it is. Throws LoadError on a file that is missing or
-/// damaged, that holds no such grid or several, and on what would not fit in memory (before taking it).
-VoxMap loadVdb(const std::string& file, const std::string& grid = "");
-
-/// A level set on its own lattice, and where that lies in the file's frame F.
-struct PlacedVdb {
-  VoxMap map;
-  Pose X_FM;
-};
-
-/// As loadVdb(), but every node is a value of the file, rounded to the map's quantum.
-PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
+VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
 }  // namespace vps

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "vps/export.h"
 #include "vps/voxmap.h"
 
 namespace vps {
@@ -18,7 +19,7 @@ namespace vps {
 /// its own hash; any other is built again and replaced, with a warning. The hash finds damage, not malice:
 /// the folder is for your own account. Several threads and programs may share it; files appear whole or not
 /// at all. Nothing is ever removed: delete the folder, or any file in it, whenever you like.
-class VoxMapCache {
+class VPS_API VoxMapCache {
  public:
   using Warn = std::function<void(const std::string&)>;
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "vps/export.h"
 #include "vps/mesh.h"
 
 namespace vps {
@@ -19,7 +20,7 @@ namespace vps {
 /// enough is where the rest of the series provably is at most `cluster_error`.
 /// Sources: Jacobson et al., Robust inside-outside segmentation using generalized winding numbers, 2013;
 /// Barill et al., Fast winding numbers for soups and clouds, 2018 (there "far" is a ratio, here an error).
-class WindingNumber {
+class VPS_API WindingNumber {
  public:
   /// A value, and the most by which it can be off (clusters used times cluster_error; in tests 100 times
   /// less).

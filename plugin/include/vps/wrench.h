@@ -2,13 +2,14 @@
 // Force and torque about a stated point, in a stated frame.
 #pragma once
 
+#include "vps/export.h"
 #include "vps/pose.h"
 
 namespace vps {
 
 /// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about
 /// P's origin, in W.
-struct Wrench {
+struct VPS_API Wrench {
   Vec3 tau = Vec3::Zero();
   Vec3 f = Vec3::Zero();
 

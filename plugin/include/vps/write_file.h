@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "vps/export.h"
+
 namespace vps {
 
 /// A file that is written under a temporary name in the target's folder and then renamed to the target, so
@@ -16,7 +18,7 @@ namespace vps {
 ///     ...
 ///     out.close();
 ///     if (const std::error_code error = out ? file.commit() : std::make_error_code(std::errc::io_error)) ...
-class WholeFile {
+class VPS_API WholeFile {
  public:
   /// Chooses the temporary name: the target's, the process, and a count, so that no two writers share one.
   /// Creates nothing. Thread-safe.
@@ -39,6 +41,6 @@ class WholeFile {
 
 /// Writes `bytes` as the whole content of `file`. The folder must exist. Throws LoadError with the system's
 /// reason; `file` is then as it was.
-void writeWholeFile(const std::filesystem::path& file, std::string_view bytes);
+VPS_API void writeWholeFile(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace vps

@@ -9,10 +9,9 @@
 namespace vps {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::uint32_t kLeafTriangles = 8;
 /// Halving by count makes the depth 32 at most; one waiting child a level.
-constexpr int kStack = 64;
+constexpr int kTreeStack = 64;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -24,7 +23,7 @@ double acceptDistance(double radius, double third_moment, double error) {
   if (!(radius > 0)) return 0;
   const auto bound = [&](double R) {
     const double t = radius / R;
-    return third_moment / (4 * kPi * R * R * R * R * R) * (4 - 3 * t) / ((1 - t) * (1 - t));
+    return third_moment / (4 * std::numbers::pi * R * R * R * R * R) * (4 - 3 * t) / ((1 - t) * (1 - t));
   };
   double low = radius, high = 2 * radius;
   while (bound(high) > error) high *= 2;
@@ -148,7 +147,7 @@ struct WindingNumber::Moments {
                                 square(2, 0),
                                 square(2, 1),
                                 15 * (ssn[2](0, 1) + ssn[1](0, 2) + ssn[0](1, 2))};
-    for (double& value : c) value /= -4 * kPi;
+    for (double& value : c) value /= -4 * std::numbers::pi;
     return c;
   }
 };
@@ -173,7 +172,7 @@ struct WindingNumber::Turn {
     y = py / size;
   }
   /// Solid angle over 4 pi; the argument is half of it.
-  [[nodiscard]] double windings() const { return std::atan2(y, x) / (2 * kPi) + turns; }
+  [[nodiscard]] double windings() const { return std::atan2(y, x) / (2 * std::numbers::pi) + turns; }
 };
 
 WindingNumber::WindingNumber(const Mesh& mesh, double cluster_error) {
@@ -292,7 +291,7 @@ WindingNumber::Value WindingNumber::at(const Vec3& p) const noexcept {
   double far = 0;
   int clusters = 0;
   Turn near;
-  std::uint32_t stack[kStack];
+  std::uint32_t stack[kTreeStack];
   int waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0) {

@@ -208,33 +208,6 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
   return least;
 }
 
-/// The same for one group, for threads that share a query. With a memory, begin() and end() are the caller's.
-template <typename Consume>
-double readNearLeavesOf(std::size_t group, const Reading& reading, const Pose& X_MP,
-                        const QueryOptions& options, double cutoff_m, QueryMemory* memory,
-                        std::size_t& points_read, Consume consume) noexcept {
-  const double cutoff = cutoff_m / reading.field.voxel_m;
-  if (memory != nullptr && !options.is_exhaustive) {
-    CoherentWalk<Consume> walk(reading, X_MP, cutoff, *memory, consume);
-    walk.visit(group);
-    walk.flush();
-    points_read = walk.pointsRead();
-    return cutoff;
-  }
-  double least = std::numeric_limits<double>::infinity();
-  LeafReader<Consume> reader(reading, consume);
-  const std::size_t end = std::min(reading.shell.leaf_blocks, (group + 1) * kGroupLeaves);
-  if (options.is_exhaustive)
-    for (std::size_t leaf = group * kGroupLeaves; leaf < end; ++leaf)
-      reader.add(static_cast<std::uint32_t>(leaf));
-  else
-    least = walkNear(reading, groupRoot(reading.shell, group), static_cast<float>(cutoff),
-                     [&](std::uint32_t leaf) { reader.add(leaf); });
-  reader.flush();
-  points_read = reader.pointsRead();
-  return least;
-}
-
 /// The result's distance, from the least reading [quanta] and what the points left out are not below
 /// [voxels].
 inline void setDistance(const VoxMap& map, const Reading& reading, float least_read, double least_skipped,

@@ -7,7 +7,7 @@
 
 #include "query/contact_normals.h"
 #include "query/leaf_walk.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_sampler.h"
 
 namespace vps {
 

@@ -69,7 +69,6 @@ int ContactNormals::compute() noexcept {
     const std::int32_t* const whole[3] = {whole_[0], whole_[1], whole_[2]};
     const float* const t[3] = {t_[0], t_[1], t_[2]};
     reading_.kernels.readAt(reading_.field, whole, t, kReads * count_, value_);
-    if (reading_.field.layout != nullptr) readElsewhereAt(reading_.field, whole, t, kReads * count_, value_);
     for (int i = 0; i < count_; ++i)
       for (int axis = 0; axis < 3; ++axis)
         n_[axis][i] = value_[kReads * i + 2 * axis + 1] - value_[kReads * i + 2 * axis];

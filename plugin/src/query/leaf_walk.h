@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "voxmap/coarse_nodes.h"
+#include "voxmap/read_kernel.h"
 #include "vps/pointshell.h"
 
 namespace vps {
@@ -44,10 +44,8 @@ class LeafReader {
  public:
   LeafReader(const Reading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
 
-  void add(std::uint32_t leaf) noexcept { add(reading_.shell.blocks[leaf], leaf); }
-
-  /// A leaf with other weights than the shell's. The block is looked at until kBatch more have been added.
-  void add(const ShellBlock& block, std::uint32_t leaf) noexcept {
+  void add(std::uint32_t leaf) noexcept {
+    const ShellBlock& block = reading_.shell.blocks[leaf];
     if (block.radius_m > kFineEnough * reading_.field.voxel_m) {
       flush();
       readOneByOne(block, leaf);
@@ -61,7 +59,6 @@ class LeafReader {
   void flush() noexcept {
     if (count_ == 0) return;
     reading_.kernels.read(reading_.field, reading_.motion, blocks_, count_, batch_);
-    if (reading_.field.layout != nullptr) readElsewhere(reading_.field, count_, batch_);
     points_ += countPoints();
     for (int i = 0; i < count_; ++i) consume_(ReadLeaf{*blocks_[i], leaves_[i], batch_, i});
     count_ = 0;
@@ -108,12 +105,6 @@ inline constexpr std::size_t kGroupLeaves = kLanes * kLanes;
 inline std::size_t groupCount(const PointShell& shell) noexcept {
   return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
 }
-/// The block over a group's leaves.
-inline std::uint32_t groupRoot(const PointShell& shell, std::size_t group) noexcept {
-  if (groupCount(shell) <= 1) return static_cast<std::uint32_t>(shell.blocks.size() - 1);
-  return static_cast<std::uint32_t>(shell.leaf_blocks + (shell.leaf_blocks + kLanes - 1) / kLanes + group);
-}
-
 /// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may come down to
 /// the cutoff [voxels]; of the others, the least bound [voxels].
 template <typename Take>

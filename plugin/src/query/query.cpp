@@ -12,7 +12,7 @@
 #include "query/contact_collector.h"
 #include "query/leaf_walk.h"
 #include "voxmap/voxmap_layout.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_sampler.h"
 
 namespace vps {
 namespace {

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "query/contact_normals.h"
 #include "query/leaf_walk.h"
@@ -24,20 +23,6 @@ inline double sumOfLanes(const double lanes[kLanes]) {
     for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
   return sum[0];
 }
-
-/// Sums over whole groups.
-struct Totals {
-  Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as TouchSums
-  double area_m2 = 0, area_depth = 0, count = 0;
-
-  void add(const Totals& group) noexcept {
-    f += group.f;
-    tau += group.tau;
-    area_m2 += group.area_m2;
-    area_depth += group.area_depth;
-    count += group.count;
-  }
-};
 
 /// Sums of leaves; the groups' sums, added up.
 class WrenchCollector {
@@ -71,24 +56,19 @@ class WrenchCollector {
     finishGroup();
   }
 
-  /// Least reading since it was last taken [quanta].
-  [[nodiscard]] float takeLeast() noexcept {
-    return std::exchange(least_, std::numeric_limits<float>::infinity());
-  }
-
-  /// What has been summed since it was last taken.
-  [[nodiscard]] Totals takeTotals() noexcept { return std::exchange(totals_, Totals()); }
+  /// Least reading so far [quanta].
+  [[nodiscard]] float least() const noexcept { return least_; }
 
   /// Sums with stiffness, about O.
-  [[nodiscard]] TouchSummary summary(const Totals& sums, float least, double k_N_per_m3) const noexcept {
+  [[nodiscard]] TouchSummary summary(double k_N_per_m3) const noexcept {
     TouchSummary out;
     const double quantum_m = reading_.field.quantum_m, h = reading_.field.voxel_m;
-    out.count = static_cast<std::size_t>(sums.count);
-    out.area_m2 = sums.area_m2;
-    out.volume_m3 = sums.area_depth * quantum_m;
-    out.max_depth_m = least < 0 ? -static_cast<double>(least) * quantum_m : 0;
-    out.F_O_M.f = k_N_per_m3 * quantum_m * sums.f;
-    out.F_O_M.tau = k_N_per_m3 * quantum_m * h * (sums.tau - from_reference_.cross(sums.f));
+    out.count = totals_.count;
+    out.area_m2 = totals_.area_m2;
+    out.volume_m3 = totals_.area_depth * quantum_m;
+    out.max_depth_m = least_ < 0 ? -static_cast<double>(least_) * quantum_m : 0;
+    out.F_O_M.f = k_N_per_m3 * quantum_m * totals_.f;
+    out.F_O_M.tau = k_N_per_m3 * quantum_m * h * (totals_.tau - from_reference_.cross(totals_.f));
     return out;
   }
 
@@ -168,15 +148,13 @@ class WrenchCollector {
   void finishGroup() noexcept {
     if (!has_sums_) return;
     addForces();
-    Totals group;
     for (int k = 0; k < 3; ++k) {
-      group.f[k] = sumOfLanes(sums_.f[k]);
-      group.tau[k] = sumOfLanes(sums_.tau[k]);
+      totals_.f[k] += sumOfLanes(sums_.f[k]);
+      totals_.tau[k] += sumOfLanes(sums_.tau[k]);
     }
-    group.area_m2 = sumOfLanes(sums_.area_m2);
-    group.area_depth = sumOfLanes(sums_.area_depth);
-    for (const std::uint32_t count : sums_.count) group.count += count;
-    totals_.add(group);
+    totals_.area_m2 += sumOfLanes(sums_.area_m2);
+    totals_.area_depth += sumOfLanes(sums_.area_depth);
+    for (const std::uint32_t count : sums_.count) totals_.count += count;
     sums_ = TouchSums();
     has_sums_ = false;
   }
@@ -193,7 +171,11 @@ class WrenchCollector {
   ContactNormals normals_;
   Entry waiting_[kBatchLanes];
   int waiting_count_ = 0;
-  Totals totals_;
+  struct {
+    Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as TouchSums
+    double area_m2 = 0, area_depth = 0;
+    std::size_t count = 0;
+  } totals_;  // over whole groups
   float least_ = std::numeric_limits<float>::infinity();
 };
 

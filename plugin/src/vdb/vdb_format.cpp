@@ -3,6 +3,8 @@
 
 #include <mutex>
 
+#include "vps/load_error.h"
+
 namespace vps {
 namespace {
 
@@ -17,6 +19,10 @@ std::uint64_t checksum(std::string_view bytes) {
 }
 
 }  // namespace
+
+void refuseVdb(const std::string& file, const std::string& found_and_remedy) {
+  throw LoadError(file, "", found_and_remedy);
+}
 
 void initializeOpenVdb() {
   static std::once_flag once;

@@ -24,6 +24,9 @@ inline std::string partKey(std::size_t part, const char* what) {
   return "vps_part" + std::to_string(part) + "_" + what;
 }
 
+/// Throws LoadError: what was found in the file, and what would help.
+[[noreturn]] void refuseVdb(const std::string& file, const std::string& found_and_remedy);
+
 /// Thread-safe; does its work once.
 void initializeOpenVdb();
 

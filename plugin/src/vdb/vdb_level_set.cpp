@@ -19,10 +19,6 @@ using openvdb::DoubleGrid;
 using openvdb::FloatGrid;
 using Entry = VdbArchive::Entry;
 
-[[noreturn]] void refuse(const std::string& file, const std::string& found_and_remedy) {
-  throw LoadError(file, "", found_and_remedy);
-}
-
 std::string digits(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", number);
@@ -62,25 +58,25 @@ const Entry* onlyOf(const std::vector<Entry>& entries, openvdb::GridClass wanted
   std::vector<Entry> found;
   for (const Entry& entry : entries)
     if (objection(entry).empty() && entry.grid->getGridClass() == wanted) found.push_back(entry);
-  if (found.size() > 1) refuse(file, "holds several level sets; name one of " + namesOf(found));
+  if (found.size() > 1) refuseVdb(file, "holds several level sets; name one of " + namesOf(found));
   if (found.empty()) return nullptr;
   return &*std::find_if(entries.begin(), entries.end(),
                         [&](const Entry& entry) { return entry.grid == found.front().grid; });
 }
 
 const Entry& choose(const std::vector<Entry>& entries, const std::string& file, const std::string& name) {
-  if (entries.empty()) refuse(file, "holds no grids; export the part again");
+  if (entries.empty()) refuseVdb(file, "holds no grids; export the part again");
   if (!name.empty()) {
     for (const Entry& entry : entries) {
       if (entry.name() != name) continue;
-      if (!objection(entry).empty()) refuse(file, objection(entry));
+      if (!objection(entry).empty()) refuseVdb(file, objection(entry));
       return entry;
     }
-    refuse(file, "holds no grid '" + name + "'; it holds " + namesOf(entries));
+    refuseVdb(file, "holds no grid '" + name + "'; it holds " + namesOf(entries));
   }
   for (const openvdb::GridClass wanted : {openvdb::GRID_LEVEL_SET, openvdb::GRID_UNKNOWN})
     if (const Entry* entry = onlyOf(entries, wanted, file)) return *entry;
-  refuse(file, "holds no level set: " + objection(entries.front()));
+  refuseVdb(file, "holds no level set: " + objection(entries.front()));
 }
 
 FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
@@ -97,23 +93,24 @@ constexpr double kSameLength = 1e-6;
 void findLattice(const std::string& file, LevelSet& out) {
   const openvdb::math::Transform& transform = out.grid->transform();
   const auto affine = transform.isLinear() ? transform.baseMap()->getAffineMap() : nullptr;
-  if (affine == nullptr) refuse(file, "has voxels that widen with depth (a frustum); resample it to cubes");
+  if (affine == nullptr)
+    refuseVdb(file, "has voxels that widen with depth (a frustum); resample it to cubes");
   const openvdb::Mat4R m = affine->getMat4();
   Mat3 steps;  // columns: where a step along each axis of the lattice leads
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 3; ++k) steps(k, axis) = m(axis, k);
   const Vec3 lengths = steps.colwise().norm();
   const double h = lengths.x();
-  if (!(h > 0) || !steps.allFinite()) refuse(file, "has voxels of no size; resample it");
+  if (!(h > 0) || !steps.allFinite()) refuseVdb(file, "has voxels of no size; resample it");
   if (!((lengths.array() - h).abs() <= kSameLength * h).all())
-    refuse(file, "has voxels of " + digits(1e3 * lengths.x()) + " x " + digits(1e3 * lengths.y()) + " x " +
-                     digits(1e3 * lengths.z()) + " mm; resample it to cubes (Houdini: VDB Resample)");
+    refuseVdb(file, "has voxels of " + digits(1e3 * lengths.x()) + " x " + digits(1e3 * lengths.y()) + " x " +
+                        digits(1e3 * lengths.z()) + " mm; resample it to cubes (Houdini: VDB Resample)");
   const Mat3 R = steps / h;
   if (!((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 4 * kSameLength))
-    refuse(file, "has voxels that are sheared; resample it to cubes (Houdini: VDB Resample)");
-  if (R.determinant() < 0) refuse(file, "has a mirrored grid; resample it (Houdini: VDB Resample)");
+    refuseVdb(file, "has voxels that are sheared; resample it to cubes (Houdini: VDB Resample)");
+  if (R.determinant() < 0) refuseVdb(file, "has a mirrored grid; resample it (Houdini: VDB Resample)");
   const Vec3 p(m(3, 0), m(3, 1), m(3, 2));
-  if (!p.allFinite()) refuse(file, "has a grid that lies nowhere; set its transform");
+  if (!p.allFinite()) refuseVdb(file, "has a grid that lies nowhere; set its transform");
   out.voxel_m = h;
   // What rounding alone can make is not worth a resampling.
   const bool is_straight = (R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9;
@@ -127,7 +124,7 @@ void findLattice(const std::string& file, LevelSet& out) {
 constexpr double kLeastBand = 3, kMostBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
 
 [[noreturn]] void refuseNan(const std::string& file) {
-  refuse(file, "holds values that are not numbers; export it again");
+  refuseVdb(file, "holds values that are not numbers; export it again");
 }
 
 /// Values that stand for many voxels, where the tree has no leaf; values of leaves are looked at one by one.
@@ -140,11 +137,11 @@ void requireTiles(const std::string& file, const FloatGrid& grid) {
 
 void requireValues(const std::string& file, const FloatGrid& grid) {
   const double background = static_cast<double>(grid.background());
-  if (grid.tree().leafCount() == 0) refuse(file, "is empty: no value lies within a band; export it again");
-  if (background < 0) refuse(file, "is inside out: its background is negative; turn its sign");
+  if (grid.tree().leafCount() == 0) refuseVdb(file, "is empty: no value lies within a band; export it again");
+  if (background < 0) refuseVdb(file, "is inside out: its background is negative; turn its sign");
   if (!(background > 0))
-    refuse(file, "looks like a fog volume: its background is 0; convert it to a level set");
-  if (!std::isfinite(background)) refuse(file, "has no band: its background is not a number");
+    refuseVdb(file, "looks like a fog volume: its background is 0; convert it to a level set");
+  if (!std::isfinite(background)) refuseVdb(file, "has no band: its background is not a number");
   requireTiles(file, grid);
   bool has_inside = false, has_outside = false;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
@@ -155,8 +152,8 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
       has_outside = has_outside || d >= 0;
     }
   if (!has_inside || !has_outside)
-    refuse(file, std::string("has no surface: no value is ") + (has_inside ? "positive" : "negative") +
-                     "; a fog volume or a distance without sign must be converted to a level set");
+    refuseVdb(file, std::string("has no surface: no value is ") + (has_inside ? "positive" : "negative") +
+                        "; a fog volume or a distance without sign must be converted to a level set");
 }
 
 /// Some programs leave the inside beyond the band as it was: outside.
@@ -169,9 +166,9 @@ void signInside(FloatGrid& grid) {
 void widenBand(const std::string& file, LevelSet& level_set) {
   const double band = static_cast<double>(level_set.grid->background()) / level_set.voxel_m;
   if (band < 1 - 1e-6)
-    refuse(file, "has a band of " + digits(band) +
-                     " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
-                     "Renormalize or VDB Rebuild)");
+    refuseVdb(file, "has a band of " + digits(band) +
+                        " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
+                        "Renormalize or VDB Rebuild)");
   const int missing = static_cast<int>(std::ceil(kLeastBand - band + 1e-3));
   // Steps along edges too: the new band is as wide in every direction.
   const auto wider = openvdb::tools::dilateSdf(*level_set.grid, missing, openvdb::tools::NN_FACE_EDGE);

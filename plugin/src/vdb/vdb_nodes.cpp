@@ -15,7 +15,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 using Accessor = openvdb::FloatGrid::ConstAccessor;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 static_assert(Leaf::DIM == kBrick);

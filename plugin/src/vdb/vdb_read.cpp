@@ -10,29 +10,25 @@
 
 #include "vdb/vdb_level_set.h"
 #include "vdb/vdb_nodes.h"
-#include "voxelise/voxelise.h"
 #include "voxmap/field_proof.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/load_error.h"
+#include "vps/vdb.h"
 
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
-
-[[noreturn]] void refuse(const std::string& file, const std::string& found_and_remedy) {
-  throw LoadError(file, "", found_and_remedy);
-}
 [[noreturn]] void refuseDamaged(const std::string& file) {
-  refuse(file, "is damaged or cut short; build it again");
+  refuseVdb(file, "is damaged or cut short; build it again");
 }
 
 std::string bytesOf(const std::string& file) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
   if (!unknown && static_cast<double>(size) > kMemoryLimit_bytes)
-    refuse(file, "is larger than the 4 GiB that are read; resample it with larger voxels");
+    refuseVdb(file, "is larger than the 4 GiB that are read; resample it with larger voxels");
   std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(file, "cannot be read; is the name right?");
+  if (!in) refuseVdb(file, "cannot be read; is the name right?");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -54,7 +50,7 @@ class OwnFile {
     readCenters();
     readParts();
     markFarCells(*layout_);
-    return VoxMapBuilder::wrap(layout_, voxel_m, band_m, boxOf("vps_bounds_"));
+    return VoxMapAccess::make(layout_, voxel_m, band_m, boxOf("vps_bounds_"));
   }
 
  private:
@@ -132,9 +128,9 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
   layOut(level_set.grid->tree(), quantum_m, file, *layout);
   readNodes(level_set.grid->tree(), quantum_m, file, *layout);
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
-  if (bounds.isEmpty()) refuse(file, "has no surface: its values change sign nowhere; export it again");
+  if (bounds.isEmpty()) refuseVdb(file, "has no surface: its values change sign nowhere; export it again");
   markFarCells(*layout);
-  return {VoxMapBuilder::wrap(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
+  return {VoxMapAccess::make(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
 }
 
 PlacedVdb read(const std::string& file, const std::string& name) {
@@ -142,22 +138,23 @@ PlacedVdb read(const std::string& file, const std::string& name) {
     std::string bytes = bytesOf(file);
     const Origin origin = originOf(bytes);
     if (origin == Origin::Changed)
-      refuse(file,
-             "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
-             "build it again, or remove them");
+      refuseVdb(file,
+                "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
+                "build it again, or remove them");
     VdbArchive archive(std::move(bytes), kMemoryLimit_bytes);
     if (origin == Origin::Ours) return {OwnFile(file, archive).read(), Pose()};
     return readOthers(file, archive, name);
   } catch (const LoadError&) {
     throw;
   } catch (const openvdb::LookupError&) {
-    refuse(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
+    refuseVdb(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
   } catch (const std::bad_alloc&) {
-    refuse(file,
-           "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
-           "it again: it is damaged");
+    refuseVdb(
+        file,
+        "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
+        "it again: it is damaged");
   } catch (const std::exception&) {
-    refuse(file, "is not a whole OpenVDB file; build it again");
+    refuseVdb(file, "is not a whole OpenVDB file; build it again");
   }
 }
 
@@ -174,7 +171,7 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   const VoxMap& map = placed.map;
   // Not resampledVoxMap(): a band that is 3 voxels but for the rounding of floats would be none.
   const VoxMapSettings settings = {map.voxel_m(), map.band_m() / map.voxel_m()};
-  return mountVoxMap(VoxMapBuilder::empty(settings), PlacedMap{&map, placed.X_FM});
+  return mountVoxMap(VoxMapAccess::empty(settings), PlacedMap{&map, placed.X_FM});
 }
 
 }  // namespace vps

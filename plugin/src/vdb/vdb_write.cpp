@@ -6,14 +6,15 @@
 #include <sstream>
 
 #include "vdb/vdb_format.h"
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/load_error.h"
+#include "vps/vdb.h"
 #include "vps/write_file.h"
 
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick, kOwnNodes = kBrick * kBrick * kBrick;
+constexpr int kOwnNodes = kBrick * kBrick * kBrick;
 
 openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, double band_m,
                                     double quantum_m) {
@@ -114,20 +115,15 @@ void writeGrids(const openvdb::GridPtrVec& grids, const std::string& file) {
 
 }  // namespace
 
-void VoxMapBuilder::save(const VoxMap& map, const std::string& file) {
-  if (map.layout_->bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
-  requireOneGrid(map, "written to one .vdb");
-  const VoxLayout& layout = *map.layout_;
-  const auto surface = surfaceGrid(layout, map.voxel_m_, map.band_m_, map.quantum_m_);
-  addExactData(layout, map.band_m_, map.bounds_, *surface);
-  openvdb::GridPtrVec grids = {surface, centerGrid(layout, map.voxel_m_)};
-  if (layout.parts.size() > 1) grids.push_back(ownerGrid(layout, map.voxel_m_));
-  writeGrids(grids, file);
-}
-
 void saveVdb(const VoxMap& map, const std::string& file) {
+  const VoxLayout& layout = *VoxMapAccess::layout(map);
+  if (layout.bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
   initializeOpenVdb();
-  VoxMapBuilder::save(map, file);
+  const auto surface = surfaceGrid(layout, map.voxel_m(), map.band_m(), map.quantum_m());
+  addExactData(layout, map.band_m(), map.bounds(), *surface);
+  openvdb::GridPtrVec grids = {surface, centerGrid(layout, map.voxel_m())};
+  if (layout.parts.size() > 1) grids.push_back(ownerGrid(layout, map.voxel_m()));
+  writeGrids(grids, file);
 }
 
 }  // namespace vps

@@ -8,7 +8,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
 
 /// Takes over the sign of `from` where a node is far and `from` is not. On the bits, since compilers do not

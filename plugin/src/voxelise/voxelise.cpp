@@ -10,37 +10,25 @@
 //
 // Parallel over features, tiles and rows; each result has one writer and a fixed order of its own, so that
 // every number of threads gives the same bits.
-#include "voxelise/voxelise.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <bit>
 #include <cmath>
-#include <cstdio>
 
 #include "voxelise/brick_assembly.h"
+#include "voxelise/map_estimate.h"
 #include "voxelise/splat.h"
 #include "voxelise/winding_signs.h"
 #include "voxmap/center_bounds.h"
-#include "voxmap/coarse_nodes.h"
-#include "voxmap/map_limits.h"
-#include "vps/load_error.h"
-#include "vps/map_estimate.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
 
 namespace vps {
 
-/// What a map that is fine in regions only is like elsewhere.
-struct CoarseRest {
-  const FineRegions& regions;
-  const VoxMap& coarse;
-  std::shared_ptr<const VoxLayout> layout;  ///< of the coarse map
-};
-
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr int kTileBricks = kTile / kBrick;
 
 /// A feature that reaches a tile.
@@ -62,12 +50,9 @@ bool isFar(float d) {
 class Voxeliser {
  public:
   /// @param signer   signs nodes by winding number; null: by pseudonormals
-  /// @param regions  where to build; null: everywhere
-  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer,
-            const CoarseRest* regions)
+  Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer)
       : mesh_(mesh),
         box_(box),
-        regions_(regions),
         h_(settings.voxel_m),
         band_m_(bandHeld(settings.band_voxels * settings.voxel_m)),
         // What rounds to the full band need not be computed.
@@ -76,17 +61,10 @@ class Voxeliser {
 
   std::shared_ptr<VoxLayout> build(const Progress& progress);
   /// False if pseudonormals turned out to contradict each other.
-  [[nodiscard]] bool areSignsSound() const { return are_signs_sound_; }
+  [[nodiscard]] bool areSignsConsistent() const { return are_signs_consistent_; }
 
  private:
   void layOutDirectory();
-  void findWanted();
-  [[nodiscard]] bool wantsTile(std::uint32_t tile) const {
-    return tile_wanted_.empty() || tile_wanted_[tile] != 0;
-  }
-  [[nodiscard]] bool wantsCell(std::size_t cell) const {
-    return cell_wanted_.empty() || cell_wanted_[cell] != 0;
-  }
   void gather(const SurfaceFeatures& features);
   void gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const;
   void gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low, const Index3& size,
@@ -110,13 +88,11 @@ class Voxeliser {
 
   const Mesh& mesh_;
   const Box box_;
-  const CoarseRest* const regions_;
   const double h_, band_m_;
   const double reach_;  // of the nodes that are computed [voxels]
   WindingSigner* const signer_;
-  bool are_signs_sound_ = true;
+  bool are_signs_consistent_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
-  std::vector<std::uint8_t> cell_wanted_, tile_wanted_;  // empty: all
   std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
   std::vector<std::uint32_t> features_;  // by tile, ascending within each
   std::vector<std::int32_t> brick_of_;   // by cell; -1: none
@@ -126,37 +102,12 @@ class Voxeliser {
 void Voxeliser::layOutDirectory() {
   const double cell_m = kBrick * h_;
   // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
-  // And one more where a coarse field, which is blurred by a cell at most, is read at the fine nodes.
-  const double margin = regions_ != nullptr ? 2 : 1;
-  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - margin;
-  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + (margin + 1);
+  const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - 1;
+  const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
   layout_->size = (high - low).cast<int>();
   layout_->resizeCells();
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
-}
-
-/// Cells that meet a region, and tiles that hold one.
-void Voxeliser::findWanted() {
-  if (regions_ == nullptr) return;
-  cell_wanted_.assign(layout_->bricks.size(), 0);
-  tile_wanted_.assign(static_cast<std::size_t>(tiles().prod()), 0);
-  const double cell_m = kBrick * h_;
-  for (const Box& box : regions_->regions.boxes_M) {
-    // One more than the directory has on each side, so that a conversion cannot overflow.
-    const auto cellOf = [&](const Vec3& p) -> Index3 {
-      const Vec3 cell = (p.array() / cell_m).floor() - layout_->low.cast<double>().array();
-      return cell.cwiseMax(-1.0).cwiseMin(layout_->size.cast<double>()).cast<int>();
-    };
-    const Index3 from = cellOf(box.min).cwiseMax(0),
-                 to = cellOf(box.max).cwiseMin(layout_->size - Index3::Ones());
-    for (int x = from.x(); x <= to.x(); ++x)
-      for (int y = from.y(); y <= to.y(); ++y)
-        for (int z = from.z(); z <= to.z(); ++z) {
-          cell_wanted_[layout_->cellIndex(layout_->low + Index3(x, y, z))] = 1;
-          tile_wanted_[tileNumber(Index3(x, y, z) / kTileBricks)] = 1;
-        }
-  }
 }
 
 /// Halves the range of tiles until one is left, dropping halves that the feature cannot reach: a big oblique
@@ -167,7 +118,7 @@ void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, con
   if (!splatter.reaches(feature, kTile * low.cast<double>() + half, half.norm())) return;
   int axis = 0;
   if (size.maxCoeff(&axis) == 1) {
-    if (wantsTile(tileNumber(low))) out.push_back({tileNumber(low), feature});
+    out.push_back({tileNumber(low), feature});
     return;
   }
   Index3 near = size, far = size, middle = low;
@@ -189,8 +140,7 @@ void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::ve
   // Few: cheaper to take all of them than to look.
   for (int x = low.x(); x <= high.x(); ++x)
     for (int y = low.y(); y <= high.y(); ++y)
-      for (int z = low.z(); z <= high.z(); ++z)
-        if (const std::uint32_t tile = tileNumber({x, y, z}); wantsTile(tile)) out.push_back({tile, feature});
+      for (int z = low.z(); z <= high.z(); ++z) out.push_back({tileNumber({x, y, z}), feature});
 }
 
 void Voxeliser::gather(const SurfaceFeatures& features) {
@@ -243,7 +193,7 @@ std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) c
         const Index3 at(x, y, z);
         if ((known >> z & 1) == 0 || ((low + at).array() >= layout_->size.array()).any()) continue;
         const std::size_t cell = layout_->cellIndex(layout_->low + low + at);
-        if (wantsCell(cell)) bricks.push_back({kBrick * at, cell});
+        bricks.push_back({kBrick * at, cell});
       }
     }
   return bricks;
@@ -284,12 +234,6 @@ void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   constexpr std::size_t kExpected = kTileBricks * kTileBricks * kTileBricks / 2;
   BrickWriter writer(*layout_, h_ / quantumOf(band_m_),
                      std::min(kExpected * wanted.size(), brick_of_.size()));
-  if (regions_ != nullptr) {
-    writer.take(1);
-    BrickNodes inside;
-    inside.fill(static_cast<float>(-band_m_ / h_));
-    layout_->elsewhere = writer.write(0, inside);
-  }
   std::vector<Tile> tiles(std::min(kBatch, wanted.size()));
   std::vector<std::vector<CutBrick>> bricks(tiles.size());
   std::vector<std::size_t> slot(tiles.size());
@@ -335,7 +279,6 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   };
   tell(0);
   layOutDirectory();
-  findWanted();
   {
     const SurfaceFeatures features(mesh_, h_, kBrick * layout_->low.cast<double>());
     tell(0.1);
@@ -347,15 +290,7 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   if (signer_ != nullptr)
     signer_->signBricks(*layout_, h_, quantumOf(band_m_));
   else
-    are_signs_sound_ = signsAgree(*layout_, h_, quantumOf(band_m_));
-  if (regions_ != nullptr) {
-    layout_->coarse = regions_->layout;
-    layout_->coarse_shift = std::countr_zero(static_cast<unsigned>(regions_->regions.coarsening));
-    joinCoarse(*layout_, regions_->coarse, h_, quantumOf(band_m_));
-    markFarCells(*layout_);
-    tell(1);
-    return layout_;
-  }
+    are_signs_consistent_ = signsAgree(*layout_, h_, quantumOf(band_m_));
   fillEmptyCells(*layout_);
   if (signer_ != nullptr) signer_->signEmptyCells(*layout_, h_, quantumOf(band_m_));
   markFarCells(*layout_);
@@ -363,57 +298,6 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   boundCenters();
   tell(1);
   return layout_;
-}
-
-/// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
-/// the directory.
-double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
-  const double cell_m = VoxMap::kBrick * h;
-  const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
-  const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
-  constexpr double kOnTheWay = 15;  // bytes a cell, assumed: what is made beside the directory and dropped
-  return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kOnTheWay;
-}
-
-}  // namespace
-
-double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
-  return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
-}
-
-namespace {
-
-/// The box's surface, twice: a region may hold folds of the part's.
-double areaWithin(const FineRegions& regions, double area_m2) {
-  double sum_m2 = 0;
-  for (const Box& box : regions.boxes_M) {
-    const Vec3 s = box.size().cwiseMax(0.0);
-    sum_m2 += 4 * (s.x() * s.y() + s.y() * s.z() + s.z() * s.x());
-  }
-  return std::min(sum_m2, area_m2);
-}
-
-void requireRegions(const FineRegions& regions, const std::string& part) {
-  if (regions.coarsening != 2 && regions.coarsening != 4 && regions.coarsening != 8)
-    throw LoadError("", part, "a map can be coarser by 2, 4 or 8 outside its fine regions, by nothing else");
-  if (regions.boxes_M.empty())
-    throw LoadError("", part, "no fine region is given; give one, or build with larger voxels");
-  for (const Box& box : regions.boxes_M)
-    if (box.isEmpty() || !box.min.allFinite() || !box.max.allFinite())
-      throw LoadError("", part, "a fine region is no box; give its lowest and its highest corner");
-}
-
-/// Before memory is taken: refuses what no map can be of, or none that fits.
-void requireFits(const Box& box, double area_m2, const VoxMapSettings& settings, const std::string& part) {
-  requireSettings(settings, part);
-  requireNear(box, settings.voxel_m, part);
-  const auto bytesAt = [&](double h) { return estimatedBytes(area_m2, box.size(), h, settings.band_voxels); };
-  double h = settings.voxel_m;
-  while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
-  char what_for[48], remedy[48];
-  std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
-  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
-  requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
 }
 
 /// Ready to be voxelised: signs need shared vertices.
@@ -425,38 +309,17 @@ RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
 
 }  // namespace
 
-VoxMap VoxMapBuilder::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                            const Progress& progress, MeshReport* report) {
+VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
+                   const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
-  requireFits(bounds(mesh), area(mesh), settings, part);
+  requireFits(mesh, settings, part);
   RepairedMesh repaired = prepared(mesh, part);
-  return build(mesh, repaired, settings, progress, report, nullptr);
-}
-
-VoxMap VoxMapBuilder::buildInRegions(const Mesh& mesh, const VoxMapSettings& settings,
-                                     const FineRegions& regions, const std::string& part,
-                                     const Progress& progress, MeshReport* report) {
-  requireUsable(mesh, "", part);
-  requireRegions(regions, part);
-  const int steps = regions.coarsening;
-  const VoxMapSettings fine = {settings.voxel_m, std::max(settings.band_voxels, 3.0 * steps)};
-  const VoxMapSettings rest = {fine.voxel_m * steps, fine.band_voxels / steps};
-  requireFits(bounds(mesh), area(mesh), rest, part);
-  requireFits(bounds(mesh), areaWithin(regions, area(mesh)), fine, part);
-  RepairedMesh repaired = prepared(mesh, part);
-  const VoxMap coarse = build(mesh, repaired, rest, progress, report, nullptr);
-  const CoarseRest elsewhere{regions, coarse, coarse.layout_};
-  return build(mesh, repaired, fine, progress, report, &elsewhere);
-}
-
-VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxMapSettings& settings,
-                            const Progress& progress, MeshReport* report, const CoarseRest* regions) {
   const Box box = bounds(mesh);
   std::shared_ptr<const VoxLayout> layout;
   if (repaired.is_sound) {
-    Voxeliser voxeliser(repaired.surface, box, settings, nullptr, regions);
+    Voxeliser voxeliser(repaired.surface, box, settings, nullptr);
     layout = voxeliser.build(progress);
-    if (!voxeliser.areSignsSound()) {
+    if (!voxeliser.areSignsConsistent()) {
       layout = nullptr;
       repaired = repairMesh(welded(mesh), Crossing::Seen);
       repaired.is_sound = false;
@@ -464,37 +327,12 @@ VoxMap VoxMapBuilder::build(const Mesh& mesh, RepairedMesh& repaired, const VoxM
   }
   if (layout == nullptr) {
     WindingSigner signer(repaired.solid);
-    layout = Voxeliser(repaired.surface, box, settings, &signer, regions).build(progress);
+    layout = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
     repaired.report.signed_by_winding = true;
     repaired.report.sure = signer.sure();
   }
   if (report != nullptr) *report = repaired.report;
-  return wrap(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
-}
-
-VoxMap VoxMapBuilder::wrap(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
-                           const Box& bounds) {
-  VoxMap map;
-  map.voxel_m_ = voxel_m;
-  map.band_m_ = bandHeld(band_m);
-  map.quantum_m_ = quantumOf(band_m);
-  map.bounds_ = bounds;
-  map.layout_ = std::move(layout);
-  return map;
-}
-
-VoxMap VoxMapBuilder::empty(const VoxMapSettings& settings) {
-  return wrap(VoxMap().layout_, settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
-}
-
-VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
-                   const Progress& progress, MeshReport* report) {
-  return VoxMapBuilder::build(mesh, settings, part, progress, report);
-}
-
-VoxMap buildVoxMapInRegions(const Mesh& mesh, const VoxMapSettings& settings, const FineRegions& regions,
-                            const std::string& part, const Progress& progress, MeshReport* report) {
-  return VoxMapBuilder::buildInRegions(mesh, settings, regions, part, progress, report);
+  return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
 }
 
 }  // namespace vps

@@ -16,7 +16,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// A winding number this far from 0.5 is sure, and may be handed on to neighbours.
 constexpr double kSure = 0.25;

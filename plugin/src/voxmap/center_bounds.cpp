@@ -8,7 +8,7 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick, kCenter = kBrick / 2;
+constexpr int kCenter = kBrick / 2;
 constexpr int kWide = 2, kColumns = kBrick / kWide;  // nodes a column is wide, columns along a brick
 constexpr float kNone = 1e30F;
 

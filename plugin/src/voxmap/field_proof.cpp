@@ -15,7 +15,6 @@
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 /// The longest way over grid cells, for a straight way of 1: |(1, sqrt 2 - 1, sqrt 3 - sqrt 2)|.
 constexpr double kLattice = 1.1281;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "voxmap/read_kernel.h"
-#include "voxmap/voxmap_layout.h"
+#include "voxmap/voxmap_access.h"
 
 namespace vps {
 namespace {
@@ -14,14 +14,12 @@ constexpr float kNoCenters[1] = {0};
 
 }  // namespace
 
-FieldView::FieldView(const VoxMap& map) noexcept
-    : nodes(map.layout_->pool->nodes(0)),
-      bricks(map.layout_->bricks.data()),
-      centers_m(map.layout_->centers_m.data()),
-      is_far(map.layout_->is_far.empty() ? nullptr : map.layout_->is_far.data()),
-      voxel_m(map.voxel_m_),
-      quantum_m(map.quantum_m_) {
-  const VoxLayout& layout = *map.layout_;
+FieldView::FieldView(const VoxMap& map) noexcept : voxel_m(map.voxel_m()), quantum_m(map.quantum_m()) {
+  const VoxLayout& layout = *VoxMapAccess::layout(map);
+  nodes = layout.pool->nodes(0);
+  bricks = layout.bricks.data();
+  centers_m = layout.centers_m.data();
+  is_far = layout.is_far.empty() ? nullptr : layout.is_far.data();
   for (int k = 0; k < 3; ++k) {
     size[k] = layout.size[k];
     low[k] = static_cast<double>(VoxMap::kBrick) * layout.low[k];
@@ -34,14 +32,13 @@ FieldView::FieldView(const VoxMap& map) noexcept
   }
   for (int k = 0; k < 3; ++k) half[k] = 0.5 * VoxMap::kBrick * size[k];
   for (int k = 0; k < 3; ++k) {
-    box[0][k] = static_cast<float>(map.bounds_.min[k] / voxel_m - low[k]);
-    box[1][k] = static_cast<float>(map.bounds_.max[k] / voxel_m - low[k]);
+    box[0][k] = static_cast<float>(map.bounds().min[k] / voxel_m - low[k]);
+    box[1][k] = static_cast<float>(map.bounds().max[k] / voxel_m - low[k]);
   }
   voxels_per_m = static_cast<float>(1 / voxel_m);
   quantum = static_cast<float>(quantum_m / voxel_m);
   band = kFullBand * quantum;
   is_metric = layout.is_metric;
-  this->layout = layout.coarse != nullptr ? &layout : nullptr;
   error = 0.8661f + layout.node_error + quantum;
   diagonal = 1.7322f + 2 * layout.node_error + quantum;
   // Along each axis nodes differ by `steepest` at most, and each is rounded by half a quantum.

@@ -30,10 +30,9 @@ struct FieldView {
   float voxels_per_m = 0, quantum = 0;  ///< quantum in voxels
   float band = 0;                       ///< in voxels
   bool asks_ahead = false;              ///< nodes may come from beyond the second cache: ask for them early
-  float slope = 0;     ///< the field changes by no more than this, in voxels per voxel of way
-  float error = 0;     ///< the field differs from the distance it stands for by no more, in voxels
-  float diagonal = 0;  ///< a distance of the band and this more reads as the band
-  const struct VoxLayout* layout = nullptr;  ///< of a map that is fine in regions only, see coarse_nodes.h
+  float slope = 0;        ///< the field changes by no more than this, in voxels per voxel of way
+  float error = 0;        ///< the field differs from the distance it stands for by no more, in voxels
+  float diagonal = 0;     ///< a distance of the band and this more reads as the band
   bool is_metric = true;  ///< nodes are true distances; else only slope is known of the field
 
   explicit FieldView(const class VoxMap& map) noexcept;

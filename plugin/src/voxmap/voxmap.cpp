@@ -1,77 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/voxmap.h"
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 #include <algorithm>
-#include <new>
 
-#include "voxmap/voxmap_layout.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_access.h"
+#include "voxmap/voxmap_sampler.h"
 
 namespace vps {
-
-VoxPool::VoxPool(std::size_t capacity)
-    : capacity_(std::min<std::size_t>(2 * capacity, kMost) + 2),
-      nodes_(static_cast<NodeValue*>(
-          ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{kPage}))),
-      owner_(new std::uint16_t[capacity_]),
-      mixed_(new const NodeOwners*[capacity_]) {
-#ifdef __linux__
-  // Reads go all over the nodes: of small pages, more than the processor remembers (5 to 10 % of a read of
-  // 20 MB). A wish; where it is not granted, nothing else changes.
-  const std::size_t bytes = capacity_ * kBrickStride * sizeof(NodeValue);
-  if (bytes >= kPage) (void)madvise(nodes_.get(), bytes / kPage * kPage, MADV_HUGEPAGE);
-#endif
-  used_ = 2;
-  std::fill_n(nodes(kOutside), kBrickStride, static_cast<NodeValue>(kFullBand));
-  std::fill_n(nodes(kInside), kBrickStride, static_cast<NodeValue>(-kFullBand));
-  owner(kOutside) = owner(kInside) = 0;
-  mixed(kOutside) = mixed(kInside) = nullptr;
-}
-
-std::uint32_t VoxPool::take(std::size_t count) noexcept {
-  if (count == 0) return 0;
-  const std::lock_guard lock(mutex_);
-  std::size_t first = used_;
-  const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
-  if (run != free_.end()) {
-    // From its end: what is left keeps its place in the list, and nothing is allocated.
-    first = run->first + (run->second -= count);
-    if (run->second == 0) free_.erase(run);
-  } else {
-    if (first + count > capacity_) return 0;
-    used_ = first + count;
-  }
-  std::fill_n(&owner_[first], count, std::uint16_t{0});
-  std::fill_n(&mixed_[first], count, nullptr);
-  return static_cast<std::uint32_t>(first * kBrickStride);
-}
-
-void VoxPool::giveBack(std::uint32_t first, std::size_t count) noexcept {
-  const std::lock_guard lock(mutex_);
-  std::size_t begin = first / kBrickStride, end = begin + count;
-  const auto after = free_.find(end);
-  if (after != free_.end()) {
-    end += after->second;
-    free_.erase(after);
-  }
-  auto before = free_.lower_bound(begin);
-  if (before != free_.begin() && (--before)->first + before->second == begin) {
-    begin = before->first;
-    free_.erase(before);
-  }
-  if (end == used_) {
-    used_ = begin;
-    return;
-  }
-  try {
-    free_[begin] = end - begin;
-  } catch (const std::bad_alloc&) {  // lost until the pool goes
-  }
-}
 
 VoxMap::VoxMap() {
   // An empty map: no cells, so everywhere outside; shared by all.
@@ -93,35 +28,21 @@ std::size_t VoxMap::partCount() const noexcept {
 
 std::size_t VoxMap::brickCount() const noexcept {
   const auto& bricks = layout_->bricks;
-  return static_cast<std::size_t>(std::count_if(
-      bricks.begin(), bricks.end(), [&](std::uint32_t brick) { return layout_->hasOwnNodes(brick); }));
+  return static_cast<std::size_t>(
+      std::count_if(bricks.begin(), bricks.end(), [](std::uint32_t brick) { return !isConstant(brick); }));
 }
-
-namespace {
-
-std::size_t bytesOf(const VoxLayout& layout) {
-  std::size_t bytes = sizeof(VoxLayout) + layout.bricks.size() * VoxLayout::kCellBytes +
-                      layout.pool->size() * VoxPool::kBytes;
-  for (const auto& owners : layout.owners) bytes += owners->size() * sizeof(NodeOwners);
-  return layout.coarse != nullptr ? bytes + bytesOf(*layout.coarse) : bytes;
-}
-
-}  // namespace
 
 std::size_t VoxMap::memoryBytes() const noexcept {
-  return bytesOf(*layout_);
+  std::size_t bytes = sizeof(VoxLayout) + layout_->bricks.size() * VoxLayout::kCellBytes +
+                      layout_->pool->size() * VoxPool::kBytes;
+  for (const auto& owners : layout_->owners) bytes += owners->size() * sizeof(NodeOwners);
+  return bytes;
 }
 
 std::size_t VoxMap::memoryBytesBeside(const VoxMap& other) const noexcept {
   if (isSame(other)) return 0;
   const bool is_mounted_on_one = layout_->pool == other.layout_->pool;
   return memoryBytes() - (is_mounted_on_one ? layout_->pool->size() * VoxPool::kBytes : 0);
-}
-
-double VoxMap::voxelAt(const Vec3& p_M) const noexcept {
-  const VoxSampler::Place at = VoxSampler(*this).place(p_M);
-  const bool is_coarse = layout_->coarse != nullptr && !layout_->hasOwnNodes(at.brick);
-  return is_coarse ? voxel_m_ * (1 << layout_->coarse_shift) : voxel_m_;
 }
 
 double VoxMap::distance(const Vec3& p_M) const noexcept {
@@ -159,6 +80,21 @@ bool VoxMap::isInsideCoarse(const Vec3& p_M) const noexcept {
 std::uint16_t VoxMap::owner(const Vec3& p_M) const noexcept {
   const VoxSampler sampler(*this);
   return sampler.owner(sampler.place(p_M));
+}
+
+VoxMap VoxMapAccess::make(std::shared_ptr<const VoxLayout> layout, double voxel_m, double band_m,
+                          const Box& bounds) {
+  VoxMap map;
+  map.voxel_m_ = voxel_m;
+  map.band_m_ = bandHeld(band_m);
+  map.quantum_m_ = quantumOf(band_m);
+  map.bounds_ = bounds;
+  map.layout_ = std::move(layout);
+  return map;
+}
+
+VoxMap VoxMapAccess::empty(const VoxMapSettings& settings) {
+  return make(layout(VoxMap()), settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
 }
 
 }  // namespace vps

@@ -29,7 +29,8 @@ namespace vps {
 using Index3 = Eigen::Vector3i;
 
 /// Nodes of one brick along an edge, border included, and in all.
-inline constexpr int kNodes = VoxMap::kBrick + 1;
+inline constexpr int kBrick = VoxMap::kBrick;
+inline constexpr int kNodes = kBrick + 1;
 inline constexpr int kBrickNodes = kNodes * kNodes * kNodes;
 /// Nodes from one brick to the next in memory: whole cache lines.
 inline constexpr std::uint32_t kBrickStride = (kBrickNodes + 31) / 32 * 32;
@@ -185,23 +186,12 @@ struct VoxLayout : CellBox {
   /// False where signs contradict each other: nodes then stand for no distance at all, and only `steepest` is
   /// known of them.
   bool is_metric = true;
-  /// Where a map is fine in regions only (coarse_nodes.h): the field of all other cells, on a grid coarser by
-  /// 2^coarse_shift with the same quantum; null elsewhere. Such cells are named `elsewhere`, a brick of
-  /// -band, which is a bound of everything.
-  std::shared_ptr<const VoxLayout> coarse;
-  int coarse_shift = 0;
-  std::uint32_t elsewhere = kOutside;
-
   void resizeCells() {
     bricks.assign(cellCount(), kOutside);
     centers_m.assign(bricks.size(), 0);
   }
   /// Bytes that a cell takes: its brick's name, its centre's distance, whether it is far.
   static constexpr std::size_t kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
-  /// Whether a brick holds its cell's nodes.
-  [[nodiscard]] bool hasOwnNodes(std::uint32_t brick) const noexcept {
-    return !isConstant(brick) && brick != elsewhere;
-  }
   /// The nodes of a cell's brick.
   [[nodiscard]] const NodeValue* nodesOf(std::size_t cell) const noexcept {
     return pool->nodes(bricks[cell]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two fields on one grid become one: union, min over the parts' own distances, or difference.
+// Two fields on one grid become one, the union: the minimum of the parts' own distances.
 //
-// A union does not depend on the order, to the bit: nodes, centre distances and the box are minima over the
+// The union does not depend on the order, to the bit: nodes, centre distances and the box are minima over the
 // parts; a brick is stored where the merged nodes are not all one constant.
 #include "voxmap/voxmap_merge.h"
 
@@ -10,7 +10,8 @@
 #include <algorithm>
 
 #include "voxmap/map_limits.h"
-#include "vps/load_error.h"
+#include "voxmap/voxmap_access.h"
+#include "vps/assert.h"
 
 namespace vps {
 namespace {
@@ -34,27 +35,19 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
-NodeValue flipped(NodeValue d) {
-  return static_cast<NodeValue>(-d);
-}
-
 /// A map's cells and an added field's on their way to become one.
 class Merger {
  public:
-  Merger(const VoxLayout& a, const AddedField& b, Combine combine, double voxel_m)
-      : a_(a),
-        b_(b),
-        is_union_(combine == Combine::Union),
-        voxel_m_(voxel_m),
-        owner_offset_(static_cast<std::uint16_t>(a.parts.size())) {}
+  Merger(const VoxLayout& a, const AddedField& b, double voxel_m)
+      : a_(a), b_(b), voxel_m_(voxel_m), owner_offset_(static_cast<std::uint16_t>(a.parts.size())) {}
 
   std::shared_ptr<VoxLayout> run() {
     layOut();
-    findSyncEvents();
+    findNewBricks();
     const std::uint32_t first = takeRoom();
     mixed_->resize(mixed_count_);
-    tbb::parallel_for(std::size_t{0}, sync_events_.size(), [&](std::size_t i) {
-      fill(sync_events_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
+    tbb::parallel_for(std::size_t{0}, new_bricks_.size(), [&](std::size_t i) {
+      fill(new_bricks_[i], first + static_cast<std::uint32_t>(i) * kBrickStride);
     });
     if (!mixed_->empty()) out_->owners.push_back(mixed_);
     markFarCells(*out_);
@@ -62,38 +55,37 @@ class Merger {
   }
 
  private:
-  /// Bricks for the sync_events, in a's own pool if it has room: the first's name.
+  /// Bricks for the addeds, in a's own pool if it has room: the first's name.
   std::uint32_t takeRoom() {
     out_->pool = a_.pool;
     out_->owners = a_.owners;
     out_->leases = a_.leases;
     const auto kept = std::count_if(out_->bricks.begin(), out_->bricks.end(),
                                     [](std::uint32_t brick) { return !isConstant(brick); });
-    requireMemory((static_cast<double>(kept) + static_cast<double>(sync_events_.size())) * VoxPool::kBytes,
+    requireMemory((static_cast<double>(kept) + static_cast<double>(new_bricks_.size())) * VoxPool::kBytes,
                   " for its bricks", "larger voxels would do");
-    const std::uint32_t first = takeBricks(*out_, sync_events_.size());
+    const std::uint32_t first = takeBricks(*out_, new_bricks_.size());
     if (first != 0)
-      out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, sync_events_.size()));
+      out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, new_bricks_.size()));
     return first;
   }
 
   /// A cell that gets a new brick.
-  struct SyncEvent {
+  struct NewBrick {
     std::size_t cell = 0;  ///< in the result's directory
     std::size_t cell_of_b = 0;
     std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
   };
 
-  /// Over both; a difference has a's. A directory without cells lies nowhere, whatever its `low` says.
+  /// Over both. A directory without cells lies nowhere, whatever its `low` says.
   [[nodiscard]] VoxPartRange rangeOfBoth() const {
     const VoxPartRange a = {{}, a_.low, a_.low + a_.size}, b = {{}, b_.low, b_.low + b_.size};
-    if (!is_union_ || b_.size.minCoeff() == 0) return a;
+    if (b_.size.minCoeff() == 0) return a;
     if (a_.size.minCoeff() == 0) return b;
     return {{}, a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
   }
 
-  /// The directory over both (a difference has a's), filled with a's cells and with bounds from the parts'
-  /// boxes.
+  /// The directory over both, filled with a's cells and with bounds from the parts' boxes.
   void layOut() {
     const VoxPartRange range = rangeOfBoth();
     const Index3 low = range.low, high = range.high;
@@ -118,66 +110,63 @@ class Merger {
     if (in_a) out_->bricks[cell] = a_.bricks[a_.cellIndex(at)];
     const float from_a = in_a ? a_.centers_m[a_.cellIndex(at)] : boxBound(a_.parts, at, voxel_m_);
     const float from_b = in_b ? b_.centers_m[b_.cellIndex(at)] : boxBound(b_.parts, at, voxel_m_);
-    out_->centers_m[cell] = is_union_ ? std::min(from_a, from_b) : std::max(from_a, -from_b);
+    out_->centers_m[cell] = std::min(from_a, from_b);
   }
 
   /// Settles the cells where one field is constant and wins; lists the others.
-  void findSyncEvents() {
+  void findNewBricks() {
     const Index3 low = b_.low.cwiseMax(out_->low);
     const Index3 high = (b_.low + b_.size).cwiseMin(out_->low + out_->size);
-    const std::uint32_t wins = is_union_ ? kInside : kOutside, yields = is_union_ ? kOutside : kInside;
     for (int x = low.x(); x < high.x(); ++x)
       for (int y = low.y(); y < high.y(); ++y)
         for (int z = low.z(); z < high.z(); ++z) {
           const Index3 at(x, y, z);
-          SyncEvent sync_event{out_->cellIndex(at), b_.cellIndex(at), SIZE_MAX};
-          std::uint32_t& brick = out_->bricks[sync_event.cell];
-          const std::uint32_t kind = b_.kinds[sync_event.cell_of_b];
-          if (brick == wins || kind == kOutside) continue;
+          NewBrick added{out_->cellIndex(at), b_.cellIndex(at), SIZE_MAX};
+          std::uint32_t& brick = out_->bricks[added.cell];
+          const std::uint32_t kind = b_.kinds[added.cell_of_b];
+          if (brick == kInside || kind == kOutside) continue;
           if (kind == kInside) {
-            brick = wins;
+            brick = kInside;
             continue;
           }
-          if (brick != yields || b_.hasMixedOwners(sync_event.cell_of_b)) sync_event.mixed = mixed_count_++;
-          sync_events_.push_back(sync_event);
+          if (brick != kOutside || b_.hasMixedOwners(added.cell_of_b)) added.mixed = mixed_count_++;
+          new_bricks_.push_back(added);
         }
   }
 
-  void fill(const SyncEvent& sync_event, std::uint32_t brick) {
+  void fill(const NewBrick& added, std::uint32_t brick) {
     VoxPool& pool = *out_->pool;
-    const std::uint32_t old = out_->bricks[sync_event.cell];
+    const std::uint32_t old = out_->bricks[added.cell];
     const NodeValue* old_nodes = pool.nodes(old);
     NodeValue* nodes = pool.nodes(brick);
-    b_.write(sync_event.cell_of_b, nodes);
-    if (!is_union_) std::transform(nodes, nodes + kBrickStride, nodes, flipped);
-    pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(sync_event.cell_of_b, 0) + owner_offset_);
-    out_->bricks[sync_event.cell] = brick;
-    if (sync_event.mixed == SIZE_MAX) return;
+    b_.write(added.cell_of_b, nodes);
+    pool.owner(brick) = static_cast<std::uint16_t>(b_.ownerOf(added.cell_of_b, 0) + owner_offset_);
+    out_->bricks[added.cell] = brick;
+    if (added.mixed == SIZE_MAX) return;
 
-    NodeOwners& owners = (*mixed_)[sync_event.mixed];
-    const bool has_one_owner = !b_.hasMixedOwners(sync_event.cell_of_b);
+    NodeOwners& owners = (*mixed_)[added.mixed];
+    const bool has_one_owner = !b_.hasMixedOwners(added.cell_of_b);
     const std::uint16_t owner = pool.owner(brick);
     bool is_won = true;
     for (int i = 0; i < kBrickNodes; ++i) {
-      const bool takes_old = is_union_ ? old_nodes[i] <= nodes[i] : old_nodes[i] >= nodes[i];
+      const bool takes_old = old_nodes[i] <= nodes[i];
       owners[i] = takes_old ? pool.ownerOf(old, i)
                   : has_one_owner
                       ? owner
-                      : static_cast<std::uint16_t>(b_.ownerOf(sync_event.cell_of_b, i) + owner_offset_);
+                      : static_cast<std::uint16_t>(b_.ownerOf(added.cell_of_b, i) + owner_offset_);
       if (takes_old) nodes[i] = old_nodes[i];
-      is_won = is_won && nodes[i] == (is_union_ ? -kFullBand : kFullBand);
+      is_won = is_won && nodes[i] == -kFullBand;
     }
     pool.mixed(brick) = &owners;
-    if (is_won) out_->bricks[sync_event.cell] = is_union_ ? kInside : kOutside;
+    if (is_won) out_->bricks[added.cell] = kInside;
   }
 
   const VoxLayout& a_;
   const AddedField& b_;
-  const bool is_union_;
   const double voxel_m_;
   const std::uint16_t owner_offset_;
   std::shared_ptr<VoxLayout> out_ = std::make_shared<VoxLayout>();
-  std::vector<SyncEvent> sync_events_;
+  std::vector<NewBrick> new_bricks_;
   std::size_t mixed_count_ = 0;
   std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
 };
@@ -209,74 +198,25 @@ class AddedMap final : public AddedField {
   const VoxLayout& layout_;
 };
 
-void requireSameGrid(const VoxMap& a, const VoxMap& b) {
-  for (const VoxMap* map : {&a, &b}) VoxMapBuilder::requireOneGrid(*map, "combined");
-  if (a.voxel_m() != b.voxel_m() || a.quantum_m() != b.quantum_m())
-    throw LoadError("", "",
-                    "two voxmaps of different voxel size or band cannot be combined; resample one onto the "
-                    "other's grid");
-}
-
 }  // namespace
 
-void VoxMapBuilder::requireOneGrid(const VoxMap& map, const char* what) {
-  if (map.layout_->coarse == nullptr) return;
-  throw LoadError("", "",
-                  std::string("a voxmap that is fine in regions only cannot be ") + what +
-                      "; build it with one voxel size, or cook the meshes in regions");
+VoxMap mergedVoxMap(const VoxMap& a, const AddedField& b, const Box& bounds_of_b) {
+  Box bounds = a.bounds();
+  bounds.add(bounds_of_b.min);
+  bounds.add(bounds_of_b.max);
+  return VoxMapAccess::make(Merger(*VoxMapAccess::layout(a), b, a.voxel_m()).run(), a.voxel_m(), a.band_m(),
+                            bounds);
 }
 
-VoxMap VoxMapBuilder::combined(const VoxMap& a, const AddedField& b, const Box& bounds_of_b,
-                               Combine combine) {
-  VoxMap out = a;
-  if (combine == Combine::Union) {
-    out.bounds_.add(bounds_of_b.min);
-    out.bounds_.add(bounds_of_b.max);
-  }
-  out.layout_ = Merger(*a.layout_, b, combine, a.voxel_m_).run();
-  return out;
+VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b) {
+  VPS_ASSERT(a.voxel_m() == b.voxel_m() && a.quantum_m() == b.quantum_m());
+  return mergedVoxMap(a, AddedMap(*VoxMapAccess::layout(b)), b.bounds());
 }
 
-VoxMap VoxMapBuilder::combined(const VoxMap& a, const VoxMap& b, Combine combine) {
-  requireSameGrid(a, b);
-  return combined(a, AddedMap(*b.layout_), b.bounds_, combine);
-}
-
-/// The same map with its bricks close together: merging leaves bricks behind that nothing names any more.
-VoxMap VoxMapBuilder::packed(const VoxMap& map) {
-  auto layout = std::make_shared<VoxLayout>(*map.layout_);
+VoxMap packedVoxMap(const VoxMap& map) {
+  auto layout = std::make_shared<VoxLayout>(*VoxMapAccess::layout(map));
   moveToNewPool(*layout, 0);
-  VoxMap out = map;
-  out.layout_ = layout;
-  return out;
-}
-
-VoxMap unionOf(const VoxMap& a, const VoxMap& b) {
-  return VoxMapBuilder::combined(a, b, Combine::Union);
-}
-
-VoxMap differenceOf(const VoxMap& a, const VoxMap& b) {
-  return VoxMapBuilder::combined(a, b, Combine::Difference);
-}
-
-VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
-                  const Progress& progress) {
-  if (parts.empty()) throw LoadError("", "", "no parts to cook into one voxmap; give at least one");
-  VoxMap cooked;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
-    requirePose(parts[i].X_MP);
-    const VoxMap map = buildVoxMap(transformed(*parts[i].mesh, parts[i].X_MP), settings);
-    cooked = i == 0 ? map : unionOf(cooked, map);
-  }
-  if (progress) progress("cooking", 1);
-  return parts.size() > 1 ? VoxMapBuilder::packed(cooked) : cooked;
-}
-
-VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
-  requirePose(part.X_MP);
-  const VoxMapSettings settings = {cooked.voxel_m(), cooked.band_m() / cooked.voxel_m()};
-  return unionOf(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
+  return VoxMapAccess::make(layout, map.voxel_m(), map.band_m(), map.bounds());
 }
 
 }  // namespace vps

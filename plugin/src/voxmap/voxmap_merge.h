@@ -2,11 +2,9 @@
 // What can be merged into a map: another map on the same grid, or one that is resampled on the way.
 #pragma once
 
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_layout.h"
 
 namespace vps {
-
-enum class Combine { Union, Difference };
 
 /// A field on a map's grid, brick by brick, in a box of cells. Reading it is thread-safe.
 class AddedField : public CellBox {
@@ -23,5 +21,13 @@ class AddedField : public CellBox {
   float steepest = 1, node_error = 0;  ///< as VoxLayout has them
   bool is_metric = true;
 };
+
+/// The union of a map and a field on its grid; the field's parts get the next owner numbers.
+VoxMap mergedVoxMap(const VoxMap& a, const AddedField& b, const Box& bounds_of_b);
+/// The same of two maps with equal voxel and band.
+VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b);
+
+/// The map with its bricks in a pool of its own: merging leaves bricks behind that no map uses any more.
+VoxMap packedVoxMap(const VoxMap& map);
 
 }  // namespace vps

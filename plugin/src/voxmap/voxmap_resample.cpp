@@ -10,13 +10,12 @@
 #include "voxmap/map_limits.h"
 #include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_merge.h"
-#include "voxmap/voxmap_sampling.h"
+#include "voxmap/voxmap_sampler.h"
 #include "vps/load_error.h"
 
 namespace vps {
 namespace {
 
-constexpr int kBrick = VoxMap::kBrick;
 constexpr int kBlocksOfBrick = kBrickStride / kLanes;
 static_assert(kBrickStride % kLanes == 0);
 
@@ -170,18 +169,16 @@ void requireBand(const VoxMap& map, double band_m) {
 
 VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
   requireSettings(settings);
-  return mountVoxMap(VoxMapBuilder::empty(settings), part);
+  return mountVoxMap(VoxMapAccess::empty(settings), part);
 }
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
-  VoxMapBuilder::requireOneGrid(cooked, "combined");
-  VoxMapBuilder::requireOneGrid(*part.map, "resampled");
   if (!(cooked.voxel_m() > 0))
     throw LoadError("", "", "there is no voxmap to mount on, an empty one has no grid; cook one first");
   requirePose(part.X_MP);
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());
-  return VoxMapBuilder::combined(cooked, field, field.bounds(), Combine::Union);
+  return mergedVoxMap(cooked, field, field.bounds());
 }
 
 }  // namespace vps

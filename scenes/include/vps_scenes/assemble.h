@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
@@ -41,6 +42,6 @@ struct AssembleOptions : ModelOptions {
 /// is_real_time: the same scene gives the same bits but for wall times. Throws LoadError for a scene that
 /// cannot be run (a part that starts inside another, a mesh that cannot be modelled). A step that does not
 /// reach its target is a result, not an error.
-AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
+VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
 }  // namespace vps::scenes

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/result.h"
 
 namespace vps::scenes {
@@ -23,6 +24,6 @@ inline constexpr double kEpisodeBridge_s = 0.02;
 inline constexpr double kSlideTravel_m = 1e-3;
 
 /// The episodes of a trace in order of time, while the hand holds the part (not in phase 3, rest). O(rows).
-std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace);
+VPS_SCENES_API std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace);
 
 }  // namespace vps::scenes

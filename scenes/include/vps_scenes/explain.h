@@ -2,6 +2,7 @@
 // What a plan costs: its models built and its fields cooked, without running anything.
 #pragma once
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/plan.h"
 #include "vps_scenes/result.h"
@@ -34,10 +35,10 @@ struct ExplainedPlan {
 
 /// Builds what the plan says, and cooks each step's field with all parts of earlier steps on their targets. A
 /// run does so too, but for where contact leaves a part. Throws LoadError as assemble().
-ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options);
+VPS_SCENES_API ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options);
 
 /// What becomes of a part in a step.
 enum class PartUse { Absent, Moves, Cooked, LeftOut };
-PartUse useOf(const Plan& plan, std::size_t part, std::size_t step);
+VPS_SCENES_API PartUse useOf(const Plan& plan, std::size_t part, std::size_t step);
 
 }  // namespace vps::scenes

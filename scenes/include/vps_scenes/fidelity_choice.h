@@ -7,6 +7,7 @@
 
 #include "vps/fidelity.h"
 #include "vps/progress.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
@@ -43,12 +44,13 @@ struct FidelityChoice {
 /// the memory. Starts from the scene's own fidelity, and leaves the scene's parts with the models of the
 /// choice, if it is met. Deterministic: same scene, same choice, on every machine. Seconds for a scene of ten
 /// parts. Throws LoadError for a part that cannot be modelled.
-FidelityChoice chooseFidelity(Scene& scene, const FidelityWish& wish, const Progress& progress = {});
+VPS_SCENES_API FidelityChoice chooseFidelity(Scene& scene, const FidelityWish& wish,
+                                             const Progress& progress = {});
 
 /// The choice as lines of a scene file, to paste.
-std::string toToml(const Fidelity& fidelity);
+VPS_SCENES_API std::string toToml(const Fidelity& fidelity);
 
 /// "voxel 0.18 mm, spacing 0.35 mm, both sides: depth to 0.9 um, 12,345 points, 8.1 MB, a step of ..."
-std::string describe(const FidelityChoice& choice);
+VPS_SCENES_API std::string describe(const FidelityChoice& choice);
 
 }  // namespace vps::scenes

@@ -9,6 +9,7 @@
 
 #include "vps/mesh.h"
 #include "vps/progress.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
@@ -45,12 +46,12 @@ struct ImportedCad {
 /// turned to z up; other axes stay. Inventor without Units and VRML are in metres unless unit_m is given.
 /// Throws LoadError: file missing, cut, empty, damaged, unit unknown, format not built in (says which
 /// package).
-ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
-                      const Progress& progress = {});
+VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
+                                     const Progress& progress = {});
 
 /// Parses "mm", "cm", "m", "um", "inch" to metres per unit; empty if it is none of them.
-std::optional<double> unitFromText(const std::string& text);
+VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
-double lengthFromText(const std::string& text, const std::string& what);
+VPS_SCENES_API double lengthFromText(const std::string& text, const std::string& what);
 
 }  // namespace vps::scenes

@@ -7,12 +7,13 @@
 #include <string>
 
 #include "vps/fidelity.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
 /// How a run goes, by what its scene asks. Force limits, passivity control and watchdogs are no part of it:
 /// they are given up by none.
-struct LoadLevel {
+struct VPS_SCENES_API LoadLevel {
   double coarser = 1;    ///< spacing of points by the scene's, >= 1
   int rate_divisor = 1;  ///< of the physics rate
   int slower = 1;        ///< the clock's time by simulated time
@@ -29,10 +30,10 @@ inline constexpr std::array<LoadLevel, 7> kLoadLevels = {
 
 /// How many times as much a step may take of its period at the pace before: points go with the inverse square
 /// of their spacing.
-double dearerBefore(std::size_t level);
+VPS_SCENES_API double dearerBefore(std::size_t level);
 
 /// "points every 1 mm, physics at 500 Hz, time at 1/2".
-std::string describe(const LoadLevel& pace, const Fidelity& fidelity);
+VPS_SCENES_API std::string describe(const LoadLevel& pace, const Fidelity& fidelity);
 
 /// One change of pace.
 struct LoadLevelChange {
@@ -53,6 +54,6 @@ struct LoadLevelChange {
 };
 
 /// What a change costs: known beforehand, and measured where it was made.
-std::string inWords(const LoadLevelChange& change);
+VPS_SCENES_API std::string inWords(const LoadLevelChange& change);
 
 }  // namespace vps::scenes

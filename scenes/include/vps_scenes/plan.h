@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes {
@@ -46,8 +47,8 @@ struct Plan {
 /// hand may miss: 4 standard deviations of aim and turn, and 0.5 mm (assumed). It is a guess, and only saves:
 /// a run whose part comes near its border models the rest then (assemble.h).
 /// @param models_everything  no sparing: a map and a shell for each part, none shared, nothing left out
-Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything = false);
+VPS_SCENES_API Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything = false);
 /// Everything to assemble with, but equal geometry once: models that any question can be put to.
-Plan makeSharingPlan(const Scene& scene);
+VPS_SCENES_API Plan makeSharingPlan(const Scene& scene);
 
 }  // namespace vps::scenes

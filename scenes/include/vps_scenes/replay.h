@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "vps_device/recording.h"
+#include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
@@ -25,11 +26,11 @@ struct ReplayResult {
 };
 
 /// The scene of a recorded run. Throws LoadError where the recording has none (of a device alone, say).
-Scene recordedScene(const device::RecordedRun& run);
+VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 
 /// The device is the recording, the rest is run anew and compared as it goes. A run that departs goes on to
 /// its end all the same, to show where it leads. A cut recording ends the run where it ends. Throws as
 /// recordedScene() and assemble().
-ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
+VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
 }  // namespace vps::scenes

@@ -10,6 +10,7 @@
 
 #include "vps/fidelity.h"
 #include "vps/part.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
@@ -80,6 +81,6 @@ struct Scene {
 };
 
 /// Reads a scene file and the CAD it names. Throws LoadError with file, line and key, and what would help.
-Scene loadScene(const std::string& file);
+VPS_SCENES_API Scene loadScene(const std::string& file);
 
 }  // namespace vps::scenes

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
@@ -46,6 +47,6 @@ struct SimulateResult {
 };
 
 /// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.
-SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
+VPS_SCENES_API SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
 
 }  // namespace vps::scenes

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
@@ -27,7 +28,7 @@ enum class TradeKnob {
   Together,   ///< several
   Reference,  ///< all, far finer: what the others' runs are compared with
 };
-const char* toText(TradeKnob knob);
+VPS_SCENES_API const char* toText(TradeKnob knob);
 
 /// A setting to measure.
 struct TradeTry {
@@ -95,19 +96,19 @@ struct TradeResult {
 
 /// How far off depth may be with a row's setting: the most by which the models misread it at the probe's
 /// poses, or the deepest that its run let a part go, whichever is more.
-double errorOf(const TradeRow& row);
+VPS_SCENES_API double errorOf(const TradeRow& row);
 /// The physics rate that the row's 99th percentile of processor time a step allows [Hz]; 0 without a run.
-double rateOf(const TradeRow& row);
+VPS_SCENES_API double rateOf(const TradeRow& row);
 
 /// Runs the scene at a designed set of fidelities: first as it is, then one knob at a time, then several
 /// together. A scene of many steps is represented by its first one, unless thorough. Which rows there are
 /// depends on the clock; what a row holds does not, but for its times. Throws as assemble().
-TradeResult trade(const Scene& scene, const TradeOptions& options = {});
+VPS_SCENES_API TradeResult trade(const Scene& scene, const TradeOptions& options = {});
 
 /// The answers in words, one a line: "for 1000 Hz on this machine choose ...". What cannot be had is said.
 /// Chosen from the rows that ran to the end and whose force is less than half off.
-std::vector<std::string> tradeAnswers(const TradeResult& result);
+VPS_SCENES_API std::vector<std::string> tradeAnswers(const TradeResult& result);
 /// Which knob buys what, against the scene's own setting, a line for each row.
-std::vector<std::string> tradeKnobs(const TradeResult& result);
+VPS_SCENES_API std::vector<std::string> tradeKnobs(const TradeResult& result);
 
 }  // namespace vps::scenes

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "record/scene_archive.h"
+#include "vps/version.h"
 
 namespace vps::scenes {
 
@@ -94,7 +95,7 @@ std::string programVersion() {
 #else
   const char* precision = "float";
 #endif
-  return std::string(VPS_VERSION) + ", compiler " + __VERSION__ + ", Bullet " + precision;
+  return std::string(VPS_VERSION_STRING) + ", compiler " + __VERSION__ + ", Bullet " + precision;
 }
 
 }  // namespace vps::scenes

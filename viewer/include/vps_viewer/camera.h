@@ -5,11 +5,12 @@
 #include <array>
 
 #include "vps/mesh.h"
+#include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
 /// A perspective camera that looks from eye to target. Near and far planes follow from what is drawn.
-struct Camera {
+struct VPS_VIEWER_API Camera {
   Vec3 eye_W = Vec3(1, -1, 1);
   Vec3 target_W = Vec3::Zero();
   Vec3 up_W = Vec3::UnitZ();
@@ -26,7 +27,7 @@ struct Camera {
 /// @param fov_rad   vertical angle of view
 /// @param aspect    width / height of the picture
 /// @param margin    share of half the picture's size that stays free around the box
-Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad = 0.5, double aspect = 4.0 / 3,
-                  double margin = 0.12);
+VPS_VIEWER_API Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad = 0.5,
+                                 double aspect = 4.0 / 3, double margin = 0.12);
 
 }  // namespace vps::viewer

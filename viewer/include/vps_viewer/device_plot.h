@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vps_device/dual_arm_character.h"
+#include "vps_viewer/export.h"
 #include "vps_viewer/plot.h"
 
 namespace vps::viewer {
@@ -14,6 +15,7 @@ namespace vps::viewer {
 /// Plots the least force along z as surfaces over x and y (left), and the least force over x and z along y
 /// with the paper's 5 N and 12 N (right). Writes file + ".png" and file + ".svg"; the same input gives the
 /// same bytes.
-PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces, const std::string& file);
+VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
+                                              const std::string& file);
 
 }  // namespace vps::viewer

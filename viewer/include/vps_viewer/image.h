@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "vps_viewer/export.h"
+
 namespace vps::viewer {
 
 /// sRGB, 8 bits per channel, rows from the top; rgb.size() == 3 * width * height.
-struct Image {
+struct VPS_VIEWER_API Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
 
@@ -23,11 +25,11 @@ struct Image {
 
 /// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The folder
 /// must exist. Throws LoadError when it cannot be written, std::runtime_error when rgb has the wrong size.
-void savePng(const Image& image, const std::string& file);
+VPS_VIEWER_API void savePng(const Image& image, const std::string& file);
 
 /// Reads any 8- or 16-bit PNG as RGB; transparent pixels are blended with white. Throws LoadError if the file
 /// is missing, damaged or not a PNG.
-Image loadPng(const std::string& file);
+VPS_VIEWER_API Image loadPng(const std::string& file);
 
 /// The difference of two images. A pixel's difference is the greatest of its channels' differences, 0 to 255.
 struct ImageDifference {
@@ -38,13 +40,13 @@ struct ImageDifference {
 };
 
 /// @param tolerance difference that counts as equal, 0 to 255; 2 covers the different rounding of SSE and AVX
-ImageDifference compare(const Image& a, const Image& b, int tolerance);
+VPS_VIEWER_API ImageDifference compare(const Image& a, const Image& b, int tolerance);
 
 /// A picture of the difference: image a in pale grey, pixels beyond the tolerance in a red that grows with
 /// the difference. Throws std::invalid_argument unless the sizes agree.
-Image differenceImage(const Image& a, const Image& b, int tolerance);
+VPS_VIEWER_API Image differenceImage(const Image& a, const Image& b, int tolerance);
 
 /// savePng(differenceImage(...)).
-void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
+VPS_VIEWER_API void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
 
 }  // namespace vps::viewer

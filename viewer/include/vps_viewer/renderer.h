@@ -17,6 +17,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/camera.h"
+#include "vps_viewer/export.h"
 #include "vps_viewer/image.h"
 
 namespace vps::viewer {
@@ -32,7 +33,7 @@ using RenderScene = std::vector<DrawnMesh>;
 
 /// The parts of a scene, in order. Parts without a colour of their own get one from a muted palette, so that
 /// neighbours can be distinguished.
-RenderScene drawnMeshes(const scenes::Scene& scene);
+VPS_VIEWER_API RenderScene drawnMeshes(const scenes::Scene& scene);
 
 /// A section: the half space that n_W points into is cut away.
 struct CutPlane {
@@ -62,16 +63,17 @@ struct DrawOptions {
 };
 
 /// The box in W around all that the snapshot shows, with show_waiting also around waiting parts.
-Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot, bool show_waiting = false);
+VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,
+                                  bool show_waiting = false);
 
 /// The section through p_W that shows a motion along d_W to a viewer in the given direction: it contains d_W
 /// and faces the viewer. If d_W is along an axis of W, the plane is spanned by two axes, as in technical
 /// drawings.
-CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
+VPS_VIEWER_API CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W);
 
 /// Owns an OpenGL context and a scene's buffers. Use it on the thread that made it; several may exist at
 /// once.
-class Renderer {
+class VPS_VIEWER_API Renderer {
  public:
   /// Uploads the meshes; faces that meet at more than 28 degrees get separate normals. Throws
   /// std::runtime_error, which names the packages to install, when EGL or OpenGL 4.5 is missing.

@@ -8,6 +8,7 @@
 #include "vps/progress.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
+#include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
@@ -27,14 +28,14 @@ struct ReportOutcome {
 /// if it does not exist. The page and the result list pictures and plots that could not be made. The same
 /// input gives the same bytes, except for what the page marks as wall-clock times. Throws LoadError when dir
 /// cannot be written.
-ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
-                          const std::string& dir, const ReportOptions& options = {});
+VPS_VIEWER_API ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                                         const std::string& dir, const ReportOptions& options = {});
 
 /// Writes the time series as CSV: a header line, then one row per sample, with SI units in the column names.
 /// The folder must exist. Throws LoadError when the file cannot be written.
-void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
+VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
 
 /// Escapes text for HTML elements and quoted attributes.
-std::string escapeHtml(const std::string& text);
+VPS_VIEWER_API std::string escapeHtml(const std::string& text);
 
 }  // namespace vps::viewer

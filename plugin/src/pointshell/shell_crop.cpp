@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/crop.h"
+// The points of a shell that lie in some boxes.
 
 #include <algorithm>
 
 #include "pointshell/shell_hierarchy.h"
-#include "voxelise/voxelise.h"
+#include "vps/crop.h"
 
 namespace vps {
 namespace {
@@ -48,61 +48,7 @@ std::vector<ShellNode> keptNodes(const PointShell& shell, const std::vector<std:
   return nodes;
 }
 
-/// Cells of 8 voxels within a cell of a box: gradients at its border read nodes beyond it.
-bool isNear(const std::vector<Box>& boxes_M, const Index3& cell, double cell_m) {
-  Box room;
-  room.add(cell_m * (cell - Index3::Ones()).cast<double>());
-  room.add(cell_m * (cell + Index3::Constant(2)).cast<double>());
-  return std::any_of(boxes_M.begin(), boxes_M.end(), [&](const Box& box) { return overlap(box, room); });
-}
-
 }  // namespace
-
-bool overlap(const Box& a, const Box& b) noexcept {
-  return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
-         (b.min.array() <= a.max.array()).all();
-}
-
-bool isWithin(const Box& inner, const Box& outer) noexcept {
-  return inner.isEmpty() ||
-         ((inner.min.array() >= outer.min.array()).all() && (inner.max.array() <= outer.max.array()).all());
-}
-
-Box grown(const Box& box, double by_m) noexcept {
-  if (box.isEmpty()) return box;
-  Box out = box;
-  out.min.array() -= by_m;
-  out.max.array() += by_m;
-  return out;
-}
-
-Box moved(const Box& box, const Pose& X) noexcept {
-  Box out;
-  if (box.isEmpty()) return out;
-  const Vec3 center = X * box.center(), half = X.R.cwiseAbs() * (0.5 * box.size());
-  out.add(center - half);
-  out.add(center + half);
-  return out;
-}
-
-VoxMap VoxMapBuilder::cropped(const VoxMap& map, const std::vector<Box>& boxes_M) {
-  requireOneGrid(map, "cropped");
-  auto layout = std::make_shared<VoxLayout>(*map.layout_);
-  for (std::size_t i = 0; i < layout->bricks.size(); ++i) {
-    std::uint32_t& brick = layout->bricks[i];
-    if (isConstant(brick) || isNear(boxes_M, layout->cellAt(i), VoxMap::kBrick * map.voxel_m_)) continue;
-    brick = layout->centers_m[i] < 0 ? kInside : kOutside;
-  }
-  moveToNewPool(*layout, 0);
-  markFarCells(*layout);
-  VoxMap out = map;
-  out.layout_ = layout;
-  return out;
-}
-
-VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M) {
-  return VoxMapBuilder::cropped(map, boxes_M);
-}
 
 PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P) {
   const std::vector<std::uint8_t> is_kept = pointsWithin(shell, boxes_P);

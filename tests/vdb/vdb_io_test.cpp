@@ -16,6 +16,7 @@
 #include "support/same_map.h"
 #include "vps/load_error.h"
 #include "vps/query.h"
+#include "vps/vdb.h"
 
 namespace vps::test {
 namespace {
@@ -168,6 +169,19 @@ TEST_F(VdbFile, OtherFilesAreRefused) {
       saveVdb(buildVoxMap(makeBox({0.01, 0.01, 0.01}), kSettings), (folder_ / "no/such.vdb").string()),
       LoadError);
   EXPECT_THROW(saveVdb(VoxMap(), file_), LoadError);
+}
+
+TEST_F(VdbFile, AMapThatIsFineInRegionsOnlyIsRefusedWithItsReason) {
+  FineRegions regions;
+  regions.boxes_M.push_back({{0, 0, 0}, {3e-3, 3e-3, 3e-3}});
+  const VoxMap map = buildVoxMapInRegions(makeBox({4e-3, 4e-3, 4e-3}), kSettings, regions);
+  try {
+    saveVdb(map, file_);
+    FAIL() << "was written";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("fine in regions only cannot be"), std::string::npos)
+        << error.what();
+  }
 }
 
 // Level sets of others

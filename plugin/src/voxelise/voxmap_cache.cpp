@@ -13,7 +13,7 @@
 #include <optional>
 #include <tuple>
 
-#include "voxelise/voxelise.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/write_file.h"
 
 namespace vps {
@@ -185,14 +185,14 @@ class VoxMapCacheFile {
   }
 
   static bool write(const VoxMap& map, const MeshReport& report, const fs::path& file, const Digest& key) {
-    const VoxLayout& layout = *map.layout_;
+    const VoxLayout& layout = *VoxMapAccess::layout(map);
     Header header;
     header.key = key;
-    header.voxel_m = map.voxel_m_;
-    header.band_m = map.band_m_;
+    header.voxel_m = map.voxel_m();
+    header.band_m = map.band_m();
     for (int k = 0; k < 3; ++k) {
-      header.bounds_m[static_cast<std::size_t>(k)] = map.bounds_.min[k];
-      header.bounds_m[static_cast<std::size_t>(k + 3)] = map.bounds_.max[k];
+      header.bounds_m[static_cast<std::size_t>(k)] = map.bounds().min[k];
+      header.bounds_m[static_cast<std::size_t>(k + 3)] = map.bounds().max[k];
       header.low[static_cast<std::size_t>(k)] = layout.low[k];
       header.size[static_cast<std::size_t>(k)] = layout.size[k];
     }
@@ -235,7 +235,7 @@ class VoxMapCacheFile {
     if (!reader.isGood() || !reader.endsWell() || !areNamesGood(*layout)) return std::nullopt;
     report = kept;
     markFarCells(*layout);
-    return VoxMapBuilder::wrap(layout, header.voxel_m, header.band_m, bounds);
+    return VoxMapAccess::make(layout, header.voxel_m, header.band_m, bounds);
   }
 };
 

@@ -4,8 +4,7 @@
 
 #include <limits>
 
-#include "voxmap/coarse_nodes.h"
-#include "voxmap/voxmap_layout.h"
+#include "voxmap/voxmap_access.h"
 
 namespace vps {
 
@@ -13,14 +12,14 @@ namespace vps {
 class VoxSampler {
  public:
   explicit VoxSampler(const VoxMap& map) noexcept
-      : layout_(*map.layout_),
+      : layout_(*VoxMapAccess::layout(map)),
         bricks_(layout_.bricks.data()),
         nodes_(layout_.pool->nodes(0)),
-        voxel_m_(map.voxel_m_),
-        band_m_(map.band_m_),
-        quantum_m_(map.quantum_m_),
-        bounds_(map.bounds_),
-        per_voxel_(map.voxel_m_ > 0 ? 1 / map.voxel_m_ : 0),
+        voxel_m_(map.voxel_m()),
+        band_m_(map.band_m()),
+        quantum_m_(map.quantum_m()),
+        bounds_(map.bounds()),
+        per_voxel_(map.voxel_m() > 0 ? 1 / map.voxel_m() : 0),
         low_((VoxMap::kBrick * layout_.low).cast<double>()),
         size_((VoxMap::kBrick * layout_.size).cast<double>()) {}
 
@@ -162,18 +161,7 @@ class VoxSampler {
     return nodes_ + at.brick + nodeIndex(at.node.x(), at.node.y(), at.node.z());
   }
 
-  [[nodiscard]] Index3 lowIndex(const Place& at) const noexcept {
-    return VoxMap::kBrick * layout_.cellAt(at.cell) + at.node;
-  }
-
   [[nodiscard]] Corners corners(const Place& at) const noexcept {
-    if (at.brick == layout_.elsewhere && layout_.coarse != nullptr) {
-      NodeValue nodes[8];
-      CoarseNodes(layout_).corners(lowIndex(at), nodes);
-      Corners out;
-      std::copy_n(nodes, 8, out.begin());
-      return out;
-    }
     const NodeValue* d = lowNode(at);
     constexpr int x = nodeIndex(1, 0, 0), y = nodeIndex(0, 1, 0);
     return {double(d[0]), double(d[1]),     double(d[y]),     double(d[y + 1]),
@@ -193,7 +181,6 @@ class VoxSampler {
   /// axis a component needs one node more on each side of the cell, which may lie in a neighbour; across, the
   /// cell's own.
   [[nodiscard]] Vec3 continuousGradient(const Place& at) const noexcept {
-    if (layout_.coarse != nullptr) return continuousGradientAcross(at);
     constexpr int kStride[3] = {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)};
     const std::ptrdiff_t cell_stride[3] = {std::ptrdiff_t{layout_.size.y()} * layout_.size.z(),
                                            layout_.size.z(), 1};
@@ -215,15 +202,6 @@ class VoxSampler {
       g[axis] = mix(mix(slope(0), slope(b), t_b), mix(slope(c), slope(b + c), t_b), t_c);
     }
     return g;
-  }
-
-  /// The same, where neighbours may be coarse: each cell's own value, a voxel before and behind.
-  [[nodiscard]] Vec3 continuousGradientAcross(const Place& at) const noexcept {
-    const Vec3 x = lowIndex(at).cast<double>() + at.t - low_;
-    Vec3 g;
-    for (int axis = 0; axis < 3; ++axis)
-      g[axis] = distance(placeInVoxels(x + Vec3::Unit(axis))) - distance(placeInVoxels(x - Vec3::Unit(axis)));
-    return g / quantum_m_;
   }
 
   /// How far the interpolant can be from the distance it interpolates. Distance changes by at most the way

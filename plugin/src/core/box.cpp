@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/box.h"
+
+namespace vps {
+
+bool overlap(const Box& a, const Box& b) noexcept {
+  return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
+         (b.min.array() <= a.max.array()).all();
+}
+
+bool isWithin(const Box& inner, const Box& outer) noexcept {
+  return inner.isEmpty() ||
+         ((inner.min.array() >= outer.min.array()).all() && (inner.max.array() <= outer.max.array()).all());
+}
+
+Box grown(const Box& box, double by_m) noexcept {
+  if (box.isEmpty()) return box;
+  Box out = box;
+  out.min.array() -= by_m;
+  out.max.array() += by_m;
+  return out;
+}
+
+Box moved(const Box& box, const Pose& X) noexcept {
+  Box out;
+  if (box.isEmpty()) return out;
+  const Vec3 center = X * box.center(), half = X.R.cwiseAbs() * (0.5 * box.size());
+  out.add(center - half);
+  out.add(center + half);
+  return out;
+}
+
+}  // namespace vps

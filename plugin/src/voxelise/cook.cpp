@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Several parts in one voxmap, each voxelised at its own pose.
+#include "voxmap/map_limits.h"
+#include "voxmap/voxmap_merge.h"
+#include "vps/load_error.h"
+
+namespace vps {
+
+VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
+                  const Progress& progress) {
+  if (parts.empty()) throw LoadError("", "", "no parts to cook into one voxmap; give at least one");
+  VoxMap cooked;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (progress) progress("cooking", static_cast<double>(i) / static_cast<double>(parts.size()));
+    requirePose(parts[i].X_MP);
+    const VoxMap map = buildVoxMap(transformed(*parts[i].mesh, parts[i].X_MP), settings);
+    cooked = i == 0 ? map : mergedVoxMap(cooked, map);
+  }
+  if (progress) progress("cooking", 1);
+  return parts.size() > 1 ? packedVoxMap(cooked) : cooked;
+}
+
+VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
+  requirePose(part.X_MP);
+  const VoxMapSettings settings = {cooked.voxel_m(), cooked.band_m() / cooked.voxel_m()};
+  return mergedVoxMap(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
+}
+
+}  // namespace vps

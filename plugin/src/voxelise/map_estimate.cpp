@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "voxelise/map_estimate.h"
+
+#include <cstdio>
+
+#include "voxmap/map_limits.h"
+
+namespace vps {
+namespace {
+
+/// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
+/// the directory.
+double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
+  const double cell_m = VoxMap::kBrick * h;
+  const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
+  const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
+  constexpr double kTemporary = 15;  // bytes a cell, assumed: what building needs besides the directory
+  return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kTemporary;
+}
+
+}  // namespace
+
+double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
+  return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
+}
+
+void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {
+  const Box box = bounds(mesh);
+  const double area_m2 = area(mesh);
+  requireSettings(settings, part);
+  requireNear(box, settings.voxel_m, part);
+  const auto bytesAt = [&](double h) { return estimatedBytes(area_m2, box.size(), h, settings.band_voxels); };
+  double h = settings.voxel_m;
+  while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
+  char what_for[48], remedy[48];
+  std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
+  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
+  requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
+}
+
+}  // namespace vps
