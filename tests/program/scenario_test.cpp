@@ -192,9 +192,10 @@ TEST_F(Scenario, APartThatDriftsAfterReleaseFails) {
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
 }
 
-TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefusedWithoutARatchet) {
+TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefusedWithoutIndexing) {
   writePegScene(
-      "", "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n[device]\nratchet = false\n");
+      "",
+      "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n[device]\nindexing = false\n");
   expectRefused("assemble scene.toml --out out", "longer than the device's workspace");
 }
 

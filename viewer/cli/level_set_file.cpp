@@ -2,6 +2,9 @@
 #include "level_set_file.h"
 
 #include "vps/load_error.h"
+#ifdef VPS_HAS_VDB
+#include "vps/vdb.h"
+#endif
 
 namespace vps::viewer {
 
