@@ -331,7 +331,7 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
     WindingSigner signer(repaired.solid);
     layout = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
     repaired.report.signed_by_winding = true;
-    repaired.report.certain_share = signer.certain_share();
+    repaired.report.certain_share = signer.certainShare();
   }
   if (report != nullptr) *report = repaired.report;
   return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
