@@ -17,7 +17,7 @@ using test::World;
 
 constexpr double kGravity = 9.81;
 
-// Bullet's float build keeps positions to 6e-8 of their size: 10 mm away that is 1 nm, times k = 2e3 N/m 2
+// In single precision, positions have a relative error of 6e-8: at 10 mm 1 nm, which with k = 2e3 N/m is 2
 // uN.
 constexpr bool kIsDouble = sizeof(btScalar) == 8;
 
@@ -58,16 +58,16 @@ TEST_P(CouplingWithSolver, HangsByItsWeightOverStiffness) {
   const double sag_m = -part.getWorldTransform().getOrigin().z();
   EXPECT_NEAR(sag_m, 0.05 * kGravity / 2000, kIsDouble ? 1e-9 : 1e-7);
   EXPECT_NEAR(coupling.wrench().f.z(), 0.05 * kGravity, kIsDouble ? 1e-6 : 1e-4);
-  // At rest the implicit law is the explicit one.
+  // At rest the implicit law equals the explicit one.
   const Wrench F = couplingWrench(coupling.gains(), targetAt(Pose()), coupling.partState());
   EXPECT_LE((F.f - coupling.wrench().f).norm() + (F.tau - coupling.wrench().tau).norm(),
             kIsDouble ? 1e-6 : 1e-3);
   world.world->removeConstraint(&coupling);
 }
 
-TEST_P(CouplingWithSolver, HeldOffCentreItTurnsUntilTorqueBalances) {
-  // Grasped at x = 10 mm from the centre: the weight turns the part about the grasp by tau / k_r, and its
-  // lever shortens as cos(angle).
+TEST_P(CouplingWithSolver, GraspedOffCentreItTurnsUntilTorqueBalances) {
+  // The part is grasped 10 mm from its centre: the weight turns it about the grasp point by tau / k_r, and
+  // the lever shortens by cos(angle).
   btRigidBody& part = addBox(0.05);
   const Pose X_BG = Pose::translation(Vec3(0.01, 0, 0));
   CouplingConstraint coupling(part, X_BG, gainsOf(2000, 0.05));
@@ -89,7 +89,7 @@ TEST_P(CouplingWithSolver, IsStableFromAGramToTenKilogramsAtAnyStiffness) {
       btRigidBody& part = w.addShape(box, mass_kg, Vec3::Constant(I), Pose::translation(Vec3(0.005, 0, 0)));
       CouplingGains gains = gainsOf(k, mass_kg);
       gains.b_Ns_per_m = 0;
-      gains.b_Nms_per_rad = 0;  // nothing but the implicit step damps: the hardest case
+      gains.b_Nms_per_rad = 0;  // only the implicit step damps: the hardest case
       CouplingConstraint coupling(part, Pose::translation(Vec3(0, 0.01, 0)), gains);
       w.world->setGravity(btVector3(0, 0, 0));
       w.world->addConstraint(&coupling, true);
@@ -103,8 +103,8 @@ TEST_P(CouplingWithSolver, IsStableFromAGramToTenKilogramsAtAnyStiffness) {
         const double now_J = 0.5 * k * e.squaredNorm() + 0.5 * 4 * r.squaredNorm() +
                              0.5 * mass_kg * fromBt(part.getLinearVelocity()).squaredNorm() +
                              0.5 * I * fromBt(part.getAngularVelocity()).squaredNorm();
-        // Implicit Euler of a linear spring loses energy every step; turning makes it linear only to second
-        // order.
+        // Implicit Euler loses energy in every step of a linear spring; with rotation the spring is linear
+        // only to second order.
         ASSERT_LE(now_J, energy_J * 1.01 + 1e-9) << mass_kg << " kg, " << k << " N/m, step " << i;
         energy_J = std::min(energy_J, now_J * 1.2 + 1e-12);
       }
@@ -147,15 +147,15 @@ TEST_P(CouplingWithSolver, LimitsTheSpringAndKeepsItsDirection) {
   coupling.setTarget(targetAt(Pose::translation(0.1 * direction)));  // 200 N without a limit
   world.step();
   EXPECT_LE((coupling.wrench().f - 5 * direction).norm(), kIsDouble ? 1e-9 : 1e-5);
-  // It gives the part the velocity of that force.
+  // The part has the velocity that this force gives it.
   EXPECT_LE((fromBt(part.getLinearVelocity()) - 5 * direction / 0.05 * 1e-3).norm(),
             kIsDouble ? 1e-12 : 1e-7);
   world.world->removeConstraint(&coupling);
 }
 
-TEST_P(CouplingWithSolver, ReportsTheForceThatItGaveThePart) {
+TEST_P(CouplingWithSolver, ReportsTheForceThatActedOnThePart) {
   // A light part, a stiff spring and an oblique lever: near some limits the spring's direction does not
-  // settle within the solver's rounds. Nothing else acts, so the change of momentum is the coupling's
+  // converge within the solver's rounds. Nothing else acts, so the change of momentum is the coupling's
   // impulse.
   const double mass_kg = 1e-3, dt_s = 1e-3;
   for (double limit_N = 0.1; limit_N < 100; limit_N *= 1.1) {
@@ -191,13 +191,13 @@ TEST_P(CouplingWithSolver, FollowsAKinematicProxy) {
     motion.m_graphicsWorldTrans.setOrigin(btVector3(toBt(1e-4 * i), 0, 0));  // 0.1 m/s
     world.world->stepSimulation(toBt(1e-3), 1, toBt(1e-3));
   }
-  // Steady motion takes no force, and the target is that of the step's end: no lag.
+  // Steady motion needs no force, and the target is that of the step's end: there is no lag.
   EXPECT_NEAR(part.getWorldTransform().getOrigin().x(), 0.05, 1e-6);
   proxy.setMotionState(nullptr);
   world.world->removeConstraint(&coupling);
 }
 
-TEST_P(CouplingWithSolver, ReleasedItGivesNoWrench) {
+TEST_P(CouplingWithSolver, GivesNoWrenchAfterRelease) {
   btRigidBody& part = addBox(0.05);
   CouplingConstraint coupling(part, Pose(), gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
@@ -211,7 +211,7 @@ TEST_P(CouplingWithSolver, ReleasedItGivesNoWrench) {
   world.world->removeConstraint(&coupling);
 }
 
-TEST_P(CouplingWithSolver, ATargetThatIsNotANumberIsNoTarget) {
+TEST_P(CouplingWithSolver, IgnoresATargetThatIsNotFinite) {
   btRigidBody& part = addBox(0.05);
   CouplingConstraint coupling(part, Pose(), gainsOf(2000, 0.05));
   world.world->addConstraint(&coupling, true);
@@ -228,8 +228,8 @@ INSTANTIATE_TEST_SUITE_P(Each, CouplingWithSolver,
                          testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
-// In a step of 1 ms this pull takes the block's free path 3 mm on, farther than its map sees.
-TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
+// This pull moves the block's free path by 3 mm in a step of 1 ms, farther than the range of its map.
+TEST(Coupling, PullsAPartOntoAWallThatItWouldTunnelThroughInAStep) {
   for (const SolverKind solver : {SolverKind::Constraint, SolverKind::Penalty}) {
     World world(solver);
     const test::Built plate = test::plate(), box = test::steelBox();  // 10 mm thick, both
@@ -241,7 +241,7 @@ TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
     world.world->addConstraint(&coupling, true);
     coupling.setTarget(targetAt(Pose::translation(Vec3(0, 0, 3e-3))));
     world.step(200);
-    // Springs give way to 2 kN on 300 mm^2 of 1e12 N/m^3 by 6.7 um.
+    // Penalty contact of 300 mm^2 and 1e12 N/m^3 yields to 2 kN by 6.7 um.
     EXPECT_NEAR(test::partPose(part, box).p.z(), 5e-3, solver == SolverKind::Penalty ? 10e-6 : 1e-6)
         << nameOf(solver);
     world.world->removeConstraint(&coupling);
@@ -251,8 +251,8 @@ TEST(Coupling, PullsAPartOntoAWallThatItWouldPassWithinAStep) {
 TEST(Coupling, RefusesASolverThatNeverCallsIt) {
   btDantzigSolver dantzig;
   btMLCPSolver mlcp(&dantzig);
-  EXPECT_NE(CouplingConstraint::whyUnsupported(mlcp), nullptr);
-  EXPECT_EQ(CouplingConstraint::whyUnsupported(Solver()), nullptr);
+  EXPECT_NE(CouplingConstraint::unsupportedReason(mlcp), nullptr);
+  EXPECT_EQ(CouplingConstraint::unsupportedReason(Solver()), nullptr);
 }
 
 TEST(Coupling, RefusesBodiesAndGainsItCannotUse) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges that lie across edges, between the points that stand on them.
+// Edges that lie across edges, between their shell points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,8 @@ using test::Built;
 using test::SolverKind;
 using test::World;
 
-constexpr double kWidth_m = 2e-3, kHalf_m = kWidth_m * std::numbers::sqrt2 / 2;  // of a bar; axis to edge
+constexpr double kWidth_m = 2e-3,
+                 kHalf_m = kWidth_m * std::numbers::sqrt2 / 2;  // of a bar; from axis to edge
 
 Mesh turned(Mesh mesh, const Vec3& axis, const Vec3& by) {
   const Mat3 R = rotationFromVector(axis * (std::numbers::pi / 4));
@@ -23,8 +24,8 @@ Mesh turned(Mesh mesh, const Vec3& axis, const Vec3& by) {
   return mesh;
 }
 
-// Two bars side by side, each standing on an edge, as one part. Nothing is at a multiple of anything, so that
-// no points of two edges meet.
+// Two parallel bars, each resting on an edge, as one part. No dimension is a multiple of another, so that
+// points of two edges do not coincide.
 Built bars(bool along_x) {
   const Vec3 size = along_x ? Vec3(31.3e-3, kWidth_m, kWidth_m) : Vec3(kWidth_m, 29.7e-3, kWidth_m);
   const Vec3 axis = along_x ? Vec3::UnitX() : Vec3::UnitY(), aside = along_x ? Vec3::UnitY() : Vec3::UnitX();
@@ -33,7 +34,7 @@ Built bars(bool along_x) {
   return build(mesh, 7850);
 }
 
-// Upper bars over lower ones, each where its frame says: the lower edges' top is at z = 0.
+// Upper bars across lower ones; the lower bars' upper edges are at z = 0.
 struct Crossed {
   explicit Crossed(double gap_m, SolverKind solver = SolverKind::Constraint) : world(solver) {
     ground = &world.add(lower, Pose::translation({0, 0, -kHalf_m}), true, 0.3);
@@ -62,28 +63,28 @@ TEST(Crossing, OfFourEdgesIsFoundWithItsGap) {
   seen.m_closestDistanceThreshold = toBt(20e-6);
   scene.world.world->contactPairTest(scene.ground, scene.body, seen);
   EXPECT_EQ(seen.count, 4);
-  // A float holds a height of 1 mm to 1e-10 m, and this is a difference of a few.
+  // A float resolves a height of 1 mm to 1e-10 m, and this is a difference of several.
   EXPECT_NEAR(seen.least_m, 12e-6, 1e-9);
   EXPECT_NEAR(seen.most_m, 12e-6, 1e-9);
 }
 
-TEST(Crossing, CarriesAPartThatTouchesNowhereElse) {
+TEST(Crossing, SupportsAPartThatTouchesNowhereElse) {
   constexpr double kGap_m = 50e-6;
   Crossed scene(kGap_m);
   const Vec3 start = fromBt(scene.body->getWorldTransform().getOrigin());
   scene.world.step(1000);
   const Vec3 moved = fromBt(scene.body->getWorldTransform().getOrigin()) - start;
-  // Down by the gap and no farther. An overlap is left as it is below 1 um, which is what a step's slack may
-  // leave.
+  // It descends by the gap and no farther. An overlap below 1 um, which the contact margin may leave, is not
+  // removed.
   EXPECT_NEAR(moved.z(), -kGap_m, 1e-6);
   EXPECT_LT(moved.head<2>().norm(), 1e-6);
   const double speed_m_s = fromBt(scene.body->getLinearVelocity()).norm();
   EXPECT_LE(speed_m_s, 1e-6);
 }
 
-TEST(Crossing, SlidesOverTheJointsOfShellsWithoutAStep) {
-  // Pushed along the lower bars at 20 mm/s: points of both edges pass each other all the time, and nothing is
-  // to be felt of them.
+TEST(Crossing, SlidesOverShellPointsWithoutAJolt) {
+  // The part is pushed along the lower bars at 20 mm/s: points of both edges pass each other continuously,
+  // without any effect on its motion.
   Crossed scene(0);
   scene.body->setFriction(0);
   scene.world.step(100);
@@ -100,8 +101,9 @@ TEST(Crossing, SlidesOverTheJointsOfShellsWithoutAStep) {
   EXPECT_GT(slowest_m_s, 0.02 * (1 - 1e-3));
 }
 
-TEST(Crossing, OfASquarePegsRimDoesNotHoldItOutOfItsHole) {
-  // 10 um of clearance a side, sharp edges everywhere: once within, the peg's lower rim is below the hole's.
+TEST(Crossing, OfASquarePegsRimDoesNotKeepItOutOfItsHole) {
+  // 10 um of clearance on each side, sharp edges everywhere: when the peg is inside, its lower rim is below
+  // the hole's.
   constexpr double kPeg_m = 8e-3, kClear_m = 10e-6, kHole_m = kPeg_m + 2 * kClear_m, kDeep_m = 6e-3;
   Mesh frame;
   const double wall_m = 4e-3, out_m = kHole_m / 2 + wall_m / 2;
@@ -120,7 +122,7 @@ TEST(Crossing, OfASquarePegsRimDoesNotHoldItOutOfItsHole) {
   btRigidBody& body = world.add(peg, Pose::translation({0, 0, 5e-3 + 20e-6}), false, 0.0);
   for (int i = 1; i <= 30; ++i) {
     world.step();
-    // Free fall, less 1 % for what touches on the way; Bullet adds g dt before it moves.
+    // Free fall, with 1 % for contacts on the way; Bullet adds g dt before it moves.
     const double fallen_m = 0.5 * test::kGravity * 1e-6 * i * (i + 1);
     EXPECT_NEAR(5e-3 + 20e-6 - body.getWorldTransform().getOrigin().z(), fallen_m, 0.01 * fallen_m + 1e-7);
   }

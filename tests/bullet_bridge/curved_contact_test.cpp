@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where curved faces are nearest, against balls and cylinders as formulas.
+// Where curved faces are nearest, compared with formulas for balls and cylinders.
 #include "narrowphase/curved_contact.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ struct FlushPoint {
   }
 };
 
-// A point of a side's shell as correct() leaves one that meets a face flush.
+// A shell point as refine() leaves it when it touches a face flush.
 std::optional<FlushPoint> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
   const ShapeModels& models = side.shape->models();
   const Surface& surface = other.shape->models().surfaces[0];
@@ -58,7 +58,7 @@ std::optional<FlushPoint> corrected(const SideView& side, const SideView& other,
   return FlushPoint{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
-/// Where two faces are nearest, by a formula.
+/// Where two faces are nearest, from a formula.
 struct Truth {
   Vec3 p_W, n_W;  ///< n_W from the part below to the ball
   double gap_m = 0;
@@ -66,11 +66,11 @@ struct Truth {
 
 struct Found {
   int moved = 0;
-  double off_m = 0, gap_off_m = 0, tilt_rad = 0;  ///< of the moved, at worst
-  double least_gap_m = 1e300;                     ///< of all
+  double off_m = 0, gap_off_m = 0, tilt_rad = 0;  ///< greatest errors of the moved points
+  double least_gap_m = 1e300;                     ///< of all points
 };
 
-// All points of either shell that are within the spacing of where the faces touch.
+// Checks all points of both shells within one spacing of where the faces touch.
 Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
   const SideView sides[2] = {viewOf(ball(), X_WBall, 0), viewOf(below, Pose(), 1)};
   Found found;
@@ -92,14 +92,14 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
   return found;
 }
 
-// Facets of the ball are sqrt(4 pi / 20480 * 4 / sqrt(3)) r = 0.19 mm wide and lie up to a third of that
-// squared over 2 r inside it, 1.2 um; those of the parts below, too.
+// Facets of the ball are sqrt(4 pi / 20480 * 4 / sqrt(3)) r = 0.19 mm wide and up to a third of its square
+// over 2 r inside the ball, 1.2 um; those of the parts below as well.
 constexpr double kFacets_m = 2.4e-6;
-// Steps end within 5e-3 of the spacing, over the smaller radius; as much again for interpolated normals.
+// Newton's steps end within 5e-3 of the spacing, divided by the smaller radius; the same again for
+// interpolated normals.
 constexpr double kTilt_rad = 2 * 5e-3 * kSpacing_m / kBall_m;
 
-// A ball that hovers over, or is pressed a little into, ten places of a part: all points near the contact
-// find it.
+// A ball slightly above, or slightly inside, ten places of a part: all points near the contact move to it.
 void expectFound(const Built& below, const std::function<Truth(int)>& at) {
   for (int i = 0; i < 10; ++i) {
     const Truth truth = at(i);
@@ -150,7 +150,8 @@ TEST(CurvedContact, PointsOfABallInAHollowFindItsBottom) {
   });
 }
 
-// The plate ends at x = 30 mm, where the ball hangs over: nothing there may hold it as the face would.
+// The plate ends at x = 30 mm, where the ball overhangs: beyond the edge no point may act as if the face
+// continued.
 TEST(CurvedContact, APointDoesNotLeaveItsFaceOverTheEdge) {
   const Built plate = test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.25e-3, kSpacing_m);
   for (int i = 0; i < 10; ++i) {
@@ -163,8 +164,8 @@ TEST(CurvedContact, APointDoesNotLeaveItsFaceOverTheEdge) {
   }
 }
 
-// Between the points of a ball of 1 mm that lie 0.5 mm apart it is up to 125 um deeper, far more than the
-// slack: what was found there would come and go, and the ball hop on it.
+// A ball of 1 mm with points 0.5 mm apart is up to 125 um deeper between its points, far more than the
+// contact margin: contacts there would appear and disappear, and the ball would bounce.
 TEST(CurvedContact, ASmallBallLiesStill) {
   const Built plate = test::build(makeBox(Vec3(0.06, 0.06, 0.01)), 7850, 0.25e-3, kSpacing_m);
   for (const double radius_m : {1e-3, 1.5e-3, 2e-3, 3e-3}) {
@@ -179,13 +180,13 @@ TEST(CurvedContact, ASmallBallLiesStill) {
       world.step();
       fastest_m_s = std::max<double>(fastest_m_s, std::abs(body.getLinearVelocity().z()));
     }
-    // It may roll; a fall of one step is 1e-2 m/s.
+    // It may roll. Gravity adds 1e-2 m/s in a step.
     EXPECT_LE(fastest_m_s, 1e-3) << radius_m;
     EXPECT_GE(body.getWorldTransform().getOrigin().z(), 5e-3 + radius_m - 0.13e-3) << radius_m;
   }
 }
 
-// Of a part without exact surfaces nobody knows on which face a point lies.
+// Without exact surfaces the face of a shell point is unknown.
 TEST(CurvedContact, ABodyWithoutSurfacesRestsOnOneThatHasThem) {
   const Built plate = test::build(makeBox(Vec3(0.03, 0.03, 0.01)), 7850, 0.25e-3, kSpacing_m);
   Built bare = test::build(makeBox(Vec3::Constant(5e-3)), 7850, 0.25e-3, kSpacing_m);
@@ -196,11 +197,11 @@ TEST(CurvedContact, ABodyWithoutSurfacesRestsOnOneThatHasThem) {
   world.add(plate, Pose(), true);
   btRigidBody& body = world.add(bare, Pose::translation({0, 0, 7.5e-3}));
   world.step(200);
-  // The plate's points see no face of it, its own those of the plate.
+  // The plate's points find no face of the body; the body's points find those of the plate.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 7.5e-3, 5e-6);
 }
 
-TEST(CurvedContact, AConformingPegIsLeftWhereItIs) {
+TEST(CurvedContact, AConformingPegIsUnchanged) {
   const Built bore = test::build(makeTube(10e-3, 4.01e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);
   const Built peg = test::build(makeCylinder(4e-3, 20e-3, 128), 7850, 0.25e-3, kSpacing_m);
   const SideView sides[2] = {viewOf(peg, Pose(), 0), viewOf(bore, Pose(), 1)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs looked at by several threads: the same bits.
+// Pairs processed by several threads give the same bits.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace {
 
 using test::Built;
 
-/// Where seven boxes are that have fallen on one another; 0 threads: the stock dispatcher.
+/// Places of seven boxes that have fallen on one another. 0 threads: the stock dispatcher.
 std::vector<btTransform> heap(int threads, test::SolverKind solver) {
   static const Built box = test::steelBox();
   static const Built ground = test::plate();
@@ -41,7 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Each, DispatcherWithMode,
                            return info.param == test::SolverKind::Penalty ? "Penalty" : "Constraint";
                          });
 
-TEST(Dispatcher, RefusesLessThanNoThread) {
+TEST(Dispatcher, RefusesANegativeNumberOfThreads) {
   btDefaultCollisionConfiguration config;
   EXPECT_THROW(Dispatcher(&config, -1), std::invalid_argument);
 }

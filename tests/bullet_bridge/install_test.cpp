@@ -31,7 +31,7 @@ struct Points : btCollisionWorld::ContactResultCallback {
   }
 };
 
-TEST(Install, WithoutItVpsShapesPassThroughEachOther) {
+TEST(Install, WithoutItShapesPassThroughEachOther) {
   World world;
   uninstall(world.dispatcher);
   EXPECT_FALSE(isInstalled(world.dispatcher));
@@ -41,7 +41,7 @@ TEST(Install, WithoutItVpsShapesPassThroughEachOther) {
   EXPECT_LT(body.getWorldTransform().getOrigin().z(), 0);
 }
 
-TEST(Install, TwiceIsAsOnceWithTheLaterSettings) {
+TEST(Install, ASecondCallReplacesTheSettings) {
   World world;
   Settings settings;
   settings.contact_limit = 8;
@@ -56,7 +56,7 @@ TEST(Install, TwiceIsAsOnceWithTheLaterSettings) {
   EXPECT_EQ(contacts, 8);
 }
 
-TEST(Install, ABodyPutIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
+TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
   constexpr double kOverlap_m = 1e-3;
   const auto startAt = [](double z_m) {
     World world;
@@ -68,7 +68,8 @@ TEST(Install, ABodyPutIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
   EXPECT_EQ(startAt(0.0105).overlapping_starts, 0u);
   const Stats stats = startAt(0.010 - kOverlap_m);
   EXPECT_EQ(stats.overlapping_starts, 1u);
-  EXPECT_NEAR(stats.deepest_start_m, kOverlap_m, 1e-7);  // faces' distance is exact, but for floats
+  EXPECT_NEAR(stats.deepest_start_m, kOverlap_m,
+              1e-7);  // the distance of faces is exact except for float rounding
 }
 
 TEST(Install, RefusesSettingsThatCannotWork) {
@@ -94,8 +95,8 @@ Box contactExtent(World& world) {
   return box;
 }
 
-TEST(Install, LooksAtEveryPointOfALargeFace) {
-  // More than 20,000 points touch at once; without those of one corner the plate would tip over it.
+TEST(Install, ExaminesEveryPointOfALargeFace) {
+  // More than 20,000 points touch at once. Without the points of one corner the plate would tip over it.
   const Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.002)), 7850, 0.5e-3, 0.25e-3);
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   const Built ground = test::build(makeBox(Vec3(0.05, 0.05, 0.01)), 7850, 0.5e-3, 2e-3);
@@ -107,15 +108,15 @@ TEST(Install, LooksAtEveryPointOfALargeFace) {
     world.step();
     EXPECT_GT(stats(world.dispatcher).points_tested, 20000u) << under->getName();
     EXPECT_EQ(stats(world.dispatcher).left_out, 0u) << under->getName();
-    // Of 64 contacts some are at every rim: no farther in than a cell of thinning out, 1/8 of half a
-    // diagonal.
+    // Some of the 64 contacts are at every rim: no farther inside than one cell of the reduction, 1/8 of half
+    // a diagonal.
     const Box held = contactExtent(world);
     EXPECT_GE(std::min(held.size().x(), held.size().y()), 0.04 - 2 * 0.0035) << under->getName();
   }
 }
 
-TEST(Install, ALimitOnCandidatesIsKeptAndCounted) {
-  // After the test above too, whose buffers were larger.
+TEST(Install, ALimitOnCandidatesIsAppliedAndCounted) {
+  // Also after the test above, whose buffers were larger.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, cube().shape.get()}) {
     Settings settings;
@@ -148,7 +149,7 @@ TEST(Install, AQueryFindsPointsInBothOrdersWithOppositeNormals) {
   for (const btManifoldPoint& point : from_high.points) EXPECT_NEAR(point.m_normalWorldOnB.z(), 1, 1e-6);
 }
 
-TEST(Install, CompoundsOfVpsShapesCollide) {
+TEST(Install, CompoundsOfShapesCollide) {
   World world;
   btCompoundShape compound;
   compound.addChildShape(toBt(Pose::translation(Vec3(0, 0, -0.02))), cube().shape.get());
@@ -159,7 +160,7 @@ TEST(Install, CompoundsOfVpsShapesCollide) {
 }
 
 TEST(Install, ManyPairsSurviveBulletsAlgorithmPool) {
-  // A pool of two: the third algorithm comes from the heap.
+  // A pool of two: the third algorithm is allocated on the heap.
   btDefaultCollisionConstructionInfo small;
   small.m_defaultMaxCollisionAlgorithmPoolSize = 2;
   btDefaultCollisionConfiguration config(small);
@@ -199,7 +200,7 @@ TEST(Install, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(first.getBasis(), second.getBasis());
 }
 
-// A dispatcher's own table, which it shows only to its heirs.
+// A dispatcher's table, which only derived classes can read.
 struct Tables : btCollisionDispatcher {
   static std::vector<btCollisionAlgorithmCreateFunc*> of(const btCollisionDispatcher& d) {
     std::vector<btCollisionAlgorithmCreateFunc*> all;
@@ -209,10 +210,10 @@ struct Tables : btCollisionDispatcher {
   }
 };
 
-TEST(Install, UndoneItLeavesTheDispatcherAsItWas) {
+TEST(Uninstall, RestoresTheDispatcher) {
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
-  btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // for GImpact against all types, ours too
+  btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);  // for GImpact and all types, including ours
   const auto before = Tables::of(dispatcher);
   install(dispatcher);
   EXPECT_NE(Tables::of(dispatcher), before);
@@ -223,7 +224,7 @@ TEST(Install, UndoneItLeavesTheDispatcherAsItWas) {
   EXPECT_EQ(Tables::of(dispatcher), before);
 }
 
-TEST(Install, GImpactThatRegistersAfterItIsTakenOverByInstallingAgain) {
+TEST(Install, AgainReplacesGImpactThatRegisteredAfterIt) {
   World world;
   btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
   install(world.dispatcher);
@@ -236,10 +237,11 @@ TEST(Install, GImpactThatRegistersAfterItIsTakenOverByInstallingAgain) {
   world.addShape(gimpact, 0, Vec3::Zero(), Pose());
   btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
   world.step(200);
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);  // GImpact's own is 100 um off
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010,
+              1e-6);  // GImpact's own contact is wrong by 100 um
 }
 
-TEST(Install, ADispatcherAtTheAddressOfADeadOneStartsWithoutIt) {
+TEST(Install, ADispatcherAtTheAddressOfADestroyedOneStartsWithoutIt) {
   btDefaultCollisionConfiguration config;
   alignas(btCollisionDispatcher) unsigned char room[sizeof(btCollisionDispatcher)];
   auto* dispatcher = new (room) btCollisionDispatcher(&config);
@@ -256,7 +258,7 @@ TEST(Install, ADispatcherAtTheAddressOfADeadOneStartsWithoutIt) {
   dispatcher->~btCollisionDispatcher();
 }
 
-TEST(Install, UndoneWhilePairsExistTheyKeepTheirContactAndItIsSaid) {
+TEST(Uninstall, ReportsExistingPairsWhichKeepTheirContact) {
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
   World world;
   world.addShape(plane, 0, Vec3::Zero(), Pose());
@@ -272,7 +274,7 @@ TEST(Install, UndoneWhilePairsExistTheyKeepTheirContactAndItIsSaid) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(Install, AForeignShapeOfOurTypeIsRefusedInWords) {
+TEST(Install, AnotherShapeOfOurTypeIsRefusedWithAMessage) {
   struct Foreign : btTriangleMeshShape {
     explicit Foreign(btStridingMeshInterface* mesh) : btTriangleMeshShape(mesh) {
       m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
@@ -289,11 +291,11 @@ TEST(Install, AForeignShapeOfOurTypeIsRefusedInWords) {
   world.addShape(a, 1, Vec3::Ones(), Pose());
   testing::internal::CaptureStderr();
   world.step(3);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("is taken"), std::string::npos);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("is reserved"), std::string::npos);
 }
 
-TEST(TuneWorld, SaysWhatItChangedAndNothingTheSecondTime) {
-  World world;  // tunes already
+TEST(TuneWorld, ReportsWhatItChangedAndNothingTheSecondTime) {
+  World world;  // the constructor calls tuneWorld
   EXPECT_TRUE(tuneWorld(*world.world).empty());
   world.world->getSolverInfo().m_linearSlop = toBt(1e-3);
   const WorldTuning tuning = tuneWorld(*world.world);
@@ -301,7 +303,7 @@ TEST(TuneWorld, SaysWhatItChangedAndNothingTheSecondTime) {
   EXPECT_NE(tuning.changes[0].find("linear slop"), std::string::npos);
 }
 
-TEST(TuneWorld, IsUndoneToTheBitButForWhatTheUserChangedSince) {
+TEST(RestoreWorld, RestoresTheBitsExceptForWhatTheUserChangedSince) {
   World world;
   gDbvtMargin = toBt(0.05);
   world.world->getSolverInfo() = btContactSolverInfo();
@@ -334,7 +336,7 @@ TEST(TuneWorld, RefusesASolverWithoutIterations) {
   EXPECT_THROW(tuneWorld(*world.world, 0), std::invalid_argument);
 }
 
-TEST(TuneWorld, APartThatSlidesAtATenthOfAMetreASecondStaysAwake) {
+TEST(TuneWorld, KeepsAPartAwakeThatSlidesAtATenthOfAMetreASecond) {
   for (const bool is_tuned : {false, true}) {
     World world;
     btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
@@ -347,7 +349,7 @@ TEST(TuneWorld, APartThatSlidesAtATenthOfAMetreASecondStaysAwake) {
     world.step(3000);
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_EQ(said.find("fall asleep") == std::string::npos, is_tuned) << said;
-    // Untuned, Bullet stops it after two seconds.
+    // Without tuneWorld, Bullet stops it after two seconds.
     EXPECT_NEAR(body.getWorldTransform().getOrigin().x(), is_tuned ? 0.3 : 0.2, 2e-3);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts held by Bullet's joints, with contact and couplings beside them.
+// Parts held by Bullet's joints, together with contact and couplings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,24 +18,24 @@ using test::SolverKind;
 using test::steelBox;
 using test::World;
 
-/// A point of the part's frame in the body's.
+/// A point given in the part's frame, in the body's frame.
 btVector3 inBody(const Built& part, const Vec3& p_P) {
   return toBt(part.frame.X_PB.inverse() * p_P);
 }
 
-/// A direction of the part's frame in the body's.
+/// A direction given in the part's frame, in the body's frame.
 btVector3 axisInBody(const Built& part, const Vec3& axis_P) {
   return toBt(Vec3(part.frame.X_PB.R.transpose() * axis_P));
 }
 
 class JointsWithSolver : public testing::TestWithParam<SolverKind> {};
 
-TEST_P(JointsWithSolver, APendulumSwingsAsAFormulaSays) {
+TEST_P(JointsWithSolver, APendulumSwingsByTheFormula) {
   World world(GetParam());
   const Built box = steelBox();
   btRigidBody& body = world.add(box, Pose());
-  // Hung at the middle of an edge, 10 mm off, axis y: as far as it has come after n steps of g dt from rest,
-  // about horizontal, is that of angular acceleration m g l / I. 20 steps: the angle is 0.5 degrees.
+  // The box hangs at the middle of an edge, 10 mm from its centre, axis y. It starts at rest and horizontal,
+  // with the angular acceleration m g l / I. After 20 steps the angle is 0.5 degrees.
   btHingeConstraint hinge(body, inBody(box, Vec3(-0.01, 0, 0)), axisInBody(box, Vec3(0, 1, 0)));
   world.world->addConstraint(&hinge);
   constexpr int kSteps = 20;
@@ -43,12 +43,11 @@ TEST_P(JointsWithSolver, APendulumSwingsAsAFormulaSays) {
   const double m = box.frame.mass_kg, l = 0.01, I = m / 12 * (0.02 * 0.02 + 0.01 * 0.01) + m * l * l;
   const double speed_rad_s = m * kGravity * l / I * kSteps * 1e-3;
   const double turned_rad = 0.5 * speed_rad_s * kSteps * 1e-3;
-  // Cosine of the angle, and joint errors pulled back at 0.2 a step.
+  // Cosine of the angle, and joint errors that are corrected by 0.2 in a step.
   EXPECT_NEAR(body.getAngularVelocity().length(), speed_rad_s,
               (turned_rad * turned_rad + 1e-3) * speed_rad_s);
   const Pose X_WP = test::partPose(body, box);
-  // A step goes along the tangent, off the circle by l (w dt)^2 / 2, of which a fifth is pulled back each
-  // step.
+  // A step along the tangent leaves the circle by l (w dt)^2 / 2, of which a fifth is corrected in each step.
   EXPECT_LE((X_WP * Vec3(-0.01, 0, 0) - Vec3(-0.01, 0, 0)).norm(),
             l * std::pow(speed_rad_s * 1e-3, 2) / 2 / 0.2);
   world.world->removeConstraint(&hinge);
@@ -69,7 +68,7 @@ TEST_P(JointsWithSolver, FeedbackIsTheWeight) {
   world.world->removeConstraint(&joint);
 }
 
-TEST_P(JointsWithSolver, AMotorTurnsAsFastAsAskedAndNoStronger) {
+TEST_P(JointsWithSolver, AMotorReachesItsSpeedWithinItsImpulseLimit) {
   World world(GetParam());
   world.world->setGravity(btVector3(0, 0, 0));
   const Built box = steelBox();
@@ -77,7 +76,7 @@ TEST_P(JointsWithSolver, AMotorTurnsAsFastAsAskedAndNoStronger) {
   const Vec3 axis(0, 0, 1);
   btHingeConstraint hinge(body, inBody(box, Vec3::Zero()), axisInBody(box, axis));
   const double I = box.frame.mass_kg / 12 * (0.02 * 0.02 + 0.015 * 0.015);
-  // Strong enough for 2 rad/s each step; asked for 10.
+  // The limit allows 2 rad/s in each step; the target is 10 rad/s.
   hinge.enableAngularMotor(true, 10, toBt(2 * I));
   world.world->addConstraint(&hinge);
   world.step(3);
@@ -92,8 +91,8 @@ TEST_P(JointsWithSolver, AHingedPartLeansOnItsStopWithItsTorque) {
   World world(GetParam());
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
-  // Lies on the plate, hinged at one lower edge: the plate bears what keeps the torque about the edge zero,
-  // but where on the face is the contact's own affair. It may not move.
+  // The part lies on the plate, hinged at one lower edge. The plate's force balances the torque about the
+  // edge; its distribution over the face is undetermined. The part must not move.
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
   btHingeConstraint hinge(body, inBody(box, Vec3(-0.015, 0, 0)), axisInBody(box, Vec3(0, 1, 0)));
   world.world->addConstraint(&hinge);
@@ -112,7 +111,7 @@ TEST_P(JointsWithSolver, ACouplingPullsASliderAlongItsRailOnly) {
   const Built box = steelBox();
   btRigidBody& body = world.add(box, Pose());
   const Pose X_BP = box.frame.X_PB.inverse();
-  btSliderConstraint slider(body, toBt(X_BP), true);  // along the part's x
+  btSliderConstraint slider(body, toBt(X_BP), true);  // along the part's x axis
   slider.setLowerLinLimit(-1);
   slider.setUpperLinLimit(1);
   slider.setLowerAngLimit(0);
@@ -132,8 +131,8 @@ TEST_P(JointsWithSolver, ACouplingPullsASliderAlongItsRailOnly) {
   coupling.setTarget(target);
   world.step(1000);
   const Pose X_WP = test::partPose(body, box);
-  // Along the rail it is where it is asked to be, across it the spring is stretched by 2 mm: 4 N. Limits that
-  // a slider's rows hold are off by what its softness of 0 and erp leave: a thousandth is generous.
+  // Along the rail the part is at its target; across it the spring is stretched by 2 mm: 4 N. The rows of a
+  // slider have an error from erp with a cfm of 0: a thousandth is more than that.
   EXPECT_NEAR(X_WP.p.x(), 3e-3, 1e-6);
   EXPECT_NEAR(X_WP.p.y(), 0, 1e-5);
   EXPECT_NEAR(coupling.wrench().f.y(), 4, 0.02);
@@ -142,7 +141,7 @@ TEST_P(JointsWithSolver, ACouplingPullsASliderAlongItsRailOnly) {
   world.world->removeConstraint(&slider);
 }
 
-TEST_P(JointsWithSolver, AJointTornBeyondItsStrengthBreaks) {
+TEST_P(JointsWithSolver, AJointBreaksAboveItsBreakingImpulse) {
   World world(GetParam());
   const Built box = steelBox();
   btRigidBody& body = world.add(box, Pose());

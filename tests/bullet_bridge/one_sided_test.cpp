@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pairs of which only one part's points are looked at: what the other's would have said is said by these.
+// Pairs in which only one part's points are queried: these must find the contacts of the other part's points
+// too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ Mesh makeMouthedRing() {
   });
 }
 
-/// A peg beside its bore's axis: the upper edge of its chamfer comes down on the bore's.
+/// A peg off its bore's axis: the upper edge of its chamfer comes down on the bore's chamfer.
 //
 //      |  peg   |
 //      |________/ <- edge    ____
@@ -98,14 +99,14 @@ struct Deepest : btCollisionWorld::ContactResultCallback {
   }
 };
 
-TEST(OneSided, AnEdgesPointMeetsTheFaceThatTheOthersEdgeWouldHaveMet) {
+TEST(OneSided, APointOnAnEdgeFindsTheFaceThatTheOtherEdgeTouches) {
   constexpr double kDepth_m = 20e-6;
   Entering scene(Sides::One);
   btRigidBody& body = scene.addPeg(kDepth_m);
   Deepest seen;
   scene.world.world->contactPairTest(&body, scene.fixed, seen);
-  // An edge's point is at most half a spacing from the deepest place, where the offset's share is less by
-  // kAside_m (1 - cos), and facets of 384 a turn stand back from the circle by up to r (pi / 384)^2 / 2.
+  // A point of the edge is at most half a spacing from the deepest place, where the offset counts less by
+  // kAside_m (1 - cos), and facets of 384 a turn are inside the circle by up to r (pi / 384)^2 / 2.
   const double off_rad = 0.25e-3 / kPeg_m, facet_rad = std::numbers::pi / kColumns;
   const double tolerance_m =
       kAside_m * off_rad * off_rad / 2 + 2 * (kPeg_m + kAside_m) * facet_rad * facet_rad / 2;
@@ -113,7 +114,7 @@ TEST(OneSided, AnEdgesPointMeetsTheFaceThatTheOthersEdgeWouldHaveMet) {
   EXPECT_GT(seen.n_W.dot(Vec3(-1, 0, 1).normalized()), 0.999);
 }
 
-/// Greatest depth by exact distance while the peg comes down by 0.5 mm at 50 mm/s.
+/// Greatest depth, by exact distance, while the peg descends by 0.5 mm at 50 mm/s.
 double deepestOnItsWayIn_m(Sides sides) {
   Entering scene(sides);
   btRigidBody& body = scene.addPeg(-0.15e-3);
@@ -127,10 +128,10 @@ double deepestOnItsWayIn_m(Sides sides) {
   return deepest_m;
 }
 
-TEST(OneSided, AChamferSlidesOverTheOthersEdgeNoDeeperThanItsOwnEdgesLet) {
-  // The bore's edge meets the peg's chamfer before the chamfer's own edge comes down on the mouth, and only
-  // the bore's points would tell. When the edge does, the bore's is within the chamfer by as much as the two
-  // slopes differ over what overlaps.
+TEST(OneSided, AChamferSlidesOverAnEdgeWithBoundedDepth) {
+  // The bore's edge touches the peg's chamfer before the chamfer's own edge touches the mouth; only the
+  // bore's points would find that. When the chamfer's edge touches, the bore's edge is inside the chamfer by
+  // the difference of the two slopes over the overlap.
   const double over_m = kPeg_m + kAside_m - kBore_m;
   const double bound_m = over_m * (1 - std::tan(std::numbers::pi / 6)) * std::cos(std::numbers::pi / 6);
   EXPECT_LT(deepestOnItsWayIn_m(Sides::One), bound_m);

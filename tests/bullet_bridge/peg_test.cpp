@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A peg in a bore with tens of micrometres of clearance: what all of this is for.
+// A peg in a bore with tens of micrometres of clearance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,11 +20,11 @@ using test::SolverKind;
 using test::World;
 
 constexpr double kRadius_m = 0.005, kDepth_m = 0.015, kLength_m = 0.030;
-// Flats are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: well under a tenth of the clearance.
+// Facets are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: much less than a tenth of the clearance.
 constexpr int kSegments = 256;
 constexpr double kDeepest_m = 3e-6;
-// Compliant contact gives way: a tilted peg's rim bears 10 N on 0.9 mm^2 of points, which at 1e12 N/m^3 and
-// half a share a side sinks 11 um, and its seat with it.
+// Penalty contact yields: the rim of a tilted peg carries 10 N on 0.9 mm^2 of points, which at 1e12 N/m^3 and
+// half of it for each side sinks by 11 um, and so does the seat.
 constexpr double kSoft_m = 12e-6;
 
 // 10 x 30 mm with a 1 mm chamfer at the lower end (z = 0).
@@ -49,7 +49,7 @@ Built makeBore(double clearance_m) {
                      7850);
 }
 
-// Building takes longer than simulating, so each shape is built once; mass is only a number.
+// Building takes longer than simulating, so each shape is built once, for all masses.
 Built peg(double mass_kg) {
   static const Built unit = makePeg();
   Built built = unit;
@@ -103,7 +103,7 @@ class PegInBore : public testing::TestWithParam<Case> {
 };
 
 TEST_P(PegInBore, DroppedItSeats) {
-  // Half the clearance off axis and 1 mm above its seat's chamfer; it falls, rattles down and comes to rest.
+  // It starts half the clearance off the axis and 1 mm above the seat's chamfer; it falls and comes to rest.
   btRigidBody& body = world.add(peg_, Pose::translation(Vec3(3e-6, 2e-6, -0.004)));
   for (int i = 0; i < 1500; ++i) step(body, i % 5 == 0);
   const Pose rest = test::partPose(body, peg_);
@@ -117,9 +117,9 @@ TEST_P(PegInBore, DroppedItSeats) {
   std::printf("[ measured ] seat error %.2f um, drift %.3f um, jitter %.1e m/s\n",
               (later.p.z() + kDepth_m) * 1e6, (later.p - rest.p).norm() * 1e6, speed_m_s);
   EXPECT_NEAR(later.p.z(), -kDepth_m, 3e-6);
-  // In floats the stock solver, which starts friction anew each step, lets the part creep by rounding of dt
-  // g, 2e-5 m/s at most, for two seconds; so do springs (4.7e-6 m/s seen), whose bends do not know of a
-  // pose's rounding.
+  // In single precision the stock solver, which starts friction from zero in each step, lets the part creep
+  // by the rounding of dt g, at most 2e-5 m/s, for two seconds. Penalty contact creeps too (4.7e-6 m/s
+  // measured), since bends do not include the rounding of a pose.
   const bool creeps = GetParam().solver != SolverKind::Constraint && sizeof(btScalar) == 4;
   EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6);
   EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6);
@@ -138,7 +138,7 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   world.world->addConstraint(&coupling, true);
   CouplingState target;
   target.is_coupled = true;
-  // Down at 30 mm/s with 0.1 mm and 0.5 degrees of error, to 5 mm below the seat: 10 N.
+  // Pushed down at 30 mm/s with an error of 0.1 mm and 0.5 degrees, to 5 mm below the seat: 10 N.
   const Mat3 R = rotationFromVector(Vec3(0.006, 0.006, 0));
   const double end_z_m = -kDepth_m - 5e-3;
   for (int i = 0; i < 1200; ++i) {
@@ -157,8 +157,8 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   report("push");
   std::printf("[ measured ] seat error %.2f um, jitter %.1e m/s, force %.3f N\n",
               (rest.p.z() + kDepth_m) * 1e6, speed_m_s, coupling.wrench().f.z());
-  // The coupling's torque tilts the peg as far as the clearance lets it; it then stands on its bottom's rim,
-  // and the bottom's centre is up by the rim's radius times the tilt.
+  // The coupling's torque tilts the peg as far as the clearance allows. It then stands on its lower rim, and
+  // the centre of its lower face is raised by the rim's radius times the tilt.
   const double tilt_rad = rotationVector(rest.R).norm();
   const double soft_m = GetParam().solver == SolverKind::Penalty ? kSoft_m : 0;
   EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compliant contact: springs and bristles of every touching point.
+// Penalty contact: a spring and a bristle at every touching point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ TEST(Penalty, ABlockSinksByItsWeightOverStiffnessAndArea) {
   btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005)));
   world.step(1000);
   const double sunk_m = 0.005 - body.getWorldTransform().getOrigin().z();
-  // The lower face is 300 mm^2. Points on its rim, 70 mm of it, stand for half a spacing of the side as well.
+  // The lower face has 300 mm^2. Points on its rim, 70 mm long, also represent half a spacing of the sides.
   const double weight_N = box.frame.mass_kg * kGravity;
   EXPECT_GE(sunk_m, 0.99 * weight_N / (1e9 * 335e-6));
   EXPECT_LE(sunk_m, 1.01 * weight_N / (1e9 * 300e-6));
@@ -44,7 +44,7 @@ TEST(Penalty, FrictionHoldsWithoutCreep) {
   world.step(1000);
   const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
   world.step(10000);
-  // A bristle is a spring: nothing moves once it is bent. What is left is rounding, 1e-16 of a position each
+  // A bristle is a spring: nothing moves once it is bent, except by rounding, 1e-16 of a position in each
   // step.
   EXPECT_LE((fromBt(body.getWorldTransform().getOrigin()) - start).norm(), 1e-11);
 }
@@ -65,7 +65,7 @@ TEST(Penalty, ImpulsesInTheManifoldsAddUpToTheWeight) {
   EXPECT_NEAR(sum_Ns, weight_Ns, 1e-6 * weight_Ns);
 }
 
-TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
+TEST(Penalty, APartAtRestIsNotQueriedAgainUntilItIsPushed) {
   World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -79,7 +79,7 @@ TEST(Penalty, APartAtRestIsNotLookedAtAnewUntilItIsPushed) {
   EXPECT_EQ(stats(world.dispatcher).pair_updates, updates + 1);
 }
 
-TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
+TEST(Penalty, ABlockRidesOnAMovingPlateWithoutFurtherQueries) {
   if (!kIsDouble) GTEST_SKIP() << "the plate's speed is a difference of places, 0.1 mm/s apart in floats";
   constexpr double kSpeed_m_s = 0.1;
   World world(SolverKind::Penalty);
@@ -101,14 +101,14 @@ TEST(Penalty, ABlockRidesOnAMovingPlateWithoutALookAtIt) {
   const std::size_t updates = stats(world.dispatcher).pair_updates;
   const Pose after = ride(1000);
   EXPECT_EQ(stats(world.dispatcher).pair_updates, updates);
-  // The speed that Bullet gives the plate is a difference of places: rounding, for 1000 steps. Springs left
-  // behind would be 100 mm off, and the block lie on its side.
+  // Bullet computes the plate's speed as a difference of positions: rounding, for 1000 steps. If the penalty
+  // points did not move with the plate, they would be 100 mm off and the block would fall over.
   EXPECT_LE((after.p - before.p).norm(), 1e-12);
   EXPECT_LE((after.R - before.R).norm(), 1e-12);
   below.setMotionState(nullptr);
 }
 
-TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
+TEST(Penalty, ABallAtRestThatGrowsIsRaised) {
   constexpr double kRadius_m = 5e-3, kGrown_m = 6e-3;
   World world(SolverKind::Penalty);
   const Built ground = plate();
@@ -122,7 +122,7 @@ TEST(Penalty, ABallAtRestThatGrowsIsLiftedOut) {
   ASSERT_EQ(stats(world.dispatcher).pair_updates, updates);
   ball.setUnscaledRadius(toBt(kGrown_m));
   world.step(200);
-  // It is met at the plate's points, 1 mm apart: sinks by up to s^2 / (4 r) between them.
+  // It touches at the plate's points, 1 mm apart, and sinks by up to s^2 / (4 r) between them.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kGrown_m, 1e-6 / (4 * kRadius_m));
 }
 
@@ -137,13 +137,13 @@ TEST(Penalty, PartsThatStartInsideEachOtherSeparateGently) {
     world.step();
     fastest_m_s = std::max<double>(fastest_m_s, body.getLinearVelocity().length());
   }
-  // The overlap is given free at 0.05 m/s, and a step's 50 um of it, pressed out at once, doubles that at
-  // most.
+  // The overlap is released at 0.05 m/s. The 50 um of a step are pressed out at once, which at most doubles
+  // the speed.
   EXPECT_LE(fastest_m_s, 0.1);
   EXPECT_GE(body.getWorldTransform().getOrigin().z(), 0.005 - 1e-6);
 }
 
-TEST(Penalty, AStockBoxInTheIslandIsHeldToo) {
+TEST(Penalty, SupportsAStockBoxInTheIslandToo) {
   World world(SolverKind::Penalty);
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -156,7 +156,7 @@ TEST(Penalty, AStockBoxInTheIslandIsHeldToo) {
   btRigidBody& upper =
       world.addShape(lid, 0.01, Vec3::Constant(inertia), Pose::translation(Vec3(0, 0, 0.0213)));
   world.step(1000);
-  // Bullet's own box on box keeps its margins' slop: a tenth of a millimetre at most.
+  // Bullet's own box on box has the tolerance of its margins: a tenth of a millimetre at most.
   EXPECT_NEAR(lower.getWorldTransform().getOrigin().z(), 0.014, 1e-6);
   EXPECT_NEAR(upper.getWorldTransform().getOrigin().z(), 0.021, 1e-4);
   world.step(1000);
@@ -176,7 +176,22 @@ TEST(Penalty, TwoRunsGiveTheSameBits) {
   EXPECT_EQ(end[0], end[1]);
 }
 
-TEST(Penalty, RefusesAStiffnessThatIsNone) {
+TEST(Penalty, AStockSolverTakesTheContactsAsRigidAndIsReported) {
+  Settings settings;
+  settings.contact_method = ContactMethod::Penalty;
+  World world(SolverKind::Stock, settings);
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  const btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.00501)));
+  testing::internal::CaptureStderr();
+  world.step(200);
+  const std::string message = testing::internal::GetCapturedStderr();
+  EXPECT_NE(message.find("not solved by bullet::Solver"), std::string::npos) << message;
+  EXPECT_EQ(message.find("not solved"), message.rfind("not solved")) << "reported more than once";
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
+}
+
+TEST(Penalty, RefusesAStiffnessThatIsNotPositiveAndFinite) {
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   for (const double k : {0.0, -1.0, std::nan("")}) {

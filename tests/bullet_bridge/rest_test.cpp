@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts at rest, sliding, falling and bouncing: what a formula can say.
+// Parts at rest, sliding, falling and bouncing, compared with formulas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,15 +17,15 @@ using test::SolverKind;
 using test::steelBox;
 using test::World;
 
-// A resting velocity is the solver's residual (1e-7 m/s by Solver's settings; PGS 100 leaves about 1e-6),
-// in float the rounding of dt * g.
+// The velocity at rest is the solver's residual (1e-7 m/s by SolverSettings; about 1e-6 for 100 iterations of
+// the stock solver), in single precision the rounding of dt * g.
 constexpr double kRest_m_s = kIsDouble ? 1e-6 : 2e-5;
 
 struct Rest {
   double sink_m = 0, drift_m = 0, speed_m_s = 0, spin_rad_s = 0;
 };
 
-// Lets a body settle for a second, then watches it for two.
+// Lets a body come to rest for one second, then observes it for two.
 Rest watch(World& world, btRigidBody& body, const Pose& X_WB_expected) {
   world.step(1000);
   Rest rest;
@@ -43,7 +43,7 @@ Rest watch(World& world, btRigidBody& body, const Pose& X_WB_expected) {
 
 class RestWithSolver : public testing::TestWithParam<SolverKind> {};
 
-TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPut) {
+TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPlaced) {
   World world(GetParam());
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -82,7 +82,7 @@ TEST_P(RestWithSolver, ABoxRestsOnEachOfBulletsOwnShapes) {
   }
 }
 
-TEST_P(RestWithSolver, BallsAndCapsulesHoldAPlateAtTheirRadius) {
+TEST_P(RestWithSolver, BallsAndCapsulesSupportAPlateAtTheirRadius) {
   btSphereShape ball(toBt(0.01));
   btCapsuleShapeX capsule(toBt(0.01), toBt(0.03));
   World world(GetParam());
@@ -92,20 +92,21 @@ TEST_P(RestWithSolver, BallsAndCapsulesHoldAPlateAtTheirRadius) {
                  Pose(rotationFromVector(Vec3(0, 0, 1.5707963267948966)), Vec3(-0.02, 0, 0)));
   btRigidBody& body = world.add(part, Pose::translation(Vec3(0, 0, 0.015)));
   world.step(500);
-  // A round side touches the face between its points, too. Springs stay where the points are, up to half a
+  // A round side touches the face between its points too. Penalty points stay where they are, up to half a
   // spacing (times sqrt 2) from the ball's top: s^2 / (4 r) = 25 um at 1 mm.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.015,
               GetParam() == SolverKind::Penalty ? 25e-6 : 1e-6);
 }
 
-TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
-  // The stock solver's two directions are turned along the slip, so its pyramid is exact here too.
+TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
+  // The stock solver's friction directions follow the slip, so its pyramid is exact here too.
   for (const double mu : {0.15, 0.4})
     for (const double ratio : {0.97, 1.03}) {
       World world(GetParam());
       const Built box = steelBox(), ground = plate();
       const double angle_rad = std::atan(mu * ratio);
-      const Mat3 R = rotationFromVector(Vec3(0.3, 0.95, 0).normalized() * angle_rad);  // no lattice direction
+      const Mat3 R =
+          rotationFromVector(Vec3(0.3, 0.95, 0).normalized() * angle_rad);  // not along the lattice
       world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, mu);
       btRigidBody& body = world.add(box, Pose(R, R * Vec3(0, 0, 0.005)), false, mu);
       world.step(200);
@@ -115,10 +116,10 @@ TEST_P(RestWithSolver, HoldsBelowTheFrictionAngleAndSlidesAbove) {
       if (ratio < 1) {
         EXPECT_LE(moved_m, 1e-6) << mu;
       } else {
-        // a = g (sin - mu cos); it slid for 0.2 s, then 0.1 s more: a (0.3^2 - 0.2^2) / 2.
+        // a = g (sin - mu cos). It has slid for 0.2 s, then slides for 0.1 s more: a (0.3^2 - 0.2^2) / 2.
         const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
-        // What is left over is 3 % of the friction. The stock solver in floats is off by 0.2 % of that
-        // (measured; allowed: 0.3 %), all others by less than a tenth of it.
+        // The acceleration is 3 % of the friction's. The stock solver in single precision has an error of 0.2
+        // % of the friction (measured; allowed: 0.3 %), all others less than a tenth of it.
         const bool is_rough = GetParam() == SolverKind::Stock && !kIsDouble;
         EXPECT_NEAR(moved_m, a * 0.05 / 2, (is_rough ? 0.1 : 0.03) * a * 0.05 / 2) << mu;
       }
@@ -139,7 +140,7 @@ TEST_P(RestWithSolver, FallsFreelyUntilItTouches) {
 }
 
 TEST_P(RestWithSolver, BouncesWithTheProductOfTheRestitutions) {
-  if (GetParam() == SolverKind::Penalty) GTEST_SKIP() << "compliant contact has no restitution";
+  if (GetParam() == SolverKind::Penalty) GTEST_SKIP() << "penalty contact has no restitution";
   World world(GetParam());
   const Built box = steelBox(), ground = plate();
   world.world->setGravity(btVector3(0, 0, 0));
@@ -166,8 +167,8 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
     return Vec3(I * fromBt(body.getAngularVelocity()) + m * p.cross(fromBt(body.getLinearVelocity())));
   };
   const Vec3 L0 = angular(a) + angular(b);
-  // Bullet's integrator keeps the angular velocity of a tumbling box rather than its momentum: a step's turn
-  // adds I w - R' I w, I after it.
+  // Bullet's integrator keeps the angular velocity of a tumbling box rather than its angular momentum: the
+  // rotation in a step adds I w - R' I w, with I after the step.
   Vec3 added = Vec3::Zero();
   for (int i = 0; i < 50 && a.getLinearVelocity().length() < 0.1; ++i) {
     world.step();
@@ -177,11 +178,11 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
       added += Iw - rotationFromVector(1e-3 * w).transpose() * Iw;
     }
   }
-  EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // they met
+  EXPECT_GT(a.getLinearVelocity().length(), 0.1);  // they have collided
   const Vec3 P = m * fromBt(a.getLinearVelocity() + b.getLinearVelocity());
   EXPECT_LE((P - Vec3(0, 0, -m)).norm(), (kIsDouble ? 1e-9 : 1e-5) * m);
-  // Solver applies both forces in one line; the stock solver at points that are up to a step's travel (1
-  // mm) apart, so that friction (0.15 of at most the momentum) leaves a moment.
+  // bullet::Solver applies both forces in one line; the stock solver applies them at points up to a step's
+  // travel (1 mm) apart, so that friction (0.15 of at most the momentum) leaves a moment.
   const double tol = GetParam() == SolverKind::Stock ? 0.15 * m * 1e-3 : (kIsDouble ? 1e-9 : 1e-5) * m * 0.01;
   EXPECT_LE((angular(a) + angular(b) - L0 - added).norm(), tol);
   const double energy_J = 0.5 * m * (a.getLinearVelocity().length2() + b.getLinearVelocity().length2());
@@ -202,7 +203,7 @@ TEST_P(RestWithSolver, AFastPartDoesNotTunnel) {
   }
 }
 
-// A small part wholly inside a large one, 8 mm from the way out, where the field has ended.
+// A small part completely inside a large one, 8 mm from its surface, beyond the field's band.
 struct Contained {
   Built block = test::build(makeBox(Vec3::Constant(0.02)), 7850, 0.5e-3, 1e-3);
   Built cube = test::build(makeBox(Vec3(0.004, 0.003, 0.005)), 7850, 0.5e-3, 1e-3);
@@ -214,8 +215,8 @@ struct Contained {
 };
 
 TEST_P(RestWithSolver, AContainedPartKeepsAFinitePose) {
-  // With next to no push-out (20 nm a step) it stands still, so that the second step looks its contacts up
-  // where they were. None of their normals is in the field.
+  // With almost no push (20 nm a step) the part does not move, so that the second step uses the stored
+  // contacts. None of their normals is in the field.
   World world(GetParam());
   Contained contained;
   btRigidBody& body = contained.addTo(world);
@@ -239,7 +240,7 @@ TEST(Solver, PartsThatStartInsideEachOtherSeparateGently) {
     world.step();
     const Pose after = test::partPose(body, contained.cube);
     for (const Vec3& p : contained.cube.mesh.vertices)
-      EXPECT_LE((after * p - before * p).norm(), 50.1e-6) << "step " << i;  // 0.05 m/s, and rounding
+      EXPECT_LE((after * p - before * p).norm(), 50.1e-6) << "step " << i;  // 0.05 m/s and rounding
   }
 }
 
@@ -259,8 +260,7 @@ TEST(Solver, OneSweepLeavesAnErrorThatManyRemove) {
   EXPECT_LE(spinAfterLanding(400), kRest_m_s / 0.01);
 }
 
-// Sweeps pass a load down a stack one body at a time, and each light body bounces the heavy one's answer
-// back.
+// A sweep passes a load down a stack by one body at a time, so a heavy body on light ones converges slowly.
 TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   constexpr int kBoxes = 4;
   constexpr double kHeight_m = 0.01, kRatio = 1000;
@@ -287,13 +287,13 @@ TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
     }
     return worst;
   };
-  EXPECT_GT(worstOfStack(30).sink_m, 1e-6);  // sweeps alone
+  EXPECT_GT(worstOfStack(30).sink_m, 1e-6);  // only sweeps
   const Rest rest = worstOfStack(400);
   EXPECT_LE(rest.sink_m, 1e-6);
   EXPECT_LE(rest.speed_m_s, kRest_m_s);
 }
 
-TEST(Solver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
+TEST(Solver, ABodyWithAForceThatIsNotFiniteDoesNotAffectOthers) {
   World world;
   const Built box = steelBox(), ground = plate();
   world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
@@ -302,7 +302,7 @@ TEST(Solver, ABodyWhoseForceIsNoNumberLeavesTheOthersAlone) {
   world.step(50);
   high.applyCentralForce(btVector3(0, 0, toBt(std::nan(""))));
   world.step();
-  EXPECT_LE(low.getLinearVelocity().length(), 0.01);  // what gravity adds in a step at most
+  EXPECT_LE(low.getLinearVelocity().length(), 0.01);  // what gravity adds in one step
   EXPECT_NEAR(low.getWorldTransform().getOrigin().z(), 0.005, 1e-5);
 }
 

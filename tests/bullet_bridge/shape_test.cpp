@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/shape.h"
 
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +47,7 @@ TEST(BodyFrame, RefusesAnInsideOutMesh) {
   EXPECT_THROW(makeBodyFrame(inside_out, 0), LoadError);
 }
 
-TEST(Shape, IsAConcaveTypeThatNobodyElseClaims) {
+TEST(Shape, HasAConcaveTypeThatBulletDoesNotUse) {
   const Shape shape(boxMesh());
   EXPECT_EQ(shape.getShapeType(), FAST_CONCAVE_MESH_PROXYTYPE);
   EXPECT_TRUE(shape.isConcave());
@@ -59,7 +58,7 @@ TEST(Shape, ItsBoxFollowsItsPose) {
   ShapeModels models;
   models.mesh = std::make_shared<const Mesh>(makeBox(Vec3(0.02, 0.04, 0.06)));
   const Shape shape(models);
-  const Mat3 R = rotationFromVector(Vec3(0, 0, 1.5707963267948966));  // x and y change places
+  const Mat3 R = rotationFromVector(Vec3(0, 0, 1.5707963267948966));  // exchanges x and y
   btVector3 min, max;
   shape.getAabb(toBt(Pose(R, Vec3(1, 2, 3))), min, max);
   EXPECT_LE((fromBt(max - min) - Vec3(0.04, 0.02, 0.06)).norm(), 1e-6);
@@ -77,7 +76,7 @@ TEST(Shape, ItsInertiaIsThatOfTheSolid) {
             1e-8);
 }
 
-// Words of the std::invalid_argument that `call` throws; empty if it throws none.
+// Message of the std::invalid_argument that `call` throws; empty if it throws none.
 template <typename Call>
 std::string refusalOf(const Call& call) {
   try {
@@ -100,7 +99,7 @@ TEST(Shape, RefusesAMargin) {
     EXPECT_NE(refusalOf([&] { shape.setMargin(toBt(margin)); }).find("margin"), std::string::npos);
 }
 
-TEST(Shape, RefusesModelsThatAreNoneAndPosesThatAreNotFinite) {
+TEST(Shape, RefusesEmptyModelsAndPosesThatAreNotFinite) {
   EXPECT_NE(refusalOf([] { Shape shape(ShapeModels{}); }).find("no models"), std::string::npos);
   EXPECT_NE(refusalOf([] { Shape shape(boxMesh(), Pose::translation(Vec3(0, kNan, 0))); }).find("X_SM"),
             std::string::npos);
@@ -109,7 +108,7 @@ TEST(Shape, RefusesModelsThatAreNoneAndPosesThatAreNotFinite) {
   EXPECT_TRUE(shape.models().mesh) << "it is as it was";
 }
 
-TEST(Shape, RefusesAMassThatIsNone) {
+TEST(Shape, RefusesAMassThatIsNegativeOrNotFinite) {
   const Shape shape(boxMesh());
   btVector3 inertia(1, 1, 1);
   for (const double mass : {-1.0, kNan, std::numeric_limits<double>::infinity()})
@@ -146,7 +145,7 @@ TEST(Shape, RefusesScalesThatAreNotOnePositiveNumber) {
   EXPECT_NE(refusalOf([&] { shape.setLocalScaling(btVector3(2, 2, 2)); }).find("mesh"), std::string::npos);
 }
 
-TEST(Shape, ScaledItIsThePartOfThatSize) {
+TEST(Shape, ScaledItEqualsThePartOfThatSize) {
   Built scaled = test::build(makeTube(0.01, 0.005, 0.02, 32), 1000, 0.5e-3, 1e-3);
   const Built large = test::build(makeTube(0.02, 0.01, 0.04, 32), 1000, 1e-3, 2e-3);
   scaled.shape->setLocalScaling(btVector3(2, 2, 2));
@@ -156,14 +155,14 @@ TEST(Shape, ScaledItIsThePartOfThatSize) {
   ASSERT_EQ(a.shell->size(), b.shell->size());
   double area_m2 = 0;
   for (std::size_t i = 0; i < a.shell->size(); ++i) {
-    // On the surface, and in the larger map where the larger part is; the field's error is the voxel's.
+    // On the surface, and at the surface of the larger map; the field's error depends on the voxel.
     EXPECT_LE(std::abs(b.surfaces[0].distance->signedDistance(a.shell->points[i])), 1e-9);
     area_m2 += a.shell->area_m2[i];
   }
   EXPECT_NEAR(area_m2, area(large.mesh), 1e-9);
   EXPECT_NEAR(a.map->voxel_m(), b.map->voxel_m(), 1e-12);
   EXPECT_NEAR(a.map->distance(Vec3(0.021, 0, 0)), b.map->distance(Vec3(0.021, 0, 0)), 2 * a.map->quantum_m());
-  // Every point of the scaled shell is found by a query that culls by its blocks.
+  // A query that culls by blocks finds every point of the scaled shell.
   ContactSet near(a.shell->size());
   QueryOptions options;
   options.cutoff_m = 1e-3;
@@ -202,178 +201,7 @@ TEST(Shape, ReplacedModelsAreScaledAsTheShapeIs) {
   EXPECT_LE((shape.bounds().size() - 3 * Vec3(0.02, 0.04, 0.06)).norm(), 1e-12);
 }
 
-TEST(Shape, ARayHitsItWhereItIs) {
-  World world;
-  ShapeModels models;
-  models.mesh = std::make_shared<const Mesh>(makeTube(0.01, 0.005, 0.02, 64));
-  Shape shape(models);
-  world.addShape(shape, 0, Vec3::Zero(), Pose::translation(Vec3(0, 0, 0.1)));
-  const auto cast = [&](const Vec3& from, const Vec3& to) {
-    btCollisionWorld::ClosestRayResultCallback hit(toBt(from), toBt(to));
-    world.world->rayTest(toBt(from), toBt(to), hit);
-    return hit.hasHit() ? fromBt(hit.m_hitPointWorld) : Vec3(9, 9, 9);
-  };
-  EXPECT_LE((cast(Vec3(0.0075, 0, 1), Vec3(0.0075, 0, -1)) - Vec3(0.0075, 0, 0.11)).norm(), 1e-6);
-  EXPECT_EQ(cast(Vec3(0, 0, 1), Vec3(0, 0, -1)).x(), 9) << "through the hole";
-}
-
-TEST(Shape, AConvexSweepStopsAtIt) {
-  World world;
-  ShapeModels models;
-  models.mesh = std::make_shared<const Mesh>(makeTube(0.01, 0.005, 0.02, 64));
-  Shape shape(models);
-  world.addShape(shape, 0, Vec3::Zero(), Pose());
-  btSphereShape ball(toBt(0.003));  // in floats Bullet's own cast misses a ball of 1 mm
-  const auto sweep = [&](double x_m) {
-    const btVector3 from(toBt(x_m), 0, toBt(0.113)), to(toBt(x_m), 0, toBt(-0.087));
-    btCollisionWorld::ClosestConvexResultCallback hit(from, to);
-    world.world->convexSweepTest(&ball, btTransform(btQuaternion::getIdentity(), from),
-                                 btTransform(btQuaternion::getIdentity(), to), hit);
-    return hit.hasHit() ? static_cast<double>(hit.m_closestHitFraction) : 2.0;
-  };
-  // Centre 3 mm above the top at 10 mm: half of the way of 0.2 m. Bullet's cast stops within 1e-4 of contact.
-  EXPECT_NEAR(sweep(0.0075), 0.5, 2e-3);
-  EXPECT_EQ(sweep(0), 2) << "through the hole";
-}
-
-TEST(Shape, IsDrawnByItsTriangles) {
-  struct Lines : btIDebugDraw {
-    int count = 0;
-    btVector3 low{1, 1, 1}, high{-1, -1, -1};
-    void drawLine(const btVector3& a, const btVector3& b, const btVector3&) override {
-      ++count;
-      for (const btVector3& p : {a, b}) low.setMin(p), high.setMax(p);
-    }
-    void drawContactPoint(const btVector3&, const btVector3&, btScalar, int, const btVector3&) override {}
-    void reportErrorWarning(const char*) override {}
-    void draw3dText(const btVector3&, const char*) override {}
-    void setDebugMode(int) override {}
-    int getDebugMode() const override { return DBG_DrawWireframe; }
-  } lines;
-  World world;
-  world.world->setDebugDrawer(&lines);
-  const Shape shape(boxMesh());
-  world.world->debugDrawObject(toBt(Pose::translation(Vec3(0.1, 0, 0))), &shape, btVector3(1, 1, 1));
-  EXPECT_GE(lines.count, 12 * 3);
-  // With the axes that Bullet draws at the origin, 0.1 m long.
-  EXPECT_NEAR(lines.low.x(), 0.09, 1e-6);
-  EXPECT_NEAR(lines.low.y(), -0.02, 1e-6);
-  EXPECT_NEAR(lines.low.z(), -0.03, 1e-6);
-}
-
-Built steel() {
-  return test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
-}
-
-TEST(Shape, AGhostSeesItWithoutHoldingIt) {
-  const Built box = steel();
-  World world;
-  btGhostPairCallback callback;
-  world.broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
-  btPairCachingGhostObject ghost;
-  ghost.setCollisionShape(box.shape.get());
-  ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
-  world.world->addCollisionObject(&ghost, btBroadphaseProxy::SensorTrigger);
-  btRigidBody& body = world.add(box, Pose::translation(Vec3(0.004, 0.003, 0.012)));
-  int steps_seen = 0, steps_touched = 0;
-  for (int i = 0; i < 150; ++i) {
-    world.step();
-    if (ghost.getNumOverlappingObjects() == 1 && ghost.getOverlappingObject(0) == &body) ++steps_seen;
-    // What the manual tells users of ghosts to do to see contacts.
-    btManifoldArray manifolds;
-    world.dispatcher.dispatchAllCollisionPairs(ghost.getOverlappingPairCache(),
-                                               world.world->getDispatchInfo(), &world.dispatcher);
-    btBroadphasePairArray& pairs = ghost.getOverlappingPairCache()->getOverlappingPairArray();
-    for (int p = 0; p < pairs.size(); ++p)
-      if (pairs[p].m_algorithm) pairs[p].m_algorithm->getAllContactManifolds(manifolds);
-    for (int m = 0; m < manifolds.size(); ++m)
-      if (manifolds[m]->getNumContacts() > 0) {
-        ++steps_touched;
-        break;
-      }
-  }
-  // It falls freely through 20 mm of overlap, from 2 mm above: from 20 ms to 67 ms.
-  EXPECT_GT(steps_seen, 40);
-  EXPECT_GE(steps_touched, 46);
-  EXPECT_LE(steps_touched, 50);
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.012 - 9.81e-6 * 150 * 151 / 2, 1e-6);
-  world.world->removeCollisionObject(&ghost);
-}
-
-TEST(Shape, FallsAsleepAtRestAndWakesWhenItIsHit) {
-  const Built box = steel();
-  World world;
-  world.add(box, Pose(), true);
-  btRigidBody& lower = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
-  btRigidBody& upper = world.add(box, Pose::translation(Vec3(0.003, 0, 0.030)));
-  upper.setGravity(btVector3(0, 0, 0));
-  for (btRigidBody* body : {&lower, &upper}) {
-    body->forceActivationState(ACTIVE_TAG);
-    tuneBody(*body);
-  }
-  world.step(2500);  // Bullet waits for two seconds of stillness
-  EXPECT_EQ(lower.getActivationState(), ISLAND_SLEEPING);
-  EXPECT_EQ(upper.getActivationState(), ISLAND_SLEEPING);
-  upper.activate();
-  upper.setLinearVelocity(btVector3(0, 0, toBt(-0.5)));
-  world.step(40);
-  EXPECT_NE(lower.getActivationState(), ISLAND_SLEEPING);
-  EXPECT_GE(upper.getWorldTransform().getOrigin().z(), 0.020 - 5e-6);
-}
-
-TEST(Shape, ABodyIsTakenOutWhileOthersLeanOnIt) {
-  const Built box = steel();
-  World world;
-  world.add(box, Pose(), true);
-  btRigidBody& middle = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
-  btRigidBody& top = world.add(box, Pose::translation(Vec3(0, 0, 0.020)));
-  world.step(100);
-  world.world->removeRigidBody(&middle);
-  world.step(100);
-  EXPECT_NEAR(top.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
-  world.world->addRigidBody(&middle);  // into the place that top now has
-  world.step(5);
-  EXPECT_TRUE(fromBt(middle.getWorldTransform()).isFinite());
-}
-
-TEST(Shape, OutlivesItsDispatcherAndServesTheNext) {
-  const Built box = steel();
-  for (int life = 0; life < 2; ++life) {
-    World world;
-    world.add(box, Pose(), true);
-    btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.010)));  // one shape, two bodies
-    world.step(50);
-    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 1e-6);
-  }
-}
-
-TEST(Shape, ABodyWhosePoseIsNotFiniteTouchesNothing) {
-  const Built box = steel();
-  World world;
-  btRigidBody& fixed = world.add(box, Pose(), true);
-  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.0099)));
-  world.step();
-  ASSERT_GT(world.dispatcher.getNumManifolds(), 0);
-  btTransform lost = body.getWorldTransform();
-  lost.setOrigin(btVector3(toBt(kNan), 0, 0));
-  body.setWorldTransform(lost);
-  btBroadphasePairArray& pairs = world.broadphase.getOverlappingPairCache()->getOverlappingPairArray();
-  ASSERT_EQ(pairs.size(), 1);
-  world.dispatcher.getNearCallback()(pairs[0], world.dispatcher, world.world->getDispatchInfo());
-  for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
-    EXPECT_EQ(world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts(), 0);
-  struct : btCollisionWorld::ContactResultCallback {
-    int count = 0;
-    btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-      return toBt(++count);
-    }
-  } found;
-  world.world->contactPairTest(&body, &fixed, found);
-  EXPECT_EQ(found.count, 0);
-}
-
-TEST(Shape, WithoutMapOrShellSaysThatItCannotTouch) {
+TEST(Shape, WithoutMapOrShellReportsThatItHasNoContact) {
   World world;
   Shape only_mesh(boxMesh());
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
@@ -383,11 +211,11 @@ TEST(Shape, WithoutMapOrShellSaysThatItCannotTouch) {
   world.step(3);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("needs a shell"), std::string::npos);
-  EXPECT_EQ(said.find("needs a shell"), said.rfind("needs a shell")) << "once is enough";
+  EXPECT_EQ(said.find("needs a shell"), said.rfind("needs a shell")) << "reported more than once";
 }
 
-TEST(Shape, WithoutAMapIsMetByItsExactSurfaces) {
-  const Built box = steel();
+TEST(Shape, WithoutAMapUsesItsExactSurfaces) {
+  const Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   ShapeModels models = box.shape->models();
   models.map = nullptr;
   Shape bare(models, box.shape->X_SM());
@@ -410,15 +238,15 @@ TEST(Shape, GivesAllTrianglesOfABoxAndNoOthers) {
   shape.processAllTriangles(&half, btVector3(toBt(1e-4), -1, -1), btVector3(1, 1, 1));
   shape.processAllTriangles(&none, btVector3(toBt(0.011), -1, -1), btVector3(1, 1, 1));
   EXPECT_EQ(all.count, 20 * 64);
-  EXPECT_NEAR(half.count, 640, 64);  // the half, and the belt that straddles it
+  EXPECT_NEAR(half.count, 640, 64);  // the half, and the triangles across its boundary
   EXPECT_EQ(none.count, 0);
 }
 
-TEST(Shape, TellsEdgePointsFromFacePoints) {
+TEST(Shape, DistinguishesEdgePointsFromFacePoints) {
   const Built box = test::build(makeBox(Vec3::Constant(0.01)), 1000, 0.5e-3, 1e-3);
   const PointShell& shell = *box.shape->models().shell;
   for (std::uint32_t id = 0; id < shell.size(); ++id) {
-    // On the box's surface; on an edge if two coordinates are at their limit.
+    // A point of the box's surface is on an edge if two of its coordinates are at their limits.
     const int at_limit = static_cast<int>((shell.points[id].cwiseAbs().array() > 0.005 - 1e-9).count());
     EXPECT_EQ(box.shape->isEdgePoint(id), at_limit >= 2) << shell.points[id].transpose();
   }
@@ -436,7 +264,8 @@ TEST(Shape, GivesTheNormalsOfTheCylinderBehindItsFacets) {
     const bool is_end = shell.points[id].z() < 1e-9 || shell.points[id].z() > kHeight_m - 1e-9;
     const Vec3 radial(shell.points[id].x(), shell.points[id].y(), 0);
     const Vec3 inward = is_end ? shell.inward[id] : Vec3(-radial.normalized());
-    // Between two corners' normals, linear along the chord as the point is: exact, but for corners in floats.
+    // Interpolated between the normals of two corners, linearly along the chord as the point: exact except
+    // for float corners.
     EXPECT_LE((peg.shape->smoothInward(id) - inward).norm(), 3e-7) << shell.points[id].transpose();
     facets_off_rad = std::max(facets_off_rad, (shell.inward[id] - inward).norm());
   }
@@ -449,7 +278,7 @@ TEST(Shape, ReplacedModelsInheritNoImpulses) {
   Built plate = test::build(makeBox(Vec3(0.04, 0.04, 0.010)), 7850, 0.5e-3, 1e-3);
   world.addShape(*plate.shape, 0, Vec3::Zero(), plate.frame.X_PB);
   world.add(box, Pose::translation(Vec3(0, 0, 0.010)));
-  // A point that stays a contact gets older and starts with the impulse it had.
+  // A point that stays a contact increases its lifetime and keeps its impulse.
   const auto oldest = [&] {
     int steps = 0;
     for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
@@ -469,7 +298,7 @@ TEST(Shape, ReplacedModelsInheritNoImpulses) {
 }
 
 TEST(Shape, ReplacedModelsTakeEffectAtTheNextStep) {
-  // A box on a cooked plate; the plate gets a step that is 1 mm higher: the box comes up with it, gently.
+  // A box on a merged plate; the plate receives a step 1 mm higher, and the box rises slowly.
   World world;
   const Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   Built low = test::build(makeBox(Vec3(0.04, 0.04, 0.010)), 7850, 0.5e-3, 1e-3);

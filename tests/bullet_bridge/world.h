@@ -76,7 +76,7 @@ class World {
     else
       solver_ = std::make_unique<bullet::Solver>(solver_settings);
     bullet::Settings used = settings;
-    if (solver == SolverKind::Penalty) used.mode = ContactMethod::Penalty;
+    if (solver == SolverKind::Penalty) used.contact_method = ContactMethod::Penalty;
     world = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, solver_.get(), &config);
     bullet::install(dispatcher, used);
     bullet::tuneWorld(*world, iterations);

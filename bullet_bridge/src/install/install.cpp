@@ -49,13 +49,13 @@ void requireContact(bool is_possible) {
         "surfaces");
 }
 
-template <typename ContactAlgorithm, typename... Arguments>
+template <typename Made, typename... Arguments>
 btCollisionAlgorithm* make(btCollisionAlgorithmConstructionInfo& info, Arguments&&... arguments) {
-  void* room = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(ContactAlgorithm));
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(Made));
   try {
-    return new (room) ContactAlgorithm(info, std::forward<Arguments>(arguments)...);
+    return new (memory) Made(info, std::forward<Arguments>(arguments)...);
   } catch (...) {
-    info.m_dispatcher1->freeCollisionAlgorithm(room);
+    info.m_dispatcher1->freeCollisionAlgorithm(memory);
     throw;
   }
 }

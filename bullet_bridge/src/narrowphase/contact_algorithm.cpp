@@ -23,7 +23,7 @@ namespace {
 // Point ids are valid for one set of models only.
 void resetIfModelsChanged(PairState& state, const PairView& pair) {
   for (int i = 0; i < 2; ++i) {
-    const unsigned revision = pair.vps[i] ? pair.vps[i]->revision() : 0;
+    const unsigned revision = pair.shape[i] ? pair.shape[i]->revision() : 0;
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
     state.selection.is_valid = false;

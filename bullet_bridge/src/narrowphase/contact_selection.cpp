@@ -27,7 +27,7 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
 QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   std::optional<QueryState>& own = state.query_state[i];
   return own ? *own
-             : own.emplace(*pair.vps[1 - i]->models().map, *pair.vps[i]->models().shell,
+             : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell,
                            state.context->settings);
 }
 
@@ -69,7 +69,7 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
   }
   // Penalty points represent areas, and a crossing has none.
   if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
-      pair.vps[0] && pair.vps[1])
+      pair.shape[0] && pair.shape[1])
     left_out += findCrossingCandidates(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
                                        context.settings, out);
   context.points_tested += tested;

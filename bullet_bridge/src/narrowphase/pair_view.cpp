@@ -26,7 +26,7 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_
 
 double queryRange_m(const PairView& pair) {
   double range_m = 1e30;
-  for (const Shape* shape : pair.vps)
+  for (const Shape* shape : pair.shape)
     if (shape && shape->models().map) range_m = std::min(range_m, 0.95 * shape->models().map->band_m());
   return range_m;
 }
@@ -34,7 +34,7 @@ double queryRange_m(const PairView& pair) {
 bool queriesPoints(const PairView& pair, int i, Sides sides) {
   if (!pair.hasShell(i)) return false;
   if (sides == Sides::Both || !pair.isTwoSided()) return true;
-  const bool is_first = pair.vps[0]->bounds().size().norm() <= pair.vps[1]->bounds().size().norm();
+  const bool is_first = pair.shape[0]->bounds().size().norm() <= pair.shape[1]->bounds().size().norm();
   return i == (is_first ? 0 : 1);
 }
 

@@ -17,39 +17,39 @@ namespace vps::bullet {
 /// Both bodies of a pair at one instant.
 struct PairView {
   const btCollisionObjectWrapper* wrapper[2];
-  const Shape* vps[2];  // null: a primitive
+  const Shape* shape[2];  // null: a native shape without adapter
   Pose X_WS[2];
 
   PairView(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
       : wrapper{body0, body1} {
     for (int i = 0; i < 2; ++i) {
-      vps[i] = dynamic_cast<const Shape*>(wrapper[i]->getCollisionShape());
+      shape[i] = dynamic_cast<const Shape*>(wrapper[i]->getCollisionShape());
       X_WS[i] = fromBt(wrapper[i]->getWorldTransform());
     }
   }
   [[nodiscard]] SideView side(int i) const {
-    return {vps[i], vps[i] ? X_WS[i] * vps[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
+    return {shape[i], shape[i] ? X_WS[i] * shape[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
   /// Of a side that is no Shape; changes with its size.
   [[nodiscard]] ShapeKey key(int i) const {
-    return vps[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
+    return shape[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
   }
-  [[nodiscard]] bool hasShell(int i) const { return vps[i] && vps[i]->models().shell; }
-  [[nodiscard]] bool hasMap(int i) const { return vps[i] && vps[i]->models().map; }
+  [[nodiscard]] bool hasShell(int i) const { return shape[i] && shape[i]->models().shell; }
+  [[nodiscard]] bool hasMap(int i) const { return shape[i] && shape[i]->models().map; }
   [[nodiscard]] bool isTwoSided() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
     double radius_m = 1e30;
-    for (const Shape* shape : vps)
-      if (shape) radius_m = std::min(radius_m, 0.5 * shape->bounds().size().norm());
+    for (const Shape* each : shape)
+      if (each) radius_m = std::min(radius_m, 0.5 * each->bounds().size().norm());
     return std::max(radius_m, 1e-6);
   }
   /// Centre of the smaller Shape, in W.
   [[nodiscard]] Vec3 center_W() const {
     const bool second =
-        !vps[0] || (vps[1] && vps[1]->bounds().size().norm() < vps[0]->bounds().size().norm());
+        !shape[0] || (shape[1] && shape[1]->bounds().size().norm() < shape[0]->bounds().size().norm());
     const int i = second ? 1 : 0;
-    return X_WS[i] * vps[i]->bounds().center();
+    return X_WS[i] * shape[i]->bounds().center();
   }
 };
 

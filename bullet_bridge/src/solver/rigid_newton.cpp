@@ -81,7 +81,7 @@ double RigidNewton::readImpulses(std::span<RigidContact> contacts, double dt_s) 
   return error_m_s;
 }
 
-double RigidNewton::changeSinceKept_m_s() {
+double RigidNewton::changeInRound_m_s() {
   change_.clear();
   for (std::size_t i = 0; i < before_.size(); ++i) change_.push_back(island_.bodies[i].u - before_[i]);
   return island_.topSpeed(change_);
@@ -105,7 +105,7 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
     // The error also includes the velocity change by the new limits of friction and the momentum that the
     // round left out of balance: the velocities are those of the penalty points, not of the impulses.
     const double now_m_s =
-        std::max({readImpulses(contacts, dt_s), changeSinceKept_m_s(), penalty_.imbalance_m_s()});
+        std::max({readImpulses(contacts, dt_s), changeInRound_m_s(), penalty_.imbalance_m_s()});
     if (now_m_s > kGoodReduction * error_m_s) compliance_ = std::max(kMinCompliance, kStiffer * compliance_);
     error_m_s = now_m_s;
     island_.readVelocities(before_);

@@ -36,7 +36,7 @@ class RigidNewton {
   void setPenaltyPoints(std::span<const RigidContact> contacts, double dt_s);
   double readImpulses(std::span<RigidContact> contacts, double dt_s);
 
-  [[nodiscard]] double changeSinceKept_m_s();
+  [[nodiscard]] double changeInRound_m_s();
 
   Island& island_;
   PenaltyNewton penalty_;
