@@ -225,13 +225,13 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
   const auto cornerOf = [&](std::size_t cell, int corner) {
     return corners.cellIndex(layout.cellAt(cell) + Index3(corner >> 2, corner >> 1 & 1, corner & 1));
   };
-  enum : std::uint8_t { NotAsked, Asked, Out, In };
-  std::vector<std::uint8_t> side(corners.cellCount(), NotAsked);
+  enum : std::uint8_t { Skipped, Pending, Out, In };
+  std::vector<std::uint8_t> side(corners.cellCount(), Skipped);
   for (std::size_t i = 0; i < is_uncertain.size(); ++i)
-    for (int k = 0; k < 8 && is_uncertain[i] != 0; ++k) side[cornerOf(i, k)] = Asked;
+    for (int k = 0; k < 8 && is_uncertain[i] != 0; ++k) side[cornerOf(i, k)] = Pending;
   const Within within(layout, voxel_m, quantum_m);
   tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
-    if (side[i] != Asked) return;
+    if (side[i] != Pending) return;
     const Index3 node = kBrick * corners.cellAt(i);
     side[i] = within.holds(node) && winding_.at(voxel_m * node.cast<double>()).w > 0.5 ? In : Out;
   });
