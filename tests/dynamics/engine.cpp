@@ -7,7 +7,7 @@ namespace vps::dynamics {
 
 namespace {
 
-ShapeHandle buildVpsShape(const PartMesh& part, const Resolution& resolution) {
+ShapeHandle buildShape(const PartMesh& part, const Resolution& resolution) {
   Part built;
   built.mesh = part.mesh;
   VoxMapSettings voxels;
@@ -33,20 +33,21 @@ const char* nameOf(Mode mode) {
 }
 
 Engine vpsEngine(const Resolution& resolution, const bullet::Settings& settings) {
-  // Parts that are the same surface share their exact distance, so its address tells them apart.
+  // Parts with the same surface share their exact distance, so its address identifies them.
   using Shapes = std::map<std::shared_ptr<const MeshDistance>, ShapeHandle>;
   const auto shapes = std::make_shared<Shapes>();
   Engine engine;
   engine.name = "VPS";
   engine.install = [settings](btCollisionDispatcher& dispatcher, Mode mode) {
-    bullet::Settings with_mode = settings;
-    with_mode.mode = mode == Mode::Penalty ? vps::ContactMethod::Penalty : vps::ContactMethod::Constraint;
-    bullet::install(dispatcher, with_mode);
+    bullet::Settings with_method = settings;
+    with_method.contact_method =
+        mode == Mode::Penalty ? vps::ContactMethod::Penalty : vps::ContactMethod::Constraint;
+    bullet::install(dispatcher, with_method);
   };
   engine.uninstall = [](btCollisionDispatcher& dispatcher) { bullet::uninstall(dispatcher); };
   engine.makeShape = [shapes, resolution](const PartMesh& part, bool) {
     ShapeHandle& shape = (*shapes)[part.exact];
-    if (!shape) shape = buildVpsShape(part, resolution);
+    if (!shape) shape = buildShape(part, resolution);
     return shape;
   };
   return engine;

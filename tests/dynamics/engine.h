@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who finds the contacts of a scene: VPS, or a rival on the same meshes, poses and solver settings.
+// The contact engine of a scene: VPS, or another one with the same meshes, poses and solver settings.
 #pragma once
 
 #include <functional>
@@ -13,33 +13,33 @@ class btCollisionDispatcher;
 
 namespace vps::dynamics {
 
-/// How contacts become motion (DESIGN section 8).
+/// Contact method and solver.
 enum class Mode {
-  Constraint,       ///< rigid contacts, Solver
-  Penalty,          ///< springs on every touching point, Solver
-  ConstraintStock,  ///< rigid contacts, Bullet's own sequential impulses
+  Constraint,       ///< rigid contacts, bullet::Solver
+  Penalty,          ///< a penalty force at every touching point, bullet::Solver
+  ConstraintStock,  ///< rigid contacts, Bullet's own sequential impulses solver
 };
 const char* nameOf(Mode mode);
 
-/// A Bullet shape together with what it refers to.
+/// A Bullet shape together with everything that it refers to.
 using ShapeHandle = std::shared_ptr<btCollisionShape>;
 
 struct Engine {
   std::string name;
   std::function<void(btCollisionDispatcher&, Mode)> install;
   std::function<void(btCollisionDispatcher&)> uninstall;
-  /// @param is_fixed  the body will not move (a rival may have a cheaper shape for that)
+  /// @param is_fixed  the body will not move (another engine may have a cheaper shape for that)
   std::function<ShapeHandle(const PartMesh& part, bool is_fixed)> makeShape;
 };
 
-/// How finely VPS models a part.
+/// Resolution of a part's models.
 struct Resolution {
   double voxel_m = 0.25e-3;
   double spacing_m = 0.5e-3;
 };
 
-/// VPS with these settings (their mode is the scene's). Shapes are built once for each mesh and resolution of
-/// this engine, and shared.
+/// VPS with these settings, except that the scene sets contact_method. Shapes are built once for each mesh
+/// and resolution of this engine, and shared.
 Engine vpsEngine(const Resolution& resolution = {}, const bullet::Settings& settings = {});
 
 }  // namespace vps::dynamics

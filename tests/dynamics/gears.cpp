@@ -21,14 +21,13 @@ Mesh makeGear(int teeth) {
   test::GearShape gear;
   gear.module_m = kModule_m;
   gear.teeth = teeth;
-  gear.width_m =
-      teeth == kDriver ? 12e-3 : 10e-3;  // a pinion is the wider one, so that ends need not line up
+  gear.width_m = teeth == kDriver ? 12e-3 : 10e-3;  // a pinion is wider, so that the ends need not be aligned
   gear.backlash_m = kBacklash_m;
   gear.other_radius_m = 8e-3;
   return test::makeSpurGear(gear);
 }
 
-// About z through the gear's centre, fixed to the world.
+// A hinge about z through the gear's centre, fixed to the world.
 std::unique_ptr<btTypedConstraint> makeHinge(const Placed& gear) {
   const Pose X_BP = gear.part.frame.X_PB.inverse();
   return std::make_unique<btHingeConstraint>(*gear.body, bullet::toBt(X_BP.p),
@@ -43,13 +42,14 @@ GearPairResult runGears(const SceneSettings& settings) {
   World world(settings);
   world.setGravity(Vec3::Zero());
   const double distance_m = kModule_m * (kDriver + kDriven) / 2;
-  // Tooth 0 of the driver points at the other's axis; there the other has a tooth too, so half a tooth on.
+  // Tooth 0 of the driver points at the other's axis. The other gear has a tooth there too, so it is turned
+  // by half a tooth.
   const Placed driver = world.add(driver_part, Pose(), false, 0);
   const Placed driven = world.add(
       driven_part, Pose(rotationFromVector(Vec3(0, 0, kPi / kDriven)), Vec3(distance_m, 0, 0)), false, 0);
   for (const Placed& gear : {driver, driven}) world.addConstraint(makeHinge(gear));
 
-  // A spring-damper turns the driver, so that its torque is known; both start at speed.
+  // A spring-damper turns the driver, so that its torque is known. Both gears start at full speed.
   constexpr double kSpring_Nm = 20, kDamper_Nms = 0.02;
   driver.body->setAngularVelocity(btVector3(0, 0, btScalar(kSpeed_rad_s)));
   driven.body->setAngularVelocity(btVector3(0, 0, btScalar(-kSpeed_rad_s * kRatio)));
@@ -68,7 +68,7 @@ GearPairResult runGears(const SceneSettings& settings) {
     const double slow_rad_s = kSpeed_rad_s - driver.body->getAngularVelocity().z();
     const double torque_Nm = kSpring_Nm * lag_rad + kDamper_Nms * slow_rad_s;
     driver.body->applyTorque(btVector3(0, 0, btScalar(torque_Nm)));
-    driven.body->applyTorque(btVector3(0, 0, btScalar(kBrake_Nm)));  // it turns the other way
+    driven.body->applyTorque(btVector3(0, 0, btScalar(kBrake_Nm)));  // it turns in the opposite direction
     world.step();
     const double error_rad = driven_turn.update() + kRatio * driver_turn.update();
     if (i % 50 == 0)
@@ -78,7 +78,7 @@ GearPairResult runGears(const SceneSettings& settings) {
     if (i == settle) start_rad = error_rad;
     drive_Nm += torque_Nm;
     result.ratio_error_rad = std::max(result.ratio_error_rad, std::abs(error_rad - start_rad));
-    // Means over whole turns at both ends.
+    // Means over whole turns at the start and at the end.
     const int turn_steps = std::min(1000, (steps - settle) / 2);
     const int end = i < settle + turn_steps ? 0 : i >= steps - turn_steps ? 1 : -1;
     if (end >= 0) error_sum_rad[end] += error_rad, ++count[end];

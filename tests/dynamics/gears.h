@@ -9,10 +9,10 @@ namespace vps::dynamics {
 struct GearPairResult {
   double turns = 0;  ///< of the driver
   double ratio_error_rad =
-      0;  ///< greatest departure of the driven gear from 20/30 of the driver, from start on
-  double ratio_drift_rad = 0;  ///< between the means of the first and the last turn: teeth lost or creep
+      0;  ///< greatest deviation of the driven gear from 20/30 of the driver, since the start
+  double ratio_drift_rad = 0;  ///< between the means of the first and the last turn: skipped teeth or creep
   double torque_share = 0;     ///< mean brake torque over mean drive torque times 30/20; 1 without loss
-  double deepest_m = 0;        ///< worst penetration, looked at every 50 ms
+  double deepest_m = 0;        ///< greatest penetration, measured every 50 ms
   double step_ms = 0;          ///< mean
 };
 

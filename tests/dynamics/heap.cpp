@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInside_m = 90e-3, kWall_m = 20e-3, kHeight_m = 500e-3;  // the box, open at the top
 
-// A flanged bushing, 30 mm over its flange: a hole and an inner corner.
+// A flanged bushing with a flange of 30 mm: a hole and an inner corner.
 PartMesh makeBushing() {
   return makePart(
       test::lathe({{6e-3, 0}, {15e-3, 0}, {15e-3, 4e-3}, {9e-3, 4e-3}, {9e-3, 20e-3}, {6e-3, 20e-3}}, 96));
@@ -52,7 +52,7 @@ void addBox(World& world) {
 Engine heapEngine() {
   const auto engines = std::make_shared<std::vector<Engine>>();
   for (int i = 0; i < 2; ++i) {
-    // Edges get points of their own, so the spacing that gives 5,000 is a little over sqrt(area / 5,000).
+    // Edges have additional points, so the spacing for 5,000 points is slightly more than sqrt(area / 5,000).
     const double spacing_m = 1.15 * std::sqrt(area(heapPart(i).mesh) / 5000);
     engines->push_back(vpsEngine({0.5e-3, spacing_m}));
   }
@@ -70,7 +70,7 @@ HeapResult dropHeap(const SceneSettings& settings) {
   result.bodies = settings.is_short ? 10 : 50;
   std::vector<Placed> parts;
   for (int i = 0; i < result.bodies; ++i) {
-    // Two by two in layers, each turned another way; the golden angle repeats nothing.
+    // Two by two in layers, each at another orientation; multiples of the golden angle do not repeat.
     const double angle_rad = 2.399963 * i;
     const Vec3 at(i & 1 ? 20e-3 : -20e-3, i & 2 ? 20e-3 : -20e-3, 25e-3 + 35e-3 * (i / 4));
     const Mat3 R = rotationFromVector(Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.3) * (0.2 + 0.11 * i));

@@ -12,8 +12,8 @@ HeavyBlockResult loadPeg(const SceneSettings& settings, const HeavyBlock& load) 
   World world(settings);
   const Placed bore = world.add(borePart(kClearance_m), Pose(), true);
   const Placed peg = world.add(pegPart(), Pose::translation(Vec3(3e-6, 2e-6, -kBoreDepth_m)));
-  world.step(500);  // the peg has settled before the block comes
-  world.forgetTimes();
+  world.step(500);  // the peg comes to rest before the block arrives
+  world.resetTimes();
   const double top_m = peg.pose().p.z() + kPegLength_m;
   const double fall_m = load.speed_m_s > 0 ? 2e-3 : 0;
   const PartMesh cube =

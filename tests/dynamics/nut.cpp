@@ -24,7 +24,7 @@ test::ThreadShape threadOf(const NutSize& size, int columns) {
   return thread;
 }
 
-/// The nut in a world of its own, about to settle on the rod's flanks.
+/// The nut and its rod in their own world; it first settles on the flanks.
 struct Thread {
   World world;
   Placed rod, nut;
@@ -32,7 +32,7 @@ struct Thread {
   Thread(const SceneSettings& settings, const NutSize& size, double friction)
       : world(settings),
         rod(world.add(rodPart(size), Pose(), true, friction)),
-        // Whole pitches up, where the threads are in phase.
+        // Raised by whole pitches, where the threads are in phase.
         nut(world.add(nutPart(size), Pose::translation(Vec3(0, 0, size.pitch_m)), false, friction)) {}
 
   [[nodiscard]] double tilt_rad() const {
@@ -81,7 +81,7 @@ const PartMesh& rodPart(const NutSize& size, int columns) {
 }
 
 NutRunResult runNut(const SceneSettings& settings, const NutSize& size) {
-  constexpr double kLanding_s = 0.05;  // it falls through the clearance first
+  constexpr double kLanding_s = 0.05;  // it first falls through the clearance
   Thread thread(settings, size, 0);
   TurnCounter turn(thread.nut);
   NutRunResult result;

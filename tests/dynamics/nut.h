@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A nut on an upright threaded rod: gravity turns it down, friction locks it.
+// A nut on a vertical threaded rod: gravity turns it downwards, friction locks it.
 #pragma once
 
 #include "world.h"
@@ -22,12 +22,12 @@ const PartMesh& rodPart(const NutSize& size, int columns = 384);
 struct NutRunResult {
   double acceleration_m_s2 = 0;  ///< measured along the axis, over the first turn
   double theory_m_s2 = 0;        ///< g / (1 + I / (m r^2)), r = pitch / 2 pi, I of the mesh
-  double advance_m = 0;          ///< for a turn, over that turn
-  double tilt_rad = 0;           ///< greatest angle of the nut's axis to the rod's
-  double turns = 0;              ///< made in the time given
-  double deepest_m = 0;          ///< worst penetration, looked at every 50 ms
+  double advance_m = 0;          ///< in one turn
+  double tilt_rad = 0;           ///< greatest angle between the axes of nut and rod
+  double turns = 0;              ///< in the time simulated
+  double deepest_m = 0;          ///< greatest penetration, measured every 50 ms
   double step_ms = 0;            ///< mean
-  std::uint64_t hash = 0;        ///< of the whole run
+  std::uint64_t hash = 0;        ///< of all states of the run
 };
 
 /// Without friction, under gravity, until it has turned once.
@@ -36,8 +36,8 @@ NutRunResult runNut(const SceneSettings& settings, const NutSize& size);
 /// tan(lead angle at the pitch diameter) cos(30 degrees).
 double selfLockTheory(const NutSize& size);
 
-/// How far a nut at rest with this friction turns [rad] in duration_s after it was put down, the first 0.2 s
-/// not counted.
+/// Rotation [rad] of a nut with this friction in duration_s after it was placed on the rod, without the first
+/// 0.2 s.
 double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu, double duration_s);
 
 /// The friction that just holds the nut, by bisection to `resolution`.

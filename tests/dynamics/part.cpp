@@ -7,7 +7,7 @@ namespace vps::dynamics {
 
 namespace {
 
-// Least signed distance of b's vertices to a. Outside of a's box a vertex is outside of a.
+// Least signed distance of b's vertices from a. A vertex outside a's box is outside a.
 double leastDistance_m(const PartMesh& a, const PartMesh& b, const Pose& X_AB) {
   constexpr double kNear_m = 1e-3;
   Box box = bounds(a.exact->mesh());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh with its mass, and how deep two of them are in each other by exact distance.
+// A mesh with its mass, and the exact penetration of two of them.
 #pragma once
 
 #include <map>
@@ -20,13 +20,13 @@ struct PartMesh {
 /// Throws LoadError for a mesh without a volume.
 PartMesh makePart(Mesh mesh, double density_kg_m3 = 7850);
 
-/// The same surface with another mass: inertia in proportion, as of another density.
+/// The same surface with another mass; the inertia scales in proportion, as with another density.
 PartMesh withMass(PartMesh part, double mass_kg);
 
-/// The mesh in its body's frame: what an engine makes a shape from.
+/// The mesh in its body's frame, from which an engine makes a shape.
 Mesh bodyMesh(const PartMesh& part);
 
-/// Keeps parts by what they were made from: engines share one shape among bodies of one part, and building
+/// Caches parts by their parameters, since engines share one shape among bodies of one part, and building
 /// shapes takes longer than most scenes.
 template <typename Make>
 const PartMesh& keptPart(std::map<std::vector<double>, PartMesh>& parts, std::vector<double> key, Make make) {
@@ -34,8 +34,9 @@ const PartMesh& keptPart(std::map<std::vector<double>, PartMesh>& parts, std::ve
   return it != parts.end() ? it->second : parts.emplace(std::move(key), make()).first->second;
 }
 
-/// Greatest depth [m] of either part's vertices in the other, by exact distance; negative: no vertex of one
-/// is inside the other, and the least gap of those in the other's box (grown by 1 mm). -1e300 beyond that.
+/// Greatest depth [m] of either part's vertices in the other, by exact distance. Negative if no vertex is
+/// inside: then the least gap of those within the other's bounding box (enlarged by 1 mm), or -1e300 if there
+/// are none.
 double penetration_m(const PartMesh& a, const Pose& X_WA, const PartMesh& b, const Pose& X_WB);
 
 }  // namespace vps::dynamics

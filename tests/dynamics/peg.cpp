@@ -10,7 +10,7 @@ namespace vps::dynamics {
 
 namespace {
 
-// Flats are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle: peg and bore lose the same.
+// Facets are 5 mm (1 - cos(pi / 256)) = 0.4 um inside their circle, for peg and bore alike.
 constexpr int kSegments = 256;
 
 PartMesh makeBore(double clearance_m) {
@@ -46,7 +46,7 @@ PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop) {
   constexpr double kSeated_m = 10e-6;
   World world(settings);
   const Placed bore = world.add(borePart(drop.clearance_m), Pose(), true, drop.friction);
-  // Tilted about an axis that is not the one it is shifted along.
+  // Tilted about another axis than the one along which it is shifted.
   const Pose start(rotationFromVector(drop.tilt_rad * Vec3(0.8, 0.6, 0)),
                    Vec3(drop.offset_m * 0.6, drop.offset_m * 0.8, drop.height_m));
   const Placed peg = world.add(pegPart(), start, false, drop.friction);
@@ -63,7 +63,7 @@ PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop) {
     const Pose X = peg.pose();
     const double above_m = X.p.z() + kBoreDepth_m;
     if (result.seated_s < 0 && std::abs(above_m) <= kSeated_m) result.seated_s = i * World::kStep_s;
-    // Each step of the fall would cost more than the fall itself.
+    // Measuring it in each step of the fall would take longer than the fall.
     if (i % (i < settle ? 5 : 50) == 0)
       result.deepest_m = std::max(result.deepest_m, penetration_m(bore.part, Pose(), peg.part, X));
     if (i == settle) rest = X;
@@ -90,7 +90,7 @@ LongRestResult restPeg(const SceneSettings& settings) {
   for (int i = 0; i < steps; ++i) {
     world.step();
     time_s += world.times().step_s.back();
-    world.forgetTimes();
+    world.resetTimes();
     const Pose X = peg.pose();
     const double turned_m = (X.R - rest.R).norm() * kPegLength_m;
     result.drift_m = std::max(result.drift_m, (X.p - rest.p).norm() + turned_m);

@@ -42,7 +42,7 @@ RingResult dropRing(const SceneSettings& settings) {
   static const PartMesh post_part = makePart(makePegOnPlate()), ring_part = makePart(makeRing());
   World world(settings);
   const Placed post = world.add(post_part, Pose(), true);
-  // Around the peg already: dropped over its end, GImpact's ring is thrown off whatever its margin.
+  // The ring starts around the peg: dropped over the peg's end, GImpact's ring is thrown off with any margin.
   const Pose start(rotationFromVector(Vec3(1e-3, 0.5e-3, 0)), Vec3(10e-6, 5e-6, 5e-3 + kRingHeight_m / 2));
   const Placed ring = world.add(ring_part, start);
   RingResult result;

@@ -7,9 +7,9 @@
 namespace vps::dynamics {
 
 struct RingResult {
-  double rest_height_m = 0;  ///< of the ring's centre over the plate; half its height is right
+  double rest_height_m = 0;  ///< of the ring's centre above the plate; right: half the ring's height
   double height_error_m = 0;
-  double deepest_m = 0;   ///< worst penetration
+  double deepest_m = 0;   ///< greatest penetration
   double jitter_m_s = 0;  ///< greatest speed of any point in the last half second
   double step_ms = 0;     ///< mean over the steps with contact
   int contact_steps = 0;

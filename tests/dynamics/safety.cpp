@@ -29,7 +29,7 @@ int responsesOf(World& world, const btRigidBody& body) {
   return count;
 }
 
-// Of the points of `side` in the other part.
+// Energy of the points of `side` in the other part.
 double halfEnergy_J(const Placed& side, const Placed& other) {
   const auto* shape = dynamic_cast<const bullet::Shape*>(side.body->getCollisionShape());
   if (!shape) return 0;
@@ -53,7 +53,7 @@ CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) 
   World world(settings);
   world.setGravity(Vec3::Zero());
   const Placed fixed = world.add(blockPart(), Pose(), true);
-  // A little turned, so that it is not face on face; its lowest corner is near the middle of the top face.
+  // Slightly rotated, so that no faces are parallel; its lowest corner is near the middle of the top face.
   const Mat3 R = rotationFromVector(Vec3(0.05, 0.03, 0.2));
   Vec3 lowest(0, 0, 1e300);
   for (const Vec3& p : blockPart().mesh.vertices)
@@ -71,7 +71,7 @@ CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) 
     for (const Vec3& p : blockPart().mesh.vertices)
       result.speed_m_s = std::max(result.speed_m_s, (after * p - before * p).norm() / World::kStep_s);
   }
-  // Far apart, no vertex is near enough to have a depth.
+  // When the bodies are far apart, no vertex is near enough for a depth.
   result.left_m = std::max(0.0, penetration_m(fixed.part, Pose(), block.part, block.pose()));
   return result;
 }
@@ -80,11 +80,12 @@ ProxyResult leadProxyThrough(const SceneSettings& settings) {
   static const PartMesh plate = makePart(makeBox(Vec3(60e-3, 60e-3, 5e-3)));
   World world(settings);
   world.setGravity(Vec3::Zero());
-  // From above: the part in hand, a fixed plate (its top is z = 0), a free part; the proxy goes through all.
+  // From above: the part in hand, a fixed plate (its top is z = 0), a free part; the proxy moves through all
+  // of them.
   world.add(plate, Pose::translation(Vec3(0, 0, -2.5e-3)), true);
   const Placed below = world.add(blockPart(), Pose::translation(Vec3(0, 0, -15e-3)));
   const Placed hand = world.add(blockPart(), Pose::translation(Vec3(0, 0, 15e-3)));
-  // As a user adds it: a kinematic body with the part's shape, in the world.
+  // As a user would add it: a kinematic body with the part's shape, in the world.
   bullet::BodyFrame massless = blockPart().frame;
   massless.mass_kg = 0;
   btRigidBody* proxy = world.addShape(settings.engine.makeShape(blockPart(), false), massless,
@@ -125,7 +126,7 @@ WallResult shootAtWall(const SceneSettings& settings, double speed_m_s, bool is_
     world.step();
     result.deepest_m =
         std::max(result.deepest_m, penetration_m(fixed.part, fixed.pose(), block.part, block.pose()));
-    // The centre of a part that has not gone through stays on its side.
+    // The centre of a part that has not passed through stays on its side.
     result.beyond_m = std::max(result.beyond_m, block.pose().p.x());
   }
   result.speed_m_s = block.body->getLinearVelocity().length();

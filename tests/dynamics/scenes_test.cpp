@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contact scenes in short form: the bars that vps_bench_peers judges, but for time.
+// The contact scenes in short form, with the bounds of vps_bench_peers except for time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,12 +22,13 @@ SceneSettings shortScene(const Resolution& resolution = {}, Mode mode = Mode::Co
   return {mode, true, vpsEngine(resolution)};
 }
 
-TEST(Scenes, APegDroppedAskewSeatsAndComesToRest) {
+TEST(Scenes, APegDroppedTiltedSeatsAndComesToRest) {
   for (const Mode mode : {Mode::Constraint, Mode::Penalty}) {
     const PegDropResult r = dropPeg(shortScene({}, mode));
     EXPECT_TRUE(r.isSeated()) << nameOf(mode);
     EXPECT_LE(r.deepest_m, 10e-6) << nameOf(mode);
-    EXPECT_LE(r.jitter_m_s, kIsDouble ? 1e-6 : 2e-5) << nameOf(mode);  // in floats the rounding of dt g
+    EXPECT_LE(r.jitter_m_s, kIsDouble ? 1e-6 : 2e-5)
+        << nameOf(mode);  // in single precision the rounding of dt g
   }
 }
 
@@ -55,11 +56,11 @@ TEST(Scenes, AFrictionlessNutFollowsItsThread) {
   expectNutFollowsItsThread(Mode::Constraint);
 }
 
-TEST(Scenes, AFrictionlessNutOnSpringsFollowsItsThread) {
+TEST(Scenes, AFrictionlessNutInPenaltyContactFollowsItsThread) {
   expectNutFollowsItsThread(Mode::Penalty);
 }
 
-TEST(Scenes, ANutHoldsAboveTheSelfLockingFrictionAndTurnsBelow) {
+TEST(Scenes, ANutSticksAboveTheSelfLockingFrictionAndTurnsBelow) {
   const double threshold = selfLockTheory(kM10);
   for (const Mode mode : {Mode::Constraint, Mode::Penalty}) {
     const SceneSettings settings = shortScene({0.2e-3, 0.3e-3}, mode);
@@ -70,7 +71,7 @@ TEST(Scenes, ANutHoldsAboveTheSelfLockingFrictionAndTurnsBelow) {
   }
 }
 
-TEST(Scenes, AGearPairKeepsItsRatioAndPassesItsTorque) {
+TEST(Scenes, AGearPairKeepsItsRatioAndTransmitsItsTorque) {
   const GearPairResult r = runGears(shortScene());
   EXPECT_NEAR(r.torque_share, 1, 0.02);
   EXPECT_LE(r.ratio_error_rad, 1e-3);  // a tooth is 0.2 rad, the backlash 3.3 mrad of the driven gear
@@ -79,7 +80,8 @@ TEST(Scenes, AGearPairKeepsItsRatioAndPassesItsTorque) {
 TEST(Scenes, AHeapStaysInItsBox) {
   const HeapResult r = dropHeap({Mode::Constraint, true, heapEngine()});
   EXPECT_EQ(r.escaped, 0);
-  // Where two straight edges cross between their points, at most half a spacing (0.6 mm) is not seen.
+  // Where two straight edges cross between their points, at most half a spacing (0.6 mm) of overlap is not
+  // found.
   EXPECT_LE(r.final_m, 0.3e-3);
 }
 
@@ -99,8 +101,8 @@ TEST(Scenes, TheProxyItselfNeverCollides) {
   EXPECT_NEAR(r.held_m, 0, 10e-6);
 }
 
-// Springs stop it within a step, whose force k A d takes all of its momentum: d = m v / (dt k A) = 7.9 um for
-// 23.6 g, 150 mm^2 and 1e12 N/m^3; less by what the rim's points add.
+// Penalty contact stops it within one step, in which the force k A d takes all of its momentum: d = m v / (dt
+// k A) = 7.9 um for 23.6 g, 150 mm^2 and 1e12 N/m^3; less by the share of the rim's points.
 TEST(Scenes, APartAt50MetresASecondStopsAtTheWall) {
   for (const Mode mode : {Mode::Constraint, Mode::Penalty}) {
     const SceneSettings settings = shortScene({0.5e-3, 1e-3}, mode);

@@ -6,7 +6,7 @@
 
 namespace vps::dynamics {
 
-/// Processor time of this thread [s]: what other programs on the machine do costs a step nothing but cache.
+/// Processor time of this thread [s]; other programs on the machine affect it only through the caches.
 double threadTime_s();
 
 struct StepTimes {
@@ -14,7 +14,7 @@ struct StepTimes {
   double narrow_s = 0, solve_s = 0;  ///< summed over all steps
 
   [[nodiscard]] double mean_s() const;
-  /// @param share  0 to 1: 0.5 the median, 0.99 the step that one in a hundred exceeds
+  /// @param share  0 to 1: 0.5 the median, 0.99 the time that one step in a hundred exceeds
   [[nodiscard]] double percentile_s(double share) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds up a part's rotation about z, beyond a turn.
+// Sums a part's rotation about z over more than a turn.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace vps::dynamics {
 class TurnCounter {
  public:
   explicit TurnCounter(const Placed& placed) : placed_(placed), last_rad_(now()) {}
-  /// @return the turning since construction [rad], counter-clockwise positive
+  /// @return the rotation since construction [rad], counter-clockwise positive
   double update() {
     const double at_rad = now();
     sum_rad_ += std::remainder(at_rad - last_rad_, 2 * std::numbers::pi);

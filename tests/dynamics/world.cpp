@@ -11,7 +11,7 @@ namespace vps::dynamics {
 
 namespace {
 
-// Bullet hands its callbacks no context; a step runs on one thread.
+// Bullet's callbacks have no context argument; a step runs on one thread.
 thread_local double t_narrow_s = 0, t_solve_s = 0;
 
 void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
@@ -21,7 +21,7 @@ void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher
   t_narrow_s += threadTime_s() - start_s;
 }
 
-/// Any solver, with a clock.
+/// Any solver, with its time measured.
 template <typename Solver>
 struct Timed : Solver {
   btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,

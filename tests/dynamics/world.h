@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An ordinary Bullet world for the scenes of this folder, with any engine's contacts and any mode's solver.
+// An ordinary Bullet world for the scenes of this folder, with the contacts of any engine and the solver of
+// any mode.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -15,24 +16,24 @@
 
 namespace vps::dynamics {
 
-/// What every scene is told.
+/// Input of every scene.
 struct SceneSettings {
   Mode mode = Mode::Constraint;
-  bool is_short = false;  ///< a few seconds of work, for tests; else the whole case
+  bool is_short = false;  ///< a few seconds of work, for tests; otherwise the whole case
   Engine engine = vpsEngine();
 };
 
-/// A body and the part it is made of.
+/// A body and its part.
 struct Placed {
   btRigidBody* body = nullptr;
   PartMesh part;
   [[nodiscard]] Pose pose() const;  ///< of the part's frame, in W
-  /// No point of the part moves faster.
+  /// Upper bound of the speed of the part's points.
   [[nodiscard]] double speed_m_s() const;
 };
 
-/// Gravity 9.81 m/s^2 along -z, double or float Bullet, dt = 1 ms. Sleeping is off and Bullet's damping zero
-/// unless a scene changes them.
+/// Gravity 9.81 m/s^2 along -z, double or single precision Bullet, dt = 1 ms. Sleeping is disabled and
+/// Bullet's damping zero unless a scene changes them.
 class World {
  public:
   explicit World(const SceneSettings& settings);
@@ -40,7 +41,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// @param friction  of this body against one with the same value (Bullet multiplies the two)
+  /// @param friction  coefficient between this body and one with the same value
   Placed add(const PartMesh& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15);
   btRigidBody* addShape(ShapeHandle shape, const bullet::BodyFrame& frame, const Pose& X_WB,
                         double friction = 0.15);
@@ -52,10 +53,10 @@ class World {
 
   void step(int count = 1, double dt_s = kStep_s);
   [[nodiscard]] const StepTimes& times() const { return times_; }
-  void forgetTimes() { times_ = {}; }
+  void resetTimes() { times_ = {}; }
   [[nodiscard]] btDiscreteDynamicsWorld& bullet() { return *world_; }
   [[nodiscard]] int contactCount() const;
-  /// A number that any changed bit of any body's pose or velocity changes, over all steps so far.
+  /// Hash of the bits of all bodies' poses and velocities, over all steps so far.
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
   static constexpr double kStep_s = 1e-3;
@@ -77,7 +78,7 @@ class World {
   std::uint64_t hash_ = 14695981039346656037ull;
 };
 
-/// Kinetic energy [J] and height energy m g z [J] of a body.
+/// Kinetic energy [J] and potential energy m g z [J] of a body.
 double kineticEnergy_J(const btRigidBody& body);
 double heightEnergy_J(const btRigidBody& body);
 

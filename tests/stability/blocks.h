@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What most rows are built of: steel blocks on plates, with coarse models.
+// Steel blocks and plates with coarse models, for most rows.
 #pragma once
 
 #include "dynamics/world.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows with a haptic device: how hard a hand may jerk it.
+// Rows with a haptic device: jerk of the hand.
 #include <algorithm>
 #include <cmath>
 
@@ -16,14 +16,14 @@ namespace vps::stability {
 
 namespace {
 
-// What the coupling's springs hold, within their limits.
+// Energy stored in the coupling's springs, within their limits.
 double springEnergy_J(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
   const Vec3 turn_rad = rotationVector(proxy.X_W.R * part.X_W.R.transpose());
   return gains.k_N_per_m * (proxy.X_W.p - part.X_W.p).squaredNorm() / 2 +
          gains.k_Nm_per_rad * turn_rad.squaredNorm() / 2;
 }
 
-// A hand shakes the handle by 10 mm, a sine of this jerk, and hits a block on a plate with each segment.
+// A hand shakes the handle by 10 mm, a sine with this jerk, and hits a block against a plate in each period.
 Judgement shake(const Run& run) {
   constexpr double amplitude_m = 10e-3, dt_s = 1e-3;
   const double turn_rad_s = std::cbrt(run.value / amplitude_m);
@@ -71,8 +71,8 @@ Judgement shake(const Run& run) {
                     std::string("safety: ") + toText(loop.safety().fault));
   const device::DeviceLimits limits = device.limits();
   judgement.atMost("force on the hand", greatest_N, limits.peak_force_N, "N");
-  // Rigid contact: a micrometre; springs give way by the greatest force, and by one step's arrival on a
-  // corner.
+  // Constraint contact: a micrometre. Penalty contact yields to the greatest force, and to the arrival of one
+  // step on a corner.
   const double step_m = watched.fastest_m_s * dt_s;
   judgement.atMost("overlap", watched.deepest_m,
                    1e-6 + step_m * step_m / 10e-3 +
@@ -80,7 +80,7 @@ Judgement shake(const Run& run) {
                             ? std::sqrt(block_part.frame.mass_kg * 4 / (1e12 * 1e-6)) * watched.fastest_m_s
                             : 0),
                    "m");
-  judgement.atMost("energy made", loop.ledger().injected_J, settings.injected_bound_J, "J");
+  judgement.atMost("energy added", loop.ledger().injected_J, settings.injected_bound_J, "J");
   judgement.note("force " + toText(greatest_N) + " N, energy made " + toText(loop.ledger().injected_J) +
                  " J");
   return judgement;

@@ -87,9 +87,9 @@ Judgement judgeDrop(Mode mode, const Drop& what) {
   Judgement judgement;
   judgeRun(judgement, dropped.watched, dropped.weight_N, allowedDepth_m(mode, what, dropped), what.dt_s);
   judgeRest(judgement, dropped.watched, what.dt_s);
-  // It lies on the plate, on a face: half a side high. A hundredth of the least tells that from all else; the
-  // bridge leaves alone what moves by less than a micrometre, so of less than a tenth of that nobody can
-  // tell.
+  // The block lies on one of its faces: its height is half a side. A hundredth of the least side
+  // distinguishes that from other positions; the bridge ignores motion below a micrometre, so a tenth of that
+  // is the least tolerance.
   double off_m = 1e300;
   for (const double side_m : kBlock_m)
     off_m = std::min(off_m, std::abs(dropped.end_m - what.size * side_m / 2));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows in which speeds go to their extremes: impacts, thin walls, fast spin.
+// Rows with extreme speeds: impacts, thin walls, fast spin.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ namespace {
 
 enum class First { Face, Edge, Corner };
 
-// The rotation that brings a corner, or an edge along z, to the front; a little more, so that it topples.
+// Rotation with a corner, or an edge along z, in front; slightly more, so that the block topples.
 Mat3 turned(First first) {
   const Vec3 corner = first == First::Corner ? kBlock_m : Vec3(kBlock_m.x(), kBlock_m.y(), 0);
   if (first == First::Face) return Mat3::Identity();
@@ -34,15 +34,16 @@ Judgement shoot(const Run& run, First first, double wall_m, double speed_m_s) {
   double farthest_m = -1e300;
   Watching watching;
   watching.steps = static_cast<int>(std::ceil(0.1 / speed_m_s / watching.dt_s)) + 100;
-  watching.look_every = 1;
+  watching.measure_every = 1;
   watching.before_step = [&](int) { farthest_m = std::max(farthest_m, block.pose().p.x()); };
   const Watched watched = watch(world, {wall, block}, watching);
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  // Its centre is never nearer to the wall than half of its least side; a tenth off for what gives way.
+  // Its centre is never nearer to the wall than half of its least side; a tenth of that is tolerated.
   judgement.atMost("centre past the wall's face by", farthest_m, -0.9 * kBlock_m.minCoeff() / 2, "m");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");
-  // It has gone, or lies on: by a micrometre, or by what springs take up of its speed in a step.
+  // At the end it has left, or touches: with an overlap of a micrometre, or of what penalty contact needs to
+  // stop it in one step.
   const double pressed_m = block.part.frame.mass_kg * speed_m_s / (watching.dt_s * 1e12 * 150e-6);
   judgement.atMost("overlap at the end", watched.final_m, 1e-6 + (run.mode == Mode::Penalty ? pressed_m : 0),
                    "m");
@@ -65,7 +66,7 @@ Judgement shootThinWallByCorner(const Run& run) {
   return shoot(run, First::Corner, run.value * kVoxel_m, 5);
 }
 
-// A shaft in a bore 0.1 mm wider, without friction or gravity: it keeps its spin and stays in the middle.
+// A shaft in a bore 0.1 mm wider, without friction or gravity: it must keep its spin and stay centred.
 Judgement spin(const Run& run, double dt_s) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   world.setGravity(Vec3::Zero());
@@ -90,11 +91,11 @@ Judgement spin(const Run& run, double dt_s) {
   const double wanted_rad = spin_rad_s * (watching.steps - 1) * dt_s;
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  judgement.atMost("turned off by", std::abs(turned_rad - wanted_rad), 1e-3 * wanted_rad, "rad");
+  judgement.atMost("angle error", std::abs(turned_rad - wanted_rad), 1e-3 * wanted_rad, "rad");
   judgement.atMost("spin lost", std::abs(inner.body->getAngularVelocity().length() - spin_rad_s),
                    1e-2 * spin_rad_s, "rad/s");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");
-  // Facets of 128 stand up to 1.5 um under their circle, and turn by.
+  // 128 facets are up to 1.5 um inside their circle, and rotate past each other.
   judgement.atMost("overlap", watched.deepest_m, 5e-6, "m");
   return judgement;
 }

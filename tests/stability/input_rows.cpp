@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows in which every quantity in turn is not a number, infinite, or denormal: an error in words at the call,
-// or a body that others do not feel. Never a crash.
+// Rows in which each quantity is not a number, infinite, or denormal: the call throws an error with a
+// message, or the body does not affect others. Never a crash.
 #include <cmath>
 #include <limits>
 
@@ -14,10 +14,10 @@ namespace vps::stability {
 
 namespace {
 
-// What a bad value is given to.
+// The scene that receives a bad value.
 struct Scene {
   World& world;
-  Placed bad;  ///< lies on the plate, well apart from others
+  Placed bad;  ///< on the plate, far from others
   double& dt_s;
 };
 
@@ -84,7 +84,7 @@ const std::vector<Quantity>& quantities() {
        }},
       {"stiffness of contact",
        [](Scene& s, double x) { install(s, &bullet::Settings::stiffness_N_per_m3, x); }},
-      {"slack of contact", [](Scene& s, double x) { install(s, &bullet::Settings::contact_margin_m, x); }},
+      {"contact margin", [](Scene& s, double x) { install(s, &bullet::Settings::contact_margin_m, x); }},
       {"spring of a coupling",
        [](Scene& s, double x) {
          CouplingGains gains;
@@ -141,7 +141,7 @@ bool isInWords(const std::string& text) {
   return text.size() > 20 && text.find(' ') != std::string::npos;
 }
 
-// Gives one quantity a value; the neighbour on the same plate must not feel it.
+// Sets one quantity to the value; a neighbour on the same plate must not be affected.
 void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, double value) {
   const std::string told = toText(value);
   World world({mode, true, dynamics::vpsEngine(kCoarse)});
@@ -149,7 +149,7 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   world.add(makePart(makeBox(Vec3(120e-3, 60e-3, 10e-3))), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed neighbour = world.add(part, Pose::translation(Vec3(40e-3, 0, 5e-3)));
   double dt_s = 1e-3;
-  // A mesh of its own: engines share shapes.
+  // Its own mesh, since engines share shapes of equal meshes.
   Scene scene{world, world.add(block(), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
   world.step(5);
   const Pose before = neighbour.pose();
@@ -163,7 +163,7 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   world.step(50);
   const Pose after = neighbour.pose();
   judgement.require(after.isFinite(), told + ": its neighbour is not a number any more");
-  // The neighbour lies still in contact: as in any rest, a micrometre.
+  // The neighbour rests in contact: a micrometre is allowed, as for any rest.
   if (after.isFinite()) judgement.atMost("neighbour moved", (after.p - before.p).norm(), 1e-6, "m");
 }
 
@@ -200,7 +200,7 @@ std::vector<Row> inputRows() {
   return {
       {"not_finite",
        "each of " + std::to_string(all.size()) + " quantities not a number and infinite",
-       "words, or no neighbour feels it",
+       "message, or no effect on a neighbour",
        all,
        all.size(),
        giveNonsense,
@@ -208,7 +208,7 @@ std::vector<Row> inputRows() {
        nameOfQuantity},
       {"denormal",
        "each of " + std::to_string(all.size()) + " quantities at 5e-324 and 1e-310",
-       "words, or no neighbour feels it",
+       "message, or no effect on a neighbour",
        all,
        all.size(),
        giveDenormal,

@@ -22,8 +22,7 @@ std::string toText(double value) {
 void Judgement::atMost(const std::string& what, double value, double bound, const char* unit) {
   const std::string text = what + " " + toText(value) + " of " + toText(bound) + " " + unit;
   if (!(value <= bound)) return join(broken_, text);
-  const double share =
-      bound > 0 ? value / bound : bound / value;  // of a bound below zero, what is left of it
+  const double share = bound > 0 ? value / bound : bound / value;  // for a negative bound the remaining share
   if (share > share_ || nearest_.empty()) {
     share_ = share;
     nearest_ = text;

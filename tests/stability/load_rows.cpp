@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows in which masses, stiffness, friction and the number of contacts go to their extremes.
+// Rows with extreme masses, stiffness, friction and numbers of contacts.
 #include <algorithm>
 #include <cmath>
 
@@ -17,12 +17,12 @@ World makeWorld(Mode mode, const bullet::Settings& settings = {}) {
   return World({mode, true, dynamics::vpsEngine(kCoarse, settings)});
 }
 
-// Depth of springs under a weight that stands on A: W / (k A), twice that while it is put down.
+// Depth in penalty contact under a weight on the area A: W / (k A), twice that while the weight is placed.
 double sunk_m(Mode mode, double weight_N, double area_m2, double k_N_per_m3 = 1e12) {
   return 1e-6 + (mode == Mode::Penalty ? 2 * weight_N / (k_N_per_m3 * area_m2) : 0);
 }
 
-// A light block on a plate, a heavy one on it, their faces 19 x 14.5 mm apart off centre.
+// A light block on a plate and a heavy one on it, off centre, with a common face of 19 x 14.5 mm.
 Judgement stack(Mode mode, double light_kg, double heavy_kg) {
   World world = makeWorld(mode);
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
@@ -33,20 +33,20 @@ Judgement stack(Mode mode, double light_kg, double heavy_kg) {
   Judgement judgement;
   const Watched watched = watch(world, {floor, light, heavy}, {.steps = 800});
   const double weight_N = (light_kg + heavy_kg) * kGravity_m_s2;
-  // Its centre is off by e: an edge is pressed by 1 + 6 e / side of the mean, 1.5 here.
+  // With an eccentricity e the pressure at an edge is 1 + 6 e / side times the mean, 1.5 here.
   judgeRun(judgement, watched, weight_N, 1.5 * sunk_m(mode, weight_N, 19e-3 * 14.5e-3), 1e-3);
   judgeRest(judgement, watched, 1e-3);
-  judgement.atMost("height off by", std::abs(heavy.pose().p.z() - 15e-3),
+  judgement.atMost("height error", std::abs(heavy.pose().p.z() - 15e-3),
                    2 * sunk_m(mode, weight_N, 19e-3 * 14.5e-3), "m");
   return judgement;
 }
 
-// Around the mass of steel, 23.6 g: 23.6 mg under 23.6 kg at a million.
+// Symmetric about the mass of steel, 23.6 g: for a ratio of a million 23.6 mg under 23.6 kg.
 Judgement stackOfRatio(const Run& run) {
   return stack(run.mode, 23.6e-3 / std::sqrt(run.value), 23.6e-3 * std::sqrt(run.value));
 }
 
-// What stands on 23.6 g of steel.
+// A mass on a steel block of 23.6 g.
 Judgement stackOfMass(const Run& run) {
   return stack(run.mode, 23.6e-3, 23.6e-3 * run.value);
 }
@@ -61,23 +61,23 @@ Judgement collide(const Run& run) {
   const Placed heavy = world.add(heavy_part, Pose());
   heavy.body->setLinearVelocity(btVector3(1, 0, 0));
   const Vec3 p = momentum_Ns({light, heavy}), L = angularMomentum_Nms({light, heavy});
-  const Watched watched = watch(world, {light, heavy}, {.steps = 200, .look_every = 1});
+  const Watched watched = watch(world, {light, heavy}, {.steps = 200, .measure_every = 1});
   const Vec3 dp = momentum_Ns({light, heavy}) - p, dL = angularMomentum_Nms({light, heavy}) - L;
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   const double slope_m = 1e-6 + (run.mode == Mode::Penalty ? 1e-3 : 0);
   judgement.atMost("overlap", watched.final_m, slope_m, "m");
-  // What the light one got is what the heavy one lost: rounding of each step's sums, in what moves.
+  // The light block gains the momentum that the heavy one loses, up to rounding.
   const double light_Ns = light.part.frame.mass_kg * 2;
   judgement.atMost("momentum lost", dp.norm(), 1e-9 * light_Ns + 1e-15 * p.norm() * 200, "N s");
-  // A step turns and moves both at once, to first order: the arm is off by a step's travel where they touch.
+  // A step applies rotation and translation to first order: the lever arm has an error of one step's travel.
   judgement.atMost("angular momentum lost", dL.norm(), light_Ns * 1e-3, "N m s");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");
   return judgement;
 }
 
-// A block is put down on springs that give way by sunk_wanted_m under it in the end; twice that at first.
-Judgement restOnSprings(Mode mode, double k_N_per_m, double sunk_wanted_m) {
+// A block is placed on penalty contact that yields by sunk_wanted_m at rest, and by twice that at first.
+Judgement restOnCompliantContact(Mode mode, double k_N_per_m, double sunk_wanted_m) {
   bullet::Settings settings;
   settings.stiffness_N_per_m3 = k_N_per_m / (kBlock_m.x() * kBlock_m.y());
   World world = makeWorld(mode, settings);
@@ -85,42 +85,41 @@ Judgement restOnSprings(Mode mode, double k_N_per_m, double sunk_wanted_m) {
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const PartMesh part = dynamics::withMass(block(), weight_N / kGravity_m_s2);
   const Placed lying = world.add(part, Pose::translation(Vec3(0, 0, 5e-3)));
-  // Implicit steps of dt take w^2 dt / 2 of a swing's speed each second, w^2 = g / depth: 20 of that.
+  // Implicit steps of dt damp an oscillation with the rate w^2 dt / 2, w^2 = g / depth: 20 time constants.
   const double rest_s = std::max(0.5, 20 * 2 * sunk_wanted_m / (kGravity_m_s2 * 1e-3));
   const Watched watched = watch(world, {floor, lying}, {.steps = static_cast<int>(rest_s / 1e-3)});
   const double sunk_m = 5e-3 - lying.pose().p.z();
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   judgeRest(judgement, watched, 1e-3);
-  // Points stand for the face but for half a spacing along its border; and the side walls that have sunk in
-  // press too, with half the depth on average.
+  // Points represent the face except for half a spacing along its border, and the side walls below the
+  // surface press too, with half the depth on average.
   const double border_m = 2 * (kBlock_m.x() + kBlock_m.y()), face_m2 = kBlock_m.x() * kBlock_m.y();
   const double off = border_m * (0.25e-3 + sunk_wanted_m / 2) / face_m2;
-  judgement.atMost("sunk off from weight / k by",
-                   std::abs(sunk_m - (mode == Mode::Penalty ? sunk_wanted_m : 0)),
+  judgement.atMost("error of weight / k", std::abs(sunk_m - (mode == Mode::Penalty ? sunk_wanted_m : 0)),
                    (mode == Mode::Penalty ? off * sunk_wanted_m : 0) + 1e-9, "m");
   judgement.atMost("energy gained", watched.gained_J, weight_N * 1e-6, "J");
   return judgement;
 }
 
-// As heavy as sinks a tenth of a millimetre.
+// With the mass that sinks by a tenth of a millimetre.
 Judgement restOnStiffness(const Run& run) {
-  return restOnSprings(run.mode, run.value, 0.1e-3);
+  return restOnCompliantContact(run.mode, run.value, 0.1e-3);
 }
 
-// On 10 kN/m, as heavy as sinks so deep. The map's band is 2 mm.
+// On 10 kN/m, with the mass that sinks to this depth. The map's band is 2 mm.
 Judgement restInDepth(const Run& run) {
-  return restOnSprings(run.mode, 1e4, run.value * 2e-3);
+  return restOnCompliantContact(run.mode, 1e4, run.value * 2e-3);
 }
 
-// A spring of this stiffness, as a device's coupling, pulls a block from 1 mm over a plate to so deep in it.
+// A coupling of this stiffness pulls a block from 1 mm above a plate towards a target at this depth in it.
 Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   World world = makeWorld(mode);
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed part = world.add(block(), Pose::translation(Vec3(0, 0, 6e-3)));
   CouplingGains gains;
   gains.k_N_per_m = k_N_per_m;
-  gains.k_Nm_per_rad = k_N_per_m * 1e-4;  // the same spring at a centimetre
+  gains.k_Nm_per_rad = k_N_per_m * 1e-4;  // the same spring at a lever of a centimetre
   gains.b_Ns_per_m = gains.b_Nms_per_rad = 0;
   gains.max_force_N = gains.max_torque_Nm = 1e12;
   auto coupling =
@@ -130,7 +129,7 @@ Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   target.is_coupled = true;
   coupling->setTarget(target);
   world.addConstraint(std::move(coupling));
-  // Against springs it comes to rest as they do: implicit steps take w^2 dt / 2 of a swing each second.
+  // In penalty contact it comes to rest at the rate w^2 dt / 2 of the implicit steps.
   const double w2 = k_N_per_m / part.part.frame.mass_kg;
   const int steps = std::clamp(static_cast<int>(40 / (w2 * 1e-6)), 500, 20'000);
   const Watched watched = watch(world, {floor, part}, {.steps = steps});
@@ -140,7 +139,7 @@ Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   judgeRest(judgement, watched, 1e-3);
   judgement.atMost("overlap at rest", watched.final_m, sunk, "m");
-  judgement.atMost("height off by", std::abs(part.pose().p.z() - 5e-3), sunk, "m");
+  judgement.atMost("height error", std::abs(part.pose().p.z() - 5e-3), sunk, "m");
   return judgement;
 }
 
@@ -152,7 +151,7 @@ Judgement pressDeep(const Run& run) {
   return pressByCoupling(run.mode, 1e6, 1e-3 * run.value);
 }
 
-// On a slope of 20 degrees: it slides with g (sin - mu cos) below mu = tan 20 = 0.364, and holds above.
+// On a slope of 20 degrees a block slides with g (sin - mu cos) below mu = tan 20 = 0.364, and sticks above.
 Judgement slideDown(const Run& run) {
   constexpr double slope_rad = 20 * M_PI / 180;
   World world = makeWorld(run.mode);
@@ -165,22 +164,23 @@ Judgement slideDown(const Run& run) {
   Judgement judgement;
   const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, kBlock_m.x() * kBlock_m.y()), 1e-3);
-  // Half of a step's share is gained before contact is met; a bristle bends first, by micrometres.
-  judgement.atMost("speed off by", std::abs(part.body->getLinearVelocity().x() - net_m_s2 * 0.2),
+  // Half of a step's acceleration is gained before contact; a bristle first bends by micrometres.
+  judgement.atMost("speed error", std::abs(part.body->getLinearVelocity().x() - net_m_s2 * 0.2),
                    1e-3 * net_m_s2 * 0.2 + 1e-5, "m/s");
   if (net_m_s2 == 0) judgement.atMost("slipped", std::abs(part.pose().p.x()), 5e-6, "m");
   return judgement;
 }
 
-// A tilted drop with this friction, where points catch and slip at once.
+// A tilted drop with this friction, in which points stick and slip at the same time.
 Judgement dropWithFriction(const Run& run) {
   Drop what;
   what.friction = run.value;
   return judgeDrop(run.mode, what);
 }
 
-// Nothing pulls it sideways: it lies still in the end but for what angular momentum goes astray in steps that
-// turn it by w dt at once, a share w dt of its speed. (The same in both modes: Bullet's integration.)
+// Without friction no horizontal force acts: at the end the block rests except for an error of the angular
+// momentum in steps that rotate it by w dt, a share w dt of its speed. (The same in both modes: Bullet's
+// integration.)
 Judgement dropWithoutFriction(const Run& run) {
   Drop what;
   what.friction = run.value;
@@ -208,7 +208,7 @@ Judgement pressFaces(const Run& run) {
   return judgement;
 }
 
-// A lid on pins that stand in a square grid: all but three are redundant.
+// A lid on a square grid of pins, of which all but three are redundant.
 Judgement lidOnPins(const Run& run) {
   World world = makeWorld(run.mode);
   const PartMesh pin = makePart(makeCylinder(1e-3, 10e-3, 24));
@@ -223,7 +223,7 @@ Judgement lidOnPins(const Run& run) {
   const PartMesh lid_part = makePart(makeBox(Vec3(2 * half_m, 2 * half_m, 5e-3)));
   const Placed lid = world.add(lid_part, Pose::translation(Vec3(0, 0, 2.5e-3 + 0.1e-3)));
   parts.push_back(lid);
-  const Watched watched = watch(world, parts, {.steps = 300, .look_every = 20});
+  const Watched watched = watch(world, parts, {.steps = 300, .measure_every = 20});
   const double weight_N = lid.part.frame.mass_kg * kGravity_m_s2;
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, count * M_PI * 1e-6), 1e-3);
@@ -255,20 +255,20 @@ std::vector<Row> loadRows() {
        {1, 1e3, 1e6, 1e8, 1e10, 1e12},
        3,
        collide},
-      {"soft_springs",
+      {"soft_contact",
        "stiffness of contact [N/m], of a face that sinks 0.1 mm",
        "rest, weight / k",
        {1e4, 100, 1, 1e-3, 1e-6},
        3,
        restOnStiffness},
-      {"stiff_springs",
+      {"stiff_contact",
        "stiffness of contact [N/m], of a face that sinks 0.1 mm",
        "rest, weight / k",
        {1e4, 1e7, 1e9, 1e12, 1e15},
        2,
        restOnStiffness},
       {"sunk",
-       "depth to which springs give way under a part's weight [bands of the map]",
+       "depth of penalty contact under a part's weight [bands of the map]",
        "rest, weight / k",
        {0.01, 0.1, 0.3, 0.5, 0.7, 1, 2},
        3,
@@ -287,7 +287,7 @@ std::vector<Row> loadRows() {
        pressDeep},
       {"slope",
        "friction, on a slope of 20 degrees",
-       "g (sin - mu cos), or holds",
+       "g (sin - mu cos), or sticks",
        {0, 0.2, 0.36, 0.37, 1, 100, 1e6, 1e9},
        7,
        slideDown},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_stability: the table of what contact does at its extremes. Exits 1 where a bar is missed, 2 for an
-// option it does not know.
+// vps_stability: the table of contact at its extremes. Exits 1 if a required value fails, 2 for an unknown
+// option.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -14,7 +14,7 @@ int usage() {
   std::printf(
       "usage: vps_stability [--short] [--thorough] [--rows=a,b] [--mode=constraint|penalty|stock] "
       "[--values=x,y]\n"
-      "  --short     what must hold, without the search for edges\n"
+      "  --short     what must hold, without the search for limits\n"
       "  --thorough  hours at rest instead of seconds\n"
       "  --values    these instead of the rows' own\n"
       "rows:");
@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   for (Row& row : allRows()) {
     if (!wanted.empty() && wanted.find("," + row.key + ",") == std::string::npos) continue;
-    if (!values.empty()) row.ladder = values, row.asked = values.size();
+    if (!values.empty()) row.ladder = values, row.promised = values.size();
     rows.push_back(std::move(row));
   }
   if (rows.empty()) return usage();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One row of the stability table: a scene with one quantity that goes to its extreme.
+// One row of the stability table: a scene in which one quantity is increased or decreased to its extreme.
 #pragma once
 
 #include <functional>
@@ -16,22 +16,22 @@ using dynamics::Mode;
 struct Run {
   Mode mode = Mode::Constraint;
   double value = 0;          ///< of the row's quantity
-  bool is_thorough = false;  ///< hours where the short form takes seconds
+  bool is_thorough = false;  ///< hours instead of seconds
 };
 
 struct Row {
   std::string key;
-  std::string extreme;  ///< what goes to its extreme, with its unit
-  std::string judged;   ///< by what, beside what every run is judged by (watch.h)
-  /// From harmless towards the extreme. The first `asked` are what this suite promises to try, each is run;
-  /// those beyond only until one breaks.
+  std::string extreme;  ///< the quantity, with its unit
+  std::string judged;   ///< criteria in addition to those of every run (watch.h)
+  /// Values from harmless to extreme. The first `promised` are always run, the others until one fails.
   std::vector<double> ladder;
-  std::size_t asked = 0;
+  std::size_t promised = 0;
   std::function<Judgement(const Run&)> run;
-  /// How many of those asked hold by constraint and by penalty; fewer are a known edge, and the page says
-  /// why.
+  /// How many promised values must hold with constraint and with penalty contact. Fewer than promised is a
+  /// known limit, explained in README.md.
   std::size_t holds[2] = {99, 99};
-  /// Values are cases: what a value stands for. Else they are numbers, and the edge is narrowed between them.
+  /// Name of a value, if values are cases. Otherwise they are numbers, and the limit is narrowed between
+  /// them.
   std::function<std::string(double)> label = nullptr;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows in which lengths and times go to their extremes.
+// Rows with extreme lengths and times.
 #include <algorithm>
 #include <cmath>
 
@@ -17,11 +17,11 @@ Judgement dropAtStep(const Run& run) {
   return judgeDrop(run.mode, what);
 }
 
-// 20 ms and 0.2 ms in turn, then anything between, by a fixed rule.
+// Alternates between 20 ms and 0.2 ms, then takes values between them, by a fixed rule.
 Judgement dropAtChangingStep(const Run& run) {
   Drop what;
   const double ratio = run.value;
-  what.dt_s = 1e-3 * std::sqrt(ratio);  // the longest: all bounds are those of it
+  what.dt_s = 1e-3 * std::sqrt(ratio);  // the longest, which sets all bounds
   what.step_s = [ratio](int i) {
     const double share = i % 7 == 0 ? 1 : i % 2 == 0 ? 0 : (i % 5) / 5.0;
     return 1e-3 * std::pow(ratio, share - 0.5);
@@ -36,8 +36,8 @@ Judgement dropAwayFromOrigin(const Run& run) {
   return judgeDrop(run.mode, what);
 }
 
-// A cube of 1 mm falls a millimetre on a plate of this side, each modelled to its size. It lands flat: the
-// plate's points are farther apart than the cube is large.
+// A cube of 1 mm falls by a millimetre on a plate of this side, each modelled according to its size. It lands
+// flat: the spacing of the plate's points is greater than the cube.
 Judgement dropOnLarge(const Run& run) {
   constexpr double cube_m = 1e-3;
   const double plate_m = run.value, thick_m = plate_m / 6;
@@ -55,18 +55,19 @@ Judgement dropOnLarge(const Run& run) {
   const Watched watched = watch(world, {plate, cube}, watching);
   const double mass_kg = cube.part.frame.mass_kg, weight_N = mass_kg * dynamics::World::kGravity_m_s2;
   const double step_m = watched.fastest_m_s * watching.dt_s;
-  // A corner's spring stands for a quarter of a point's square and takes up a fall of 2 mm.
+  // A corner has a quarter of a point's area and absorbs a fall of 2 mm.
   const double spring_m =
       run.mode == Mode::Penalty ? std::sqrt(2 * weight_N * 2e-3 / (1e12 * 0.1e-3 * 0.1e-3 / 4)) : 0;
   Judgement judgement;
   judgeRun(judgement, watched, weight_N, 1e-6 + spring_m + std::min(cube_m / 2, step_m * step_m / cube_m),
            1e-3);
   judgeRest(judgement, watched, watching.dt_s);
-  judgement.atMost("height over the plate off by", std::abs(cube.pose().p.z() - cube_m / 2), 5e-6, "m");
+  judgement.atMost("error of the height above the plate", std::abs(cube.pose().p.z() - cube_m / 2), 5e-6,
+                   "m");
   return judgement;
 }
 
-// Of a scene like another, times go with the root of lengths; steps do so down to 0.1 ms.
+// In similar scenes, times scale with the square root of lengths; so do steps, down to 0.1 ms.
 Judgement dropOfSize(const Run& run) {
   Drop what;
   what.size = run.value / 20e-3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows in which shapes and fits go to their extremes: edges, tips, overlaps at the start, fits, long bores.
+// Rows with extreme shapes and fits: edges, tips, initial overlaps, fits, long bores.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace vps::stability {
 
 namespace {
 
-// A wedge whose edge, along y at z = 0, has this angle; 10 mm high, 20 mm long.
+// A wedge with this angle at its edge, which lies along y at z = 0; 10 mm high, 20 mm long.
 Mesh wedge(double angle_rad) {
   const double half_m = 10e-3 * std::tan(angle_rad / 2);
   Mesh mesh = makeBox(Vec3(2 * half_m, 20e-3, 10e-3));
@@ -24,28 +24,28 @@ Mesh wedge(double angle_rad) {
   return welded(mesh);
 }
 
-// A cone on its tip at z = 0.
+// A cone with its tip down at z = 0.
 Mesh cone(double angle_rad) {
   return test::lathe({{0, 0}, {10e-3 * std::tan(angle_rad / 2), 10e-3}, {0, 10e-3}}, 64);
 }
 
-// Springs stop what falls on one edge or tip: a point there stands for a quarter of its square at the least,
-// and k A d^2 / 2 is the energy E.
+// Depth in penalty contact of a part that falls on an edge or tip: a point there has at least a quarter of
+// its area, and k A d^2 / 2 is the energy E.
 double pierced_m(Mode mode, double energy_J) {
   return 1e-6 + (mode == Mode::Penalty ? std::sqrt(2 * energy_J / (1e12 * 1e-6 / 4)) : 0);
 }
 
-// Falls 1 mm, edge or tip first, and topples.
+// The part falls by 1 mm, edge or tip first, and topples.
 Judgement fallOn(const Run& run, const Mesh& sharp) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed part =
       world.add(makePart(sharp), Pose(rotationFromVector(Vec3(0.02, 0.03, 0)), Vec3(0, 0, 1.5e-3)));
   const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
-  const Watched watched = watch(world, {floor, part}, {.steps = 1000, .look_every = 2});
+  const Watched watched = watch(world, {floor, part}, {.steps = 1000, .measure_every = 2});
   Judgement judgement;
   const double turned_m = watched.fastest_m_s * watched.fastest_m_s * 1e-6 / 10e-3;
-  // It may fall on from its height of 10 mm.
+  // It may then fall from its height of 10 mm.
   judgeRun(judgement, watched, weight_N, turned_m + pierced_m(run.mode, weight_N * 11e-3), 1e-3);
   return judgement;
 }
@@ -57,7 +57,7 @@ Judgement fallOnTip(const Run& run) {
   return fallOn(run, cone(run.value * M_PI / 180));
 }
 
-// A knife falls across another that stands edge up: two edges cross between their points.
+// A knife falls across another one with its edge up: two edges cross between their points.
 Judgement crossKnives(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const PartMesh knife = makePart(wedge(run.value * M_PI / 180));
@@ -74,21 +74,21 @@ Judgement crossKnives(const Run& run) {
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   judgement.atMost("energy gained", watched.gained_J, weight_N * (0.5e-3 + watched.fastest_m_s * 0.5e-3),
                    "J");
-  // Edges are sampled every half spacing: a point is at most a quarter from the crossing, and the other's
-  // flank passes it by so far off.
+  // Edges are sampled every half spacing: a point is at most a quarter spacing from the crossing, and the
+  // other's flank is that far away from it.
   judgement.atMost("one edge below the other", -lowest_m, 0.5e-3 + pierced_m(run.mode, weight_N * 0.5e-3),
                    "m");
   return judgement;
 }
 
-// Blocks of one size in a tower, every face, edge and corner on its like.
+// Blocks of equal size in a tower, with coincident faces, edges and corners.
 Judgement tower(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const PartMesh cube = block();
   std::vector<Placed> parts{world.add(cube, Pose::translation(Vec3(0, 0, -5e-3)), true)};
   for (int i = 0; i < static_cast<int>(run.value); ++i)
     parts.push_back(world.add(cube, Pose::translation(Vec3(0, 0, 5e-3 + i * 10e-3))));
-  const Watched watched = watch(world, parts, {.steps = 500, .look_every = 20});
+  const Watched watched = watch(world, parts, {.steps = 500, .measure_every = 20});
   const double weight_N = run.value * parts[1].part.frame.mass_kg * kGravity_m_s2;
   const double sunk_m = 1e-6 + (run.mode == Mode::Penalty ? 2 * weight_N / (1e12 * 300e-6) : 0);
   Judgement judgement;
@@ -99,11 +99,12 @@ Judgement tower(const Run& run) {
   return judgement;
 }
 
-// Of bodies put into each other each point leaves at 0.05 m/s (install.h); where points of a turned part do
-// so in unlike directions its far end moves faster, by its length over its breadth, 3 at most here.
+// Each point of bodies that start inside each other separates at 0.05 m/s (settings.h). Where the points of a
+// rotated part do so in different directions, its far end moves faster by its length over its width, at most
+// 3 here.
 constexpr double kLeaving_m_s = 0.05, kLeavingAtMost_m_s = 3 * kLeaving_m_s;
 
-// A block created so deep in another, without gravity: it comes out slowly or stays.
+// A block created at this depth in another, without gravity: it separates slowly or stays.
 Judgement createInside(const Run& run, const Vec3& size_m, const Pose& X_WB) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   world.setGravity(Vec3::Zero());
@@ -123,7 +124,7 @@ Judgement startDeep(const Run& run) {
   return createInside(run, kBlock_m, Pose(R, Vec3(2e-3, 1e-3, 10e-3 - 1e-3 * run.value)));
 }
 
-// A cube of 2 mm wholly within; at 0 in the very middle, where no way out is shorter.
+// A cube of 2 mm completely inside; at 0 in the centre, where no direction is shorter.
 Judgement startWithin(const Run& run) {
   return createInside(run, Vec3::Constant(2e-3), Pose::translation(Vec3(0, 0, 5e-3 - 1e-3 * run.value)));
 }
@@ -135,17 +136,17 @@ PartMesh bored(double radius_m, double length_m) {
       {{radius_m, -length_m}, {radius_m + 7e-3, -length_m}, {radius_m + 7e-3, 0}, {radius_m, 0}}, 128));
 }
 
-// A peg 10 mm deep in a bore of this diametral clearance [um]; negative: an interference fit, which has no
-// place to rest: it must not burst.
+// A peg 10 mm deep in a bore with this diametral clearance [um]. Negative: an interference fit, which has no
+// position at rest and must not burst.
 Judgement fit(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const Placed bore = world.add(bored(kPeg_m + 0.5e-6 * run.value, 20e-3), Pose(), true, 0.15);
   const PartMesh peg = makePart(test::lathe({{0, 0}, {kPeg_m, 0}, {kPeg_m, 30e-3}, {0, 30e-3}}, 128));
   const Placed part = world.add(peg, Pose::translation(Vec3(0, 0, -10e-3)), false, 0.15);
-  const Watched watched = watch(world, {bore, part}, {.steps = 300, .look_every = 20});
+  const Watched watched = watch(world, {bore, part}, {.steps = 300, .measure_every = 20});
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  // Never faster than it would fall; and what leaves an overlap may lift it as fast as that goes.
+  // Never faster than in free fall; separating from an overlap may also lift it.
   const double mass_kg = part.part.frame.mass_kg, duration_s = 0.3;
   judgement.atMost("speed", watched.fastest_m_s, kGravity_m_s2 * duration_s + kLeavingAtMost_m_s, "m/s");
   judgement.atMost(
@@ -156,8 +157,8 @@ Judgement fit(const Run& run) {
   return judgement;
 }
 
-// A rod slides down a bore as long as itself, without friction, its diameter this many times in the length;
-// pressed to the wall by a tenth of its weight.
+// A rod slides down a bore of its own length without friction, pressed to the wall by a tenth of its weight;
+// value: length over diameter.
 Judgement slideInBore(const Run& run) {
   const double length_m = run.value * 2 * kPeg_m;
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
@@ -166,9 +167,9 @@ Judgement slideInBore(const Run& run) {
   const PartMesh rod = makePart(test::lathe({{0, 0}, {kPeg_m, 0}, {kPeg_m, length_m}, {0, length_m}}, 128));
   const Placed part = world.add(rod, Pose::translation(Vec3(0, 0, -length_m)), false, 0);
   const int steps = 50;
-  const Watched watched = watch(world, {bore, part}, {.steps = steps, .look_every = 10});
+  const Watched watched = watch(world, {bore, part}, {.steps = steps, .measure_every = 10});
   const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
-  // Half the rod's length of bore, a tenth of its breadth: what carries on springs.
+  // In penalty contact half of the rod's length and a tenth of its width carry the load.
   const double sunk_m =
       2e-6 + (run.mode == Mode::Penalty ? 2 * 0.1 * weight_N / (1e12 * length_m * 1e-3) : 0);
   Judgement judgement;

@@ -24,9 +24,10 @@ Judgement runOne(const Row& row, const Run& run) {
   }
 }
 
-/// The last value that holds and the first that breaks, narrowed to a tenth of a decade or so.
+/// Narrows the interval between the last value that holds and the first that fails to about a tenth of a
+/// decade.
 std::string narrowed(const Row& row, Run run, double holds, double breaks, std::string how) {
-  // Three halvings of a decade leave a factor of 1.3.
+  // Three bisections of a decade leave a factor of 1.3.
   for (int i = 0; i < 3 && !row.label && holds > 0 && breaks > 0; ++i) {
     run.value = std::sqrt(holds * breaks);
     const Judgement middle = runOne(row, run);
@@ -36,9 +37,9 @@ std::string narrowed(const Row& row, Run run, double holds, double breaks, std::
   return "holds at " + labelOf(row, holds) + ", breaks at " + labelOf(row, breaks) + ": " + how;
 }
 
-/// Walks on from what was asked for until something breaks.
-std::string edgeBeyond(const Row& row, Run run, std::size_t asked) {
-  for (std::size_t i = asked; i < row.ladder.size(); ++i) {
+/// Continues beyond the promised values until one fails.
+std::string limitBeyond(const Row& row, Run run, std::size_t promised) {
+  for (std::size_t i = promised; i < row.ladder.size(); ++i) {
     run.value = row.ladder[i];
     const Judgement judgement = runOne(row, run);
     if (!judgement.holds()) return narrowed(row, run, row.ladder[i - 1], run.value, judgement.text());
@@ -50,35 +51,35 @@ std::string edgeBeyond(const Row& row, Run run, std::size_t asked) {
 
 Result runRow(const Row& row, Mode mode, const Options& options) {
   Result result;
-  const std::size_t must = std::min(row.asked, row.holds[mode == Mode::Penalty ? 1 : 0]);
-  const std::size_t end = options.is_short ? must : row.asked;
+  const std::size_t must = std::min(row.promised, row.holds[mode == Mode::Penalty ? 1 : 0]);
+  const std::size_t end = options.is_short ? must : row.promised;
   Run run{mode, 0, options.is_thorough};
   for (std::size_t i = 0; i < end; ++i) {
     run.value = row.ladder[i];
     const Judgement judgement = runOne(row, run);
-    const std::string told = labelOf(row, run.value) + ": " + judgement.text();
+    const std::string outcome = labelOf(row, run.value) + ": " + judgement.text();
     if (judgement.holds()) {
-      if (result.is_met) result.asked = told;
+      if (result.is_met) result.promised = outcome;
       continue;
     }
     if (result.is_met && i > 0 && !row.label) {
-      result.edge = narrowed(row, run, row.ladder[i - 1], run.value, judgement.text());
-      if (options.is_short) result.edge.clear();
+      result.limit = narrowed(row, run, row.ladder[i - 1], run.value, judgement.text());
+      if (options.is_short) result.limit.clear();
     }
-    result.asked = result.is_met ? told : result.asked + "; " + told;
+    result.promised = result.is_met ? outcome : result.promised + "; " + outcome;
     result.is_met = false;
     if (i >= must) continue;
-    result.is_bar = false;
-    result.failure += result.failure.empty() ? told : "; " + told;
+    result.is_required_met = false;
+    result.failure += result.failure.empty() ? outcome : "; " + outcome;
   }
-  if (!options.is_short && result.is_met && row.ladder.size() > row.asked)
-    result.edge = edgeBeyond(row, run, row.asked);
+  if (!options.is_short && result.is_met && row.ladder.size() > row.promised)
+    result.limit = limitBeyond(row, run, row.promised);
   return result;
 }
 
 int printTable(const std::vector<Row>& rows, const Options& options) {
   int missed = 0;
-  std::printf("| row | to the extreme | judged by | contact | at the end of what was asked | edge |\n");
+  std::printf("| row | to the extreme | judged by | contact | at the end of the promised values | limit |\n");
   std::printf("|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
     for (const Mode mode : options.modes) {
@@ -86,10 +87,10 @@ int printTable(const std::vector<Row>& rows, const Options& options) {
       const bool is_first = mode == options.modes.front();
       std::printf("| %s | %s | %s | %s | %s%s%s | %s |\n", is_first ? row.key.c_str() : "",
                   is_first ? row.extreme.c_str() : "", is_first ? row.judged.c_str() : "",
-                  dynamics::nameOf(mode), r.is_met ? "" : "**breaks** at ", r.asked.c_str(),
-                  r.is_bar ? "" : " **MISSED**", r.edge.c_str());
+                  dynamics::nameOf(mode), r.is_met ? "" : "**breaks** at ", r.promised.c_str(),
+                  r.is_required_met ? "" : " **MISSED**", r.limit.c_str());
       std::fflush(stdout);
-      if (!r.is_bar) ++missed, std::fprintf(stderr, "%s: %s\n", row.key.c_str(), r.failure.c_str());
+      if (!r.is_required_met) ++missed, std::fprintf(stderr, "%s: %s\n", row.key.c_str(), r.failure.c_str());
     }
   }
   return missed;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs rows in both contact modes, looks for their edges, and prints the table.
+// Runs rows with both contact methods, searches for their limits, and prints the table.
 #pragma once
 
 #include "row.h"
@@ -7,23 +7,23 @@
 namespace vps::stability {
 
 struct Options {
-  bool is_short = false;     ///< what must hold alone: no search for edges, no known breaks
+  bool is_short = false;     ///< only the values that must hold, no search for limits
   bool is_thorough = false;  ///< hours at rest
   std::vector<Mode> modes = {Mode::Constraint, Mode::Penalty};
 };
 
-/// What a row came to in one mode.
+/// Result of a row in one mode.
 struct Result {
-  std::string asked;    ///< the worst of what was asked for
-  std::string edge;     ///< where it breaks, and how
-  bool is_met = true;   ///< all that was asked for holds
-  bool is_bar = true;   ///< what must hold holds
-  std::string failure;  ///< else what did not
+  std::string promised;         ///< outcome of the promised values
+  std::string limit;            ///< where it fails, and how
+  bool is_met = true;           ///< all promised values hold
+  bool is_required_met = true;  ///< all required values hold
+  std::string failure;          ///< otherwise the reason
 };
 
 Result runRow(const Row& row, Mode mode, const Options& options);
 
-/// Prints Markdown, a line a row. Returns how many bars were missed.
+/// Prints Markdown, one line for each row. Returns how many rows miss a required value.
 int printTable(const std::vector<Row>& rows, const Options& options);
 
 }  // namespace vps::stability

@@ -83,7 +83,7 @@ Watched watch(dynamics::World& world, const std::vector<Placed>& parts, const Wa
     result.gained_J = std::max(result.gained_J, energy_J(world, parts) - result.start_J);
     result.fastest_m_s = std::max(result.fastest_m_s, fastest_m_s(parts));
     const bool is_end = i == watching.steps - 1;
-    if (is_end || i % watching.look_every == 0) result.final_m = overlap_m(parts);
+    if (is_end || i % watching.measure_every == 0) result.final_m = overlap_m(parts);
     result.deepest_m = std::max(result.deepest_m, result.final_m);
     if (i < last_fifth) continue;
     result.speed_m_s = std::max(result.speed_m_s, fastest_m_s(parts));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_bench_peers: fills in the table of what the Bullet bridge must reach, beside its rivals. Exits 1 where
-// a bar is missed, 2 for an option it does not know.
+// vps_bench_peers: the table of the Bullet bridge with its bounds, and other engines for comparison. Exits 1
+// if a bound is missed, 2 for an unknown option.
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   }
   bench::Table table;
   for (const bench::Case& c : bench::allCases())
-    if (wanted.empty() ? !c.is_asked_for : wanted.find("," + std::string(c.key) + ",") != std::string::npos)
+    if (wanted.empty() ? !c.is_optional : wanted.find("," + std::string(c.key) + ",") != std::string::npos)
       c.run(options, table);
   return table.print() == 0 ? 0 : 1;
 }

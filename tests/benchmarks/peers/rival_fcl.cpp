@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FCL asks Eigen of its own flags; nothing of ours but plain numbers passes.
+// FCL may be compiled with other Eigen flags, so only plain numbers are passed to it.
 #include "rivals.h"
 
 #ifdef VPS_HAS_FCL

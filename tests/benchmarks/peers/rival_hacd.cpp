@@ -21,7 +21,7 @@ struct Hulls {
   btCompoundShape compound;
 };
 
-// HACD works on a mesh scaled to a thousand.
+// HACD expects a mesh scaled to a size of 1000.
 constexpr double kScale = 1000;
 
 std::shared_ptr<Hulls> cut(const Mesh& mesh, double concavity_m) {

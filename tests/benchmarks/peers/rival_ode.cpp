@@ -10,7 +10,7 @@ namespace vps::bench {
 #ifdef VPS_HAS_ODE
 namespace {
 
-/// A trimesh and the arrays that ODE reads while it lives.
+/// A trimesh and the arrays that it refers to.
 struct OdeMesh {
   std::vector<double> vertices;
   std::vector<dTriIndex> indices;
@@ -46,13 +46,13 @@ struct OdeMesh {
 
 PairQuery odeQuery(const Mesh& a, const Mesh& b) {
   [[maybe_unused]] static const int started = dInitODE2(0);
-  dSetMessageHandler([](int, const char*, va_list) {});  // that its table of contacts is full, each time
+  dSetMessageHandler(
+      [](int, const char*, va_list) {});  // suppresses a message for each full table of contacts
   const auto mesh_a = std::make_shared<OdeMesh>(a), mesh_b = std::make_shared<OdeMesh>(b);
   return {"ODE", [mesh_a, mesh_b](const Pose& X_AB) {
-            constexpr int kMost = 0xffff;  // what fits into dCollide's flags
+            constexpr int kMost = 0xffff;  // limit of dCollide's flags
             static std::vector<dContactGeom> contacts(kMost);
-            // The order of the calls is that of ODE's own loop: a trimesh keeps its last pose for its
-            // normals.
+            // In the order of ODE's own loop: a trimesh keeps its last pose for its normals.
             mesh_a->moveTo(Pose());
             mesh_b->moveTo(X_AB);
             PairQuery::Answer answer;

@@ -28,8 +28,8 @@ std::vector<Figure> ringFigures(const RingResult& r) {
           reported("step", r.step_ms, 1, "ms")};
 }
 
-// GImpact's shapes touch at twice their margin; too little and triangles pass through each other between
-// steps. The best is the one that comes to rest nearest to the right height.
+// GImpact's shapes touch at twice their margin; with a margin that is too small, triangles pass through each
+// other between steps. The best margin is the one with the least height error at rest.
 double bestGimpactMargin() {
   double best_m = 0, least_m = 1e300;
   for (const double margin_m : {1e-6, 5e-6, 20e-6, 50e-6}) {
@@ -51,7 +51,7 @@ void ringRow(const Options& options, Table& table) {
   for (const Mode mode : options.modes) {
     RingResult vps, gimpact;
     std::vector<double> ratios;
-    for (int repeat = 0; repeat < (options.is_short ? 1 : 3); ++repeat) {  // in turns, 0.6 s each
+    for (int repeat = 0; repeat < (options.is_short ? 1 : 3); ++repeat) {  // alternating, 0.6 s each
       vps = dynamics::dropRing({mode, true, ours});
       gimpact = dynamics::dropRing({Mode::ConstraintStock, true, theirs});
       ratios.push_back(gimpact.step_ms / vps.step_ms);
@@ -71,9 +71,9 @@ void ringRow(const Options& options, Table& table) {
   }
 }
 
-// What cutting a bore into convex hulls makes of it.
+// The bore decomposed into convex hulls.
 void hullRow(const Options& options, Table& table) {
-  constexpr double kConcavity_m = 50e-6;  // the fit's own clearance
+  constexpr double kConcavity_m = 50e-6;  // the clearance of the fit
   const std::optional<dynamics::Engine> hulls = hacdEngine(kConcavity_m);
   Row row{"peg 10x30, 50 um", "HACD, concavity 50 um", {}, ""};
   if (hulls) {
@@ -97,7 +97,7 @@ void hullRow(const Options& options, Table& table) {
 void queryRow(const Options& options, Table& table) {
   const dynamics::PartMesh &nut = dynamics::nutPart(dynamics::kM16, 96),
                            &rod = dynamics::rodPart(dynamics::kM16, 96);
-  // On the thread, pressed 20 um into the lower flanks, each time turned along the helix a little further.
+  // On the thread, 20 um deep in the lower flanks, each pose turned slightly further along the helix.
   std::vector<Pose> poses;
   const double axial_gap_m = 0.1e-3 * std::tan(M_PI / 6);
   for (int i = 0; i < (options.is_short ? 3 : 15); ++i) {
@@ -114,17 +114,17 @@ void queryRow(const Options& options, Table& table) {
   std::vector<std::vector<double>> times_s(all.size());
   std::vector<PairQuery::Answer> last(all.size());
   std::vector<double> worst_error_m(all.size(), 0);
-  for (std::size_t p = 0; p < poses.size(); ++p)  // in turns, pose by pose
+  for (std::size_t p = 0; p < poses.size(); ++p)  // alternating, pose by pose
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (!all[k].ask) continue;
+      if (!all[k].query) continue;
       const double start_s = dynamics::threadTime_s();
-      last[k] = all[k].ask(poses[p]);
+      last[k] = all[k].query(poses[p]);
       times_s[k].push_back(dynamics::threadTime_s() - start_s);
       worst_error_m[k] = std::max(worst_error_m[k], std::abs(last[k].deepest_m - truth_m[p]));
     }
   for (std::size_t k = 0; k < all.size(); ++k) {
     Row row{"query, M16 nut on bolt", all[k].name, {}, ""};
-    if (!all[k].ask) {
+    if (!all[k].query) {
       row.figures.push_back({"not built", "", true});
     } else {
       row.figures = {reported("time", median(times_s[k]), 1e3, "ms"),

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that compare with rivals in the same run.
+// Rows that compare with other engines in the same run.
 #pragma once
 
 #include "rows.h"
 
 namespace vps::bench {
 
-/// The ring over the peg: ours against GImpact at its best margin.
+/// The ring over the peg: VPS and GImpact with its best margin.
 void ringRow(const Options& options, Table& table);
 
-/// The peg and its bore cut into convex hulls by HACD, in the stock solver. The cut takes many minutes.
+/// The peg and its bore decomposed into convex hulls by HACD, with the stock solver. The decomposition takes
+/// many minutes.
 void hullRow(const Options& options, Table& table);
 
-/// M16 nut on a bolt at poses in contact: milliseconds for a query, ours and others.
+/// M16 nut on a bolt at poses in contact: milliseconds for a query, by VPS and others.
 void queryRow(const Options& options, Table& table);
 
 }  // namespace vps::bench

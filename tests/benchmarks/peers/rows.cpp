@@ -24,8 +24,8 @@ SceneSettings settingsFor(const Options& options, Mode mode, const dynamics::Eng
 }
 
 // A peg that is engaged by less than mu times its diameter can wedge, as real ones do (Whitney 1982: the line
-// between the two contacts is within both friction cones). So the steeper it is dropped, the slipperier it
-// is: at 1 degree and mu 0.15, or 2 degrees and 0.1, it stays askew in the mouth, at rest.
+// between the two contacts is within both friction cones). So the friction is lower for a greater tilt: at 1
+// degree and mu 0.15, or 2 degrees and 0.1, the peg stays tilted in the mouth, at rest.
 void pegRow(const Options& options, Table& table) {
   const dynamics::Engine engine = dynamics::vpsEngine();
   constexpr double kDegree_rad = M_PI / 180;
@@ -54,8 +54,8 @@ void pegRow(const Options& options, Table& table) {
   }
 }
 
-// 0.2 degrees and mu 0.1 enter 5 um without wedging: engaged clearance / tilt = 1.4 mm, more than mu D = 1
-// mm.
+// With 0.2 degrees and mu 0.1 the peg enters a clearance of 5 um without wedging: engagement = clearance /
+// tilt = 1.4 mm, more than mu D = 1 mm.
 void ladderRow(const Options& options, Table& table) {
   for (const Mode mode : options.modes) {
     Row row{"clearance ladder", nameOf(mode), {}, "coarsest voxel that seats:"};
@@ -231,8 +231,8 @@ void wallRow(const Options& options, Table& table) {
   for (const Mode mode : options.modes)
     for (const bool is_turned : {false, true}) {
       const auto r = dynamics::shootAtWall(settingsFor(options, mode, engine), 50, is_turned);
-      // A corner that hits at 50 m/s spins the block by more than Bullet's pi / 4 a step, so that its other
-      // end lands between two steps: how deep is reported, and that it stays in front is judged.
+      // A corner that hits at 50 m/s rotates the block by more than Bullet's limit of pi / 4 a step, so that
+      // its other end lands between two steps: the depth is reported, and staying in front is judged.
       Row row{is_turned ? "50 m/s at a 2 mm wall, corner first" : "50 m/s at a 2 mm wall, face on",
               nameOf(mode),
               {holds("stays in front", r.beyond_m < 0), reported("speed after", r.speed_m_s, 1, "m/s")},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cases of the table, each a scene with its bars.
+// The cases of the table, each a scene with its bounds.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct Options {
 struct Case {
   const char* key;  ///< for --rows
   void (*run)(const Options&, Table&);
-  bool is_asked_for = false;  ///< runs only where --rows names it
+  bool is_optional = false;  ///< runs only if --rows names it
 };
 
 const std::vector<Case>& allCases();

@@ -22,9 +22,9 @@ std::string text(const char* format, ...) {
   return buffer;
 }
 
-Figure atMost(const std::string& what, double value, double bar, double scale, const std::string& unit) {
+Figure atMost(const std::string& what, double value, double bound, double scale, const std::string& unit) {
   return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()),
-          text("<= %.3g %s", bar * scale, unit.c_str()), value <= bar};
+          text("<= %.3g %s", bound * scale, unit.c_str()), value <= bound};
 }
 
 Figure within(const std::string& what, double value, double wanted, double tolerance, double scale,
@@ -45,12 +45,12 @@ Figure reported(const std::string& what, double value, double scale, const std::
 namespace {
 
 void printRow(const Row& row, const char* verdict) {
-  std::string ours, bar;
+  std::string ours, bound;
   for (const Figure& f : row.figures) {
     ours += (ours.empty() ? "" : ", ") + f.text + (f.is_met ? "" : " (!)");
-    if (!f.bar.empty() && f.bar != f.text) bar += (bar.empty() ? "" : ", ") + f.bar;
+    if (!f.bound.empty() && f.bound != f.text) bound += (bound.empty() ? "" : ", ") + f.bound;
   }
-  std::printf("%s | %s | %s | %s | %s\n", row.name.c_str(), row.mode.c_str(), ours.c_str(), bar.c_str(),
+  std::printf("%s | %s | %s | %s | %s\n", row.name.c_str(), row.mode.c_str(), ours.c_str(), bound.c_str(),
               verdict);
   if (!row.note.empty()) std::printf("    %s\n", row.note.c_str());
 }
@@ -73,7 +73,7 @@ int Table::print() const {
   std::map<std::string, bool> case_met;
   for (const Entry& e : rows_)
     if (e.is_judged) case_met[e.row.name] |= e.row.isMet();
-  std::printf("\ncase | mode | ours | bar | met\n");
+  std::printf("\ncase | mode | ours | bound | met\n");
   for (const Entry& e : rows_)
     printRow(e.row, !e.is_judged              ? "-"
                     : e.row.isMet()           ? "met"

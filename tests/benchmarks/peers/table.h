@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table: a case, the mode that ran it, each figure beside its bar.
+// The table: a case, its mode, and each figure with its bound.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace vps::bench {
 
 struct Figure {
-  std::string text;  ///< what was measured, with its unit
-  std::string bar;   ///< what it should be; empty: reported, not judged
+  std::string text;   ///< measured value with its unit
+  std::string bound;  ///< its bound; empty: reported, not judged
   bool is_met = true;
 };
 
@@ -20,27 +20,27 @@ struct Row {
   [[nodiscard]] bool isMet() const;
 };
 
-/// A figure that must not exceed its bar. `scale` and `unit` are for print only: 1e6 and "um".
-Figure atMost(const std::string& what, double value, double bar, double scale, const std::string& unit);
+/// A figure that must not exceed its bound. `scale` and `unit` are for printing only: 1e6 and "um".
+Figure atMost(const std::string& what, double value, double bound, double scale, const std::string& unit);
 /// A figure that must be within `tolerance` of `wanted`.
 Figure within(const std::string& what, double value, double wanted, double tolerance, double scale,
               const std::string& unit);
-/// A claim that holds or does not.
+/// A claim that is true or false.
 Figure holds(const std::string& claim, bool is_met);
-/// A figure without a bar.
+/// A figure without a bound.
 Figure reported(const std::string& what, double value, double scale, const std::string& unit);
 
-/// printf into a string.
+/// Formats as printf.
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 class Table {
  public:
-  /// Prints the row as it comes, so that a long run shows how far it is.
+  /// Prints the row at once, so that a long run shows its progress.
   void add(Row row);
-  /// A row of someone else: shown, not judged.
+  /// A row of another engine: reported, not judged.
   void addRival(Row row);
-  /// One line for each row. A case is met when one mode meets all its figures.
-  /// @return how many cases are not met
+  /// One line for each row. A case is met if one mode meets all its bounds.
+  /// @return the number of cases that are not met
   int print() const;
 
  private:
