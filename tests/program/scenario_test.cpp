@@ -95,13 +95,12 @@ TEST_F(Scenario, SlowPhysicsWithLocalContactMountsThePegToo) {
   writePegScene("pose = {position = [0, 0, -15]}\n",
                 "clearance = 0.05\n[fidelity]\nphysics_rate_hz = 100\nhaptic_rate_hz = 1000\n");
   const Ran ran = run("assemble scene.toml --out out --no-pictures --local-contact");
-  // Mounted. Status 1: once let go it drifts by 7.7 um (1.0 without local contact), beyond 5; why is not
-  // known.
-  ASSERT_LE(ran.status, 1) << ran.out << ran.err;
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
   const json data = read("out/assemble.json");
   EXPECT_TRUE(data["completed"].get<bool>()) << ran.out;
   EXPECT_LE(data["steps"][0]["max_penetration_m"].get<double>(), 10e-6);
   EXPECT_LE(data["energy"]["injected_J"].get<double>(), 1e-3);
+  EXPECT_LE(data["steps"][0]["rest_drift_m"].get<double>(), 5e-6);
   EXPECT_EQ(data["local_contact"]["held_ticks"].get<long>(), 0);
   EXPECT_GT(data["local_contact"]["greatest_jump_m"].get<double>(), 0) << "it took part";
 }

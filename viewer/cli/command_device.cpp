@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps device --characterise: this device's own Table 1 beside the paper's, and its figure 5.
+// vps device --characterise: this device's own Table 1 next to the paper's, and its figure 5.
+// vps device --list: the kinds of device.
 #include <cstdio>
 #include <numbers>
 
@@ -10,7 +11,8 @@
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
-#include "vps_device/dual_arm_character.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/dual_arm/character.h"
 #include "vps_viewer/device_plot.h"
 
 namespace vps::viewer {
@@ -150,9 +152,21 @@ void print(const device::DualArmCharacter& c) {
   std::fputs(kNotes, stdout);
 }
 
+int listKinds() {
+  Table table({"<kind", "<what it is", "<available"});
+  for (const device::DeviceKind& kind : device::deviceKinds()) {
+    const std::string missing = kind.missing();
+    const std::string remedy = missing.empty() ? "yes" : "no: " + missing + "; " + std::string(kind.remedy);
+    table.add({std::string(kind.name), std::string(kind.description), remedy});
+  }
+  std::fputs(table.text().c_str(), stdout);
+  return kGood;
+}
+
 }  // namespace
 
 int runDevice(const DeviceArguments& given) {
+  if (given.is_list) return listKinds();
   if (!given.is_characterise)
     throw LoadError(
         "", "",

@@ -119,6 +119,7 @@ int runSnapshot(const SnapshotArguments& given);
 
 struct DeviceArguments {
   bool is_characterise = false;
+  bool is_list = false;          ///< only list the kinds of device
   std::string parameters;        ///< a device's .toml over the built-in one; empty: none
   std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
   std::string json;

@@ -270,6 +270,7 @@ class CommandLine {
     CLI::App* command = add("device", "the device: its figures beside the paper's (as a node: not ready)",
                             "vps device --characterise --json dual_arm.json --plot figure5",
                             [this] { return runDevice(device_); });
+    command->add_flag("--list", device_.is_list, "the kinds of device for a scene's [device] kind");
     CLI::Option* characterise = command->add_flag("--characterise", device_.is_characterise,
                                                   "the dual arm's own Table 1, and figure 5");
     command->add_option("--parameters", device_.parameters, "a device's file, over the built-in one")

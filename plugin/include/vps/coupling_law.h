@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling between the device's proxy and the part in hand: the law, and the port where the
-// haptic and the physics side meet. Neither side includes the other.
+// The law of the virtual coupling between the device's proxy and the part in hand. Haptic and physics side
+// both evaluate it, and neither includes the other.
 #pragma once
 
 #include "vps/pose.h"
-#include "vps/triple_buffer.h"
 #include "vps/wrench.h"
 
 namespace vps {
@@ -33,12 +32,5 @@ struct CouplingState {
 /// Source: Colgate, Stanley and Brown 1995 (virtual coupling); rotation error as a rotation vector.
 Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                       const CouplingState& part) noexcept;
-
-/// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads
-/// the other's latest without waiting.
-struct CouplingPort {
-  TripleBuffer<CouplingState> proxy;
-  TripleBuffer<CouplingState> part;
-};
 
 }  // namespace vps

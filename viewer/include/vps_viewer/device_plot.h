@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_device/dual_arm_character.h"
+#include "vps_device/dual_arm/character.h"
 #include "vps_viewer/plot.h"
 
 namespace vps::viewer {
