@@ -4,9 +4,9 @@
 #include <btBulletDynamicsCommon.h>
 #include <vps_bullet/convert.h>
 #include <vps_bullet/coupling.h>
+#include <vps_device/dual_arm/simulated_dual_arm.h>
 #include <vps_device/gains.h>
 #include <vps_device/loop.h>
-#include <vps_device/simulated_dual_arm.h>
 
 #include <cmath>
 #include <cstdio>
@@ -32,7 +32,7 @@ int main() {
   vps::device::SimulatedDualArm device;  // or any other vps::Device
   vps::device::LoopSettings settings;    // 1 kHz
   settings.gains = vps::device::deriveGains(device.limits(), {});
-  vps::CouplingPort port;  // where the haptic and the physics side meet
+  vps::device::CouplingPort port;  // exchanges state between the haptic and the physics side
   vps::device::HapticLoop loop(device, port, settings);
   vps::bullet::CouplingConstraint coupling(block, vps::Pose{}, settings.gains);
   world.addConstraint(&coupling, true);
@@ -47,11 +47,11 @@ int main() {
     loop.tick();
     hand.X_eq.p.z() = -0.02 * std::fmin(1, i / 1000.0);
     device.step(1e-3, hand);
-    coupling.setTarget(port.proxy.read());
+    coupling.setTarget(port.haptic.read().proxy);
     world.stepSimulation(vps::bullet::toBt(1e-3), 0);
     vps::CouplingState part = coupling.partState();
     part.is_coupled = true;
-    port.part.write(part);
+    port.physics.write({part, 0, {}, {}});
   }
   const double felt_N = loop.last().F_hand_W.f.z(), pressed_N = -device.lastHandWrench().f.z();
   std::printf("the hand presses with %.2f N and feels %.2f N\n", pressed_N, felt_N);

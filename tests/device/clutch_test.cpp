@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 
-// A handle that goes where the test says.
+// A handle that the test moves.
 class Led final : public Device {
  public:
   DeviceSample read() noexcept override { return sample; }
@@ -30,7 +30,7 @@ class Led final : public Device {
   Wrench written;
 };
 
-// Handle, loop, and a part that hangs on the coupling with its weight: physics is at rest at every tick.
+// Handle, loop, and a part that hangs on the coupling by its weight: physics is in equilibrium at every tick.
 struct Hanging {
   Led device;
   CouplingPort port;
@@ -52,10 +52,10 @@ struct Hanging {
   }
   [[nodiscard]] double k() const { return loop.settings().gains.k_N_per_m; }
 
-  // Where the part balances under the proxy; with the energy of spring and height.
+  // The part's equilibrium under the proxy, with the energy of spring and height.
   void settle() {
-    const Vec3 p_proxy = port.proxy.read().X_W.p, p_part = p_proxy + weight_N / k();
-    port.part.write({Pose::translation(p_part), Twist{}, 0, true});
+    const Vec3 p_proxy = port.haptic.read().proxy.X_W.p, p_part = p_proxy + weight_N / k();
+    port.physics.write({{Pose::translation(p_part), Twist{}, 0, true}, 0, {}, {}});
     loop.observeStoredEnergy(0.5 * weight_N.squaredNorm() / k() - weight_N.dot(p_part), 0);
   }
   void take(const Vec3& p_DH = Vec3::Zero()) {
@@ -69,7 +69,7 @@ struct Hanging {
     most_jump_N = std::max(most_jump_N, (device.written.f - force_before_N).norm());
     force_before_N = device.written.f;
   }
-  [[nodiscard]] Vec3 proxy() { return port.proxy.read().X_W.p; }
+  [[nodiscard]] Vec3 proxy() { return port.haptic.read().proxy.X_W.p; }
 };
 
 // Straight from one place to another at this speed, on average.
@@ -80,7 +80,7 @@ void travel(const Vec3& from, const Vec3& to, double speed_m_s, const Visit& vis
     visit(Vec3(from + (to - from) * minimumJerk(static_cast<double>(i) / ticks)));
 }
 
-TEST(Clutch, LeverKeepsPowerAtEveryRatio) {
+TEST(Clutch, PowerIsEqualOnBothSidesAtEveryRatio) {
   Clutch clutch;
   clutch.open();
   for (int i = 0; i < 7; ++i) clutch.advance(kPeriod_s, 10 * kPeriod_s);
@@ -92,7 +92,7 @@ TEST(Clutch, LeverKeepsPowerAtEveryRatio) {
   EXPECT_NEAR(power(F, proxy_step), power(F * clutch.ratio(), step), 1e-14);
 }
 
-TEST(Clutch, HandComesFreeWithoutAJumpAndThePartStaysWhereItIs) {
+TEST(Clutch, OpeningFreesTheHandWithoutAForceJumpAndThePartStays) {
   Hanging rig(Hanging::settings());
   rig.take();
   for (int i = 0; i < 10; ++i) rig.tick(Vec3::Zero());
@@ -110,12 +110,12 @@ TEST(Clutch, HandComesFreeWithoutAJumpAndThePartStaysWhereItIs) {
   for (int i = 0; i < 101; ++i) rig.tick(Vec3(0.1, 0, 0.1));
   EXPECT_NEAR(rig.device.written.f.z(), -6, 1e-9);
   EXPECT_LT(rig.proxy().norm(), 1e-12);
-  rig.tick(Vec3(0.101, 0, 0.1));  // moves it again, from where it stood
+  rig.tick(Vec3(0.101, 0, 0.1));  // moves it again, from the same pose
   EXPECT_NEAR(rig.proxy().x(), 1e-3, 1e-12);
 }
 
-// A hand that lifts while the weight comes, and lowers while it goes, over and over: a fade of the force
-// alone would lift the part for less than it gets back.
+// A hand that repeatedly rises while the weight fades in and falls while it fades out: fading only the force
+// would give it energy.
 double madeByPumping_J(double scale, double force_scale) {
   LoopSettings settings = Hanging::settings();
   settings.map.scale = scale;
@@ -129,18 +129,18 @@ double madeByPumping_J(double scale, double force_scale) {
     rig.loop.engage();
     travel(Vec3::Zero(), Vec3(0, 0, 0.02), 0.2, [&](const Vec3& p) { rig.tick(p); });
   }
-  EXPECT_GT(rig.loop.ledger().from_hand_J, 0.1);
-  return rig.loop.ledger().injected_J;
+  EXPECT_GT(rig.loop.passivity().from_hand_J, 0.1);
+  return rig.loop.passivity().injected_J;
 }
 
-TEST(Clutch, PumpingHandGetsNoEnergyOutOfItAtAnyScale) {
-  // A segment's weight is spent and won back through the same lever, tick for tick but one: 6 N in the scene
-  // over the 0.4 mm that the hand goes at most in a tick.
+TEST(Clutch, APumpingHandGainsNoEnergyAtAnyScale) {
+  // The weight's work is done and recovered through the same lever, except for one tick: 6 N in the scene
+  // over the 0.4 mm that the hand moves at most in a tick.
   for (const auto& [scale, force_scale] : {std::pair{1.0, 1.0}, std::pair{2.5, 1.0}, std::pair{3.0, 0.5}})
     EXPECT_LT(madeByPumping_J(scale, force_scale), 6 * 0.4e-3 * scale) << scale << " " << force_scale;
 }
 
-TEST(Clutch, RatchetMovesAPartByAMetreWithADeviceOfFourTenths) {
+TEST(Clutch, IndexingMovesAPartByAMetreWithADeviceOfFourTenths) {
   Hanging rig(Hanging::settings());
   rig.take();
   for (int i = 0; i < 10; ++i) rig.tick(Vec3::Zero());
@@ -167,28 +167,28 @@ TEST(Clutch, RatchetMovesAPartByAMetreWithADeviceOfFourTenths) {
   // The fade of its weight, and what the spring to a part one tick behind changes by: K a T^2, a <= 2.4
   // m/s^2.
   EXPECT_LT(rig.most_jump_N, 6 * kPeriod_s / 0.1 + 2000 * 2.4e-6);
-  EXPECT_LT(rig.loop.ledger().injected_J, 1e-9);  // level travel: only rounding
+  EXPECT_LT(rig.loop.passivity().injected_J, 1e-9);  // level travel: only rounding
 }
 
-TEST(Clutch, HandOverToAnotherPartNeitherJumpsNorGivesTheHandTheSpringsEnergy) {
+TEST(Clutch, HandOverToAnotherPartNeitherJumpsNorReturnsTheSpringsEnergy) {
   Hanging rig(Hanging::settings());
   rig.take();
   for (int i = 0; i < 10; ++i) rig.tick(Vec3::Zero());
   rig.loop.disengage();
   for (int i = 0; i < 101; ++i) rig.tick(Vec3::Zero());
   rig.loop.release();
-  const double to_hand_J = rig.loop.ledger().to_hand_J;
+  const double to_hand_J = rig.loop.passivity().to_hand_J;
   rig.most_jump_N = 0;
   rig.weight_N = Vec3(0, 2, -3);  // another part, elsewhere
   const Vec3 elsewhere(0.3, 0.2, 0.1);
-  rig.port.part.write({Pose::translation(elsewhere), Twist{}, 0, true});
+  rig.port.physics.write({{Pose::translation(elsewhere), Twist{}, 0, true}, 0, {}, {}});
   rig.loop.handOver(Pose::translation(elsewhere));
   for (int i = 0; i < 120; ++i) rig.tick(Vec3::Zero());
   EXPECT_LT((rig.proxy() - elsewhere).norm(), 1e-12);
   EXPECT_LT((rig.device.written.f - rig.weight_N).norm(), 1e-9);
   // In the first tick the part does not hang yet, so the second brings two ticks' share.
   EXPECT_LT(rig.most_jump_N, 2.01 * rig.weight_N.norm() * kPeriod_s / 0.1);
-  EXPECT_EQ(rig.loop.ledger().to_hand_J, to_hand_J);
+  EXPECT_EQ(rig.loop.passivity().to_hand_J, to_hand_J);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the coupling's gains are derived from, proved on a wall of one direction: by the exact condition over
-// all frequencies, and by our own loop in simulated time.
+// Verifies the condition from which the coupling's gains are derived, on a wall of one direction: by the
+// exact condition over all frequencies, and by the loop in simulated time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ void forEachWall(const Visit& visit) {
         for (const int delay : {0, 1, 2, 5}) visit(SampledWall{K, share * K * T, T, delay * T});
 }
 
-TEST(SampledWall, OurLoopMakesTheEnergyThatTheFormulaSaysAtEveryFrequency) {
+TEST(SampledWall, TheLoopGeneratesTheEnergyOfTheFormulaAtEveryFrequency) {
   forEachWall([](const SampledWall& w) {
     // Sums of 400 terms of rounding, each relative to K T and B at most.
     const double tol = 1e-10 * (w.K_N_per_m * (w.period_s + w.delay_s) + w.B_Ns_per_m);
@@ -32,7 +32,7 @@ TEST(SampledWall, OurLoopMakesTheEnergyThatTheFormulaSaysAtEveryFrequency) {
   });
 }
 
-TEST(SampledWall, NeedsTheDampingOfDesignSectionSevenExactlyWithoutDelayOrWithoutDamper) {
+TEST(SampledWall, RequiresExactlyTheDampingOfTheConditionWithoutDelayOrWithoutDamper) {
   forEachWall([](const SampledWall& w) {
     const double ratio = passiveDamping(w) / passiveDampingFormula(w);
     EXPECT_LE(ratio, 1 + 1e-12) << w.K_N_per_m << " " << w.B_Ns_per_m << " " << w.delay_s;
@@ -43,7 +43,7 @@ TEST(SampledWall, NeedsTheDampingOfDesignSectionSevenExactlyWithoutDelayOrWithou
   });
 }
 
-TEST(SampledWall, WithDelayAndDamperTogetherNeedsNoMoreThanTheSumAndNoLessThanTheGreaterOfTheTwo) {
+TEST(SampledWall, WithDelayAndDamperRequiresAtMostTheSumAndAtLeastTheGreaterOfTheTwo) {
   // Spring and damper are at their worst at different frequencies, so the sum is safe and not sharp: at one
   // tick of delay and B = K T / 2 only 83% of it is needed.
   double least = 1;
@@ -56,7 +56,7 @@ TEST(SampledWall, WithDelayAndDamperTogetherNeedsNoMoreThanTheSumAndNoLessThanTh
   EXPECT_NEAR(least, 0.53, 0.005);
 }
 
-// The hand that wins most, walked through: quicker while the lesser of a period's two forces acts.
+// The hand motion that gains most energy: faster while the smaller of a period's two forces acts.
 double energyMade_J(const SampledWall& w, int index, double damping_Ns_per_m) {
   const double T = w.period_s, ticks = w.delay_s / T, whole = std::floor(ticks), phi = ticks - whole;
   const auto x_m = [&](double k) { return 1e-3 * std::sin(sineAngle_rad(index) * k + 0.3); };
@@ -72,12 +72,12 @@ double energyMade_J(const SampledWall& w, int index, double damping_Ns_per_m) {
   return made_J;
 }
 
-TEST(SampledWall, AForceThatChangesAmidThePeriodNeedsUpToSixPercentMore) {
+TEST(SampledWall, AForceThatChangesWithinThePeriodRequiresUpToSixPercentMore) {
   for (const double ticks : {0.25, 0.5, 1.5, 2.7}) {
     const SampledWall w{2000, 1, 1e-3, ticks * 1e-3};
     for (const int index : {1, 20, 130, 200}) {
       const double b = passiveDampingAt(w, sineAngle_rad(index));
-      // At that damping nothing is made: what is left is rounding of 400 terms of K x^2 = 2 mJ.
+      // At that damping no energy is generated; the rest is rounding of 400 terms of K x^2 = 2 mJ.
       EXPECT_NEAR(energyMade_J(w, index, b), 0, 1e-14 * 400) << ticks << " " << index;
       EXPECT_GT(energyMade_J(w, index, 0.99 * b), 1e-9);
     }
@@ -87,7 +87,7 @@ TEST(SampledWall, AForceThatChangesAmidThePeriodNeedsUpToSixPercentMore) {
   EXPECT_NEAR(passiveDamping(half) / passiveDampingFormula(half), (1 + std::sqrt(1.25)) / 2, 2e-4);
 }
 
-TEST(Gains, DerivedOnesArePassiveAtEveryFrequencyForEveryDeviceRateAndDelay) {
+TEST(Gains, DerivedGainsArePassiveAtEveryFrequencyForEveryDeviceRateAndDelay) {
   for (const double haptic_hz : {1000.0, 4000.0})
     for (const double physics_hz : {100.0, 1000.0, 1600.0, 4000.0})
       for (const double damping : {0.5, 5.0, 50.0})
@@ -100,12 +100,12 @@ TEST(Gains, DerivedOnesArePassiveAtEveryFrequencyForEveryDeviceRateAndDelay) {
             const CouplingGains gains = deriveGains(limits, timing);
             const SampledWall w{gains.k_N_per_m, gains.b_Ns_per_m, 1 / haptic_hz,
                                 couplingDelay_s(timing) + limits.delay_s};
-            // 0.8 * 0.8 b + 0.2 b by the formula, 6% more where forces change amid a period.
+            // 0.8 * 0.8 b + 0.2 b by the formula, 6% more where forces change within a period.
             EXPECT_LE(passiveDamping(w), 0.9 * damping);
           }
 }
 
-TEST(SampledWall, RingsWhereTheFormulaSays) {
+TEST(SampledWall, OscillatesAboveTheStiffnessOfTheFormula) {
   // bw = K sin(w t), so the edge is above the formula by (w t)^2 / 6, t = T/2 + t_d, w = sqrt(K / m); the
   // damper's difference lags by half a period more, which adds B w^2 T / 2 to the inertia's side. Masses are
   // such that w t stays below a third: what a handle in a hand has.
@@ -121,7 +121,7 @@ TEST(SampledWall, RingsWhereTheFormulaSays) {
         }
 }
 
-// The dual arm with viscous damping alone, so that the edge of its stability is not hidden.
+// The dual arm with viscous damping only, so that dry friction does not hide the limit of stability.
 SimulatedDualArmSettings withoutDryFriction() {
   SimulatedDualArmSettings device = idealDualArm();
   device.arms.plate_coulomb_Nm = device.arms.link_coulomb_N = device.arms.rotor_coulomb_Nm = 0;
@@ -129,7 +129,7 @@ SimulatedDualArmSettings withoutDryFriction() {
   return device;
 }
 
-// The wall does not answer, so there is no physics step to wait for.
+// The wall does not move, so that there is no physics step to wait for.
 CouplingGains gainsForAStillWall(const SimulatedDualArmSettings& device) {
   const DeviceLimits limits = dualArmLimits(device.arms, device.rate_hz, device.has_quantised_encoders);
   return deriveGains(limits, {device.rate_hz, 1e9, 0, 1, 1});
@@ -143,7 +143,7 @@ double dampingOfTheArm(const SimulatedDualArmSettings& device, const Vec3& along
   return rate.cwiseAbs2().dot(jointVector(p.plate_damping_Nms, p.link_damping_Ns_per_m, p.rotor_damping_Nms));
 }
 
-TEST(Coupling, DerivedGainsRestOnTheArmAndTwiceToThriceTheirStiffnessRings) {
+TEST(Coupling, DerivedGainsSettleOnTheArmAndTwoToThreeTimesTheirStiffnessOscillates) {
   for (const double rate_hz : {1000.0, 4000.0})
     for (const Vec3& along_D : {Vec3(0, 0, -1), Vec3(0, 1, 0)}) {
       SimulatedDualArmSettings device = withoutDryFriction();
@@ -161,7 +161,7 @@ TEST(Coupling, DerivedGainsRestOnTheArmAndTwiceToThriceTheirStiffnessRings) {
         const Unrest swing = pressOnWall(device, stiffer, press);
         (swing.late_m > swing.early_m ? high : low) = stiffer.k_N_per_m;
       }
-      // The ringing formula, with the arm's own damping there; (w t)^2 / 6 and the plant's sixteenth of a
+      // The stability formula, with the arm's own damping there; (w t)^2 / 6 and the plant's sixteenth of a
       // period, a 24th of t, lie above it.
       const double t_s = 1.5 / rate_hz, b = dampingOfTheArm(device, along_D) + gains.b_Ns_per_m;
       EXPECT_NEAR(low * t_s / b, 1, 0.05) << rate_hz;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/dual_arm_calibration.h"
+#include "vps_device/dual_arm/calibration.h"
 
 #include <gtest/gtest.h>
 
@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "support/no_alloc.h"
-#include "vps_device/dual_arm_frames.h"
+#include "vps_device/dual_arm/frames.h"
 #include "vps_device/random.h"
 
 namespace vps::device {
 namespace {
 
-// A device whose right base stands a few millimetres and a degree off its drawing.
+// A device whose right base is a few millimetres and a degree off its nominal pose.
 DualArmParameters displaced() {
   DualArmParameters p;
   p.right_shift_m = Vec3(3e-3, -2e-3, 1.5e-3);
@@ -21,7 +21,7 @@ DualArmParameters displaced() {
   return p;
 }
 
-// What its encoders say with the handle moved about; `noise_steps` in encoder steps, deviation.
+// Readings of its encoders with the handle moved about; `noise_steps` in encoder steps, deviation.
 std::vector<DualArmJoints> readingsOf(const DualArmParameters& truth, int count, double tilt_rad,
                                       double noise_steps, std::uint64_t seed) {
   Random random(seed);
@@ -58,7 +58,7 @@ TEST(BaseCalibration, FindsTheBaseFromExactReadingsToRounding) {
   EXPECT_LT(found.iterations, 12);
 }
 
-TEST(BaseCalibration, StartsFromADrawingFiveCentimetresAndTenDegreesOff) {
+TEST(BaseCalibration, ConvergesFromFiveCentimetresAndTenDegreesOff) {
   DualArmParameters truth;
   truth.right_shift_m = Vec3(0.03, -0.03, 0.03);
   truth.right_turn_rad = Vec3(0.1, 0.1, -0.1);
@@ -67,7 +67,7 @@ TEST(BaseCalibration, StartsFromADrawingFiveCentimetresAndTenDegreesOff) {
   EXPECT_LT(errorOf_m(found.parameters, truth), 1e-12);
 }
 
-TEST(BaseCalibration, WithNoiseItErrsAsMuchAsItSays) {
+TEST(BaseCalibration, WithNoiseItsErrorMatchesTheStatedDeviation) {
   const DualArmParameters truth = displaced();
   double mean_square_m = 0, mean_square_rad = 0;
   constexpr int kRuns = 40;
@@ -93,7 +93,7 @@ TEST(BaseCalibration, WithNoiseItErrsAsMuchAsItSays) {
   EXPECT_LT(mean_square_rad, 3.8);
 }
 
-TEST(BaseCalibration, MakesTheDeviceReadRightWithTheRealEncoders) {
+TEST(BaseCalibration, CorrectsTheReadingsOfTheRealEncoders) {
   const DualArmParameters truth = displaced();
   const BaseCalibration found = calibrateBases(DualArmParameters{}, readingsOf(truth, 200, 1.0, 0.3, 7));
   ASSERT_EQ(found.status, Status::Ok);
@@ -109,10 +109,10 @@ TEST(BaseCalibration, MakesTheDeviceReadRightWithTheRealEncoders) {
   RecordProperty("before_um", std::to_string(1e6 * before_m));
   RecordProperty("after_um", std::to_string(1e6 * after_m));
   EXPECT_GT(before_m, 5e-3) << "nothing to calibrate";
-  EXPECT_LT(after_m, truth.resolution_m / 2);  // below what the encoders tell anyway
+  EXPECT_LT(after_m, truth.resolution_m / 2);  // below the encoders' resolution
 }
 
-TEST(BaseCalibration, SaysWhenItCannot) {
+TEST(BaseCalibration, ReportsWhyItCannotSolve) {
   const DualArmParameters p;
   EXPECT_EQ(calibrateBases(p, readingsOf(p, 11, 1.0, 0, 3)).status, Status::Truncated);
   // Never turned, the handle pulls in one direction only.
@@ -124,14 +124,14 @@ TEST(BaseCalibration, SaysWhenItCannot) {
   EXPECT_EQ(found.parameters.right_shift_m, p.right_shift_m);
 }
 
-TEST(BaseCalibration, NeverTouchesTheHeap) {
+TEST(BaseCalibration, NeverAllocates) {
   const DualArmParameters p;
   const std::vector<DualArmJoints> readings = readingsOf(displaced(), 60, 1.0, 0.3, 6);
   const vps_test::NoAllocScope guard;
   EXPECT_EQ(calibrateBases(p, readings).status, Status::Ok);
 }
 
-TEST(DeviceFrames, ThreeFramesAgreeOnPlacesPowersAndTheArmsOwnReadings) {
+TEST(DeviceFrames, ThreeFramesAgreeOnPositionsPowersAndTheArmsReadings) {
   const DualArmParameters p = displaced();
   const Pose X_DH(rotationFromVector(Vec3(0.3, -0.2, 0.5)), Vec3(0.1, -0.2, 0.05));
   const Twist V_D{Vec3(1, 2, 3), Vec3(-0.1, 0.2, 0.3)};

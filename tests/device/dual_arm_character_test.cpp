@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The device's own Table 1 against formulas, and against looking at every direction.
-#include "vps_device/dual_arm_character.h"
+// The device's own Table 1 against formulas, and against a search over all directions.
+#include "vps_device/dual_arm/character.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "vps_device/dual_arm_controller.h"
-#include "vps_device/dual_arm_plant.h"
+#include "vps_device/dual_arm/controller.h"
+#include "vps_device/dual_arm/plant.h"
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
 
@@ -21,7 +21,7 @@ const DualArmCharacter& character() {
   return c;
 }
 
-TEST(DualArmForces, WorstDirectionIsTheLeastOfAllDirections) {
+TEST(DualArmForces, WorstDirectionIsTheMinimumOverAllDirections) {
   const DualArmParameters p;
   const JointVector limits = motorLimits(p, 0);
   Random random(1);
@@ -44,7 +44,7 @@ TEST(DualArmForces, WorstDirectionIsTheLeastOfAllDirections) {
   }
 }
 
-TEST(DualArmForces, MotorsHoldWhatTheMapSaysAndNoMore) {
+TEST(DualArmForces, MotorsGiveTheForceOfTheMapAndNoMore) {
   const DualArmParameters p;
   const JointVector limits = motorLimits(p, 1);
   EffortMap map;
@@ -55,7 +55,7 @@ TEST(DualArmForces, MotorsHoldWhatTheMapSaysAndNoMore) {
   EXPECT_NEAR((efforts.cwiseAbs() - limits).maxCoeff(), 0, 1e-12);
 }
 
-TEST(DualArmForces, StraightAheadOneArmLiftsItsTorqueOverItsLength) {
+TEST(DualArmForces, StraightAheadOneArmLiftsItsTorqueDividedByItsLength) {
   const DualArmParameters p;
   const double lever_m = p.base_m - 0.5 * p.handle_m;
   const VerticalForce force = verticalForce(p, Vec3::Zero(), motorLimits(p, 0));
@@ -67,7 +67,7 @@ TEST(DualArmForces, StraightAheadOneArmLiftsItsTorqueOverItsLength) {
   EXPECT_NEAR(force.both_N, 2 * (p.plate_torque_Nm / lever_m - weight_N), 1e-9);
 }
 
-TEST(DualArmForces, FigureFiveIsItsOwnMirrorImageButForTheMotorsWeight) {
+TEST(DualArmForces, FigureFiveIsSymmetricExceptForTheMotorsWeight) {
   const std::vector<VerticalForceAt> all = verticalForces(DualArmParameters{});
   ASSERT_EQ(all.size(), 9u * 13 * 9);
   for (const VerticalForceAt& at : all) {
@@ -79,7 +79,7 @@ TEST(DualArmForces, FigureFiveIsItsOwnMirrorImageButForTheMotorsWeight) {
   }
 }
 
-TEST(Characterise, TableOneIsMetWhereTheDeviceClaimsIt) {
+TEST(Characterise, TableOneIsMetWhereTheDeviceStatesIt) {
   const DualArmParameters p;
   const DualArmCharacter& c = character();
   EXPECT_GE(c.straight_scale, 1) << "the workspace is reached";
@@ -100,16 +100,16 @@ TEST(Characterise, TableOneIsMetWhereTheDeviceClaimsIt) {
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, characterise(p).gains_1kHz.k_N_per_m);
 }
 
-// That these are passive and have no limit cycle is measured in coupling_stability_test.cpp.
-TEST(Characterise, GainsShownAreThoseDerivedFromTheArmsOwnNumbers) {
+// coupling_stability_test.cpp verifies that these are passive and have no limit cycle.
+TEST(Characterise, GainsAreDerivedFromTheArmsLimits) {
   const DualArmParameters p;
   const DualArmCharacter c = characterise(p);
   const DeviceLimits limits = dualArmLimits(p, 1000, true);
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, deriveGains(limits, {1000, 1000, 0, 1, 1}).k_N_per_m);
   EXPECT_EQ(c.gains_4kHz.k_N_per_m,
             deriveGains(dualArmLimits(p, 4000, true), {4000, 1000, 0, 1, 1}).k_N_per_m);
-  // By hand: b from the arm, B = b / 5, T/2 + the arm's tick + a physics step = 2.5 ms, and 0.8 of what is
-  // left.
+  // By hand: b from the arm, B = b / 5, T/2 + the arm's tick + a physics step = 2.5 ms, and 0.8 of the
+  // rest.
   const double b = limits.damping_Ns_per_m;
   EXPECT_NEAR(c.gains_1kHz.k_N_per_m, 0.8 * 0.8 * b / 2.5e-3, 1e-9);
   EXPECT_NEAR(c.gains_1kHz.b_Ns_per_m, 0.2 * b, 1e-12);
@@ -118,7 +118,7 @@ TEST(Characterise, GainsShownAreThoseDerivedFromTheArmsOwnNumbers) {
               std::min(0.8 * 0.8 * b / 1.375e-3, 0.8 * 2 * limits.coulomb_N / limits.resolution_m), 1e-9);
 }
 
-TEST(Characterise, ArmsOwnFiguresFollowFromItsReach) {
+TEST(Characterise, ASingleArmsFiguresFollowFromItsReach) {
   const DualArmParameters p;
   const DualArmCharacter& c = character();
   // The gimbal's place over the workspace: from 0.45 m straight ahead to the far edge, 1.05 m off and 0.2 m
@@ -130,7 +130,7 @@ TEST(Characterise, ArmsOwnFiguresFollowFromItsReach) {
   EXPECT_NEAR(c.left_up_N.continuous.least, p.plate_torque_Nm / std::hypot(far_m, 0.2), 1e-9);
 }
 
-TEST(Characterise, NoReadingErrsMoreThanTheResolutionSays) {
+TEST(Characterise, NoReadingsErrorExceedsTheStatedResolution) {
   const DualArmCharacter& c = character();
   DualArmPlantSettings settings;
   settings.arms.noise_steps = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/dual_arm_controller.h"
+#include "vps_device/dual_arm/controller.h"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ void expect(bool claim, const char* promise) {
   EXPECT_TRUE(claim) << promise;
 }
 
-// A controller on hardware that can be told to misbehave.
+// A controller on hardware that can simulate faults.
 struct Rig {
   explicit Rig(const DualArmControllerSettings& settings = {}) : controller(hardware, settings, &events) {}
   DualArmPlant plant;
@@ -47,7 +47,7 @@ struct Rig {
   }
 };
 
-TEST(DualArmController, EachTroubleIsNamedLetsGoOfTheMotorsAndIsClearedByRearming) {
+TEST(DualArmController, EachFaultIsNamedSwitchesTheMotorsOffAndIsClearedByRearm) {
   using Hostile = vps_test::HostileArm;
   struct Case {
     Hostile::Trouble trouble;
@@ -65,7 +65,7 @@ TEST(DualArmController, EachTroubleIsNamedLetsGoOfTheMotorsAndIsClearedByRearmin
       {Hostile::kRightLost, 0, DeviceEventKind::RightArmLost, 1},
       {Hostile::kClockBack, 5, DeviceEventKind::ClockBackwards, 1},
       {Hostile::kClockNan, 0, DeviceEventKind::BadEncoder, 1},
-      {Hostile::kSilent, 0, DeviceEventKind::Silent, 22},  // the watchdog's 20 ms, and one to notice
+      {Hostile::kSilent, 0, DeviceEventKind::Silent, 22},  // the watchdog's 20 ms, and one tick
   };
   const Wrench wanted{Vec3(0.1, 0, 0), Vec3(1, 2, 3)};
   for (const Case& c : cases) {
@@ -93,11 +93,11 @@ TEST(DualArmController, EachTroubleIsNamedLetsGoOfTheMotorsAndIsClearedByRearmin
   }
 }
 
-TEST(DualArmController, LostPeerLeavesTheHandleCarriedAndNothingElse) {
+TEST(DualArmController, ALostPeerLeavesOnlyTheHandlesWeightCarried) {
   Rig rig;
   const Wrench wanted{Vec3::Zero(), Vec3(0, 5, 0)};
   for (int i = 0; i < 50; ++i) rig.tick(wanted);
-  // Its process hangs: nobody asks for a wrench, while the controller goes on reading.
+  // The peer process hangs: no wrench is written, while the controller is still read.
   for (int i = 0; i < 25; ++i) {
     rig.controller.read();
     rig.plant.step(kDt_s, rig.hand);
@@ -117,7 +117,7 @@ TEST(DualArmController, LostPeerLeavesTheHandleCarriedAndNothingElse) {
   EXPECT_NEAR(F.f.y(), 5, 0.02);
 }
 
-TEST(DualArmController, SharpMotionLetsGo) {
+TEST(DualArmController, SharpMotionSwitchesTheMotorsOff) {
   Rig rig;
   for (int i = 0; i < 10; ++i) rig.tick();
   rig.hand = {};
@@ -133,7 +133,7 @@ TEST(DualArmController, SharpMotionLetsGo) {
   EXPECT_TRUE(rig.controller.efforts().isZero());
 }
 
-TEST(DualArmController, SaturationKeepsTheWrenchsDirectionWithTheHandleCarried) {
+TEST(DualArmController, SaturationKeepsTheWrenchsDirectionAndCarriesTheHandle) {
   Rig rig;
   rig.hand.k_N_per_m *= 10;  // 100 N do not move the handle far
   rig.hand.k_Nm_per_rad *= 10;
@@ -175,7 +175,7 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
   const Pose cradle(rotationFromVector(Vec3(0.1, 0, -0.2)), Vec3(0.02, -0.03, 0.01));
   DualArmPlantSettings bare;
   rig.plant.moveTo(cradle);
-  // In the cradle motors are off and nothing bends: give the plant time to let go.
+  // In the cradle motors are off and nothing deflects: wait for the plant's watchdog.
   rig.hand.X_eq = cradle;
   rig.hand.k_N_per_m = 1e6 * Mat3::Identity();
   rig.hand.k_Nm_per_rad = 1e4 * Mat3::Identity();
@@ -183,8 +183,8 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
   ASSERT_EQ(rig.controller.calibrate(cradle), Status::Ok);
   const DeviceSample sample = rig.controller.read();
   ASSERT_EQ(sample.status, Status::Ok);
-  // Off by what the controller takes out for a weight that the motors do not carry here, 0.14 mm, and a
-  // reading.
+  // The error is the deflection of 0.14 mm that the controller subtracts although the motors carry no weight
+  // here, and a reading's.
   EXPECT_LT((sample.X_DH.p - cradle.p).norm(), 0.25e-3);
   EXPECT_EQ(rig.controller.calibrate(Pose::translation(Vec3(NAN, 0, 0))), Status::BadPose);
   rig.hardware.set(vps_test::HostileArm::kNan, 0);
@@ -219,7 +219,7 @@ TEST(DualArmController, WarnsOnceOfStopsHeatSaturationAndBadWrenches) {
   EXPECT_NE(kinds().find("an arm is near its end"), std::string::npos);
 }
 
-TEST(DeviceEvents, EachHasWordsAndASoundAndTheQueueKeepsTheFirst) {
+TEST(DeviceEvents, EachHasTextAndSoundAndAFullQueueKeepsTheOldest) {
   for (int i = 0; i <= static_cast<int>(DeviceEventKind::Rearmed); ++i) {
     const auto kind = static_cast<DeviceEventKind>(i);
     EXPECT_STRNE(toText(kind), "unknown") << i;
@@ -258,7 +258,7 @@ TEST(DeviceEvents, PassFromOneThreadToAnotherInOrder) {
   haptic.join();
 }
 
-TEST(DualArmController, ReadsAndWritesWithoutTheHeap) {
+TEST(DualArmController, ReadsAndWritesWithoutAllocating) {
   Rig rig;
   rig.tick();
   const vps_test::NoAllocScope guard;
@@ -268,9 +268,8 @@ TEST(DualArmController, ReadsAndWritesWithoutTheHeap) {
   rig.controller.rearm();
 }
 
-// Thousands of sequences, each of bytes from a constant seed, of all that hardware, physics and people can do
-// wrong.
-TEST(DualArmController, NoHostileSequenceGetsAForceAboveTheLimitOrForGood) {
+// Thousands of byte sequences from a fixed seed, which select faults of hardware, physics and operator.
+TEST(DualArmController, NoHostileSequenceCausesAForceAboveTheLimitOrAPermanentFault) {
   Random random(20);
   int faulted = 0, recovered = 0;
   double strongest_N = 0;

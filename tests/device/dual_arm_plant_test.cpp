@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/dual_arm_plant.h"
+#include "vps_device/dual_arm/plant.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include <cmath>
 
 #include "support/no_alloc.h"
-#include "vps_device/dual_arm_structure.h"
+#include "vps_device/dual_arm/structure.h"
 
 namespace vps::device {
 namespace {
 
-using bullet::Vec6 = Eigen::Matrix<double, 6, 1>;
-using bullet::Mat6 = Eigen::Matrix<double, 6, 6>;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kDt_s = 1e-3;
 
@@ -26,7 +26,7 @@ DualArmPlantSettings frictionless() {
   return s;
 }
 
-JointVector bullet::carryOf(const DualArmParameters& p, const Pose& X_DH) {
+JointVector carryOf(const DualArmParameters& p, const Pose& X_DH) {
   JointVector efforts;
   EXPECT_EQ(motorEfforts(p, X_DH, {Vec3::Zero(), Vec3(0, 0, 9.81 * p.handle_kg)}, efforts), Status::Ok);
   return efforts;
@@ -38,26 +38,26 @@ HandForce pushing(const Vec3& f) {
   return hand;
 }
 
-TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
+TEST(DualArmPlant, WithFixedMotorsTheHandleYieldsByTheStructureAlone) {
   DualArmPlantSettings settings;
   settings.has_quantised_encoders = false;
-  // Motors that nothing turns.
+  // Motors that cannot turn.
   settings.arms.plate_coulomb_Nm = settings.arms.link_coulomb_N = settings.arms.rotor_coulomb_Nm = 1e4;
   const DualArmParameters& p = settings.arms;
   double softest = 1e9, stiffest = 0;
   for (int i = 0; i < 27; ++i) {
     const Vec3 corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     settings.X_DH_start = Pose::translation(0.5 * p.workspace_m.cwiseProduct(corner));
-    const JointVector carry = bullet::carryOf(p, settings.X_DH_start);
+    const JointVector carry = carryOf(p, settings.X_DH_start);
     HandleMotion motion;
     ASSERT_EQ(handleMotion(p, settings.X_DH_start, motion), Status::Ok);
-    const bullet::Mat6 K =
-        motion.J.transpose() * structureStiffness(p, motion.joints).asDiagonal() * motion.J;
-    for (const bool is_held : {false, true}) {  // by a hand that lets the handle turn, and one that does not
+    const Mat6 K = motion.J.transpose() * structureStiffness(p, motion.joints).asDiagonal() * motion.J;
+    for (const bool is_held :
+         {false, true}) {  // by a hand that lets the handle rotate, and one that does not
       HandForce hand;
       hand.X_eq = settings.X_DH_start;
       if (is_held) hand.k_Nm_per_rad = 1e6 * Mat3::Identity();
-      bullet::Mat6 K_all = K;
+      Mat6 K_all = K;
       K_all.topLeftCorner<3, 3>() += hand.k_Nm_per_rad;
       for (int axis = 0; axis < 3; ++axis) {
         DualArmPlant plant(settings);
@@ -66,7 +66,7 @@ TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
           plant.drive(carry);
           plant.step(kDt_s, hand);
         }
-        bullet::Vec6 F;
+        Vec6 F;
         F << Vec3::Zero(), hand.F.f;
         const Vec3 expected = K_all.ldlt().solve(F).tail<3>(), moved = plant.pose().p - settings.X_DH_start.p;
         // Linear for 0.4 mm of 0.45 m; friction below its slip creeps, 1e4 N m at 2e-3 rad/s, over 0.4 s.
@@ -84,7 +84,7 @@ TEST(DualArmPlant, HandleGivesWayByTheStructureAloneWhenTheMotorsAreHeldFast) {
   EXPECT_LT(stiffest, 18000);
 }
 
-TEST(DualArmStructure, StiffnessIsCapstanLinkAndGimbalInSeriesAndDriftItsEnergysSlope) {
+TEST(DualArmStructure, StiffnessIsCapstanLinkAndGimbalInSeriesAndDriftIsTheGradientOfItsEnergy) {
   const DualArmParameters p;
   JointVector q;
   q << 0.2, -0.5, 0.7, -0.1, 0.4, 1.1, 0.3;
@@ -107,7 +107,7 @@ TEST(DualArmStructure, StiffnessIsCapstanLinkAndGimbalInSeriesAndDriftItsEnergys
   EXPECT_GT(drift.norm(), 1e-4);
 }
 
-TEST(DualArmPlant, AcceleratesAsItsInertiaSays) {
+TEST(DualArmPlant, AcceleratesByItsInertia) {
   DualArmPlantSettings settings = frictionless();
   settings.is_rigid = true;
   settings.arms.delay_ticks = 0;
@@ -117,15 +117,15 @@ TEST(DualArmPlant, AcceleratesAsItsInertiaSays) {
   HandleMotion motion;
   ASSERT_EQ(handleMotion(p, settings.X_DH_start, motion), Status::Ok);
   const JointVector inertia = jointVector(p.plate_kgm2, p.link_kg, p.rotor_kgm2);
-  bullet::Mat6 M = motion.J.transpose() * inertia.asDiagonal() * motion.J;
+  Mat6 M = motion.J.transpose() * inertia.asDiagonal() * motion.J;
   const Mat3& R = settings.X_DH_start.R;
   M.topLeftCorner<3, 3>() += R * p.handle_kgm2.asDiagonal() * R.transpose();
   M.bottomRightCorner<3, 3>().diagonal().array() += p.handle_kg;
-  plant.drive(bullet::carryOf(p, settings.X_DH_start));
+  plant.drive(carryOf(p, settings.X_DH_start));
   HandForce hand = pushing(Vec3(1, -2, 0.5));
   hand.F.tau = Vec3(0.01, -0.02, 0.015);
   plant.step(1e-6, hand);
-  bullet::Vec6 F, V;
+  Vec6 F, V;
   F << hand.F.tau, hand.F.f;
   V << plant.twist().w, plant.twist().v;
   EXPECT_LT((V / 1e-6 - M.llt().solve(F)).norm(), 1e-6 * (M.llt().solve(F)).norm());
@@ -145,7 +145,7 @@ TEST(DualArmPlant, CommandActsAfterTheStatedTicks) {
   }
 }
 
-TEST(DualArmPlant, AmplifiersLetGoWhenNobodyDrivesThemAndCutWhatIsTooMuch) {
+TEST(DualArmPlant, AmplifiersSwitchOffWithoutCommandsAndLimitEfforts) {
   DualArmPlant plant;
   const DualArmParameters& p = plant.settings().arms;
   JointVector wild = JointVector::Constant(1e9);
@@ -164,7 +164,7 @@ TEST(DualArmPlant, AmplifiersLetGoWhenNobodyDrivesThemAndCutWhatIsTooMuch) {
   EXPECT_EQ(plant.efforts(), JointVector(JointVector::Zero()));
 }
 
-TEST(DualArmPlant, StopsHoldEachJointAndGiveNoEnergyBack) {
+TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
   DualArmPlantSettings settings = frictionless();
   const DualArmParameters& p = settings.arms;
   // Far along each axis, by a hand that pulls with 15 N at most, and about each axis with 1 N m.
@@ -178,10 +178,10 @@ TEST(DualArmPlant, StopsHoldEachJointAndGiveNoEnergyBack) {
     for (int tick = 0; tick < 3000; ++tick) {
       HandForce hand;
       (is_turn ? hand.F.tau : hand.F.f) = (is_turn ? 0.5 : 15.0) * pull;
-      // A hand that damps: what it takes out and puts in is its affair, and the rest must balance.
+      // A damping hand: its own work is accounted for, and the rest must balance.
       hand.b_Ns_per_m = 30 * Mat3::Identity();
       hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
-      plant.drive(bullet::carryOf(p, plant.pose()));
+      plant.drive(carryOf(p, plant.pose()));
       plant.step(kDt_s, hand);
       HandleMotion motion;
       ASSERT_EQ(handleMotion(p, plant.pose(), motion), Status::Ok) << axis;
@@ -203,14 +203,14 @@ TEST(DualArmPlant, StopsHoldEachJointAndGiveNoEnergyBack) {
       travelled_J += kDt_s * power(plant.lastHandWrench(), plant.twist());
       gained_J = std::max(gained_J, plant.kinetic_J() + plant.structure_J() - travelled_J);
     }
-    // About x the handle turns end for end: no joint ends that, the arms would meet first.
+    // About x the handle turns end for end: no joint stop limits that, the arms would collide first.
     EXPECT_EQ(has_hit, axis / 2 != 3) << axis;
-    EXPECT_LT(gained_J, 2e-3) << "axis "
-                              << axis;  // weight and its carrying differ by the bent structure's 0.2 mm
+    EXPECT_LT(gained_J, 2e-3)
+        << "axis " << axis;  // weight and its compensation differ by the structure's deflection of 0.2 mm
   }
 }
 
-TEST(DualArmPlant, NoiseHasTheStatedDeviationAndTheSeedsBits) {
+TEST(DualArmPlant, NoiseHasTheStatedDeviationAndDependsOnlyOnTheSeed) {
   DualArmPlantSettings settings;
   settings.arms.noise_steps = 5;  // well above the rounding's 0.29 steps
   DualArmPlant plant(settings), same(settings);
@@ -241,10 +241,10 @@ TEST(DualArmPlant, NoiseHasTheStatedDeviationAndTheSeedsBits) {
   }
 }
 
-TEST(DualArmPlant, SwingsOnItsStructureAtTheFrequencyOfItsInertia) {
+TEST(DualArmPlant, OscillatesOnItsStructureAtTheFrequencyOfItsInertia) {
   DualArmPlantSettings settings = frictionless();
   settings.arms.structure_damping_s = 0;
-  settings.arms.handle_kg = 1e-6;  // no weight: nothing but structure and inertia
+  settings.arms.handle_kg = 1e-6;  // no weight: only structure and inertia
   settings.arms.gimbal_N_per_m = 1e9;
   settings.arms.p_EH.setZero();
   // Motors held by their inertia: a thousand times the links'.
@@ -286,7 +286,7 @@ TEST(DualArmPlant, MotorsNeverHeatBeyondTheirContinuousRating) {
   MotorHeat heat(p);
   double hottest = 0, peak_s = 0;
   for (int i = 0; i < 20000; ++i) {
-    const JointVector efforts = heat.limits();  // always all that is allowed
+    const JointVector efforts = heat.limits();  // always the present limit
     if (efforts[0] > 0.99 * p.plate_peak_Nm) peak_s = i * kDt_s;
     heat.add(efforts, kDt_s);
     hottest = std::max(hottest, heat.heat().maxCoeff());
@@ -298,7 +298,7 @@ TEST(DualArmPlant, MotorsNeverHeatBeyondTheirContinuousRating) {
   EXPECT_NEAR(peak_s, -p.thermal_s * std::log(1 - 0.9 * ratio * ratio), 3e-3);
 }
 
-TEST(DualArmPlant, StepsWithoutTheHeap) {
+TEST(DualArmPlant, StepsWithoutAllocating) {
   DualArmPlant plant;
   const vps_test::NoAllocScope guard;
   for (int i = 0; i < 100; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The game controller without one: SDL's virtual joystick.
+// The game controller, simulated by SDL's virtual joystick.
 #if __has_include(<SDL2/SDL.h>)
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using test::isThere;
 using test::within10s;
 
-/// A controller that is plugged in as long as it lives.
+/// A controller that is plugged in during its lifetime.
 class VirtualController {
  public:
   VirtualController()
@@ -72,7 +72,7 @@ TEST_F(GameController, UnpluggedItIsLostAndPluggedInItIsFound) {
   EXPECT_TRUE(within10s(*device_, isThere));
 }
 
-TEST_F(GameController, EachStickAndButtonMovesTheHandleItsOwnWay) {
+TEST_F(GameController, EachStickAndButtonMovesItsOwnAxis) {
   VirtualController controller;
   ASSERT_TRUE(within10s(*device_, isThere));
   const auto expectMoves = [&](const Vec3& v, const Vec3& w, const char* what) {
@@ -94,7 +94,7 @@ TEST_F(GameController, EachStickAndButtonMovesTheHandleItsOwnWay) {
   };
   for (const SDL_GameControllerAxis trigger :
        {SDL_CONTROLLER_AXIS_TRIGGERLEFT, SDL_CONTROLLER_AXIS_TRIGGERRIGHT})
-    controller.push(trigger, -32768);  // a virtual trigger is an axis, let go at its lower end
+    controller.push(trigger, -32768);  // a virtual trigger is an axis, released at its lower end
   for (const auto& c : cases) {
     const bool is_trigger =
         c.axis == SDL_CONTROLLER_AXIS_TRIGGERLEFT || c.axis == SDL_CONTROLLER_AXIS_TRIGGERRIGHT;

@@ -50,8 +50,8 @@ const WallModels& wall() {
   return models;
 }
 
-/// The truth that a physics engine would find: the cube does not turn, is coupled to the proxy, and the wall
-/// is rigid. Backward Euler, axis by axis.
+/// Reference of a physics engine: the cube does not rotate, is coupled to the proxy, and the wall is rigid.
+/// Backward Euler, axis by axis.
 struct CubePhysics {
   CouplingState part{Pose::translation(Vec3(0, 0, kHalf_m + 2e-3)), {}, 0, true};
 
@@ -75,8 +75,8 @@ struct Motion {
 
 struct Played {
   std::vector<Vec3> forces_N;  // by tick
-  double worst_normal_N = 0;   // |force - K depth - b v|, once the truth has settled after touching
-  double worst_side_N = 0;     // sideways, where the truth is none
+  double worst_normal_N = 0;   // |force - K depth - b v|, once the reference has settled after touching
+  double worst_side_N = 0;     // sideways, where the reference is zero
   double greatest_step_N = 0;  // from tick to tick
   LocalContact::Report local;
 };
@@ -93,7 +93,7 @@ Played play(const std::function<Motion(double)>& motion, int ticks, bool has_loc
   settings.gains = dualArmGains();
   settings.local = has_local ? &local : nullptr;
   HapticLoop loop(device, port, settings);
-  port.part.write(physics.part);
+  port.physics.write({physics.part, 0, {}, {}});
   loop.grasp(physics.part.X_W);
   Played played;
   Vec3 before = Vec3::Zero();
@@ -113,8 +113,8 @@ Played play(const std::function<Motion(double)>& motion, int ticks, bool has_loc
     before = f_N;
     played.forces_N.push_back(f_N);
     if (tick % ticks == 0) {
-      physics.step(settings.gains, port.proxy.read(), ticks * kTick_s);
-      port.part.write(physics.part);
+      physics.step(settings.gains, port.haptic.read().proxy, ticks * kTick_s);
+      port.physics.write({physics.part, 0, {}, {}});
     }
   }
   played.local = local.report();
@@ -136,7 +136,7 @@ Motion slide(double t_s) {
   return m;
 }
 
-TEST(LocalContact, PressedOnAWallThePartStopsWhereTheContactsStiffnessSays) {
+TEST(LocalContact, PressedOnAWallThePartStopsAtTheDepthOfTheContactStiffness) {
   LocalContact local;
   local.take(wall().part());
   const CouplingGains gains = dualArmGains();
@@ -148,7 +148,7 @@ TEST(LocalContact, PressedOnAWallThePartStopsWhereTheContactsStiffnessSays) {
     for (int i = 0; i < 40; ++i) part = local.follow(gains, proxy, snapshot, kTick_s);
   }
   // In series with the coupling: depth k A = K (3 mm - depth), A the face's points, the rim's among them.
-  // Nodes are rounded to half a quantum.
+  // The voxmap's nodes are rounded to half a quantum.
   double area_m2 = 0;
   for (std::uint32_t i = 0; i < wall().shell.size(); ++i)
     if (wall().shell.points[i].z() < -kHalf_m + 1e-9) area_m2 += wall().shell.area_m2[i];
@@ -160,7 +160,7 @@ TEST(LocalContact, PressedOnAWallThePartStopsWhereTheContactsStiffnessSays) {
   EXPECT_EQ(local.report().held, 0u);
 }
 
-TEST(LocalContact, InTheAirItIsTheCouplingsOwnMotion) {
+TEST(LocalContact, InTheAirItMovesByTheCouplingAlone) {
   LocalContact local;
   local.take(wall().part());
   const CouplingGains gains = dualArmGains();
@@ -187,7 +187,7 @@ TEST(LocalContact, FrictionHoldsAPartThatIsPulledWithinTheCone) {
     CouplingState now{Pose::translation(Vec3(0, 0, kHalf_m)), {}, 1, true};
     for (int i = 0; i < 40; ++i)
       now = local.follow(gains, proxy, {Pose::translation(Vec3(0, 0, kHalf_m)), {}, 1, true}, kTick_s);
-    // Within the cone it creeps, at most at the speed from which on friction is full.
+    // Within the cone it creeps, at most at the speed at which friction has its full value.
     if (pull_m < 1e-3) {
       EXPECT_LT(now.X_W.p.x(), 1e-3 * 40 * kTick_s);
     } else {
@@ -207,7 +207,7 @@ double apart_N(const Played& a, const Played& b) {
   return most_N;
 }
 
-TEST(LocalContact, WithSlowPhysicsATouchIsThatOfFastPhysicsAndJaggedWithoutIt) {
+TEST(LocalContact, WithSlowPhysicsATouchMatchesThatOfFastPhysics) {
   const Played truth = play(press, 1, false, 0, 0.4), jagged = play(press, 10, false, 0, 0.4),
                crisp = play(press, 10, true, 0, 0.4);
   RecordProperty("error_100Hz_N", std::to_string(apart_N(jagged, truth)));
@@ -222,14 +222,14 @@ TEST(LocalContact, WithSlowPhysicsSlidingHasNoSawTooth) {
   const Played jagged = play(slide, 10, false, 0.3, 0.6), smooth = play(slide, 10, true, 0.3, 0.6);
   RecordProperty("side_100Hz_N", std::to_string(jagged.worst_side_N));
   RecordProperty("side_100Hz_local_N", std::to_string(smooth.worst_side_N));
-  // Held for ten periods at 50 mm/s the part hangs back by 0.5 mm: 0.58 N, and nine tenths of it in one step.
+  // Held for ten periods at 50 mm/s the part lags by 0.5 mm: 0.58 N, nine tenths of it in one step.
   EXPECT_GT(jagged.greatest_step_N, 0.4);
   EXPECT_LT(smooth.worst_side_N, jagged.worst_side_N / 4);
   EXPECT_LT(smooth.greatest_step_N, jagged.greatest_step_N / 4);
 }
 
-TEST(LocalContact, BetweenSnapshotsItOnlyLosesEnergy) {
-  // The hand holds still: what is stored in spring, motion and contact must fall at every tick.
+TEST(LocalContact, BetweenPhysicsStatesItOnlyLosesEnergy) {
+  // The hand holds still: the energy in spring, motion and contact must decrease at every tick.
   LocalContact local;
   local.take(wall().part());
   const CouplingGains gains = dualArmGains();
@@ -250,13 +250,13 @@ TEST(LocalContact, BetweenSnapshotsItOnlyLosesEnergy) {
   for (int i = 0; i < 49; ++i) {
     part = local.follow(gains, proxy, snapshot, kTick_s);
     const double now_J = stored_J(part);
-    // What contact gives back: at most its own 1/2 k A d^2, a microjoule at these depths.
+    // Contact returns at most its own 1/2 k A d^2, a microjoule at these depths.
     ASSERT_LT(now_J, before_J + 1e-5) << i;
     before_J = std::min(before_J, now_J);
   }
 }
 
-TEST(LocalContact, HoldsThePartWhereItIsWhenPhysicsIsGoneOrContactsAreTooMany) {
+TEST(LocalContact, HoldsThePartWhenPhysicsStopsOrContactsAreTooMany) {
   const CouplingGains gains = dualArmGains();
   const CouplingState proxy{Pose::translation(Vec3(5e-3, 0, kHalf_m + 5e-3)), {}, 0, true};
   const CouplingState snapshot{Pose::translation(Vec3(0, 0, kHalf_m + 5e-3)), {}, 1, true};
@@ -280,7 +280,7 @@ TEST(LocalContact, HoldsThePartWhereItIsWhenPhysicsIsGoneOrContactsAreTooMany) {
   EXPECT_EQ(crowded.report().held, 1u);
 }
 
-TEST(LocalContact, WhatIsNoNumberIsPassedOnForOthersToRefuse) {
+TEST(LocalContact, AStateThatIsNotFiniteIsReturnedUnchanged) {
   LocalContact local;
   local.take(wall().part());
   CouplingState snapshot{Pose::translation(Vec3(0, 0, kHalf_m)), {}, 1, true};

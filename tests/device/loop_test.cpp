@@ -7,14 +7,14 @@
 #include <cmath>
 
 #include "support/no_alloc.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
-#include "vps_device/simulated_dual_arm.h"
 
 namespace vps::device {
 namespace {
 
-// A device of the test's making: says what it is told, keeps what it is given.
+// A device that returns the test's sample and stores the written wrench.
 class Puppet final : public Device {
  public:
   DeviceSample read() noexcept override { return sample; }
@@ -37,7 +37,7 @@ LoopSettings quick() {
   return settings;
 }
 
-TEST(WorkspaceMap, ThereAndBackIsTheIdentityAndPowerScalesAsStated) {
+TEST(WorkspaceMap, RoundTripIsTheIdentityAndPowerScalesAsStated) {
   const WorkspaceMap map{Pose(rotationFromVector(Vec3(0.3, 1, -2)), Vec3(1, 2, 3)), 2.5, 0.5};
   const Pose X(rotationFromVector(Vec3(1, 0.2, 0.3)), Vec3(0.1, -0.2, 0.3));
   const Pose back = map.toDevice(map.toScene(X));
@@ -56,21 +56,21 @@ TEST(HapticLoop, GraspingAnywhereGivesNoForce) {
   device.sample.X_DH = Pose(rotationFromVector(Vec3(0.5, 0, 0.2)), Vec3(0.1, 0.1, 0));
   const Pose X_WG(rotationFromVector(Vec3(0, -1, 2)), Vec3(-3, 4, 5));
   loop.grasp(X_WG);
-  port.part.write(partAt(X_WG));
+  port.physics.write({partAt(X_WG), 0, {}, {}});
   loop.tick();
   // A spring of 2000 N/m times a rounding of 1e-15.
   EXPECT_LT(device.written.f.norm() + device.written.tau.norm(), 1e-10);
-  EXPECT_LT((port.proxy.read().X_W.p - X_WG.p).norm(), 1e-14);
+  EXPECT_LT((port.haptic.read().proxy.X_W.p - X_WG.p).norm(), 1e-14);
 }
 
-TEST(HapticLoop, ForceOnTheHandPullsTowardsThePartTurnedIntoTheDevice) {
+TEST(HapticLoop, ForceOnTheHandPullsTowardsThePartInDeviceCoordinates) {
   Puppet device;
   CouplingPort port;
   LoopSettings settings = quick();
   settings.map.X_WD.R = rotationFromVector(Vec3(0, 0, M_PI / 2));  // device x is scene y
   HapticLoop loop(device, port, settings);
   loop.grasp(Pose{});
-  port.part.write(partAt(Pose{}));
+  port.physics.write({partAt(Pose{}), 0, {}, {}});
   device.sample.X_DH.p = Vec3(1e-3, 0, 0);
   const TickReport report = loop.tick();
   EXPECT_NEAR(report.X_WG.p.y(), 1e-3, 1e-15);
@@ -86,13 +86,13 @@ TEST(HapticLoop, NothingIsFeltBeforePhysicsCouplesOrAfterRelease) {
   device.sample.X_DH.p = Vec3(1e-3, 0, 0);
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
-  port.part.write(partAt(Pose{}));
+  port.physics.write({partAt(Pose{}), 0, {}, {}});
   loop.tick();
   EXPECT_GT(device.written.f.norm(), 1);
   loop.release();
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
-  EXPECT_FALSE(port.proxy.read().is_coupled);
+  EXPECT_FALSE(port.haptic.read().proxy.is_coupled);
 }
 
 TEST(HapticLoop, LostDeviceStopsForceAndProxyUntilRearmedAndThenRegrasps) {
@@ -100,14 +100,14 @@ TEST(HapticLoop, LostDeviceStopsForceAndProxyUntilRearmedAndThenRegrasps) {
   CouplingPort port;
   HapticLoop loop(device, port, quick());
   loop.grasp(Pose{});
-  port.part.write(partAt(Pose{}));
+  port.physics.write({partAt(Pose{}), 0, {}, {}});
   device.sample.X_DH.p = Vec3(1e-3, 0, 0);
   loop.tick();
   device.sample.status = Status::Fault;
   device.sample.X_DH.p = Vec3(0.3, 0, 0);
   EXPECT_EQ(loop.tick().status, Status::Fault);
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
-  EXPECT_NEAR(port.proxy.read().X_W.p.x(), 1e-3, 1e-15);
+  EXPECT_NEAR(port.haptic.read().proxy.X_W.p.x(), 1e-3, 1e-15);
   device.sample.status = Status::Ok;
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
@@ -127,10 +127,10 @@ TEST(HapticLoop, JumpingPoseDoesNotDragThePartAlong) {
   loop.tick();
   device.sample.X_DH.p = Vec3(0.2, 0, 0);
   EXPECT_EQ(loop.tick().status, Status::Fault);
-  EXPECT_EQ(port.proxy.read().X_W.p, Vec3(Vec3::Zero()));
+  EXPECT_EQ(port.haptic.read().proxy.X_W.p, Vec3(Vec3::Zero()));
 }
 
-TEST(HapticLoop, InjectedEnergyIsMetWithTheDampingTheDeviceLeaves) {
+TEST(HapticLoop, InjectedEnergyIsDissipatedByTheDevicesSpareDamping) {
   Puppet device;
   device.known.damping_Ns_per_m = 5;
   CouplingPort port;
@@ -143,20 +143,20 @@ TEST(HapticLoop, InjectedEnergyIsMetWithTheDampingTheDeviceLeaves) {
   loop.tick();
   loop.tick();
   EXPECT_EQ(device.written.f, Vec3(Vec3::Zero()));
-  loop.observeStoredEnergy(0.5, 0);  // half a joule from nowhere
-  loop.tick();                       // books it
-  loop.tick();                       // and acts
-  EXPECT_NEAR(loop.ledger().injected_J, 0.5, 1e-12);
+  loop.observeStoredEnergy(0.5, 0);  // half a joule without a source
+  loop.tick();                       // accounts for it
+  loop.tick();                       // and damps
+  EXPECT_NEAR(loop.passivity().injected_J, 0.5, 1e-12);
   EXPECT_NEAR(device.written.f.x(), -0.1 * (5 - 2000 * 0.5e-3 - 1), 1e-12);
 }
 
-TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
+TEST(HapticLoop, EnergyAccountSplitsWorkAndFindsNoneGeneratedInASpring) {
   Puppet device;
   CouplingPort port;
   HapticLoop loop(device, port, quick());
   const double k = loop.settings().gains.k_N_per_m;
   loop.grasp(Pose{});
-  port.part.write(partAt(Pose{}));
+  port.physics.write({partAt(Pose{}), 0, {}, {}});
   const double travel_m = 5e-3;
   const int n = 500;
   for (int i = 0; i <= 2 * n; ++i) {  // out and back
@@ -165,15 +165,15 @@ TEST(HapticLoop, LedgerSplitsWorkAndFindsNoEnergyInASpring) {
     loop.tick();
     loop.observeStoredEnergy(0.5 * k * x * x, 0);
   }
-  // Held force: each of n steps of h errs by k h^2 / 2, against the hand on the way out and to it on the way
-  // back.
+  // The force is held: each of n steps of h has an error of k h^2 / 2, against the hand on the way out and
+  // with it on the way back.
   const double stored_J = 0.5 * k * travel_m * travel_m, hold_J = 0.5 * k * travel_m * travel_m / n;
-  EXPECT_NEAR(loop.ledger().from_hand_J, stored_J - hold_J, 1e-9);
-  EXPECT_NEAR(loop.ledger().to_hand_J, stored_J + hold_J, 1e-9);
-  EXPECT_NEAR(loop.ledger().injected_J, 2 * hold_J, 1e-9);
+  EXPECT_NEAR(loop.passivity().from_hand_J, stored_J - hold_J, 1e-9);
+  EXPECT_NEAR(loop.passivity().to_hand_J, stored_J + hold_J, 1e-9);
+  EXPECT_NEAR(loop.passivity().injected_J, 2 * hold_J, 1e-9);
 }
 
-TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
+TEST(HapticLoop, TheErrorByQuantisationIsWithinItsBound) {
   const double step_m = 0.1e-3;  // readings are off by half of it at the most
   for (const double rate_rad_s : {1.0, 7.0, 40.0}) {
     Puppet device;
@@ -181,7 +181,7 @@ TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
     CouplingPort port;
     HapticLoop loop(device, port, quick());
     loop.grasp(Pose{});
-    port.part.write(partAt(Pose{}));
+    port.physics.write({partAt(Pose{}), 0, {}, {}});
     double true_J = 0, x_before_m = 0, greatest_J = 0;
     for (int i = 0; i < 3000; ++i) {
       const double x_m = 2e-3 * std::sin(rate_rad_s * i * 1e-3);
@@ -189,42 +189,42 @@ TEST(HapticLoop, WhatTheEncodersHideFromTheLedgerIsWithinItsBound) {
       x_before_m = x_m;
       device.sample.X_DH.p.x() = step_m * std::round(x_m / step_m);
       loop.tick();
-      const PassivityObserver& ledger = loop.ledger();
+      const PassivityObserver& ledger = loop.passivity();
       const double hidden_J = std::abs(true_J - (ledger.to_hand_J - ledger.from_hand_J));
       ASSERT_LE(hidden_J, ledger.quantisation_error_bound_J + 1e-12) << i;
       greatest_J = std::max(greatest_J, hidden_J);
     }
-    EXPECT_GT(greatest_J, 1e-6);  // there is something to hide
+    EXPECT_GT(greatest_J, 1e-6);  // the error is not trivially zero
   }
 }
 
-// Leads the handle to x_m in one tick, with so much stored in the scene.
+// Moves the handle to x_m in one tick, with this energy stored in the scene.
 void lead(HapticLoop& loop, Puppet& device, double x_m, double stored_J) {
   device.sample.X_DH.p.x() = x_m;
   loop.tick();
   loop.observeStoredEnergy(stored_J, 0);
 }
 
-TEST(HapticLoop, WhatWasDissipatedEarlyDoesNotPayForWhatIsMadeLater) {
+TEST(HapticLoop, EarlyDissipationDoesNotOffsetLaterGeneration) {
   Puppet device;
   CouplingPort port;
   HapticLoop loop(device, port, quick());
   const double k = loop.settings().gains.k_N_per_m, x_m = 1e-3;
   loop.grasp(Pose{});
   lead(loop, device, 0, 0);
-  port.part.write(partAt(Pose::translation(Vec3(x_m, 0, 0))));  // pulls by k x
+  port.physics.write({partAt(Pose::translation(Vec3(x_m, 0, 0))), 0, {}, {}});  // pulls by k x
   lead(loop, device, 0, 0);
-  // The hand is led against the pull and nothing is stored: k x times 1 mm is gone for good.
+  // The hand moves against the pull and nothing is stored: k x times 1 mm is dissipated.
   lead(loop, device, -x_m, 0);
-  EXPECT_NEAR(loop.ledger().balance_J, -k * x_m * x_m, 1e-12);
-  EXPECT_EQ(loop.ledger().injected_J, 0);
-  // Now half as much comes from nowhere. The greatest balance over time is still the zero of the beginning.
+  EXPECT_NEAR(loop.passivity().balance_J, -k * x_m * x_m, 1e-12);
+  EXPECT_EQ(loop.passivity().injected_J, 0);
+  // Now half as much appears without a source. The greatest balance over time is still the initial zero.
   lead(loop, device, -x_m, 0.5 * k * x_m * x_m);
-  EXPECT_LT(loop.ledger().balance_J, 0);
-  EXPECT_NEAR(loop.ledger().injected_J, 0.5 * k * x_m * x_m, 1e-12);
+  EXPECT_LT(loop.passivity().balance_J, 0);
+  EXPECT_NEAR(loop.passivity().injected_J, 0.5 * k * x_m * x_m, 1e-12);
 }
 
-TEST(HapticLoop, LedgerTakesTheForceThatActsAtTheDeviceNotTheOneJustWritten) {
+TEST(HapticLoop, EnergyAccountUsesTheActingForceNotTheOneJustWritten) {
   for (const double ticks : {0.0, 1.0, 2.25}) {
     Puppet device;
     device.known.delay_s = ticks * 1e-3;
@@ -232,21 +232,41 @@ TEST(HapticLoop, LedgerTakesTheForceThatActsAtTheDeviceNotTheOneJustWritten) {
     HapticLoop loop(device, port, quick());
     const double k = loop.settings().gains.k_N_per_m, v_m = 1e-4;
     loop.grasp(Pose{});
-    port.part.write(partAt(Pose{}));
+    port.physics.write({partAt(Pose{}), 0, {}, {}});
     const int n = 50;
     for (int i = 0; i <= n; ++i) lead(loop, device, i * v_m, 0);
-    // Step i ends at i v and feels k v (i - 1 - ticks), but none from before the start: a part of a tick
-    // there.
+    // Step i ends at i v and feels k v (i - 1 - ticks), but no force from before the start, where a fraction
+    // of a tick counts.
     double work_J = 0;
     for (int i = 1; i <= n; ++i) {
       const double late = ticks - std::floor(ticks), newer = i - 1 - std::floor(ticks);
       work_J += k * v_m * v_m * ((1 - late) * std::max(0.0, newer) + late * std::max(0.0, newer - 1));
     }
-    EXPECT_NEAR(loop.ledger().from_hand_J, work_J, 1e-12) << ticks;
+    EXPECT_NEAR(loop.passivity().from_hand_J, work_J, 1e-12) << ticks;
   }
 }
 
-TEST(HapticLoop, TickNeverTouchesTheHeap) {
+TEST(HapticLoop, PublishesItsStateAfterEachTickAndObservesStoredEnergyOncePerStep) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, {});
+  port.physics.write({partAt(Pose{}), 1, 1.0, {}});
+  loop.tick();
+  EXPECT_EQ(loop.passivity().balance_J, 0) << "the first observation";
+  port.physics.write({partAt(Pose{}), 1, 2.0, {}});
+  loop.tick();
+  EXPECT_EQ(loop.passivity().balance_J, 0) << "the same step";
+  port.physics.write({partAt(Pose{}), 2, 2.0, {}});
+  loop.tick();
+  EXPECT_EQ(loop.passivity().balance_J, 1);
+  EXPECT_EQ(loop.received().step, 2);
+  const HapticState& state = port.haptic.read();
+  EXPECT_EQ(state.tick, 3);
+  EXPECT_EQ(state.passivity.injected_J, 1);
+  EXPECT_EQ(state.report.time_s, loop.last().time_s);
+}
+
+TEST(HapticLoop, TickNeverAllocates) {
   SimulatedDualArm arm;
   CouplingPort port;
   LoopSettings settings;
@@ -255,7 +275,7 @@ TEST(HapticLoop, TickNeverTouchesTheHeap) {
   loop.grasp(Pose{});
   const vps_test::NoAllocScope guard;
   for (int i = 0; i < 100; ++i) {
-    port.part.write(partAt(Pose::translation(Vec3(1e-3, 0, 0))));
+    port.physics.write({partAt(Pose::translation(Vec3(1e-3, 0, 0))), 0, {}, {}});
     loop.tick();
     arm.step(1e-3, loop.toDevice(HandForce{}));
   }
@@ -269,7 +289,7 @@ TEST(HapticLoop, GainsOutOfRangeGiveNoForceEvenWhenRearmed) {
     settings.gains.k_N_per_m = bad;
     HapticLoop loop(device, port, settings);
     loop.grasp(Pose{});
-    port.part.write(partAt(Pose{}));
+    port.physics.write({partAt(Pose{}), 0, {}, {}});
     device.sample.X_DH.p = Vec3(1e-3, 0, 0);
     for (int i = 0; i < 3; ++i) {
       EXPECT_EQ(loop.tick().status, Status::Fault);
@@ -280,7 +300,7 @@ TEST(HapticLoop, GainsOutOfRangeGiveNoForceEvenWhenRearmed) {
   }
 }
 
-TEST(Gains, AnswerForTheDevicesOwnDelay) {
+TEST(Gains, AllowForTheDevicesOwnDelay) {
   DeviceLimits limits;
   limits.damping_Ns_per_m = 5;
   limits.delay_s = 1e-3;
@@ -346,7 +366,7 @@ Press pressOnFloor(CouplingGains gains, int haptic_per_physics, double hand_k) {
   hand.b_Nms_per_rad = 0.02 * Mat3::Identity();
   double low_N = 1e9, high_N = -1e9;
   for (int ms = 0; ms < 2000; ++ms) {
-    port.part.write(world.part);
+    port.physics.write({world.part, 0, {}, {}});
     const double down_m = -5.0 / hand_k;
     hand.X_eq = Pose::translation(Vec3(0, 0, 5e-3 + (down_m - 5e-3) * std::min(1.0, ms / 500.0)));
     for (int i = 0; i < haptic_per_physics; ++i) {
@@ -356,9 +376,9 @@ Press pressOnFloor(CouplingGains gains, int haptic_per_physics, double hand_k) {
       low_N = std::min(low_N, loop.last().F_hand_W.f.z());
       high_N = std::max(high_N, loop.last().F_hand_W.f.z());
     }
-    world.step(gains, port.proxy.read(), 1e-3);
+    world.step(gains, port.haptic.read().proxy, 1e-3);
   }
-  return {-loop.last().X_WG.p.z(), 0.5 * (low_N + high_N), high_N - low_N, loop.ledger().injected_J,
+  return {-loop.last().X_WG.p.z(), 0.5 * (low_N + high_N), high_N - low_N, loop.passivity().injected_J,
           arm.trueTwist().v.norm()};
 }
 
@@ -371,7 +391,7 @@ TEST(Coupling, DerivedGainsPressSteadilyOnARigidFloor) {
       EXPECT_LT(gains.k_N_per_m, 5000);
       const Press press = pressOnFloor(gains, haptic_per_physics, hand_k);
       const double force_N = 5 * gains.k_N_per_m / (gains.k_N_per_m + hand_k);  // two springs in series
-      // Dry friction of up to 0.35 N may hold its share; one encoder error of 0.1 mm moves the reading.
+      // Dry friction may hold up to 0.35 N of it; one encoder error of 0.1 mm moves the reading.
       EXPECT_NEAR(press.force_N, force_N, 0.35 + 1e-4 * gains.k_N_per_m) << hand_k;
       // One encoder error in the spring, and its speed through the filter (20 mm/s, both ways) in the damper.
       EXPECT_LT(press.ripple_N, 1e-4 * gains.k_N_per_m + 0.04 * gains.b_Ns_per_m) << hand_k;
@@ -380,9 +400,8 @@ TEST(Coupling, DerivedGainsPressSteadilyOnARigidFloor) {
   }
 }
 
-TEST(Coupling, ThirtyTimesTheDerivedStiffnessRings) {
-  // Well beyond the ringing edge K = (b + B) / (T/2 + t_d), since dry friction alone stills what rings
-  // faintly.
+TEST(Coupling, ThirtyTimesTheDerivedStiffnessOscillates) {
+  // Well beyond the stability limit K = (b + B) / (T/2 + t_d), since dry friction stops weak oscillations.
   CouplingGains gains = deriveGains(SimulatedDualArm().limits(), {1000, 1000, 0, 1, 1});
   gains.k_N_per_m *= 30;
   EXPECT_GT(pressOnFloor(gains, 1, 100).ripple_N, 1);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/mcap.h"
+#include "vps_device/detail/mcap.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "vps_device/bytes.h"
+#include "recording/crc32.h"
+#include "vps_device/detail/bytes.h"
 
 namespace vps::device {
 namespace {
@@ -35,7 +36,7 @@ std::string smallFile(std::size_t* first_chunk_at = nullptr) {
   return bytes;
 }
 
-/// How many messages are as written, from the first on; fails where one is not.
+/// Number of messages, all of which must be as written.
 std::size_t goodMessages(const McapContent& content) {
   for (std::size_t i = 0; i < content.messages.size(); ++i) {
     EXPECT_EQ(content.messages[i].sequence, i);
@@ -45,7 +46,7 @@ std::size_t goodMessages(const McapContent& content) {
   return content.messages.size();
 }
 
-TEST(Crc32, GivesTheStandardsCheckValue) {
+TEST(Crc32, HasTheStandardsCheckValue) {
   EXPECT_EQ(crc32("123456789"), 0xcbf43926u);  // the check value in the catalogue of CRC-32/ISO-HDLC
 }
 
@@ -66,7 +67,7 @@ TEST(Mcap, WhatIsWrittenReadsBack) {
   EXPECT_EQ(content.metadata[0].values.at("seed"), "7");
 }
 
-TEST(Mcap, LaysItsRecordsOutAsTheSpecificationSays) {
+TEST(Mcap, WritesTheRecordLayoutOfTheSpecification) {
   // Worked out by hand from the specification's tables for a file with one message.
   std::string bytes;
   McapWriter writer([&](std::string_view piece) { bytes += piece; }, "", "");
@@ -93,7 +94,7 @@ TEST(Mcap, LaysItsRecordsOutAsTheSpecificationSays) {
   EXPECT_EQ(at(footer + 9) + 256 * at(footer + 10), static_cast<int>(summary));
 }
 
-TEST(Mcap, AFileCutAtAnyByteKeepsWhatStandsBeforeTheCutAndSaysSo) {
+TEST(Mcap, AFileCutAtAnyByteIsReadUpToTheCutAndReportsIt) {
   const std::string whole = smallFile();
   std::size_t before = 0;
   for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -103,13 +104,13 @@ TEST(Mcap, AFileCutAtAnyByteKeepsWhatStandsBeforeTheCutAndSaysSo) {
     EXPECT_TRUE(content.damage->is_cut) << length;
     EXPECT_LE(content.damage->at_byte, length);
     const std::size_t kept = goodMessages(content);
-    ASSERT_GE(kept, before) << length;  // a longer piece never keeps less
+    ASSERT_GE(kept, before) << length;  // a longer file never yields fewer messages
     before = kept;
   }
   EXPECT_EQ(before, static_cast<std::size_t>(kMessages));
 }
 
-TEST(Mcap, AMessageThatTheCutLeavesWholeIsKept) {
+TEST(Mcap, ACompleteMessageBeforeTheCutIsKept) {
   std::size_t chunk_at = 0;
   const std::string whole = smallFile(&chunk_at);
   // The first chunk's head is 9 + 40 bytes, a message 9 + 22 + 8.
@@ -119,7 +120,7 @@ TEST(Mcap, AMessageThatTheCutLeavesWholeIsKept) {
   }
 }
 
-TEST(Mcap, EveryChangedByteIsNoticedAndNoWrongMessageComesOut) {
+TEST(Mcap, EveryChangedByteIsDetectedAndNoWrongMessageReturned) {
   const std::string whole = smallFile();
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (const unsigned flip : {0x01u, 0x80u, 0xffu}) {
@@ -132,7 +133,7 @@ TEST(Mcap, EveryChangedByteIsNoticedAndNoWrongMessageComesOut) {
     }
 }
 
-TEST(Mcap, LengthsThatLieNeitherHangNorAllocate) {
+TEST(Mcap, WrongLengthsNeitherHangNorAllocate) {
   std::string bytes = smallFile().substr(0, 8);
   ByteWriter writer(bytes);
   writer.put(std::uint8_t{9});
@@ -144,7 +145,7 @@ TEST(Mcap, LengthsThatLieNeitherHangNorAllocate) {
   EXPECT_FALSE(readMcap("solid cube").damage->is_cut);
 }
 
-TEST(ByteReader, WhatIsMissingReadsAsZeroAndStaysBad) {
+TEST(ByteReader, MissingDataReadsAsZeroAndStaysBad) {
   ByteReader in("\1\2\3");
   EXPECT_EQ(in.get<std::uint16_t>(), 0x0201);
   EXPECT_EQ(in.get<std::uint32_t>(), 0u);
@@ -152,7 +153,7 @@ TEST(ByteReader, WhatIsMissingReadsAsZeroAndStaysBad) {
   EXPECT_EQ(in.get<std::uint8_t>(), 0);
 }
 
-TEST(ByteWriter, DoublesGoBitForBit) {
+TEST(ByteWriter, DoublesKeepEveryBit) {
   for (const double x : {0.0, -0.0, 1.0 / 3, std::nan("7"), -HUGE_VAL, 5e-324}) {
     std::string out;
     ByteWriter(out).put(x);

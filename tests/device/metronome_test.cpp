@@ -25,7 +25,7 @@ TEST(Metronome, BeatsAtMultiplesOfThePeriodHoweverLongTheWorkTakes) {
   }
 }
 
-TEST(Metronome, AfterAMissedPeriodGoesOnAtTheNextBoundaryAndNeverBursts) {
+TEST(Metronome, AfterAMissedPeriodContinuesAtTheNextBoundaryWithoutBursts) {
   FakeClock clock;
   Metronome metronome(kPeriod_ns, clock);
   metronome.start();
@@ -44,7 +44,7 @@ TEST(Metronome, AfterAMissedPeriodGoesOnAtTheNextBoundaryAndNeverBursts) {
   EXPECT_EQ(metronome.wait().due_ns, 7000);
 }
 
-TEST(Metronome, WokenLateItSaysSoAndKeepsItsBoundaries) {
+TEST(Metronome, ALateWakeUpIsReportedAndBoundariesAreKept) {
   FakeClock clock;
   Metronome metronome(kPeriod_ns, clock);
   metronome.start();
@@ -64,7 +64,7 @@ TEST(Metronome, WokenLateItSaysSoAndKeepsItsBoundaries) {
   EXPECT_EQ(metronome.wait().due_ns, 5000);
 }
 
-TEST(Metronome, AClockThatGoesBackwardsIsToldAndTheBeatGoesOn) {
+TEST(Metronome, AClockThatGoesBackwardsIsReportedAndBeatsContinue) {
   FakeClock clock(1'000'000'000);
   Metronome metronome(kPeriod_ns, clock);
   metronome.start();
@@ -74,7 +74,7 @@ TEST(Metronome, AClockThatGoesBackwardsIsToldAndTheBeatGoesOn) {
   EXPECT_TRUE(beat.has_clock_gone_back);
   EXPECT_EQ(beat.due_ns, 1500) << "a period from the new time, not a second from it";
   EXPECT_EQ(beat.periods, 1);
-  clock.oversleep = -1200;  // back while it sleeps
+  clock.oversleep = -1200;  // the clock goes back during the sleep
   beat = metronome.wait();
   EXPECT_TRUE(beat.has_clock_gone_back);
   EXPECT_EQ(beat.periods, 1);

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "support/no_alloc.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/gains.h"
 #include "vps_device/loop.h"
-#include "vps_device/simulated_dual_arm.h"
 
 namespace vps::device {
 namespace {
@@ -68,7 +68,7 @@ Mounting mountPeg(const OperatorHabits& habits, PegWorld world, double timeout_s
   hand.begin(task, 0);
   Mounting run;
   for (; run.time_s < 60; run.time_s += 1e-3) {
-    port.part.write(world.part);
+    port.physics.write({world.part, 0, {}, {}});
     loop.tick();
     const TickReport& tick = loop.last();
     const HandForce force =
@@ -76,7 +76,7 @@ Mounting mountPeg(const OperatorHabits& habits, PegWorld world, double timeout_s
                    world.part.X_W, world.part.V_W, tick.F_hand_W},
                   1e-3);
     arm.step(1e-3, loop.toDevice(force));
-    world.step(settings.gains, port.proxy.read(), 1e-3);
+    world.step(settings.gains, port.haptic.read().proxy, 1e-3);
     run.peak_N = std::max(run.peak_N, tick.F_hand_W.f.norm());
     run.end_N = tick.F_hand_W.f.norm();
     for (const double x : world.part.X_W.p) run.path.push_back(x);
@@ -124,7 +124,7 @@ TEST(VirtualOperator, MountsAPegThatHasABottom) {
   EXPECT_EQ(run.phase, OperatorPhase::Done) << toText(run.phase) << " after " << run.time_s << " s";
   EXPECT_LE(run.error_m, 0.25e-3);
   EXPECT_LT(run.time_s, 12);
-  EXPECT_LT(run.end_N, 3) << "lets go without a spring drawn";  // the part's weight is 2 N
+  EXPECT_LT(run.end_N, 3) << "releases with a relaxed spring";  // the part's weight is 2 N
   const std::vector<OperatorPhase> order{OperatorPhase::Reach, OperatorPhase::Insert, OperatorPhase::Press,
                                          OperatorPhase::Done};
   EXPECT_EQ(run.phases, order);
@@ -153,14 +153,14 @@ TEST(VirtualOperator, FindsTheHoleFromFiveSeedsWithATightMouth) {
   }
 }
 
-TEST(VirtualOperator, GropesForTheHoleWhenItsEyesDoNotCorrect) {
+TEST(VirtualOperator, SearchesForTheHoleWithoutVisualCorrection) {
   int found = 0, retries = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     OperatorHabits habits;
     habits.seed = seed;
     habits.see_gain_per_s = 0;
     habits.aim_error_m = 0.1e-3;
-    habits.search_m = 0.15e-3;  // dry friction of the device swallows finer steps without sight
+    habits.search_m = 0.15e-3;  // without vision, dry friction of the device absorbs finer steps
     PegWorld world;
     world.clear_m = 0.15e-3;
     const Mounting run = mountPeg(habits, world, 30);
@@ -195,7 +195,7 @@ TEST(VirtualOperator, SameSeedSameBitsOtherSeedOtherPath) {
   EXPECT_NE(a.path, c.path);
 }
 
-TEST(VirtualOperator, StepsWithoutTheHeapAndBearsBadViews) {
+TEST(VirtualOperator, StepsWithoutAllocatingAndToleratesBadViews) {
   VirtualOperator hand;
   OperatorTask task;
   task.X_WP_target = Pose::translation(Vec3(0, 0, -0.05));

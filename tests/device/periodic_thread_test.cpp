@@ -39,7 +39,7 @@ TEST(PeriodicThread, BeatsUntilStoppedAndAgainAfterwards) {
   }
 }
 
-TEST(PeriodicThread, WorkThatThrowsEndsItAndIsToldAtTheEnd) {
+TEST(PeriodicThread, AnExceptionOfTheWorkEndsTheThreadAndIsRethrownByStop) {
   PeriodicThread thread({.rate_hz = 10000});
   thread.start([](const Beat&) { throw std::runtime_error("the step failed"); });
   while (thread.isRunning()) std::this_thread::yield();
@@ -47,16 +47,16 @@ TEST(PeriodicThread, WorkThatThrowsEndsItAndIsToldAtTheEnd) {
   EXPECT_NO_THROW(thread.stop()) << "told once";
 }
 
-TEST(PeriodicThread, RefusesARateThatNoClockKeeps) {
+TEST(PeriodicThread, RefusesARateOutOfRange) {
   for (const double rate_hz : {0.0, -1000.0, 1e9, std::nan("")})
     EXPECT_THROW(PeriodicThread({.rate_hz = rate_hz}), LoadError) << rate_hz;
 }
 
-TEST(AskForRealTime, SaysInWordsWhatWasRefusedAndWhatWouldHelp) {
+TEST(RequestRealTime, ReportsWhatWasRefusedAndTheRemedy) {
   std::thread([] {
-    const RealTimeReport none = askForRealTime(0, false);
+    const RealTimeReport none = requestRealTime(0, false);
     EXPECT_TRUE(none.warnings.empty()) << "nothing asked, nothing refused";
-    const RealTimeReport report = askForRealTime(200, false);  // no system has such a priority
+    const RealTimeReport report = requestRealTime(200, false);  // no system has such a priority
     EXPECT_FALSE(report.has_priority);
     ASSERT_EQ(report.warnings.size(), 1u);
     EXPECT_NE(report.warnings[0].find("priority"), std::string::npos);

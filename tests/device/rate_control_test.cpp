@@ -36,7 +36,7 @@ TEST(RateShare, IsZeroInTheDeadZoneContinuousAtItsEdgeAndOneAtTheEnd) {
   EXPECT_DOUBLE_EQ(rateShare(0.55, settings), 0.25);  // half way from the edge to the end, squared
 }
 
-TEST(RateControl, FullDeflectionGoesAtFullSpeedAndStopsWhenLetGo) {
+TEST(RateControl, FullDeflectionMovesAtFullSpeedAndStopsOnRelease) {
   RateControl control;
   const DeviceSample moved = held(control, pushed(0, 1, 0), 2);
   EXPECT_NEAR(moved.X_DH.p.y(), 0.08 * 2, 2000 * 1e-17);  // one rounding of 0.1 a tick
@@ -46,7 +46,7 @@ TEST(RateControl, FullDeflectionGoesAtFullSpeedAndStopsWhenLetGo) {
   EXPECT_EQ(still.V_DH.v, Vec3(Vec3::Zero()));
 }
 
-TEST(RateControl, TurnsStayRotationsHoweverLong) {
+TEST(RateControl, LongTurnsStayRotations) {
   RateControl control;
   Deflection d;
   d.turn = Vec3(0, 0, 1);
@@ -63,7 +63,7 @@ TEST(RateControl, TheHandleStaysInTheWorkspaceAndItsVelocityIsThatOfItsMotion) {
   EXPECT_EQ(sample.V_DH.v, Vec3(Vec3::Zero()));
 }
 
-TEST(RateControl, RecentringGoesBackWithoutAJumpAndStopsInTheMiddle) {
+TEST(RateControl, RecentringReturnsWithoutAJumpAndStopsInTheMiddle) {
   RateControl control;
   Deflection d = pushed(1, 0, 1);
   d.turn = Vec3(1, 0, 0);
@@ -91,7 +91,7 @@ TEST(RateControl, ALateReaderSeesNoJumpAndAClockThatGoesBackMovesNothing) {
   EXPECT_EQ(control.step(pushed(0, 0, std::nan("")), 31).X_DH.p.z(), after_m);
 }
 
-TEST(RateControl, HasNoForceAndSaysSo) {
+TEST(RateControl, StatesThatItHasNoForce) {
   const DeviceLimits limits = RateControl().limits();
   EXPECT_EQ(limits.peak_force_N, 0);
   EXPECT_EQ(limits.peak_torque_Nm, 0);

@@ -27,7 +27,7 @@ LoopSettings plainSettings(DeviceEventQueue& events) {
   return settings;
 }
 
-/// A loop beaten by hand, on a clock of the test's own: the handle 2 mm from the part.
+/// A loop whose beats the test calls, on a clock of the test: the handle is 2 mm from the part.
 struct Rig {
   FakeClock clock;
   PlainDevice device;
@@ -51,7 +51,7 @@ struct Rig {
   }
   void publish() {
     physics_s += 1e-3;
-    port.part.write({Pose{}, Twist{}, physics_s, true});
+    port.physics.write({{Pose{}, Twist{}, physics_s, true}, 0, {}, {}});
   }
   void beat() {
     const Beat beat = metronome.wait();
@@ -72,19 +72,19 @@ struct Rig {
   }
 };
 
-TEST(RealTimeLoop, EachBeatIsATickAndTheForceIsTheCouplings) {
+TEST(RealTimeLoop, EachBeatIsATickWithTheCouplingsForce) {
   Rig rig;
   {
     vps_test::NoAllocScope guard;
     rig.run(100);
   }
   EXPECT_NEAR(rig.device.F_written_D.f.x(), -2, 1e-12);
-  EXPECT_EQ(rig.loop.latest().report.F_hand_D.f, rig.device.F_written_D.f);
+  EXPECT_EQ(rig.port.haptic.read().report.F_hand_D.f, rig.device.F_written_D.f);
   EXPECT_EQ(rig.loop.statistics().summary().tick.count, 101u);
   EXPECT_EQ(rig.loop.statistics().summary().missed, 0u);
 }
 
-// 2 mm at 1000 N/m, then at 250; no stiffness that nobody could hold.
+// 2 mm at 1000 N/m, then at 250 N/m; an excessive stiffness is refused.
 TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
   Rig rig;
   rig.run(100);
@@ -100,11 +100,12 @@ TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
   rig.loop.setGains(gains);
   rig.run(1);
   EXPECT_EQ(rig.force_N(), 0);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::BadGains);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::BadGains);
 }
 
-// The part is held 2 mm off by the proxy, wherever the handle goes meanwhile; handed over, by nothing.
-TEST(RealTimeLoop, TheClutchOpensClosesAndHandsOverWhenAsked) {
+// The proxy holds the part 2 mm off, wherever the handle moves meanwhile; after the hand-over there is no
+// offset.
+TEST(RealTimeLoop, ClutchRequestsOpenCloseAndHandOver) {
   Rig rig;
   rig.run(100);
   const int clutch_ticks = static_cast<int>(1e3 * LoopSettings{}.clutch_s) + 2;
@@ -112,7 +113,7 @@ TEST(RealTimeLoop, TheClutchOpensClosesAndHandsOverWhenAsked) {
     vps_test::NoAllocScope guard;
     EXPECT_TRUE((rig.loop.*ask)());
     rig.run(clutch_ticks);
-    return rig.loop.latest().report.clutch_ratio;
+    return rig.port.haptic.read().report.clutch_ratio;
   };
   EXPECT_EQ(after(&RealTimeLoop::disengage), 0);
   EXPECT_EQ(rig.force_N(), 0);
@@ -123,7 +124,7 @@ TEST(RealTimeLoop, TheClutchOpensClosesAndHandsOverWhenAsked) {
   EXPECT_NEAR(rig.device.F_written_D.f.y(), 0, 1e-12);
   EXPECT_TRUE(rig.loop.handOver(Pose{}));
   rig.run(clutch_ticks);
-  EXPECT_EQ(rig.loop.latest().report.clutch_ratio, 1);
+  EXPECT_EQ(rig.port.haptic.read().report.clutch_ratio, 1);
   EXPECT_NEAR(rig.force_N(), 0, 1e-12);
 }
 
@@ -138,7 +139,7 @@ TEST(RealTimeLoop, PhysicsThatStallsForASecondGivesNoForceUntilRearmed) {
   ASSERT_EQ(told.size(), 1u) << "told once";
   EXPECT_EQ(told[0].kind, DeviceEventKind::PhysicsStalled);
   EXPECT_NEAR(told[0].value, 0.1, 2e-3);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::PhysicsStalled);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::PhysicsStalled);
 
   rig.run(200);
   EXPECT_EQ(rig.force_N(), 0) << "it stays so when physics goes on";
@@ -167,19 +168,19 @@ TEST(RealTimeLoop, NothingHeldNeedsNoPhysics) {
   Rig rig;
   rig.loop.release();
   rig.run(1000, false);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::None);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::None);
 }
 
-TEST(RealTimeLoop, ASnapshotWhoseTimeIsNoNumberIsNothingNew) {
+TEST(RealTimeLoop, AStateWhoseTimeIsNotANumberIsNotNew) {
   Rig rig;
   for (int i = 0; i < 200; ++i) {
-    rig.port.part.write({Pose{}, Twist{}, std::nan(""), true});
+    rig.port.physics.write({{Pose{}, Twist{}, std::nan(""), true}, 0, {}, {}});
     rig.beat();
   }
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::PhysicsStalled);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::PhysicsStalled);
 }
 
-TEST(RealTimeLoop, AHostClockThatGoesBackwardsIsAFaultAndTheBeatGoesOn) {
+TEST(RealTimeLoop, AHostClockThatGoesBackwardsIsAFaultAndBeatsContinue) {
   Rig rig;
   rig.run(10);
   rig.clock.now = 100;
@@ -188,7 +189,7 @@ TEST(RealTimeLoop, AHostClockThatGoesBackwardsIsAFaultAndTheBeatGoesOn) {
   EXPECT_EQ(rig.heard().at(0).kind, DeviceEventKind::ClockBackwards);
   rig.loop.rearm();
   rig.run(300);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::None);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::None);
 }
 
 TEST(RealTimeLoop, ADeviceThatIsLostGivesNoForceUntilItIsBackAndRearmed) {
@@ -200,13 +201,13 @@ TEST(RealTimeLoop, ADeviceThatIsLostGivesNoForceUntilItIsBackAndRearmed) {
   EXPECT_EQ(rig.heard().at(0).kind, DeviceEventKind::DeviceLost);
   rig.loop.rearm();
   rig.run(5);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::DeviceLost) << "it is still lost";
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::DeviceLost) << "it is still lost";
   rig.device.sample.status = Status::Ok;
   rig.run(5);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::DeviceLost) << "latched";
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::DeviceLost) << "latched";
   rig.loop.rearm();
   rig.run(5);
-  EXPECT_EQ(rig.loop.latest().safety.fault, SafetyFault::None);
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::None);
 }
 
 TEST(RealTimeLoop, ASlowDeviceIsNamedAsTheCauseOfMissesAndOfTheWorst) {
@@ -227,12 +228,12 @@ TEST(RealTimeLoop, ASlowDeviceIsNamedAsTheCauseOfMissesAndOfTheWorst) {
   EXPECT_EQ(rig.heard().at(0).kind, DeviceEventKind::TicksMissed);
 }
 
-TEST(RealTimeLoop, WorkBesideTheTickAndASleepySystemAreNamedToo) {
+TEST(RealTimeLoop, WorkAfterTheTickAndALateWakeUpAreNamedAsCauses) {
   static FakeClock* clock = nullptr;
   static int count = 0;
   count = 0;
   RealTimeSettings settings;
-  settings.beside = [](HapticLoop&, double) {
+  settings.after_tick = [](HapticLoop&, double) {
     if (++count == 20) clock->now += 1'200'000;
   };
   Rig* rig = nullptr;
@@ -247,7 +248,7 @@ TEST(RealTimeLoop, WorkBesideTheTickAndASleepySystemAreNamedToo) {
   rig->clock.oversleep = 0;
   rig->run(10);
   const TickStatistics::Summary all = rig->loop.statistics().summary();
-  EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::Beside)], 1u);
+  EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::AfterTick)], 1u);
   EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::WokenLate)], 3u);
   EXPECT_EQ(all.missed, 4u);
   EXPECT_EQ(all.worst.cause(), TickCause::WokenLate);
@@ -256,8 +257,8 @@ TEST(RealTimeLoop, WorkBesideTheTickAndASleepySystemAreNamedToo) {
 TEST(RealTimeLoop, AfterAPauseTheForceGrowsNoFasterThanInFourPeriods) {
   Rig rig;
   rig.run(10);
-  rig.device.sample.X_DH.p.x() = 2e-3 + 19e-3;  // 21 N, within the jump that is believed
-  rig.clock.now += 50'000'000;                  // away for 50 ms
+  rig.device.sample.X_DH.p.x() = 2e-3 + 19e-3;  // 21 N, within the accepted jump
+  rig.clock.now += 50'000'000;                  // a pause of 50 ms
   rig.run(1);
   EXPECT_NEAR(rig.force_N(), 2 + 4 * 2000 * 1e-3, 1e-9);
   rig.device.sample.X_DH.p.x() = 2e-3;
@@ -265,7 +266,7 @@ TEST(RealTimeLoop, AfterAPauseTheForceGrowsNoFasterThanInFourPeriods) {
   EXPECT_NEAR(rig.force_N(), 2, 1e-9);
 }
 
-TEST(RealTimeLoop, OldSnapshotsAreCounted) {
+TEST(RealTimeLoop, OldPhysicsStatesAreCounted) {
   Rig rig;
   const std::uint64_t before = rig.loop.statistics().summary().stale;
   rig.run(10);
@@ -274,7 +275,31 @@ TEST(RealTimeLoop, OldSnapshotsAreCounted) {
   EXPECT_EQ(rig.loop.statistics().summary().stale - before, 8u) << "older than 2 ms";
 }
 
-TEST(RealTimeLoop, RequestsBeyondTheRoomAreRefusedNotLost) {
+TEST(RealTimeLoop, CallsAreCarriedOutInOrderBeforeTheNextTickAndAcknowledged) {
+  std::vector<std::int32_t> codes;
+  codes.reserve(4);
+  RealTimeSettings settings;
+  settings.on_call = [&](HapticLoop& loop, std::int32_t code) {
+    codes.push_back(code);
+    if (code == 7) loop.release();
+  };
+  Rig rig(settings);
+  rig.run(2);
+  EXPECT_TRUE(rig.loop.call(7));
+  EXPECT_TRUE(rig.loop.call(8));
+  EXPECT_TRUE(rig.loop.hasOpenRequests());
+  EXPECT_TRUE(codes.empty());
+  rig.run(1);
+  EXPECT_FALSE(rig.loop.hasOpenRequests());
+  EXPECT_EQ(codes, (std::vector<std::int32_t>{7, 8}));
+  EXPECT_FALSE(rig.port.haptic.read().proxy.is_coupled) << "released before the tick";
+  rig.loop.call(9);
+  rig.loop.handleRequests();  // as a driver does while the loop is stopped
+  EXPECT_FALSE(rig.loop.hasOpenRequests());
+  EXPECT_EQ(codes.back(), 9);
+}
+
+TEST(RealTimeLoop, RequestsToAFullRingAreRefusedNotLost) {
   Rig rig;
   int taken = 0;
   while (rig.loop.release()) ++taken;
@@ -286,8 +311,8 @@ TEST(RealTimeLoop, RequestsBeyondTheRoomAreRefusedNotLost) {
   EXPECT_TRUE(rig.loop.loop().isHolding());
 }
 
-TEST(RealTimeLoop, InThreadsOfItsOwnForceStaysFiniteAndStopsAtZero) {
-  // What the thread sanitizer looks at: haptic, physics and a watcher, all at once.
+TEST(RealTimeLoop, WithTwoThreadsForceStaysFiniteAndIsZeroAfterStop) {
+  // For the thread sanitizer: haptic thread, physics thread and a reader of events, concurrently.
   PlainDevice device;
   CouplingPort port;
   DeviceEventQueue events;
@@ -297,7 +322,7 @@ TEST(RealTimeLoop, InThreadsOfItsOwnForceStaysFiniteAndStopsAtZero) {
   RealTimeSettings real_time;
   real_time.locks_memory = false;
   real_time.physics_limit_s = 10;  // a busy machine is no fault here
-  real_time.beside = [&](HapticLoop& loop, double dt_s) {
+  real_time.after_tick = [&](HapticLoop& loop, double dt_s) {
     strongest_N.store(std::max(strongest_N.load(), loop.last().F_hand_D.f.norm()));
     device.sample.time_s += dt_s;
     device.sample.X_DH.p.x() = 1e-3 * std::sin(20 * device.sample.time_s);
@@ -305,20 +330,21 @@ TEST(RealTimeLoop, InThreadsOfItsOwnForceStaysFiniteAndStopsAtZero) {
   RealTimeLoop loop(device, port, settings, real_time);
   PeriodicThread physics({.rate_hz = 1000});
   double physics_s = 0;
-  port.part.write({Pose{}, Twist{}, 0, true});
+  std::int32_t step = 0;
+  port.physics.write({{Pose{}, Twist{}, 0, true}, 0, {}, {}});
   loop.start();
   loop.grasp(Pose{});
   physics.start([&](const Beat& beat) {
-    const CouplingState& proxy = port.proxy.read();
+    const HapticState& haptic = port.haptic.read();
+    EXPECT_TRUE(haptic.report.F_hand_D.isFinite());
+    const CouplingState& proxy = haptic.proxy;
     physics_s += 1e-3 * static_cast<double>(beat.periods);
     CouplingState part{proxy.X_W, proxy.V_W, physics_s, true};
     part.X_W.p.x() *= 0.5;
-    port.part.write(part);
+    port.physics.write({part, ++step, 0.0, {}});
   });
   DeviceEvent event;
   while (loop.statistics().summary().tick.count < 400) {
-    EXPECT_TRUE(loop.latest().report.F_hand_D.isFinite());
-    loop.observeStoredEnergy(0, 0);
     while (events.pop(event)) EXPECT_NE(severityOf(event.kind), Severity::Fault) << toText(event.kind);
   }
   loop.stop();

@@ -52,14 +52,14 @@ RecordingHead smallHead() {
   return head;
 }
 
-/// A few entries of every kind, with numbers that text would lose.
+/// A few entries of every kind, with numbers that decimal text would not preserve.
 std::vector<LogEntry> everyKind() {
   std::vector<LogEntry> entries;
   RunEvent event;
   event.step = 0;
   event.kind = RunEventKind::Phase;
   event.phase = 2;
-  event.say("takes 'peg', \"the\" one");
+  event.setWords("takes 'peg', \"the\" one");
   entries.push_back(event);
   for (int i = 0; i < 4; ++i) {
     DeviceSample sample = sampleAt(i);
@@ -85,7 +85,7 @@ std::string recorded(const std::vector<LogEntry>& entries) {
   return slurp(file);
 }
 
-/// How many entries are those of `truth`, from the first on.
+/// Number of leading entries that equal those of `truth`.
 std::size_t equalEntries(const RecordedRun& run, const std::vector<LogEntry>& truth) {
   EXPECT_LE(run.entries.size(), truth.size());
   for (std::size_t i = 0; i < run.entries.size(); ++i)
@@ -102,7 +102,7 @@ std::string whyRefused(const std::function<void()>& act) {
   return "";
 }
 
-TEST(Recording, EveryBitComesBack) {
+TEST(Recording, EveryBitIsReadBack) {
   const std::vector<LogEntry> truth = everyKind();
   const RecordedRun run = recordingFrom(recorded(truth), "run.mcap");
   EXPECT_EQ(run.damage, "");
@@ -122,7 +122,7 @@ TEST(Recording, TheSameRunGivesTheSameFile) {
   EXPECT_EQ(recorded(everyKind()), recorded(everyKind()));
 }
 
-TEST(Recording, CutAtAnyByteItKeepsWhatStandsBeforeAndSaysSo) {
+TEST(Recording, CutAtAnyByteItIsReadUpToTheCutAndReportsIt) {
   const std::vector<LogEntry> truth = everyKind();
   const std::string whole = recorded(truth);
   std::size_t kept = 0, opened = 0;
@@ -136,14 +136,14 @@ TEST(Recording, CutAtAnyByteItKeepsWhatStandsBeforeAndSaysSo) {
       kept = now;
       ++opened;
     } catch (const LoadError& error) {
-      ASSERT_EQ(opened, 0u) << length << error.what();  // only as long as the head is not whole
+      ASSERT_EQ(opened, 0u) << length << error.what();  // only while the head is incomplete
       EXPECT_EQ(std::string(error.what()).find("run.mcap: "), 0u);
     }
   }
   EXPECT_EQ(kept, truth.size());
 }
 
-TEST(Recording, EveryChangedByteIsSaidAndNothingWrongComesOut) {
+TEST(Recording, EveryChangedByteIsReportedAndNoWrongEntryReturned) {
   const std::vector<LogEntry> truth = everyKind();
   const std::string whole = recorded(truth);
   for (std::size_t at = 0; at < whole.size(); ++at) {
@@ -159,14 +159,14 @@ TEST(Recording, EveryChangedByteIsSaidAndNothingWrongComesOut) {
   }
 }
 
-TEST(Recording, DamageIsToldWithByteAndTime) {
+TEST(Recording, DamageIsReportedWithByteAndTime) {
   const std::string whole = recorded(everyKind());
   const RecordedRun cut = recordingFrom(std::string_view(whole).substr(0, whole.size() - 3), "x");
   EXPECT_NE(cut.damage.find("lacks the end of its index"), std::string::npos) << cut.damage;
   EXPECT_NE(cut.damage.find("kept: 4 device samples, up to 0.003 s"), std::string::npos) << cut.damage;
 }
 
-TEST(Recorder, WhatWasThereStaysUntilTheEnd) {
+TEST(Recorder, AnExistingFileStaysUntilFinish) {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "run.mcap";
   { Recorder(file, smallHead()).finish(); }
@@ -182,7 +182,7 @@ TEST(Recorder, WhatWasThereStaysUntilTheEnd) {
   EXPECT_EQ(loadRecording(file).reads(), 1u);
 }
 
-TEST(Recorder, RefusesWhatIsNoRecording) {
+TEST(Recorder, RefusesToOverwriteAFileThatIsNoRecording) {
   const test::TemporaryFolder folder;
   const fs::path letter = folder.path() / "letter.txt", foreign = folder.path() / "bag.mcap";
   spill(letter, "dear reader");
@@ -195,19 +195,19 @@ TEST(Recorder, RefusesWhatIsNoRecording) {
   }
   EXPECT_EQ(slurp(letter), "dear reader");
   EXPECT_EQ(slurp(foreign), bag);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // nothing is left about
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);  // no temporary file is left
   EXPECT_NE(whyRefused([&] { loadRecording(foreign); }), "");
   EXPECT_NE(whyRefused([&] { loadRecording(letter); }), "");
   EXPECT_NE(whyRefused([&] { loadRecording(folder.path()); }), "");
 }
 
-TEST(Recorder, WithoutASampleNothingIsLeft) {
+TEST(Recorder, WithoutASampleNoFileIsLeft) {
   const test::TemporaryFolder folder;
   { Recorder recorder(folder.path() / "run.mcap", smallHead()); }
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Recorder, AProgramThatDiesLeavesARecordingUpToAQuarterSecondBefore) {
+TEST(Recorder, AKilledProgramLeavesARecordingUpToAQuarterSecondBefore) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap";
   const pid_t child = fork();
@@ -218,7 +218,7 @@ TEST(Recorder, AProgramThatDiesLeavesARecordingUpToAQuarterSecondBefore) {
       recorder.waitForRoom();
       recorder.add(sampleAt(i));
     }
-    ::usleep(300'000);  // many times what the writing thread sleeps
+    ::usleep(300'000);  // many times the writing thread's polling interval
     std::raise(SIGKILL);
   }
   int status = 0;
@@ -233,11 +233,11 @@ TEST(Recorder, AProgramThatDiesLeavesARecordingUpToAQuarterSecondBefore) {
     ASSERT_EQ(log::difference(sampleAt(static_cast<int>(i)), run.entries[i]), "");
 }
 
-TEST(Recorder, AFullRingDropsCountsAndSaysSo) {
+TEST(Recorder, AFullRingDropsEntriesCountsAndReportsThem) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap";
   Recorder recorder(file, smallHead(), 4);
-  // Far faster than a thread that looks every 5 ms.
+  // Far faster than a thread that polls every 5 ms.
   for (int i = 0; i < 100'000; ++i) recorder.add(sampleAt(i % 100));
   recorder.finish();
   EXPECT_GT(recorder.dropped(), 0u);
@@ -255,10 +255,43 @@ TEST(Recorder, AddingNeverAllocates) {
     for (const LogEntry& entry : entries) recorder.add(entry);
 }
 
+// Recordings made before the channel was renamed hold sync events on /run/meeting.
+TEST(Recording, SyncEventsOnTheOldChannelNameAreRead) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path() / "run.mcap";
+  const std::vector<LogEntry> entries = {DeviceSample{}, SyncEvent{0.5, 7, 2, 3, SyncEventKind::LetGo},
+                                         WrittenWrench{}};
+  {
+    Recorder recorder(file, smallHead());
+    for (const LogEntry& entry : entries) recorder.add(entry);
+    recorder.finish();
+  }
+  std::ifstream in(file, std::ios::binary);
+  const std::string now(std::istreambuf_iterator<char>(in), {});
+  const McapContent content = readMcap(now);
+  std::string old;
+  McapWriter writer([&](std::string_view piece) { old += piece; }, content.profile, content.library);
+  for (const auto& [id, schema] : content.schemas)
+    writer.addSchema(schema.name, schema.encoding, schema.data);
+  for (const auto& [id, channel] : content.channels) {
+    McapChannel renamed = channel;
+    if (renamed.topic == "/run/sync_event") renamed.topic = "/run/meeting";
+    writer.addChannel(renamed);
+  }
+  for (const McapMetadata& metadata : content.metadata) writer.addMetadata(metadata);
+  for (const McapMessage& m : content.messages) writer.write(m.channel, m.sequence, m.time_ns, m.data);
+  writer.finish();
+  ASSERT_EQ(old.find("/run/sync_event"), std::string::npos);
+  const RecordedRun run = recordingFrom(old, "old.mcap");
+  EXPECT_EQ(run.damage, "");
+  ASSERT_EQ(run.entries.size(), 3u);
+  for (std::size_t i = 0; i < entries.size(); ++i) EXPECT_EQ(log::difference(run.entries[i], entries[i]), "");
+}
+
 // --- As a device
 
-/// Swings, and answers as it is told.
-class Swinging final : public Device {
+/// Oscillates by itself.
+class Oscillator final : public Device {
  public:
   DeviceSample read() noexcept override {
     DeviceSample sample;
@@ -268,27 +301,27 @@ class Swinging final : public Device {
   }
   void write(const Wrench&) noexcept override {}
   [[nodiscard]] DeviceLimits limits() const noexcept override { return {}; }
-  [[nodiscard]] std::string_view name() const noexcept override { return "swinging"; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "oscillator"; }
 
  private:
   int n_ = 0;
 };
 
-/// Holds a part that stays where it is, for some ticks.
+/// Holds a part that does not move, for some ticks.
 void hold(Device& device, double k_N_per_m, int ticks) {
   CouplingPort port;
   LoopSettings settings;
   settings.gains.k_N_per_m = k_N_per_m;
   HapticLoop loop(device, port, settings);
   loop.grasp(Pose{});
-  port.part.write({Pose{}, Twist{}, 0, true});
+  port.physics.write({{Pose{}, Twist{}, 0, true}, 0, {}, {}});
   for (int i = 0; i < ticks; ++i) loop.tick();
 }
 
 RecordedRun swungRun() {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap";
-  Swinging device;
+  Oscillator device;
   Recorder recorder(file, smallHead());
   TappedDevice tapped(device, recorder);
   hold(tapped, 1000, 400);
@@ -306,7 +339,7 @@ TEST(Recording, DrivesALoopToTheSameWrenches) {
   EXPECT_EQ(check.left(), 0u);
 }
 
-TEST(Recording, ADepartureIsToldWithTickChannelAndField) {
+TEST(Recording, ADepartureIsReportedWithTickChannelAndField) {
   Recording device(swungRun());
   ReplayCheck check(device.run());
   TappedDevice tapped(device, check);

@@ -37,7 +37,7 @@ TEST(SafetyGuard, ScalesForceAndTorqueTogetherKeepingDirection) {
   EXPECT_GT(guard.state().limited, 0u);
 }
 
-TEST(SafetyGuard, LimitsHowFastTheForceChanges) {
+TEST(SafetyGuard, LimitsTheRateOfChangeOfTheForce) {
   const SafetyLimits limits;
   SafetyGuard guard(limits);
   settled(guard, {}, {Vec3::Zero(), Vec3(25, 0, 0)});
@@ -45,7 +45,7 @@ TEST(SafetyGuard, LimitsHowFastTheForceChanges) {
   EXPECT_NEAR(F.f.x(), 25 - limits.slew_N_per_s * kDt_s, 1e-9);
 }
 
-TEST(SafetyGuard, FaultLatchesUntilRearmedAndForceReturnsSlowly) {
+TEST(SafetyGuard, AFaultIsLatchedUntilRearmAndForceReturnsSlowly) {
   SafetyGuard guard;
   const Wrench wanted{Vec3::Zero(), Vec3(10, 0, 0)};
   settled(guard, {}, wanted);
@@ -58,7 +58,7 @@ TEST(SafetyGuard, FaultLatchesUntilRearmedAndForceReturnsSlowly) {
   EXPECT_EQ(guard.state().faults, 1u);
 }
 
-TEST(SafetyGuard, NoticesJumpsLostDevicesAndBadPoses) {
+TEST(SafetyGuard, DetectsJumpsLostDevicesAndBadPoses) {
   SafetyGuard guard;
   DeviceSample sample;
   settled(guard, sample, {});
@@ -78,7 +78,7 @@ TEST(SafetyGuard, NoticesJumpsLostDevicesAndBadPoses) {
   EXPECT_EQ(guard.state().fault, SafetyFault::BadPose);
 }
 
-TEST(SafetyGuard, NoticesAClockThatGoesBackwards) {
+TEST(SafetyGuard, DetectsAClockThatGoesBackwards) {
   SafetyGuard guard;
   DeviceSample sample;
   sample.time_s = 1;

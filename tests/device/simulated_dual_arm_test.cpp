@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/simulated_dual_arm.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST(SimulatedDualArm, EncodersReadWithin100MicrometresAnd5MilliradiansOverTheWo
   EXPECT_GT(worst_m, 20e-6) << "the encoders are not quantised";
 }
 
-TEST(SimulatedDualArm, WithoutQuantisationItReadsTheTruth) {
+TEST(SimulatedDualArm, WithoutQuantisationItReadsTheTruePose) {
   SimulatedDualArmSettings settings = idealDualArm();
   settings.X_DH_start = Pose(rotationFromVector(Vec3(0.3, -0.2, 0.4)), Vec3(0.1, -0.2, 0.05));
   SimulatedDualArm arm(settings);
@@ -66,19 +66,19 @@ TEST(SimulatedDualArm, WithoutQuantisationItReadsTheTruth) {
   EXPECT_LT((sample.X_DH.R - settings.X_DH_start.R).norm(), 1e-12);
 }
 
-TEST(SimulatedDualArm, BendingUnderTheHandlesWeightIsTakenOut) {
+TEST(SimulatedDualArm, DeflectionUnderTheHandlesWeightIsSubtracted) {
   SimulatedDualArmSettings settings;
   settings.has_quantised_encoders = false;
   settings.X_DH_start = Pose(rotationFromVector(Vec3(0.3, -0.2, 0.4)), Vec3(0.1, -0.2, 0.05));
   SimulatedDualArm arm(settings);
   const DeviceSample sample = arm.read();
-  // 2 N over 14 N/mm is 0.14 mm, and 2 mrad at the gimbals. What is left is of second order: the weight is
-  // carried as at the bent pose.
+  // 2 N over 14 N/mm is 0.14 mm, and 2 mrad at the gimbals. The rest is of second order: the weight is
+  // compensated as at the deflected pose.
   EXPECT_LT((sample.X_DH.p - settings.X_DH_start.p).norm(), 1e-7);
   EXPECT_LT((sample.X_DH.R - settings.X_DH_start.R).norm(), 1e-6);
 }
 
-TEST(SimulatedDualArm, HandleCarriesItselfWithoutAHand) {
+TEST(SimulatedDualArm, MotorsCarryTheHandleWithoutAHand) {
   for (const bool is_ideal : {true, false}) {
     SimulatedDualArmSettings settings = frictionless();
     settings.has_quantised_encoders = false;
@@ -90,8 +90,7 @@ TEST(SimulatedDualArm, HandleCarriesItselfWithoutAHand) {
       arm.write({});
       arm.step(1e-3, {});
     }
-    // Nothing but rounding moves it; where it bends, the weight's compensation is off by 1e-5 of it, for a
-    // second.
+    // Only rounding moves it; with deflection the weight's compensation has an error of 1e-5, for a second.
     EXPECT_LT(arm.truePose().p.norm(), is_ideal ? 1e-9 : 3e-5);
   }
 }
@@ -157,7 +156,7 @@ TEST(SimulatedDualArm, StaysStableWithAStiffDampedHandAtBothRates) {
   }
 }
 
-TEST(SimulatedDualArm, HandAtRestBearsWhatTheMotorsGive) {
+TEST(SimulatedDualArm, AHandAtRestFeelsTheMotorsWrench) {
   SimulatedDualArm arm;
   const Wrench wanted{Vec3(0.1, -0.05, 0.08), Vec3(3, -4, 5)};
   const HandForce hand = springHand(Pose{}, 500, 1.5);
@@ -166,13 +165,13 @@ TEST(SimulatedDualArm, HandAtRestBearsWhatTheMotorsGive) {
     arm.write(wanted);
     arm.step(1e-3, hand);
   }
-  // Dry friction of the joints may carry its share: 0.3 N and 0.03 N m. Displacement: force over stiffness.
+  // Dry friction of the joints may carry a part: 0.3 N and 0.03 N m. Displacement: force over stiffness.
   EXPECT_LT((arm.lastHandWrench().f + wanted.f).norm(), 0.3);
   EXPECT_LT((arm.lastHandWrench().tau + wanted.tau).norm(), 0.03);
   EXPECT_LT((arm.truePose().p - wanted.f / 500).norm(), 0.3 / 500);
 }
 
-TEST(SimulatedDualArm, PeakForceFallsToContinuousWhenMotorsWarm) {
+TEST(SimulatedDualArm, PeakForceFallsToContinuousAsMotorsWarm) {
   SimulatedDualArmSettings settings;
   settings.arms.thermal_s = 0.5;
   SimulatedDualArm arm(settings);
@@ -196,7 +195,7 @@ TEST(SimulatedDualArm, PeakForceFallsToContinuousWhenMotorsWarm) {
   EXPECT_GT(arm.saturatedWrites(), 4000u);
 }
 
-TEST(SimulatedDualArm, SpeedOfAStillHandleIsQuietAndOfAMovingOneIsRight) {
+TEST(SimulatedDualArm, VelocityOfAStillHandleIsNearZeroAndOfAMovingOneCorrect) {
   SimulatedDualArm arm;
   HandForce hand = springHand(Pose{}, 2000, 1.5);
   double worst_m_s = 0;
@@ -212,7 +211,7 @@ TEST(SimulatedDualArm, SpeedOfAStillHandleIsQuietAndOfAMovingOneIsRight) {
   EXPECT_LT(worst_m_s, 0.035);
 }
 
-TEST(SimulatedDualArm, StatesItsLeastDampingAndStepsWithoutTheHeap) {
+TEST(SimulatedDualArm, StatesItsLeastDampingAndStepsWithoutAllocating) {
   SimulatedDualArm arm;
   const DeviceLimits limits = arm.limits();
   RecordProperty("damping_Ns_per_m", std::to_string(limits.damping_Ns_per_m));
@@ -228,7 +227,7 @@ TEST(SimulatedDualArm, StatesItsLeastDampingAndStepsWithoutTheHeap) {
   }
 }
 
-TEST(SimulatedDualArm, NonFiniteWrenchOrHandMovesNothing) {
+TEST(SimulatedDualArm, ANonFiniteWrenchOrHandHasNoEffect) {
   SimulatedDualArm arm;
   arm.read();
   arm.write({Vec3(NAN, 0, 0), Vec3(INFINITY, 0, 0)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The space mouse without one: a daemon of the test's own answers libspnav through SPNAV_SOCKET.
+// The space mouse, simulated by a daemon of the test that answers libspnav through SPNAV_SOCKET.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -27,7 +27,7 @@ using test::within10s;
 using Packet = std::array<std::int32_t, 8>;
 constexpr std::int32_t kMotion = 0, kPress = 1, kRelease = 2, kDevice = 3;
 
-/// As spacenavd: listens, answers the handshake, sends events.
+/// Does what spacenavd does: listens, answers the handshake, sends events.
 class FakeDaemon {
  public:
   explicit FakeDaemon(const std::string& socket_file) : file_(socket_file) {
@@ -47,8 +47,8 @@ class FakeDaemon {
   FakeDaemon(const FakeDaemon&) = delete;
   FakeDaemon& operator=(const FakeDaemon&) = delete;
 
-  /// Waits for a client; protocol 1 is agreed on by sending its number back.
-  void welcome() {
+  /// Waits for a client; returning its number agrees on protocol 1.
+  void acceptClient() {
     pollfd waited{listener_, POLLIN, 0};
     ASSERT_EQ(::poll(&waited, 1, 10'000), 1) << "nobody came";
     client_ = accept(listener_, nullptr, nullptr);
@@ -57,7 +57,7 @@ class FakeDaemon {
     EXPECT_EQ(request & 0x7fffff00, 0x7faa5500);
     ASSERT_EQ(send(client_, &request, sizeof request, MSG_NOSIGNAL), 4);
   }
-  void say(const Packet& packet) {
+  void sendPacket(const Packet& packet) {
     ASSERT_EQ(send(client_, packet.data(), sizeof packet, MSG_NOSIGNAL), static_cast<ssize_t>(sizeof packet));
   }
 
@@ -86,16 +86,16 @@ class SpaceMouse : public testing::Test {
   std::unique_ptr<Device> device_;
 };
 
-TEST_F(SpaceMouse, WithoutADaemonIsLostAndFoundOnceThereIsOne) {
+TEST_F(SpaceMouse, WithoutADaemonItIsLostAndFoundOnceOneStarts) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(device_->read().status, Status::Fault);
   FakeDaemon daemon(file_);
-  daemon.welcome();
+  daemon.acceptClient();
   EXPECT_TRUE(within10s(*device_, isThere));
 }
 
-TEST_F(SpaceMouse, EachAxisMovesTheHandleItsOwnWay) {
+TEST_F(SpaceMouse, EachAxisMovesTheHandleInItsOwnDirection) {
   FakeDaemon daemon(file_);
-  daemon.welcome();
+  daemon.acceptClient();
   ASSERT_TRUE(within10s(*device_, isThere));
   // libspnav: x right, y up, z away from the person. D: x towards the person, y right, z up.
   const struct {
@@ -110,7 +110,7 @@ TEST_F(SpaceMouse, EachAxisMovesTheHandleItsOwnWay) {
       {{kMotion, 0, 0, 0, 0, 0, 350, 16}, Vec3::Zero(), -Vec3::UnitX()},
   };
   for (const auto& c : cases) {
-    daemon.say(c.packet);
+    daemon.sendPacket(c.packet);
     EXPECT_TRUE(within10s(*device_,
                           [&](const DeviceSample& s) {
                             return (s.V_DH.v - 0.08 * c.v).norm() < 1e-9 &&
@@ -118,7 +118,7 @@ TEST_F(SpaceMouse, EachAxisMovesTheHandleItsOwnWay) {
                           }))
         << c.packet[1] << c.packet[2] << c.packet[3];
   }
-  daemon.say({kMotion, 20, 30, -34, 10, 0, -30, 16});  // less than a tenth of 350: at rest
+  daemon.sendPacket({kMotion, 20, 30, -34, 10, 0, -30, 16});  // less than a tenth of 350: at rest
   EXPECT_TRUE(within10s(*device_, [](const DeviceSample& s) {
     return s.V_DH.v.isZero(0) && s.V_DH.w.isZero(0) && s.X_DH.p.norm() > 0;
   }));
@@ -126,23 +126,23 @@ TEST_F(SpaceMouse, EachAxisMovesTheHandleItsOwnWay) {
 
 TEST_F(SpaceMouse, Button0Recentres) {
   FakeDaemon daemon(file_);
-  daemon.welcome();
+  daemon.acceptClient();
   ASSERT_TRUE(within10s(*device_, isThere));
-  daemon.say({kMotion, 350, 0, 0, 0, 0, 0, 16});
+  daemon.sendPacket({kMotion, 350, 0, 0, 0, 0, 0, 16});
   ASSERT_TRUE(within10s(*device_, [](const DeviceSample& s) { return s.X_DH.p.y() > 0.005; }));
-  daemon.say({kPress, 0, 0, 0, 0, 0, 0, 0});
+  daemon.sendPacket({kPress, 0, 0, 0, 0, 0, 0, 0});
   EXPECT_TRUE(within10s(*device_, [](const DeviceSample& s) { return s.X_DH.p.norm() < 1e-12; }));
-  daemon.say({kRelease, 0, 0, 0, 0, 0, 0, 0});  // the cap is still pushed
+  daemon.sendPacket({kRelease, 0, 0, 0, 0, 0, 0, 0});  // the cap is still pushed
   EXPECT_TRUE(within10s(*device_, [](const DeviceSample& s) { return s.X_DH.p.y() > 0.001; }));
 }
 
-TEST_F(SpaceMouse, ADaemonThatDiesWhileTheCapIsPushedStopsTheHandleAndANewOneIsFound) {
+TEST_F(SpaceMouse, ADaemonThatEndsWhileTheCapIsPushedStopsTheHandleAndANewOneIsFound) {
   Vec3 p_lost;
   {
     FakeDaemon daemon(file_);
-    daemon.welcome();
+    daemon.acceptClient();
     ASSERT_TRUE(within10s(*device_, isThere));
-    daemon.say({kMotion, 350, 0, 0, 0, 0, 0, 16});
+    daemon.sendPacket({kMotion, 350, 0, 0, 0, 0, 0, 16});
     ASSERT_TRUE(within10s(*device_, [](const DeviceSample& s) { return s.X_DH.p.y() > 0.001; }));
   }
   ASSERT_TRUE(within10s(*device_, [&](const DeviceSample& s) {
@@ -152,22 +152,22 @@ TEST_F(SpaceMouse, ADaemonThatDiesWhileTheCapIsPushedStopsTheHandleAndANewOneIsF
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(device_->read().X_DH.p, p_lost);
   FakeDaemon again(file_);
-  again.welcome();
+  again.acceptClient();
   ASSERT_TRUE(within10s(*device_, isThere));
   EXPECT_EQ(device_->read().X_DH.p, p_lost);
 }
 
-TEST_F(SpaceMouse, AMouseThatIsUnpluggedIsLostUntilItIsBack) {
+TEST_F(SpaceMouse, AnUnpluggedMouseIsLostUntilItIsBack) {
   FakeDaemon daemon(file_);
-  daemon.welcome();
+  daemon.acceptClient();
   ASSERT_TRUE(within10s(*device_, isThere));
-  daemon.say({kDevice, 1, 0, 0, 0, 0, 0, 0});
+  daemon.sendPacket({kDevice, 1, 0, 0, 0, 0, 0, 0});
   EXPECT_TRUE(within10s(*device_, [](const DeviceSample& s) { return s.status == Status::Fault; }));
-  daemon.say({kDevice, 0, 0, 0, 0, 0, 0, 0});
+  daemon.sendPacket({kDevice, 0, 0, 0, 0, 0, 0, 0});
   EXPECT_TRUE(within10s(*device_, isThere));
 }
 
-TEST_F(SpaceMouse, ASecondOneIsRefusedInWords) {
+TEST_F(SpaceMouse, ASecondOneIsRefusedWithAMessage) {
   EXPECT_THROW(openSpaceMouse(), LoadError);
   device_.reset();
   device_ = openSpaceMouse();
@@ -176,9 +176,9 @@ TEST_F(SpaceMouse, ASecondOneIsRefusedInWords) {
 
 TEST_F(SpaceMouse, ReadingNeverAllocates) {
   FakeDaemon daemon(file_);
-  daemon.welcome();
+  daemon.acceptClient();
   ASSERT_TRUE(within10s(*device_, isThere));
-  daemon.say({kMotion, 350, 0, 0, 0, 0, 0, 16});
+  daemon.sendPacket({kMotion, 350, 0, 0, 0, 0, 0, 16});
   const vps_test::NoAllocScope guard;
   for (int i = 0; i < 10'000; ++i) {
     device_->read();

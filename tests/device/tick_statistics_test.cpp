@@ -20,7 +20,7 @@ std::int64_t exact(const std::vector<std::int64_t>& sorted, double share) {
   return sorted[std::max<std::size_t>(rank, 1) - 1];
 }
 
-TEST(TickHistogram, PercentilesAreThoseOfTheSortedListToOnePartIn64) {
+TEST(TickHistogram, PercentilesMatchTheSortedListToOnePartIn64) {
   Random random(7);
   for (const double spread : {0.0, 0.3, 1.5, 4.0}) {
     TickHistogram histogram;
@@ -41,9 +41,9 @@ TEST(TickHistogram, PercentilesAreThoseOfTheSortedListToOnePartIn64) {
   }
 }
 
-TEST(TickHistogram, EveryValueIsToldByTheEndOfItsOwnBucket) {
-  // At each power of two and beside it, where an index is easily one off. A second, greater value keeps the
-  // greatest from hiding the bucket's end.
+TEST(TickHistogram, EveryValueIsRoundedUpToItsBucketsEnd) {
+  // At each power of two and next to it, where an index may be one off. A second, greater value keeps the
+  // exact maximum from hiding the bucket's end.
   for (int bit = 0; bit < 40; ++bit)
     for (const std::int64_t off : {-1, 0, 1}) {
       const std::int64_t ns = (std::int64_t{1} << bit) + off;
@@ -56,7 +56,7 @@ TEST(TickHistogram, EveryValueIsToldByTheEndOfItsOwnBucket) {
     }
 }
 
-TEST(TickHistogram, TakesNegativeAndEndlessTimesAndCountsThem) {
+TEST(TickHistogram, CountsNegativeAndVeryLongTimes) {
   TickHistogram histogram;
   EXPECT_EQ(histogram.percentile(0.5), 0);
   histogram.add(-5);
@@ -70,17 +70,17 @@ TEST(TickTiming, NamesTheGreatestPartAsTheCause) {
   EXPECT_EQ((TickTiming{0, 9, 3, 2, 50, 0}).cause(), TickCause::WokenLate);
   EXPECT_EQ((TickTiming{0, 1, 3, 2, 50, 0}).cause(), TickCause::Device);
   EXPECT_EQ((TickTiming{0, 1, 3, 7, 50, 0}).cause(), TickCause::OwnWork);
-  EXPECT_EQ((TickTiming{0, 1, 3, 7, 50, 0}).cause(true), TickCause::Beside);
+  EXPECT_EQ((TickTiming{0, 1, 3, 7, 50, 0}).cause(true), TickCause::AfterTick);
 }
 
-TEST(TickStatistics, KeepsTheWorstTickWholeAndCountsMissesByCause) {
+TEST(TickStatistics, KeepsAllFieldsOfTheWorstTickAndCountsMissesByCause) {
   TickStatistics statistics(1000);
   {
     vps_test::NoAllocScope guard;
     for (std::uint64_t i = 0; i < 100; ++i) statistics.add({i, 10, 20, 30, 5, 500});
     statistics.add({100, 1, 2, 400, 0, 1500});
     for (std::uint64_t i = 101; i < 200; ++i) statistics.add({i, 10, 20, 30, 5, 1001});
-    statistics.miss(3, TickCause::Beside);
+    statistics.miss(3, TickCause::AfterTick);
     statistics.miss(2, TickCause::WokenLate);
   }
   const TickStatistics::Summary all = statistics.summary();
@@ -90,15 +90,15 @@ TEST(TickStatistics, KeepsTheWorstTickWholeAndCountsMissesByCause) {
   EXPECT_EQ(all.response.max_ns, 403);
   EXPECT_EQ(all.late.max_ns, 10);
   EXPECT_EQ(all.missed, 5u);
-  EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::Beside)], 3u);
+  EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::AfterTick)], 3u);
   EXPECT_EQ(all.missed_by[static_cast<int>(TickCause::WokenLate)], 2u);
   EXPECT_EQ(all.stale, 100u);
   EXPECT_EQ(all.worst.tick, 100u);
   EXPECT_EQ(all.worst.cause(), TickCause::OwnWork);
 }
 
-TEST(TickStatistics, IsReadWholeWhileItIsWritten) {
-  // Every tick's parts say which tick it was, so that a mixture of two would be seen.
+TEST(TickStatistics, IsReadConsistentlyWhileItIsWritten) {
+  // Every field identifies its tick, so that a mixture of two ticks would be detected.
   TickStatistics statistics;
   constexpr std::int64_t kTicks = 200000;
   std::thread writer([&] {
@@ -112,7 +112,7 @@ TEST(TickStatistics, IsReadWholeWhileItIsWritten) {
     ASSERT_EQ(all.worst.late_ns, i);
     ASSERT_EQ(all.worst.device_ns, 2 * i);
     ASSERT_EQ(all.worst.own_ns, 3 * i);
-    ASSERT_EQ(all.worst.beside_ns, 4 * i);
+    ASSERT_EQ(all.worst.after_tick_ns, 4 * i);
     ASSERT_EQ(all.worst.snapshot_ns, 5 * i);
     ASSERT_GE(i, last);
     last = i;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as what a dual arm's hardware, physics and people do wrong, tick by tick: the force keeps within its
-// limit, a fault gives none, and re-arming brings it back.
+// Interprets bytes as faults of a dual arm's hardware, physics and operator, tick by tick: the force stays
+// within its limit, is zero after a fault, and returns after rearm().
 #include "fuzz.h"
 #include "support/hostile_arm.h"
 #include "vps/load_error.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // The first byte chooses: a device's file, or a sequence for its controller.
+  // The first byte selects a parameter file or a sequence for the controller.
   if (size > 0 && data[0] == '[') {
     try {
       const vps::device::DualArmFile file =
@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 }
 
 std::vector<std::string> vps::fuzz::seeds() {
-  // All well; each trouble in turn after ten good ticks; gains that are not numbers; a file.
+  // No fault; each fault in turn; gains that are not numbers; a parameter file.
   std::string calm = {1, char(128)}, all = {2, char(140)}, bad_gains = {0, 100};
   for (int i = 0; i < 40; ++i) calm.append({31, 0});
   for (char code = 0; code < 23; ++code) {

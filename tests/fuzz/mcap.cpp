@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as an MCAP file, the container of recordings.
-#include "vps_device/mcap.h"
+// Reads arbitrary bytes as an MCAP file, the container of recordings.
+#include "vps_device/detail/mcap.h"
 
 #include "fuzz.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a recording: whatever opens can be driven by, and written as tables.
+// Reads arbitrary bytes as a recording: one that opens can be replayed and written as tables.
 #include "vps_device/recording.h"
 
 #include "fuzz.h"
@@ -32,7 +32,7 @@ std::vector<std::string> vps::fuzz::seeds() {
     device::Recorder recorder(file, head);
     device::RunEvent event;
     event.kind = device::RunEventKind::Phase;
-    event.say("phase");
+    event.setWords("phase");
     recorder.add(event);
     for (int i = 0; i < 3; ++i) {
       device::DeviceSample sample;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs by the clock, recorded and done again in simulated time.
+// Runs in real time, recorded and replayed in simulated time.
 #include <gtest/gtest.h>
 
 #include "haptics/haptic_log.h"
@@ -13,8 +13,8 @@
 namespace vps::scenes {
 namespace {
 
-/// Two pins that are set down side by side on a plate: a change of parts, and a field that is cooked while
-/// the loop runs.
+/// Two pins that are set down next to each other on a plate: a change of parts, and a fixed field that is
+/// built while the loop runs.
 Scene twoPins() {
   Scene scene;
   scene.file = "scene.toml";
@@ -31,14 +31,14 @@ Scene twoPins() {
     scene.steps[i].X_WP_start = Pose::translation({x_m, 0, 2.2e-3});
   }
   scene.fidelity.haptic_rate_hz = 500;
-  scene.fidelity.physics_rate_hz = 200;  // no multiple: the two threads meet as they come
+  scene.fidelity.physics_rate_hz = 200;  // no multiple: the threads exchange state at irregular phases
   scene.release_s = 0.1;
   scene.hand.aim_error_m = 0.05e-3;
   return scene;
 }
 
-/// Once for all tests: it takes as long as it takes.
-const test::Recorded& recordedByTheClock() {
+/// Recorded once for all tests: it runs in real time.
+const test::Recorded& realTimeRecording() {
   static const test::Recorded recorded = [] {
     const test::TemporaryFolder folder;
     AssembleOptions options;
@@ -53,17 +53,17 @@ const test::Recorded& recordedByTheClock() {
   return recorded;
 }
 
-std::size_t sync_events(const device::RecordedRun& run, device::SyncEventKind kind) {
+std::size_t countEvents(const device::RecordedRun& run, device::SyncEventKind kind) {
   std::size_t count = 0;
   for (const device::LogEntry& entry : run.entries) {
-    const auto* met = std::get_if<device::SyncEvent>(&entry);
-    count += met != nullptr && met->kind == kind;
+    const auto* event = std::get_if<device::SyncEvent>(&entry);
+    count += event != nullptr && event->kind == kind;
   }
   return count;
 }
 
-TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
-  const test::Recorded& recorded = recordedByTheClock();
+TEST(RealTimeReplay, ARealTimeRunIsReplayedBitForBit) {
+  const test::Recorded& recorded = realTimeRecording();
   EXPECT_EQ(recorded.run.damage, "");
   const ReplayResult replayed = replay(recorded.run);
   EXPECT_EQ(replayed.departure, "");
@@ -71,46 +71,47 @@ TEST(RealTimeReplay, ARunByTheClockIsDoneAgainBitForBit) {
   test::expectSame(recorded.result, replayed.result);
 }
 
-TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndOrder) {
-  const test::Recorded& recorded = recordedByTheClock();
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Tick), recorded.result.haptic.count);
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Step), recorded.result.physics.count);
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::HandOver), 2u);
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::LetGo), 2u);
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Settled), 2u);
-  EXPECT_EQ(sync_events(recorded.run, device::SyncEventKind::Paused), 1u);
+TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndCommand) {
+  const test::Recorded& recorded = realTimeRecording();
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::Tick), recorded.result.haptic.count);
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::Step), recorded.result.physics.count);
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::HandOver), 2u);
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::LetGo), 2u);
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::Settled), 2u);
+  EXPECT_EQ(countEvents(recorded.run, device::SyncEventKind::Paused), 1u);
 }
 
-TEST(RealTimeReplay, ACutRecordingRunsUpToTheCutWhereverItIs) {
+TEST(RealTimeReplay, ATruncatedRecordingRunsUpToItsEnd) {
   for (const double share : {0.1, 0.33331, 0.5, 0.77777}) {
-    device::RecordedRun cut = recordedByTheClock().run;
-    for (int more = 0; more < 5; ++more) {  // amid a tick, too
+    device::RecordedRun cut = realTimeRecording().run;
+    for (int more = 0; more < 5; ++more) {  // also within a tick
       device::RecordedRun some = cut;
       some.entries.resize(static_cast<std::size_t>(share * static_cast<double>(cut.entries.size())) +
                           static_cast<std::size_t>(more));
       some.damage = "ends in the middle of a record";
       const ReplayResult replayed = replay(some);
       EXPECT_EQ(replayed.departure, "") << share << " " << more;
-      EXPECT_GE(replayed.equal + 3, some.entries.size());  // but for a tick that was cut
+      EXPECT_GE(replayed.equal + 3, some.entries.size());  // except for a truncated tick
     }
   }
 }
 
-TEST(RealTimeReplay, TicksThatSeeOlderPhysicsDepartAndSayWhen) {
-  device::RecordedRun run = recordedByTheClock().run;
+TEST(RealTimeReplay, TicksWithOlderPhysicsStatesDepartFromTheRecording) {
+  device::RecordedRun run = realTimeRecording().run;
   std::int32_t snapshot = 0;
   for (device::LogEntry& entry : run.entries) {
-    auto* met = std::get_if<device::SyncEvent>(&entry);
-    if (met == nullptr || met->kind != device::SyncEventKind::Tick || met->tick < 150 || met->tick >= 200)
+    auto* event = std::get_if<device::SyncEvent>(&entry);
+    if (event == nullptr || event->kind != device::SyncEventKind::Tick || event->tick < 150 ||
+        event->tick >= 200)
       continue;
-    if (met->tick == 150) snapshot = met->snapshot;
-    met->snapshot = snapshot;  // a tenth of a second of physics unseen, while the hand moves the part
+    if (event->tick == 150) snapshot = event->snapshot;
+    event->snapshot = snapshot;  // a tenth of a second of physics is ignored while the hand moves the part
   }
   const ReplayResult replayed = replay(run);
   EXPECT_NE(replayed.departure.find("/device/write: force_n"), std::string::npos) << replayed.departure;
 }
 
-TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
+TEST(HapticLog, AddsWithoutAllocatingAndCountsRefusedEntries) {
   test::KeptLog kept;
   HapticLog log(&kept);
   constexpr int kAdded = 3 * (1 << 15) / 2;
@@ -120,13 +121,13 @@ TEST(HapticLog, AddsWithoutAllocatingAndCountsWhatFindsNoRoom) {
   }
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.entries.size(), std::size_t{1} << 15);
-  EXPECT_EQ(kept.lost, 0u);  // known with the next that comes
+  EXPECT_EQ(kept.lost, 0u);  // reported with the next entry
   log.add(device::SyncEvent{0, kAdded, 1, 0, device::SyncEventKind::Tick});
   log.passUpTo(kAdded);
   EXPECT_EQ(kept.lost, static_cast<std::uint64_t>(kAdded - (1 << 15)));
 }
 
-TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasComeToIt) {
+TEST(HapticLog, PassesATicksEntriesOnlyOncePhysicsHasReachedIt) {
   test::KeptLog kept;
   HapticLog log(&kept);
   for (int tick = 1; tick <= 3; ++tick) {

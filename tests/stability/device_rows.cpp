@@ -7,9 +7,9 @@
 #include "rows.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/gains.h"
 #include "vps_device/loop.h"
-#include "vps_device/simulated_dual_arm.h"
 #include "watch.h"
 
 namespace vps::stability {
@@ -34,7 +34,7 @@ Judgement shake(const Run& run) {
   device::SimulatedDualArm device;
   device::LoopSettings settings;
   settings.gains = device::deriveGains(device.limits(), {});
-  CouplingPort port;
+  device::CouplingPort port;
   device::HapticLoop loop(device, port, settings);
   auto owned = std::make_unique<bullet::CouplingConstraint>(*block.body, Pose(), settings.gains);
   bullet::CouplingConstraint& coupling = *owned;
@@ -57,12 +57,12 @@ Judgement shake(const Run& run) {
     hand.X_eq.p.z() = -amplitude_m * std::sin(turn_rad_s * t_s);
     hand.V_eq.v.z() = -amplitude_m * turn_rad_s * std::cos(turn_rad_s * t_s);
     device.step(dt_s, hand);
-    coupling.setTarget(port.proxy.read());
+    coupling.setTarget(port.haptic.read().proxy);
     CouplingState part = coupling.partState();
     part.is_coupled = true;
-    port.part.write(part);
+    port.physics.write({part, 0, {}, {}});
     loop.observeStoredEnergy(
-        energy_J(world, {block}) + springEnergy_J(settings.gains, port.proxy.read(), part), 0);
+        energy_J(world, {block}) + springEnergy_J(settings.gains, port.haptic.read().proxy, part), 0);
   };
   const Watched watched = watch(world, {floor, block}, watching);
   Judgement judgement;
@@ -80,8 +80,8 @@ Judgement shake(const Run& run) {
                             ? std::sqrt(block_part.frame.mass_kg * 4 / (1e12 * 1e-6)) * watched.fastest_m_s
                             : 0),
                    "m");
-  judgement.atMost("energy added", loop.ledger().injected_J, settings.injected_bound_J, "J");
-  judgement.note("force " + toText(greatest_N) + " N, energy made " + toText(loop.ledger().injected_J) +
+  judgement.atMost("energy added", loop.passivity().injected_J, settings.injected_bound_J, "J");
+  judgement.note("force " + toText(greatest_N) + " N, energy made " + toText(loop.passivity().injected_J) +
                  " J");
   return judgement;
 }

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "vps_device/dual_arm_controller.h"
-#include "vps_device/dual_arm_plant.h"
+#include "vps_device/dual_arm/controller.h"
+#include "vps_device/dual_arm/plant.h"
 #include "vps_device/gains.h"
 #include "vps_device/loop.h"
 
@@ -112,7 +112,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   HostileArm hardware(plant, require);
   device::DeviceEventQueue events;
   device::DualArmController controller(hardware, {p, 1000, true, false, false}, &events);
-  CouplingPort port;
+  device::CouplingPort port;
 
   device::LoopSettings settings;
   settings.gains = device::deriveGains(controller.limits(), {});
@@ -126,7 +126,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   device::HapticLoop loop(controller, port, settings);
   loop.grasp(Pose{});
   CouplingState part{Pose{}, Twist{}, 0, true};
-  port.part.write(part);
+  port.physics.write({part, 0, {}, {}});
 
   device::HandForce hand = firmHand(300, 20);
   hand.F.f = 0.1 * (data[1] - 128.0) * Vec3::Unit(data[1] % 3);
@@ -158,7 +158,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   };
   const auto tick = [&](bool is_asked, bool is_physics_alive = true, double dt_s = 1e-3) {
     if (is_asked) {
-      if (is_physics_alive) port.part.write(part);
+      if (is_physics_alive) port.physics.write({part, 0, {}, {}});
       silent_ticks = is_physics_alive ? 0 : silent_ticks + 1;
       loop.tick(dt_s);
       check();

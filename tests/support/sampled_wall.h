@@ -125,8 +125,8 @@ class RailDevice final : public device::Device {
 /// while our loop renders the wall; the wall's work on it over what a damper of 1 N s/m would take.
 inline double measuredPassiveDamping(const SampledWall& w, int index) {
   RailDevice device(w.period_s);
-  CouplingPort port;
-  port.part.write(stillPart());
+  device::CouplingPort port;
+  port.physics.write({stillPart(), 0, {}, {}});
   device::HapticLoop loop(device, port, wallLoop(w));
   loop.grasp(Pose{});  // at x = 0, where the part is
   const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
@@ -148,8 +148,8 @@ inline double measuredPassiveDamping(const SampledWall& w, int index) {
 /// Our loop renders the wall; whole ticks of delay.
 inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m) {
   RailDevice device(w.period_s);
-  CouplingPort port;
-  port.part.write(stillPart());
+  device::CouplingPort port;
+  port.physics.write({stillPart(), 0, {}, {}});
   device::HapticLoop loop(device, port, wallLoop(w));
   loop.grasp(Pose{});
   const double push_N = 5, rest_m = push_N / w.K_N_per_m;

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/gains.h"
 #include "vps_device/loop.h"
-#include "vps_device/simulated_dual_arm.h"
 
 namespace vps::test {
 
@@ -31,14 +31,14 @@ struct Unrest {
 inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const CouplingGains& gains,
                           const WallPress& press = {}) {
   device::SimulatedDualArm arm(device);
-  CouplingPort port;
+  device::CouplingPort port;
   device::LoopSettings settings;
   settings.gains = gains;
   settings.period_s = 1 / device.rate_hz;
   settings.has_passivity_controller = false;
   device::HapticLoop loop(arm, port, settings);
   loop.grasp(Pose{});
-  port.part.write({Pose{}, Twist{}, 0, true});
+  port.physics.write({{Pose{}, Twist{}, 0, true}, 0, {}, {}});
   device::HandForce hand;
   hand.mass_kg = press.hand_kg;
   hand.inertia_kgm2 = 1e-4;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps device --characterise: Table 1 and figure 5 of the paper for the simulated dual arm.
+// vps device --list: the kinds of device.
 #include <cstdio>
 #include <memory>
 
@@ -10,7 +11,8 @@
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
-#include "vps_device/dual_arm_character.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/dual_arm/character.h"
 #include "vps_viewer/device_plot.h"
 
 namespace vps::viewer {
@@ -19,6 +21,7 @@ namespace {
 
 struct DeviceArguments {
   bool is_characterise = false;
+  bool is_list = false;
   std::string parameters;        ///< parameter file over the built-in device; empty: none
   std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
   std::string json;
@@ -158,7 +161,19 @@ void print(const device::DualArmCharacter& c) {
   std::fputs(kNotes, stdout);
 }
 
+int listKinds() {
+  Table table({"<kind", "<what it is", "<available"});
+  for (const device::DeviceKind& kind : device::deviceKinds()) {
+    const std::string missing = kind.missing();
+    const std::string remedy = missing.empty() ? "yes" : "no: " + missing + "; " + std::string(kind.remedy);
+    table.add({std::string(kind.name), std::string(kind.description), remedy});
+  }
+  std::fputs(table.text().c_str(), stdout);
+  return kGood;
+}
+
 int runDevice(const DeviceArguments& given) {
+  if (given.is_list) return listKinds();
   if (!given.is_characterise)
     throw LoadError(
         "", "",
@@ -186,10 +201,12 @@ int runDevice(const DeviceArguments& given) {
 void addDevice(CommandLine& line) {
   const auto given = std::make_shared<DeviceArguments>();
   CLI::App& command = addCommand(
-      line, "device", "prints the device's figures and the paper's; the device node is planned",
+      line, "device", "lists device kinds, or prints the dual arm's figures and the paper's; the device node is planned",
       "vps device --characterise --json dual_arm.json --plot figure5", [given] { return runDevice(*given); });
   CLI::Option* characterise = command.add_flag("--characterise", given->is_characterise,
                                                "compute Table 1 and figure 5 of the paper for the dual arm");
+  command.add_flag("--list", given->is_list, "print the device kinds that a scene may name in [device] kind")
+      ->excludes(characterise);
   command.add_option("--parameters", given->parameters, "parameters that replace the built-in ones")
       ->type_name("FILE.toml")
       ->needs(characterise);

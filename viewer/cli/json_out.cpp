@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "vps_device/dual_arm_character.h"
+#include "vps_device/dual_arm/character.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/trade.h"
 

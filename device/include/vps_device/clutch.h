@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Letting go of a part and taking it again, elsewhere or another one, without a jump of force and without
-// energy: a lever between hand and proxy whose ratio goes from 1 to 0 and back.
+// Releases and re-grasps a part without a jump of force and without adding energy: a lever between hand and
+// proxy whose ratio goes from 1 to 0 and back.
 //
 //   hand --[ lever, ratio g ]-- proxy --[ coupling ]-- part
-//   force on the hand = g x the coupling's,   the proxy goes g x the hand's way
+//   force on the hand = g x the coupling's,   displacement of the proxy = g x the hand's
 //
-// Power is the same on both sides at every ratio, so nothing is made or lost while it changes, whatever the
-// hand does meanwhile and however the spring is stretched. At 0 the proxy stands, and holds the part where it
-// is; the hand is free. Fading the force alone would not do: a hand that lifts while a weight fades in would
-// lift it for nothing.
+// Power is equal on both sides at every ratio, so that energy is conserved while the ratio changes, whatever
+// the hand's motion and the spring's extension. At 0 the proxy stands still and holds the part; the hand is
+// free. Fading only the force would not conserve energy: a hand that rises while a weight fades in would lift
+// it without doing the work.
 #pragma once
 
 #include <algorithm>
@@ -21,16 +21,16 @@ namespace vps::device {
 
 class VPS_DEVICE_API Clutch {
  public:
-  /// Lets go, over fade_s.
+  /// Opens over fade_s.
   void open() noexcept { is_closing_ = false; }
-  /// Takes hold, over fade_s.
+  /// Closes over fade_s.
   void close() noexcept { is_closing_ = true; }
-  /// At once: for what exerts no force yet.
-  void shut() noexcept {
+  /// Close and open at once, where the coupling exerts no force.
+  void closeAtOnce() noexcept {
     is_closing_ = true;
     ratio_ = 1;
   }
-  void drop() noexcept {
+  void openAtOnce() noexcept {
     is_closing_ = false;
     ratio_ = 0;
   }
@@ -39,12 +39,12 @@ class VPS_DEVICE_API Clutch {
   [[nodiscard]] bool isOpen() const noexcept { return ratio_ == 0; }
   [[nodiscard]] bool isClosed() const noexcept { return ratio_ == 1; }
 
-  /// One period further; fade_s > 0.
+  /// Advances by one period; fade_s > 0.
   void advance(double dt_s, double fade_s) noexcept {
     ratio_ = std::clamp(ratio_ + (is_closing_ ? 1 : -1) * dt_s / fade_s, 0.0, 1.0);
   }
 
-  /// Where the proxy goes from X_W while the hand that holds it there goes on by `step` (turn and way, in W).
+  /// The proxy, now at X_W, after the hand moves by `step` (rotation and translation, in W).
   [[nodiscard]] Pose follow(const Pose& X_W, const Twist& step) const noexcept {
     return {Mat3(rotationFromVector(ratio_ * step.w) * X_W.R), Vec3(X_W.p + ratio_ * step.v)};
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every haptic device is to us: a handle whose pose is read and on which a wrench is set.
+// Interface of a haptic device: a handle whose pose is read and to which a wrench is written.
 #pragma once
 
 #include <string_view>
@@ -16,10 +16,10 @@ struct DeviceSample {
   Pose X_DH;
   Twist V_DH;
   double time_s = 0;
-  Status status = Status::Ok;  ///< anything but Ok: do not use the pose
+  Status status = Status::Ok;  ///< other than Ok: the pose must not be used
 };
 
-/// What a device can do; the coupling's gains follow from it. Zero means not known.
+/// Capabilities of a device, from which the coupling gains are derived. Zero means not known.
 struct DeviceLimits {
   double continuous_force_N = 0;
   double peak_force_N = 0;
@@ -28,7 +28,7 @@ struct DeviceLimits {
   Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
   Vec3 workspace_max_D = Vec3::Zero();
   double rate_hz = 1000;        ///< read-write cycles per second
-  double delay_s = 0;           ///< from a reading to the effect of the wrench that answers it
+  double delay_s = 0;           ///< from a reading to the effect of the wrench computed from it
   double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, handle within 30 deg
   double damping_Nms_per_rad = 0;
   double coulomb_N = 0;  ///< least dry friction over the workspace
@@ -38,19 +38,19 @@ struct DeviceLimits {
 };
 
 /// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.
-/// What does (a driver, a socket, a window) has a thread of its own. So a new device is:
+/// Code that does (a driver, a socket, a window) runs on a thread of its own. A new device is:
 ///
 ///   class MyDevice final : public Device {
 ///     DeviceSample read() noexcept override { return sample_.read(); }
 ///     void write(const Wrench& F_Ho_D) noexcept override { wrench_.write(F_Ho_D); }
 ///     DeviceLimits limits() const noexcept override { return {.peak_force_N = 3}; }
 ///     std::string_view name() const noexcept override { return "my_device"; }
-///     TripleBuffer<DeviceSample> sample_;  // vps/triple_buffer.h: the driver's thread writes this
-///     TripleBuffer<Wrench> wrench_;        // and reads this, neither ever waiting for the other
+///     TripleBuffer<DeviceSample> sample_;  // vps/triple_buffer.h: the driver's thread writes it
+///     TripleBuffer<Wrench> wrench_;        // and reads this one; neither thread waits
 ///   };
 ///
-/// A device that may fall silent stamps its samples, and says Fault once the last is too old.
-/// hand_controllers.h has devices without force, recording.h one that repeats what another did.
+/// A device that may stop sending stamps its samples, and returns Fault once the last is too old. To make it
+/// available to scenes by name, see device_kinds.h.
 class VPS_DEVICE_API Device {
  public:
   virtual ~Device() = default;
@@ -58,8 +58,8 @@ class VPS_DEVICE_API Device {
   /// The newest pose. Status other than Ok when the device is lost or singular.
   virtual DeviceSample read() noexcept = 0;
 
-  /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates it by itself,
-  /// keeping its direction; a wrench that is not finite counts as zero.
+  /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates it and keeps
+  /// its direction; a wrench that is not finite counts as zero.
   virtual void write(const Wrench& F_Ho_D) noexcept = 0;
 
   /// Clears a fault that the device itself has latched. The next pose may be anywhere.

@@ -9,19 +9,19 @@
 
 namespace vps::device {
 
-/// Each has a thread of its own that talks to the library, which may wait, allocate and look for hardware;
-/// the haptic thread takes the latest deflection from a TripleBuffer and never meets it. A device that is not
-/// there, or is unplugged, reads as lost (Status::Fault), and is looked for again: once it is back it goes on
-/// where the handle stood. The safety guard wants to be re-armed then, as after every loss.
+/// A thread of the device's own calls the library, which may wait, allocate and search for hardware; the
+/// haptic thread reads the latest deflection from a TripleBuffer. A device that is absent or unplugged reads
+/// as lost (Status::Fault) and is searched for again; once it is back, the handle continues where it stood.
+/// The safety guard needs rearm() then, as after every loss.
 
 /// The first space mouse of the spacenavd daemon (socket: SPNAV_SOCKET, /etc/spnavrc or /var/run/spnav.sock).
-/// Button 0 re-centres. Throws LoadError where this build lacks libspnav, or while another one lives: the
-/// library knows one connection a program.
+/// Button 0 re-centres. Throws LoadError if this build lacks libspnav, or while another one exists: the
+/// library supports one connection per program.
 VPS_DEVICE_API std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
 
-/// The first game controller that SDL knows. Left stick: to the sides, to and fro; triggers: up (right) and
-/// down; right stick: turns about z and y; shoulders: about x; start: re-centres. Throws LoadError where this
-/// build lacks SDL2.
+/// The first game controller that SDL finds. Left stick: sideways, and towards or away from the person;
+/// triggers: up (right) and down; right stick: rotation about z and y; shoulders: about x; start: re-centres.
+/// Throws LoadError if this build lacks SDL2.
 VPS_DEVICE_API std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
 
 }  // namespace vps::device

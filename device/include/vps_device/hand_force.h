@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a hand does to a handle: an impedance about an equilibrium, so that a plant can integrate it
+// The force of a hand on a handle, as an impedance about an equilibrium, so that a plant can integrate it
 // implicitly.
 #pragma once
 
@@ -14,14 +14,14 @@ namespace vps::device {
 ///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same with rotation vectors + F.tau,
 /// and the hand's own inertia moves with the handle. k and b symmetric, not negative. Default: no hand.
 struct HandForce {
-  Pose X_eq;  ///< where the hand wants the handle
+  Pose X_eq;  ///< equilibrium of the handle
   Twist V_eq;
   Mat3 k_N_per_m = Mat3::Zero();
   Mat3 b_Ns_per_m = Mat3::Zero();
   Mat3 k_Nm_per_rad = Mat3::Zero();
   Mat3 b_Nms_per_rad = Mat3::Zero();
   Wrench F;            ///< feed-forward
-  double mass_kg = 0;  ///< of hand and forearm, as felt at the handle; its weight is the person's affair
+  double mass_kg = 0;  ///< of hand and forearm, as felt at the handle; the person carries its weight
   double inertia_kgm2 = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part in hand between two physics snapshots: a small implicit step against the fixed voxmap, in the
-// haptic thread, so that contact stays crisp where physics is slower than the loop.
+// Predicts the part in hand between two physics states: one small implicit step per tick against the fixed
+// voxmap, in the haptic thread, for contact forces without delay where physics is slower than the loop.
+// Its limits are in README.md.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@
 namespace vps::device {
 
 struct LocalContactSettings {
-  double hold_limit_s = 0.05;  ///< without a new snapshot for longer, the part stands still. assumed: five
-                               ///< steps of 100 Hz physics
-  std::size_t contact_limit = 4096;  ///< near points; with more the snapshot is held
-  std::size_t solve_limit = 64;  ///< of these enter the step; of more every second, third, ... for as many
-  double margin_m = 50e-6;       ///< points so near may touch within the tick, besides what the speed tells.
-                                 ///< assumed: 50 mm/s at 1 kHz
+  /// Without a new physics state for longer, the part stands still. assumed: five steps of 100 Hz physics
+  double hold_limit_s = 0.05;
+  std::size_t contact_limit = 4096;  ///< near points; with more, the last state is held
+  std::size_t solve_limit = 64;      ///< of these enter the step; of more, every second, third, ... does
+  /// Points this near may touch within the tick. assumed: 50 mm/s at 1 kHz
+  double margin_m = 50e-6;
 };
 
-/// What is in hand and what it may touch. Map and shell outlive their use.
+/// The part in hand and what it may touch. Map and shell outlive their use.
 struct LocalPart {
   const VoxMap* map = nullptr;        ///< of what is fixed
   const PointShell* shell = nullptr;  ///< of the part
@@ -33,14 +34,14 @@ struct LocalPart {
   double k_N_per_m3 = 1e12;  ///< contact stiffness per area
 };
 
-/// One thread at a time; take() and letGo() while the loop stands still. follow() never throws, allocates,
-/// locks.
+/// One thread at a time; take() and letGo() only while the loop is stopped. follow() never throws, allocates
+/// or locks.
 ///
 /// Each tick is one backward-Euler step of the part under the coupling, gravity, the fixed map's contacts
 /// (penalty along their normals, linear in the step) and friction (viscous, up to the cone), as one 6 x 6
-/// system. Each of these only stores or dissipates, and backward Euler adds to what is dissipated: between
-/// snapshots the model gives the hand no energy of its own. What a new snapshot adds by moving the part is
-/// told by jump_J.
+/// system. Each of these only stores or dissipates energy, and backward Euler dissipates more: between
+/// physics states the model adds no energy. The energy that a new state adds by moving the part is reported
+/// as jump_J.
 class VPS_DEVICE_API LocalContact {
  public:
   explicit LocalContact(const LocalContactSettings& settings = {});
@@ -48,16 +49,16 @@ class VPS_DEVICE_API LocalContact {
   void take(const LocalPart& part);
   void letGo() noexcept { part_.reset(); }
 
-  /// Where the part is now. Once a tick.
-  /// @param snapshot  of physics, the same until there is a new one (by its time stamp)
+  /// The predicted state of the part; call once per tick.
+  /// @param snapshot  latest physics state; a new time stamp makes it a new one
   CouplingState follow(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& snapshot,
                        double dt_s) noexcept;
 
   struct Report {
     std::size_t contacts = 0;  ///< of the last tick, touching
-    std::uint64_t held =
-        0;              ///< ticks in which the part was held instead: too many contacts, too old, no number
-    double jump_J = 0;  ///< sum of what snapshots added to the coupling's springs
+    /// Ticks in which the part was held instead: too many contacts, state too old, or result not finite.
+    std::uint64_t held = 0;
+    double jump_J = 0;  ///< sum of the energy that new states added to the coupling's springs
     double greatest_jump_m = 0;
   };
   [[nodiscard]] const Report& report() const noexcept { return report_; }

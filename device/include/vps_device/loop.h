@@ -6,156 +6,107 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "vps/coupling_law.h"
 #include "vps_device/clutch.h"
+#include "vps_device/coupling_port.h"
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 #include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
+#include "vps_device/workspace_map.h"
 
 namespace vps::device {
-
-/// How the device's space lies in the scene: p_W = X_WD (scale p_D). Forces on the hand are force_scale times
-/// the scene's. Powers then differ by scale / force_scale; the ledger is kept at the hand.
-struct VPS_DEVICE_API WorkspaceMap {
-  Pose X_WD;
-  double scale = 1;        ///< scene metres per device metre, > 0
-  double force_scale = 1;  ///< device newtons per scene newton, > 0
-
-  [[nodiscard]] Pose toScene(const Pose& X_DH) const noexcept;
-  [[nodiscard]] Pose toDevice(const Pose& X_WH) const noexcept;
-  [[nodiscard]] Twist toScene(const Twist& V_D) const noexcept;
-  [[nodiscard]] Twist toDevice(const Twist& V_W) const noexcept;
-  [[nodiscard]] Wrench toScene(const Wrench& F_D) const noexcept;
-  [[nodiscard]] Wrench toDevice(const Wrench& F_W) const noexcept;
-};
-
-/// How the hand holds the part: the grasp frame G moves with the handle by an offset that is fixed when
-/// grasping, so that grasping anywhere, at any attitude, gives no force. Handle turns turn G about its own
-/// origin:
-///   p_WG = p_WH + offset_W,   R_WG = R_WH R_HG,   hence equal twists, and wrenches pass unchanged.
-struct VPS_DEVICE_API Grasp {
-  Vec3 offset_W = Vec3::Zero();
-  Mat3 R_HG = Mat3::Identity();
-
-  static Grasp between(const Pose& X_WH, const Pose& X_WG) noexcept;
-  [[nodiscard]] Pose toGrasp(const Pose& X_WH) const noexcept;
-  [[nodiscard]] Pose toHandle(const Pose& X_WG) const noexcept;
-};
-
-/// Energy at the hand [J]. The device's work on the hand is the force that acts, so late as the device's
-/// limits say and held for a period, times handle displacement.
-///
-/// The balance is net work - dissipation - fall in stored energy - actuator work. Where device, coupling and
-/// scene make no energy it never rises: friction of contacts and the coupling's damper let it fall. So its
-/// greatest rise above its own least value so far is the most energy that was made, net of what was taken up
-/// meanwhile, in any stretch of time, whatever was dissipated before: nothing saved up early pays for it.
-struct PassivityObserver {
-  double to_hand_J = 0;     ///< sum of the positive works
-  double from_hand_J = 0;   ///< sum of the negative works, as a positive number
-  double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
-  double balance_J = 0;     ///< when stored energy was last noted, in scene joules; 0 the first time
-  double least_J = 0;       ///< the least balance so far
-  double injected_J = 0;    ///< greatest rise of the balance above its least value before
-  /// What the encoders may have kept from injected_J, at the most, in scene joules: with a reading off by e,
-  /// the sum of F . change of e is, summed by parts, at most the greatest e times (the way that F has gone,
-  /// up and down, + F now). Of DeviceLimits::resolution alone, and wide: as if each error were the worst.
-  double quantisation_error_bound_J = 0;
-
-  /// What it has risen by now.
-  [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
-};
 
 struct LoopSettings {
   CouplingGains gains;
   WorkspaceMap map;
   SafetyLimits safety;
   double period_s = 1e-3;
-  bool extrapolates_part =
-      false;  ///< advance the part by its velocity since its time stamp, up to hold_limit_s
+  /// Extrapolate the part by its velocity from its time stamp, for up to hold_limit_s.
+  bool extrapolates_part = false;
   double hold_limit_s = 2e-3;
-  double injected_bound_J =
-      1e-3;  ///< of rise; above it the passivity controller adds damping. assumed: 5 N over 0.2 mm
-  bool has_passivity_controller = true;  ///< works once observeStoredEnergy() is called
-  double clutch_s = 0.1;                 ///< hold and let go take so long. assumed: a startle takes longer
-  /// A part in hand whose snapshot (by its time stamp) stays the same for longer is a fault. 0: never, as in
-  /// lockstep, where physics cannot fall behind. Real time has 0.1 s: see real_time_loop.h.
+  /// Above this rise of the energy balance the passivity controller adds damping. assumed: 5 N over 0.2 mm
+  double injected_bound_J = 1e-3;
+  bool has_passivity_controller = true;  ///< active once stored energy is observed
+  double clutch_s = 0.1;  ///< duration of opening and closing the clutch. assumed: longer than a startle
+  /// A part in hand whose state (by its time stamp) stays the same for longer is a fault. 0: never, as in
+  /// lockstep, where physics cannot fall behind. RealTimeLoop defaults to 0.1 s.
   double physics_limit_s = 0;
-  LocalContact* local = nullptr;       ///< tells where the part is between snapshots; null: where they say
-  DeviceEventQueue* events = nullptr;  ///< told of safety's faults, by the loop's thread; may be null
+  LocalContact* local = nullptr;       ///< predicts the part between physics states; may be null
+  DeviceEventQueue* events = nullptr;  ///< receives safety faults, from the loop's thread; may be null
 };
 
-/// What one tick did.
-struct TickReport {
-  double time_s = 0;
-  Status status = Status::Ok;
-  Pose X_WG;  ///< proxy
-  Twist V_WG;
-  Wrench F_hand_W;          ///< on the hand, after safety, in W about the handle's origin
-  Wrench F_hand_D;          ///< the same as written to the device
-  double clutch_ratio = 1;  ///< of the clutch after the tick: 0 open, 1 closed
-};
-
-/// Owned by the haptic thread (or the lockstep driver). tick() never throws, allocates, locks or waits.
+/// The haptic loop. Owned by the haptic thread or by a lockstep driver. tick() never throws, allocates, locks
+/// or waits.
 class VPS_DEVICE_API HapticLoop {
  public:
   /// device and port outlive the loop.
   HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings);
 
-  /// Takes hold of a part whose grasp frame is at X_WG now: no force arises by it. The physics side must
-  /// publish is_coupled on the port before any force flows.
+  /// Grasps a part whose grasp frame is at X_WG now; no force arises. The physics side must publish
+  /// is_coupled on the port before any force flows.
   void grasp(const Pose& X_WG) noexcept;
-  /// Lets go: the proxy stays published, uncoupled.
+  /// Releases the part: the proxy is still published, uncoupled.
   void release() noexcept;
 
-  /// Opens the clutch over clutch_s: the hand comes free while the proxy stands and holds the part. What a
-  /// device smaller than the scene needs to reach farther (a ratchet), and what comes before release() where
-  /// force would jump.
+  /// Opens the clutch over clutch_s: the hand comes free while the proxy stands still and holds the part. A
+  /// device smaller than the scene needs this to reach farther (indexing). It also precedes release() where
+  /// force would otherwise jump.
   void disengage() noexcept { clutch_.open(); }
-  /// Closes it over clutch_s: the hand has what it held again, from wherever it now is.
+  /// Closes the clutch over clutch_s: the hand holds the part again, from wherever the handle is now.
   void engage() noexcept { clutch_.close(); }
   [[nodiscard]] const Clutch& clutch() const noexcept { return clutch_; }
-  /// From one part to another: takes hold of one whose grasp frame is at X_WG, as grasp(), with the clutch
-  /// open, and closes it. Nothing jumps if the clutch was open before and nobody else holds that part; the
-  /// springs to the part before give their energy to nobody.
+  /// Changes parts: grasps one whose grasp frame is at X_WG, as grasp(), with the clutch open, and closes it.
+  /// Nothing jumps if the clutch was open before and nothing else holds that part. The energy in the springs
+  /// to the part before is dropped.
   void handOver(const Pose& X_WG) noexcept;
-  /// Clears a safety fault and, if a part is held, re-grasps it where the physics side last saw it.
+  /// Clears a safety fault. If a part is held, it is grasped again at its last received pose.
   void rearm() noexcept;
 
-  /// One tick. Status of the device, or Fault while safety holds the force at zero.
+  /// One tick of one period: receivePart() and tickWithReceivedPart().
   const TickReport& tick() noexcept { return tick(settings_.period_s); }
-  /// The same, dt_s after the last: a driver that missed periods says so. Counts as one to four periods, so
-  /// that no pause ever lets the force leap.
+  /// The same, dt_s after the last tick: a driver that missed periods passes the longer time. It counts as
+  /// one to four periods, so that the force never jumps after a pause.
   const TickReport& tick(double dt_s) noexcept;
 
-  /// Other gains from the next tick on, as where physics changes its rate. Softer ones take energy out of the
-  /// springs, stiffer ones put some in: let those wait until nothing is held. Gains that are not usable are a
-  /// fault, as in the constructor.
+  /// Takes the latest PhysicsState from the port; the next tick uses it. Observes its stored energy if it is
+  /// a new step. Separate from the tick so that a recording can note which state a tick used.
+  void receivePart() noexcept;
+  /// The rest of tick(), with the state that receivePart() took.
+  /// @return  Status of the device, or Fault while safety holds the force at zero
+  const TickReport& tickWithReceivedPart(double dt_s) noexcept;
+  [[nodiscard]] const PhysicsState& received() const noexcept { return received_; }
+
+  /// Other gains from the next tick on, as when physics changes its rate. Softer gains take energy out of the
+  /// springs, stiffer ones add some: delay those until nothing is held. Unusable gains are a fault, as in the
+  /// constructor.
   void setGains(const CouplingGains& gains) noexcept;
 
   /// Latches a fault that a driver has found; recovery is rearm().
-  void refuse(SafetyFault fault) noexcept;
+  void latchFault(SafetyFault fault) noexcept;
 
-  /// Tells the ledger the energy stored in the scene now (kinetic, gravity, springs, contact) and the work
-  /// put in by others than the hand so far, both in scene joules. Call once a physics step, from the loop's
-  /// thread, with the handle where the last tick read it: there the balance is drawn.
+  /// Observes the energy stored in the scene now (kinetic, gravity, springs, contact) and the work done so
+  /// far by actuators other than the hand, both in scene joules. Call once per physics step, from the loop's
+  /// thread, with the handle where the last tick read it. A driver that publishes PhysicsState::stored_J does
+  /// not need it.
   void observeStoredEnergy(double stored_J, double actuator_J) noexcept;
 
   [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
   [[nodiscard]] const TickReport& last() const noexcept { return report_; }
-  [[nodiscard]] const PassivityObserver& ledger() const noexcept { return ledger_; }
+  [[nodiscard]] const PassivityObserver& passivity() const noexcept { return passivity_; }
   [[nodiscard]] const SafetyState& safety() const noexcept { return guard_.state(); }
   [[nodiscard]] const LoopSettings& settings() const noexcept { return settings_; }
+  /// What a tick publishes, as of now: changes since the last tick are included.
+  [[nodiscard]] HapticState state() const noexcept;
   /// Ticks that ended with each Status, indexed by its value.
   [[nodiscard]] std::uint64_t count(Status status) const noexcept;
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
-  /// How long the part's snapshot has been the same, by ticks.
+  /// How long the part's state has been the same, counted in ticks.
   [[nodiscard]] double snapshotAge_s() const noexcept { return snapshot_age_s_; }
 
-  /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D: what
-  /// joins a VirtualOperator to a SimulatedDualArm.
+  /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D. They
+  /// connect a VirtualOperator to a SimulatedDevice.
   [[nodiscard]] Pose toGrasp(const Pose& X_DH) const noexcept;
   [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
 
@@ -164,36 +115,37 @@ class VPS_DEVICE_API HapticLoop {
   [[nodiscard]] Wrench passivityDamping(const Twist& V_DH) const noexcept;
   [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
   void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
-  void account(const DeviceSample& sample, const Twist& step_D) noexcept;
-  void accountUnseen(const Wrench& F_acting_D) noexcept;
+  void accountEnergy(const DeviceSample& sample, const Twist& step_D) noexcept;
+  void accountQuantisation(const Wrench& F_acting_D) noexcept;
   [[nodiscard]] Wrench actingWrench() const noexcept;
   void watchPhysics(double dt_s) noexcept;
-  void tellFault() noexcept;
+  void reportFault() noexcept;
 
   static constexpr std::size_t kStatusCount = 8;
-  static constexpr std::size_t kMostDelay = 14;  ///< ticks of the device's own that the ledger can follow
+  static constexpr std::size_t kMaxDelay = 14;  ///< device's own delay that the accounting can follow [ticks]
 
   Device* device_;
   CouplingPort* port_;
   LoopSettings settings_;
   DeviceLimits limits_;
   SafetyGuard guard_;
+  PhysicsState received_;
   double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;  // b - K T/2 - B, at the device
   Grasp grasp_;
   Clutch clutch_;
   bool is_holding_ = false;
   TickReport report_;
-  PassivityObserver ledger_;
+  PassivityObserver passivity_;
   Pose X_DH_before_;
   bool has_before_ = false;
-  std::array<Wrench, kMostDelay + 2> F_written_D_{};  ///< newest first
-  double delay_ticks_ = 0;                            ///< the device's own
-  Wrench F_accounted_D_;                              ///< by the last account()
-  double force_way_N_ = 0, torque_way_Nm_ = 0;        ///< sums of its changes
-  double net_scene_J_ = 0, balance_start_J_ = 0;      // scene joules
+  std::array<Wrench, kMaxDelay + 2> F_written_D_{};         ///< newest first
+  double delay_ticks_ = 0;                                  ///< the device's own
+  Wrench F_accounted_D_;                                    ///< by the last accountEnergy()
+  double force_variation_N_ = 0, torque_variation_Nm_ = 0;  ///< sums of its changes
+  double net_scene_J_ = 0, balance_start_J_ = 0;            // scene joules
   bool has_stored_ = false;
   double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
-  std::uint64_t told_faults_ = 0;
+  std::uint64_t reported_faults_ = 0;
   std::uint64_t ticks_ = 0;
   std::array<std::uint64_t, kStatusCount> counts_{};
 };

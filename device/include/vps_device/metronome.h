@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Beats at a fixed rate by an absolute clock: no drift, no bursts, and it says what was missed.
+// Waits for periods of a fixed rate by an absolute clock, without drift or bursts, and counts missed periods.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace vps::device {
 
-/// A clock to wait by; another one in tests. Called by one thread at a time.
+/// The clock; tests use another. Called by one thread at a time.
 class VPS_DEVICE_API RealTimeClock {
  public:
   virtual ~RealTimeClock() = default;
@@ -20,24 +20,24 @@ class VPS_DEVICE_API RealTimeClock {
 /// The system's monotonic clock, by absolute waits.
 VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
 
-/// One beat.
+/// One period that was waited for.
 struct Beat {
   std::int64_t due_ns = 0;
   std::int64_t woke_ns = 0;
-  std::int64_t periods = 1;          ///< since the beat before: 1 when none was missed
-  std::int64_t missed_before = 0;    ///< of these, passed while the work of the beat before went on
-  std::int64_t missed_asleep = 0;    ///< and while the system did not wake us
-  bool has_clock_gone_back = false;  ///< the beats begin anew from now
+  std::int64_t periods = 1;          ///< since the last beat: 1 when none was missed
+  std::int64_t missed_before = 0;    ///< of these, missed because the work of the last beat took too long
+  std::int64_t missed_asleep = 0;    ///< and because the system woke the thread late
+  bool has_clock_gone_back = false;  ///< the beats restart from now
 };
 
-/// Waits for one beat after the other. Work that runs beyond a beat costs that beat: the next is the first
-/// that is still to come, never several at once. Never throws, allocates, locks.
+/// Waits for one beat after the other. A beat that passes while work is still running is missed: the next is
+/// the first in the future, never several at once. Never throws, allocates or locks.
 class VPS_DEVICE_API Metronome {
  public:
   /// @param period_ns  > 0
   Metronome(std::int64_t period_ns, RealTimeClock& clock) noexcept : period_ns_(period_ns), clock_(&clock) {}
 
-  /// The next wait() is for a period from now.
+  /// The next wait() returns a period from now.
   void start() noexcept;
   Beat wait() noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A virtual operator: a hand with habits, not a script. It sees the part, feels the wrench, and pulls the
-// handle by a spring-damper towards an equilibrium that follows minimum-jerk segments.
+// A virtual operator: a model of a hand. It sees the part, feels the wrench, and pulls the handle by a
+// spring-damper towards an equilibrium that follows minimum-jerk segments.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace vps::device {
 
-/// The hand and its habits. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
+/// Parameters of the hand. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
 /// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values assumed within
 /// it.
 struct OperatorHabits {
@@ -23,45 +23,46 @@ struct OperatorHabits {
   double aim_error_rad = 0.005;
   double speed_m_s = 0.05;    ///< average along the path
   double turn_rad_s = 0.5;    ///< average rotation
-  double press_N = 5;         ///< presses home with this
-  double force_limit_N = 15;  ///< never pulls or pushes its spring beyond this
+  double press_N = 5;         ///< final force at the target
+  double force_limit_N = 15;  ///< limit of the hand's spring force
   double torque_limit_Nm = 0.8;
   double k_N_per_m = 700;        ///< translation
-  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: relaxed, so that chamfers guide
+  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: compliant, so that chamfers guide
   double k_Nm_per_rad = 3;
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
   double inertia_kgm2 = 0.004;
   double insert_share = 0.5;    ///< of speed_m_s while inserting
   double lag_rad_s = 40;        ///< natural frequency of the muscles' lag, critically damped
-  double see_rate_hz = 60;      ///< the picture's rate
+  double see_rate_hz = 60;      ///< rate of visual samples
   double see_delay_s = 0.1;     ///< from light to correction, at most 1 s
   double see_gain_per_s = 2.5;  ///< integral correction of the seen error
   double see_limit_m = 3e-3;    ///< bound of that correction
   double see_limit_rad = 0.05;
-  double stuck_s = 0.4;         ///< without progress while pushing: try another way
-  double progress_m = 0.05e-3;  ///< what counts as progress in that time
+  double stuck_s = 0.4;         ///< without progress while pushing: retry with an offset
+  double progress_m = 0.05e-3;  ///< least progress in that time
   double back_off_m = 1e-3;
   double search_m = 0.06e-3;  ///< spiral step of a retry
   double search_rad = 0.003;
   double press_s = 0.3;
   double rest_m_s = 1e-3;   ///< slower counts as held
-  double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand opens
+  double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand releases
   double still_rad_s = 5e-3;
 };
 
 /// The hand's damping of a spring k against an inertia m: N s/m of N/m and kg, N m s/rad of N m/rad and kg
 /// m^2.
 VPS_DEVICE_API double handDamping(const OperatorHabits& habits, double k, double m) noexcept;
-/// Such a hand, as stiff in every direction, about the identity.
+/// A hand with equal stiffness in every direction, about the identity.
 VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 
-/// One step of a procedure, for the hand. The hand holds the part at the grasp frame G, fixed in the part P;
-/// best at the part's centre of mass, whose weight it then carries without torque.
+/// One step of a procedure. The hand holds the part at the grasp frame G, fixed in the part P. G is best at
+/// the part's centre of mass, where the hand carries the weight without torque.
 struct OperatorTask {
   Pose X_WP_start;
   std::vector<Pose> way_points;  ///< X_WP; the last is where insertion begins (the start, if there are none)
-  /// Way points (their indices) at which the device is at its border: the hand stops there and takes anew.
+  /// Indices of way points at which the device reaches its workspace limit: the hand stops there for
+  /// indexing.
   std::vector<std::size_t> index_points;
   Pose X_WP_target;
   Pose X_PG;
@@ -72,13 +73,13 @@ struct OperatorTask {
       Vec3::Zero();  ///< mass times gravity of the part, which the hand carries by feed-forward [N]
 };
 
-/// What the hand senses now.
+/// What the hand senses at one instant.
 struct OperatorView {
   double time_s = 0;
-  Pose
-      X_WG_hand;  ///< where the hand holds the grasp frame (the coupling's proxy), not delayed: one's own arm
+  /// The grasp frame as the hand holds it (the coupling's proxy); not delayed, as for one's own arm.
+  Pose X_WG_hand;
   Twist V_WG_hand;
-  Pose X_WP;  ///< the part; the operator samples and delays it itself
+  Pose X_WP;  ///< the part; the operator itself samples and delays it
   Twist V_WP;
   Wrench F_hand_W;  ///< felt: wrench of the device on the hand
 };
@@ -98,15 +99,15 @@ class VPS_DEVICE_API VirtualOperator {
  public:
   explicit VirtualOperator(const OperatorHabits& habits = {});
 
-  /// Takes a task at time now_s. May allocate. Each call draws a new aim error.
+  /// Starts a task at time now_s. May allocate. Each call draws a new aim error.
   void begin(const OperatorTask& task, double now_s);
 
-  /// One instant of the hand, at G in W, dt_s after the last. Never throws or allocates. A view that is not
-  /// finite gives the last answer without feed-forward.
+  /// The hand's impedance about G in W, dt_s after the last call. Never throws or allocates. For a view that
+  /// is not finite it returns the last result without feed-forward.
   HandForce step(const OperatorView& view, double dt_s) noexcept;
 
-  /// From Regrasp, with the hand elsewhere and the part where it was: to the next way point. Never throws or
-  /// allocates.
+  /// Continues from Regrasp to the next way point, with the hand elsewhere and the part unmoved. Never throws
+  /// or allocates.
   void goOn() noexcept;
 
   [[nodiscard]] OperatorPhase phase() const noexcept { return phase_; }
@@ -118,7 +119,7 @@ class VPS_DEVICE_API VirtualOperator {
     Pose X_from, X_to;  // of G
     double start_s = 0, duration_s = 1;
   };
-  struct Seen {
+  struct Picture {
     double time_s = 0;
     Pose X_WP;
     Twist V_WP;
@@ -139,7 +140,7 @@ class VPS_DEVICE_API VirtualOperator {
   [[nodiscard]] Pose wanted(double now_s) const noexcept;
   [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
   [[nodiscard]] HandForce impedance() const noexcept;
-  [[nodiscard]] Pose seenGrasp() const noexcept { return seen_now_.X_WP * task_.X_PG; }
+  [[nodiscard]] Pose seenGrasp() const noexcept { return seen_.X_WP * task_.X_PG; }
   [[nodiscard]] double progressOf(const Pose& X_WG) const noexcept;
   [[nodiscard]] double shortfall_m() const noexcept;
   [[nodiscard]] double pushLimit_N() const noexcept;
@@ -147,7 +148,7 @@ class VPS_DEVICE_API VirtualOperator {
   [[nodiscard]] bool isAtRest() const noexcept;
   [[nodiscard]] bool isInserting() const noexcept;
 
-  static constexpr std::size_t kSeenCount = 64;  // pictures in the delay line
+  static constexpr std::size_t kPictures = 64;  // in the delay line
 
   OperatorHabits habits_;
   Random random_;
@@ -160,25 +161,25 @@ class VPS_DEVICE_API VirtualOperator {
   std::size_t next_ = 0;    // index in path_ of the segment's end
   Segment segment_;
   Vec3 axis_W_ = Vec3::UnitZ();                               // direction of insertion
-  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();        // error of aim, drawn once a task
-  Vec3 fix_m_ = Vec3::Zero(), fix_rad_ = Vec3::Zero();        // correction by sight
+  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();        // aim error, drawn once per task
+  Vec3 fix_m_ = Vec3::Zero(), fix_rad_ = Vec3::Zero();        // visual correction
   Vec3 search_m_ = Vec3::Zero(), search_rad_ = Vec3::Zero();  // offset of the present retry
   double push_N_ = 0;                                         // along the axis, beyond the planned pose
   double retreat_until_s_ = 0, progress_m_ = 0, progress_s_ = 0;
-  bool has_stop_ = true;  // something to press against, until seen otherwise
+  bool has_stop_ = true;  // the target is assumed to be a stop until observed otherwise
   int retries_ = 0;
 
   // The hand.
   bool has_view_ = false;
   Pose X_eq_;  // equilibrium, after the muscles' lag
   Twist V_eq_;
-  Pose X_hold_;  // where it rests when there is nothing to do
+  Pose X_rest_;  // equilibrium while there is no task
 
-  // The eyes.
-  std::array<Seen, kSeenCount> pictures_{};
+  // Vision.
+  std::array<Picture, kPictures> pictures_{};
   std::size_t picture_count_ = 0;
   double next_look_s_ = 0;
-  Seen seen_now_;  // the picture that has reached the mind by now
+  Picture seen_;  // the newest picture that is older than the delay
 };
 
 }  // namespace vps::device

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thread that does one thing at a fixed rate, before other programs where the system lets it.
+// A thread that calls a function at a fixed rate, with real-time priority where the system allows it.
 #pragma once
 
 #include <atomic>
@@ -16,20 +16,20 @@ namespace vps::device {
 
 struct PeriodicSettings {
   double rate_hz = 1000;
-  int priority = 0;                ///< SCHED_FIFO, 1 to 99; 0: as any other thread
-  bool locks_memory = false;       ///< keeps the whole program in memory
+  int priority = 0;                ///< SCHED_FIFO, 1 to 99; 0: normal scheduling
+  bool locks_memory = false;       ///< locks the whole program in memory
   RealTimeClock* clock = nullptr;  ///< null: the system's monotonic clock
 };
 
-/// What the system allowed.
+/// What the system granted.
 struct RealTimeReport {
   bool has_priority = false;
   bool has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< for a person: what was refused, and what would help
+  std::vector<std::string> warnings;  ///< for the user: what was refused, and the remedy
 };
 
-/// Beats in a thread of its own: absolute times, SCHED_FIFO and locked memory where wished and allowed, its
-/// stack touched beforehand, so that no page fault comes in the middle.
+/// Beats on a thread of its own, by absolute times, with SCHED_FIFO and locked memory where requested and
+/// granted. Its stack is touched beforehand, so that no page fault occurs later.
 class VPS_DEVICE_API PeriodicThread {
  public:
   explicit PeriodicThread(const PeriodicSettings& settings);
@@ -37,13 +37,13 @@ class VPS_DEVICE_API PeriodicThread {
   PeriodicThread(const PeriodicThread&) = delete;
   PeriodicThread& operator=(const PeriodicThread&) = delete;
 
-  /// Calls `work` once a period until stop(). Returns when the thread runs. Work that throws ends the thread;
-  /// the exception comes out of stop(). Throws LoadError for a rate that is not within 1 Hz to 100 kHz.
+  /// Calls `work` once per period until stop(). Returns when the thread runs. An exception from `work` ends
+  /// the thread and is rethrown by stop(). Throws LoadError for a rate outside 1 Hz to 100 kHz.
   RealTimeReport start(std::function<void(const Beat&)> work);
-  /// Waits for the end of the beat that is under way. Throws what the work threw, once. No effect if not
+  /// Waits for the end of the current beat. Rethrows an exception of the work, once. No effect if not
   /// running.
   void stop();
-  /// False once work has thrown, too.
+  /// False also once work has thrown.
   [[nodiscard]] bool isRunning() const noexcept { return is_running_.load(std::memory_order_acquire); }
 
  private:
@@ -55,10 +55,10 @@ class VPS_DEVICE_API PeriodicThread {
   std::thread thread_;
 };
 
-/// Asks the system for the calling thread's priority and the program's memory; words for what it refuses.
-/// Never throws but for want of memory.
-VPS_DEVICE_API RealTimeReport askForRealTime(int priority, bool locks_memory);
-/// The calling thread goes on as any other.
+/// Requests priority for the calling thread and locked memory for the program; the report explains refusals.
+/// Throws nothing but std::bad_alloc.
+VPS_DEVICE_API RealTimeReport requestRealTime(int priority, bool locks_memory);
+/// Returns the calling thread to normal scheduling.
 VPS_DEVICE_API void leaveRealTime() noexcept;
 
 }  // namespace vps::device

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random numbers that are the same with every compiler and library, which std::normal_distribution does not
-// promise.
+// Random numbers that are identical with every compiler and library, unlike std::normal_distribution.
 #pragma once
 
 #include <cstdint>

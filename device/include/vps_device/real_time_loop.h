@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The haptic loop in real time: a thread of its own beats, each beat is HapticLoop::tick(), as in lockstep.
+// The haptic loop in real time: a periodic thread calls HapticLoop::tick(), the same code as in lockstep.
+//
+// State is exchanged through the CouplingPort. Commands are requests in a lock-free ring: they are carried
+// out at the start of the next tick, in order, and acknowledged.
 #pragma once
 
 #include <array>
@@ -22,7 +25,7 @@ class VPS_DEVICE_API TimedDevice final : public Device {
   [[nodiscard]] DeviceLimits limits() const noexcept override { return device_->limits(); }
   [[nodiscard]] std::string_view name() const noexcept override { return device_->name(); }
 
-  /// Nanoseconds in the device since the last call.
+  /// Nanoseconds spent in the device since the last call.
   std::int64_t takeSpent_ns() noexcept;
 
  private:
@@ -31,23 +34,26 @@ class VPS_DEVICE_API TimedDevice final : public Device {
   std::int64_t spent_ns_ = 0;
 };
 
+/// The functions are called by the loop's thread and must not allocate, lock, throw or wait.
 struct RealTimeSettings {
   int priority = 80;  ///< SCHED_FIFO; 0: none. assumed: above interrupt threads (50), below the kernel's
   bool locks_memory = true;
-  double physics_limit_s = 0.1;    ///< LoopSettings::physics_limit_s where that says 0. assumed: ten steps of
-                                   ///< 100 Hz physics, and sooner than a person notices a part that hangs
-  double stale_s = 2e-3;           ///< ticks with an older snapshot are counted
+  /// LoopSettings::physics_limit_s where that is 0. assumed: ten steps of 100 Hz physics, and shorter than a
+  /// person needs to notice a part that hangs
+  double physics_limit_s = 0.1;
+  double stale_s = 2e-3;           ///< ticks with an older physics state are counted
   RealTimeClock* clock = nullptr;  ///< null: the system's
-  /// Called before each tick, by the loop's thread: the last moment to tell the loop something. periods: as
-  /// the clock counts them since the last tick. Must not allocate, lock, throw or wait.
-  std::function<void(HapticLoop& loop, std::int64_t periods)> before;
-  /// Called after each tick, by the loop's thread, with what has passed since the last: a simulated device's
-  /// own motion. As the tick, it must not allocate, lock, throw or wait.
-  std::function<void(HapticLoop& loop, double dt_s)> beside;
+  /// Before each tick, after the requests and HapticLoop::receivePart(). periods: elapsed since the last
+  /// tick.
+  std::function<void(HapticLoop& loop, std::int64_t periods)> before_tick;
+  /// After each tick, with the time since the last one: moves a simulated device.
+  std::function<void(HapticLoop& loop, double dt_s)> after_tick;
+  /// Carries out a request made by call(), with its code.
+  std::function<void(HapticLoop& loop, std::int32_t code)> on_call;
 };
 
-/// Owns the loop. The one that commands it (grasp to rearm, observeStoredEnergy) is one thread; requests are
-/// done at the start of the next tick. Statistics are read by any thread, latest() by one.
+/// Owns the loop. Requests (grasp to call) come from one thread. Statistics may be read by any thread. What
+/// the last tick did is in CouplingPort::haptic.
 class VPS_DEVICE_API RealTimeLoop {
  public:
   /// device, port and settings.events outlive the loop. settings.period_s is the rate.
@@ -57,13 +63,11 @@ class VPS_DEVICE_API RealTimeLoop {
 
   /// What the system refused is in the report, and in settings.events. Throws as PeriodicThread::start().
   RealTimeReport start();
-  /// The wrench is zero afterwards; what is held stays held, for the next start().
+  /// Afterwards the wrench is zero. A held part stays held, for the next start().
   void stop();
   [[nodiscard]] bool isRunning() const noexcept { return thread_.isRunning(); }
-  /// True while something that was asked for waits for its tick.
-  [[nodiscard]] bool hasOpenRequests() const noexcept { return asked_.load() != answered_.load(); }
 
-  /// As HapticLoop's. False if there is no room for the request: the loop does not run, or is far behind.
+  /// As HapticLoop's. False if the ring is full: the loop does not run, or is far behind.
   bool grasp(const Pose& X_WG) noexcept;
   bool handOver(const Pose& X_WG) noexcept;
   bool disengage() noexcept;
@@ -71,40 +75,43 @@ class VPS_DEVICE_API RealTimeLoop {
   bool release() noexcept;
   bool rearm() noexcept;
   bool setGains(const CouplingGains& gains) noexcept;
-  void observeStoredEnergy(double stored_J, double actuator_J) noexcept {
-    energies_.write({stored_J, actuator_J, true});
+  /// RealTimeSettings::on_call is called with this code.
+  bool call(std::int32_t code) noexcept;
+  /// True while a request is not yet carried out. Once false, what the loop's thread wrote while carrying
+  /// them out is visible to the caller.
+  [[nodiscard]] bool hasOpenRequests() const noexcept {
+    return posted_.load(std::memory_order_acquire) != handled_.load(std::memory_order_acquire);
   }
+  /// Carries out open requests while the loop does not run, when no tick would.
+  void handleRequests() noexcept;
 
-  /// What the last tick did, and how safety stands.
-  struct Latest {
-    TickReport report;
-    SafetyState safety;
-    PassivityObserver ledger;
-    bool is_holding = false;
-  };
-  const Latest& latest() noexcept { return latest_.read(); }
   [[nodiscard]] const TickStatistics& statistics() const noexcept { return statistics_; }
 
   /// The loop itself, while not running.
   [[nodiscard]] HapticLoop& loop() noexcept { return loop_; }
-  /// One beat, by a driver of one's own, while not running. Never throws, allocates, locks.
+  /// One period, for a driver of one's own, while not running. Never throws, allocates or locks.
   void beat(const Beat& beat) noexcept;
 
  private:
   struct Request {
-    enum Kind : std::uint8_t { Grasp, HandOver, Disengage, Engage, Release, Rearm, Gains } kind = Release;
+    enum Kind : std::uint8_t {
+      Grasp,
+      HandOver,
+      Disengage,
+      Engage,
+      Release,
+      Rearm,
+      Gains,
+      Call
+    } kind = Release;
     Pose X_WG;
     CouplingGains gains{};
+    std::int32_t code = 0;
   };
-  struct Energies {
-    double stored_J = 0, actuator_J = 0;
-    bool is_told = false;
-  };
-  bool ask(const Request& request) noexcept;
-  void answer(const Request& request) noexcept;
-  void answerRequests() noexcept;
-  void tellMisses(const Beat& beat) noexcept;
-  void tellRefusals() noexcept;
+  bool post(const Request& request) noexcept;
+  void handle(const Request& request) noexcept;
+  void reportMisses(const Beat& beat) noexcept;
+  void reportRefusals() noexcept;
 
   static constexpr std::size_t kRequests = 64;
 
@@ -115,13 +122,11 @@ class VPS_DEVICE_API RealTimeLoop {
   HapticLoop loop_;
   PeriodicThread thread_;
   TickStatistics statistics_;
-  TickTiming before_;
-  TripleBuffer<Latest> latest_;
-  TripleBuffer<Energies> energies_;
+  TickTiming timing_before_;
   std::array<Request, kRequests> requests_{};
-  std::atomic<std::size_t> asked_{0}, answered_{0};
-  std::atomic<bool> lacks_priority_{false}, lacks_locking_{false};  ///< to be told by the loop's thread
-  std::int64_t quiet_ticks_ = 0;  ///< still to go before misses are told again
+  std::atomic<std::size_t> posted_{0}, handled_{0};
+  std::atomic<bool> lacks_priority_{false}, lacks_locking_{false};  ///< to be reported by the loop's thread
+  std::int64_t quiet_ticks_ = 0;  ///< remaining until misses are reported again
 };
 
 }  // namespace vps::device

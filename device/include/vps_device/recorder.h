@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes a run to a file while it happens, off the haptic path.
+// Writes the log of a run to a file while it runs, off the haptic path.
 #pragma once
 
 #include <cstdint>
@@ -8,29 +8,29 @@
 #include <string>
 #include <vector>
 
+#include "vps_device/detail/mcap.h"
 #include "vps_device/export.h"
-#include "vps_device/mcap.h"
 #include "vps_device/run_log.h"
 
 namespace vps::device {
 
-/// What stands at the head of a recording.
+/// The head of a recording.
 struct RecordingHead {
-  std::map<std::string, std::string> about;  ///< version, scene, seed, rates, choices: for people and tools
+  std::map<std::string, std::string> about;  ///< version, scene, seed, rates, choices: for users and tools
   std::string device;
-  DeviceLimits limits;  ///< a recording stands in for its device, so gains follow as they did
+  DeviceLimits limits;  ///< a replay derives the same gains from them
   std::vector<McapAttachment> attachments;
 };
 
-/// A recording in the making. Entries pass through a ring without locks to a thread that writes them. Until
-/// finish() the file has another name beside its own, so that what stood there stays; a run that crashes
-/// leaves that other file, which replays up to about the last quarter second.
+/// A recording being written. Entries pass through a lock-free ring to a thread that writes them. Until
+/// finish() the file has a temporary name in the same folder, so that an existing file stays; a run that
+/// crashes leaves the temporary file, which replays up to about the last quarter second.
 class VPS_DEVICE_API Recorder final : public RunLog {
  public:
-  /// Makes the file and writes the head. Throws LoadError where it cannot be made, or where something stands
-  /// that is no recording of ours.
+  /// Creates the file and writes the head. Throws LoadError if it cannot be created, or if the name belongs
+  /// to a file that is not a recording of this program.
   Recorder(const std::string& file, const RecordingHead& head, std::size_t ring_entries = 8192);
-  /// Without finish(): leaves the unfinished file if a device was read, and removes it otherwise.
+  /// Without finish(): keeps the unfinished file if a device was read, and removes it otherwise.
   ~Recorder() override;
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -38,19 +38,19 @@ class VPS_DEVICE_API Recorder final : public RunLog {
   /// Never waits: a full ring drops the entry and counts it.
   void add(const LogEntry& entry) noexcept override;
 
-  /// Counts entries that were lost before they came here: the recording says that it ends there. By the
+  /// Counts entries that were lost before they could be added: the recording then ends there. Called by the
   /// thread that adds.
   void lose(std::uint64_t count) noexcept;
 
-  /// For lockstep, where nobody is late: returns once half of the ring is free. Never on a haptic path.
+  /// For lockstep, where waiting is allowed: returns once half of the ring is free. Never on a haptic path.
   void waitForRoom() const;
 
-  /// Writes what is left and the index, and gives the file its name. Throws std::runtime_error in words: disk
-  /// full, say; the unfinished file then stays.
+  /// Writes the remaining entries and the index, and renames the file. Throws std::runtime_error with the
+  /// reason (disk full, say); the unfinished file then stays.
   void finish();
 
   [[nodiscard]] std::uint64_t dropped() const noexcept;
-  /// Where the recording is until finish().
+  /// Name of the file until finish().
   [[nodiscard]] const std::string& unfinished() const noexcept;
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens in a run, entry by entry, in the order in which it happens: what a recording holds, and what a
-// replay is compared with.
+// The log of a run, in the order of its events: a recording holds it, and a replay is compared with it.
 #pragma once
 
 #include <array>
@@ -15,14 +14,14 @@ namespace vps::device {
 
 /// A wrench that was written to the device, after safety: on the hand about H's origin, in D.
 struct WrittenWrench {
-  double time_s = 0;  ///< of the sample that it answers
+  double time_s = 0;  ///< of the sample that it was computed from
   Wrench F_Ho_D;
 };
 
 enum class RunEventKind : std::uint8_t {
-  Take,   ///< the hand takes the part of a step
-  Phase,  ///< what the hand is about: an OperatorPhase
-  LetGo,  ///< the hand opens
+  Take,   ///< the hand grasps the part of a step
+  Phase,  ///< the hand enters an OperatorPhase
+  LetGo,  ///< the hand releases the part
   Note,   ///< anything else, in words
 };
 
@@ -31,18 +30,18 @@ struct VPS_DEVICE_API RunEvent {
   std::int32_t step = -1;
   RunEventKind kind = RunEventKind::Note;
   std::uint8_t phase = 0;
-  std::array<char, 96> text{};  ///< ends with a zero
+  std::array<char, 96> text{};  ///< zero-terminated
 
-  /// Longer words are cut.
-  void say(std::string_view words) noexcept;
+  /// Longer words are truncated.
+  void setWords(std::string_view words) noexcept;
   [[nodiscard]] std::string_view words() const noexcept;
 };
 
-/// The run as a graph shows it, now and then.
+/// A sample of the run for graphs, at a lower rate.
 struct RunTrace {
   double time_s = 0;
   Pose X_WP;       ///< part in hand
-  Pose X_W_Proxy;  ///< where the handle is, in the scene
+  Pose X_W_Proxy;  ///< the handle in the scene
   Wrench F_hand_W;
   double depth_m = 0;
   std::int32_t step = -1;
@@ -50,14 +49,14 @@ struct RunTrace {
   std::uint8_t phase = 0;  ///< 0 reach, 1 insert, 2 press, 3 rest
 };
 
-/// Where loop and physics meet in a run by the clock: what each knew of the other. In lockstep there is none.
+/// Order in which haptic and physics threads exchanged state in a real-time run. Lockstep has no such events.
 enum class SyncEventKind : std::uint8_t {
-  Tick,     ///< the loop ticks, with that snapshot of physics
-  Step,     ///< physics steps, with the proxy of that tick
-  Settled,  ///< what was done beside the run is ready
+  Tick,     ///< a tick of the loop, with that physics state
+  Step,     ///< a physics step, with the proxy of that tick
+  Settled,  ///< background work has finished
   Paused,   ///< the loop has stopped
-  Begin,    ///< physics asked for it, and the loop's thread did it
-  GoBack,   ///< from here on as Begin
+  Begin,    ///< a command of the physics thread that the loop's thread has carried out; so are those below
+  GoBack,
   Recentre,
   GoOn,
   HandOver,
@@ -69,9 +68,9 @@ enum class SyncEventKind : std::uint8_t {
 
 struct SyncEvent {
   double time_s = 0;          ///< of the loop's last sample
-  std::int32_t tick = 0;      ///< ticks so far, this one too
+  std::int32_t tick = 0;      ///< ticks so far, including this one
   std::int32_t periods = 1;   ///< of the loop since its last tick
-  std::int32_t snapshot = 0;  ///< how many physics had published
+  std::int32_t snapshot = 0;  ///< PhysicsState::step of the state that the tick used
   SyncEventKind kind = SyncEventKind::Tick;
 };
 
@@ -79,13 +78,13 @@ using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, S
 
 VPS_DEVICE_API double timeOf(const LogEntry& entry) noexcept;
 
-/// Where entries go. add() is called on the haptic path: it neither throws, allocates, locks nor waits,
-/// unless an implementation that is for lockstep alone says so. One thread calls it.
+/// Receives entries. add() is called on the haptic path: it neither throws, allocates, locks nor waits,
+/// unless an implementation states that it is for lockstep only. One thread calls it.
 class VPS_DEVICE_API RunLog {
  public:
   virtual ~RunLog() = default;
   virtual void add(const LogEntry& entry) noexcept = 0;
-  /// So many entries were lost before they came here.
+  /// This many entries were lost before they could be added.
   virtual void lose(std::uint64_t) noexcept {}
 
  protected:
@@ -94,7 +93,7 @@ class VPS_DEVICE_API RunLog {
   RunLog& operator=(const RunLog&) = default;
 };
 
-/// A device whose samples and wrenches are logged on their way. Both outlive it.
+/// Forwards to a device and logs its samples and wrenches. Device and log outlive it.
 class VPS_DEVICE_API TappedDevice final : public Device {
  public:
   TappedDevice(Device& inner, RunLog& log) : inner_(inner), log_(log) {}

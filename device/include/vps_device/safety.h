@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last word before hardware: nothing passes that is not finite, too strong, too sudden, or from a lost
-// device.
+// The last check before hardware: a wrench that is not finite, too strong, too sudden, or computed from a
+// lost device does not pass.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace vps::device {
 struct SafetyLimits {
   double force_N = 30;
   double torque_Nm = 2.5;
-  double slew_N_per_s =
-      15000;  ///< assumed: full force in 2 ms; a coupling of 3 kN/m struck at 1 m/s needs a fifth
+  /// assumed: full force in 2 ms; a coupling of 3 kN/m struck at 1 m/s needs a fifth
+  double slew_N_per_s = 15000;
   double slew_Nm_per_s = 1250;
-  double jump_m = 0.02;  ///< greatest step between samples. assumed: 20 m/s at 1 kHz is no hand
+  double jump_m = 0.02;  ///< greatest step between samples. assumed: no hand moves at 20 m/s (at 1 kHz)
   double jump_rad = 0.3;
-  double rearm_s = 0.2;  ///< force returns over this time after re-arming. assumed: slower than a startle
+  double rearm_s = 0.2;  ///< force returns over this time after re-arming. assumed: longer than a startle
 };
 
 enum class SafetyFault {
@@ -30,10 +30,10 @@ enum class SafetyFault {
   DeviceLost,
   ClockBackwards,
   BadGains,
-  PhysicsStalled,  ///< the part in hand has not been heard of for too long
+  PhysicsStalled,  ///< the state of the part in hand is too old
 };
 VPS_DEVICE_API const char* toText(SafetyFault fault) noexcept;
-/// How a fault is told; not for None.
+/// The event that reports a fault; not for None.
 VPS_DEVICE_API DeviceEventKind eventOf(SafetyFault fault) noexcept;
 
 struct SafetyState {
@@ -47,15 +47,16 @@ class VPS_DEVICE_API SafetyGuard {
  public:
   explicit SafetyGuard(const SafetyLimits& limits = {}) : limits_(limits) {}
 
-  /// What may go to the motors: finite, |f| and |tau| within limits (both scaled alike, keeping direction),
-  /// changing no faster than the slew limits. After a fault: zero until rearm(). A fault drops force at once.
+  /// The wrench that may go to the motors: finite, |f| and |tau| within limits (both scaled by the same
+  /// factor, so that the direction is kept), changing no faster than the slew limits. A fault sets the wrench
+  /// to zero at once, until rearm().
   Wrench guard(const DeviceSample& sample, const Wrench& wanted, double dt_s) noexcept;
 
   /// Clears a fault; force returns over rearm_s.
   void rearm() noexcept;
 
-  /// Latches a fault that others have found.
-  void refuse(SafetyFault fault) noexcept { trip(fault); }
+  /// Latches a fault found elsewhere.
+  void latchFault(SafetyFault fault) noexcept { trip(fault); }
 
   [[nodiscard]] const SafetyState& state() const noexcept { return state_; }
 

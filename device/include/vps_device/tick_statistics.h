@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every tick of a real-time loop took, kept without allocating and read by any thread at any time.
+// Statistics of the ticks of a real-time loop, kept without allocating and readable by any thread at any
+// time.
 #pragma once
 
 #include <array>
@@ -11,11 +12,11 @@
 
 namespace vps::device {
 
-/// Counts times in buckets, 64 to the octave: a percentile is known to 1/64 of itself, from 1 ns to 18
-/// minutes (longer counts as that). One writer, any number of readers; neither waits. 18 kB.
+/// Histogram of times with 64 buckets per octave: percentiles have a relative error of 1/64, from 1 ns to 18
+/// minutes (longer times count as that). One writer, any number of readers; neither waits. 18 kB.
 class VPS_DEVICE_API TickHistogram {
  public:
-  static constexpr int kSplit = 64;    ///< buckets an octave
+  static constexpr int kSplit = 64;    ///< buckets per octave
   static constexpr int kOctaves = 34;  ///< above the first 64 ns, which are exact
 
   /// Negative counts as 0. O(1).
@@ -25,10 +26,10 @@ class VPS_DEVICE_API TickHistogram {
     std::uint64_t count = 0;
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
   };
-  /// Of what has been counted by now: nearest rank, rounded up to the bucket's end (at most 1/64 too much,
-  /// never too little), the greatest exact. O(buckets). While ticks are being added it may lack the last.
+  /// Nearest rank, rounded up to the bucket's end (at most 1/64 too large, never too small); the maximum is
+  /// exact. O(buckets). While ticks are being added the last may be missing.
   [[nodiscard]] Summary summary() const noexcept;
-  /// The least value that so large a share of all is not above, as in summary().
+  /// The least value that this share of all times does not exceed, as in summary().
   [[nodiscard]] std::int64_t percentile(double share) const noexcept;
 
  private:
@@ -37,29 +38,29 @@ class VPS_DEVICE_API TickHistogram {
   std::atomic<std::int64_t> max_ns_{0};
 };
 
-/// Where a tick's time went, or what made it late.
+/// What a tick's time was spent on, or what delayed it.
 enum class TickCause : std::uint8_t {
-  WokenLate,  ///< the system let the thread run late
+  WokenLate,  ///< the system woke the thread late
   Device,     ///< reading or writing the device
   OwnWork,    ///< coupling, safety, local contact
-  Beside,     ///< what else the thread was given to do, after the wrench was written
+  AfterTick,  ///< RealTimeSettings::after_tick, once the wrench is written
 };
 inline constexpr int kTickCauses = 4;
 VPS_DEVICE_API const char* toText(TickCause cause) noexcept;
 
 /// One tick's times [ns].
 struct VPS_DEVICE_API TickTiming {
-  std::uint64_t tick = 0;        ///< its number
-  std::int64_t late_ns = 0;      ///< from its due time to its start
-  std::int64_t device_ns = 0;    ///< in the device's read and write
-  std::int64_t own_ns = 0;       ///< the rest, until the wrench was written
-  std::int64_t beside_ns = 0;    ///< after that
-  std::int64_t snapshot_ns = 0;  ///< how long the physics snapshot has been the same
+  std::uint64_t tick = 0;          ///< its number
+  std::int64_t late_ns = 0;        ///< from its due time to its start
+  std::int64_t device_ns = 0;      ///< in the device's read and write
+  std::int64_t own_ns = 0;         ///< the rest, until the wrench was written
+  std::int64_t after_tick_ns = 0;  ///< after that
+  std::int64_t snapshot_ns = 0;    ///< how long the physics state has been the same
 
-  /// From due to the wrench written: what the hand notices.
+  /// From the due time until the wrench is written: the delay that the hand feels.
   [[nodiscard]] std::int64_t response_ns() const noexcept { return late_ns + device_ns + own_ns; }
-  /// The greatest of its parts; of what the hand notices, unless `has_beside`.
-  [[nodiscard]] TickCause cause(bool has_beside = false) const noexcept;
+  /// The greatest of its parts; after_tick_ns counts only if `includes_after_tick`.
+  [[nodiscard]] TickCause cause(bool includes_after_tick = false) const noexcept;
 };
 
 /// All ticks of a loop. Written by its thread, read by any.
@@ -69,16 +70,16 @@ class VPS_DEVICE_API TickStatistics {
   explicit TickStatistics(std::int64_t stale_ns = 0) noexcept : stale_ns_(stale_ns) {}
 
   void add(const TickTiming& timing) noexcept;
-  /// `periods` passed without a tick of their own, because of `cause`.
+  /// `periods` passed without a tick, because of `cause`.
   void miss(std::uint64_t periods, TickCause cause) noexcept;
 
   struct Summary {
     TickHistogram::Summary tick;      ///< device and own work
     TickHistogram::Summary late;      ///< woken late
     TickHistogram::Summary response;  ///< due until written
-    std::uint64_t missed = 0;         ///< periods without a tick of their own
+    std::uint64_t missed = 0;         ///< periods without a tick
     std::array<std::uint64_t, kTickCauses> missed_by{};
-    std::uint64_t stale = 0;  ///< ticks that answered from an old snapshot
+    std::uint64_t stale = 0;  ///< ticks that used an old physics state
     TickTiming worst;         ///< the longest response
   };
   [[nodiscard]] Summary summary() const noexcept;
@@ -91,8 +92,8 @@ class VPS_DEVICE_API TickStatistics {
   TickHistogram tick_, late_, response_;
   std::array<std::atomic<std::uint64_t>, kTickCauses> missed_by_{};
   std::atomic<std::uint64_t> stale_{0};
-  // A sequence lock: odd while being written. Every field is atomic, so that a torn read is noticed, not
-  // undefined.
+  // A sequence lock: odd while being written. Every field is atomic, so that a torn read is detected rather
+  // than undefined.
   std::int64_t worst_response_ns_ = -1;
   std::atomic<std::uint64_t> worst_version_{0};
   std::array<std::atomic<std::int64_t>, 6> worst_{};

@@ -25,7 +25,7 @@ double Random::normal() noexcept {
 }
 
 Vec3 Random::normal3() noexcept {
-  // Named, since the order in which arguments are evaluated is the compiler's choice.
+  // Named variables, since the evaluation order of arguments is unspecified.
   const double x = normal(), y = normal(), z = normal();
   return {x, y, z};
 }

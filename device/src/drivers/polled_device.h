@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device under rate control whose hand is read by a thread of its own.
+// A device under rate control whose input is read by a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -17,11 +17,11 @@ struct HandInput {
   bool is_connected = false;
 };
 
-/// Talks to a library. All its functions are called by one thread, construction and destruction too.
+/// Reads a library. All its functions, construction and destruction included, are called by one thread.
 class HandSource {
  public:
   virtual ~HandSource() = default;
-  /// Looks what there is, for some milliseconds at most (a try to connect: a second), and changes `input`.
+  /// Updates `input`; takes some milliseconds at most (an attempt to connect: a second).
   virtual void poll(HandInput& input) = 0;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The weight that the dual arm's controller carries and its plant has: the handle's; each arm is balanced.
+// The handle's weight, which the plant has and the controller compensates; each arm is balanced.
 #pragma once
 
 #include "vps/wrench.h"
-#include "vps_device/dual_arm_parameters.h"
+#include "vps_device/dual_arm/parameters.h"
 
 namespace vps::device {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/motor_heat.h"
+#include "vps_device/dual_arm/motor_heat.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace vps::device {
 namespace {
 
-// The peak fades over the last tenth of the budget, so that force does not fall at once.
+// The peak decreases over the last tenth of the budget, so that force does not drop abruptly.
 constexpr double kBlend = 0.1;
 
 double shareOf(double heat) {
@@ -22,7 +22,7 @@ MotorHeat::MotorHeat(const DualArmParameters& parameters) noexcept
       thermal_s_(parameters.thermal_s) {}
 
 void MotorHeat::add(const JointVector& efforts, double dt_s) noexcept {
-  // Exact for an effort that is held, so that one long tick heats no more than many short ones.
+  // Exact for a constant effort, so that one long tick heats as much as many short ones.
   const double share = -std::expm1(-dt_s / thermal_s_);
   heat_ += share * (efforts.cwiseQuotient(continuous_).cwiseAbs2() - heat_);
 }

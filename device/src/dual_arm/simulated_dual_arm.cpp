@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/simulated_dual_arm.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 
 #include "dual_arm/gravity.h"
 

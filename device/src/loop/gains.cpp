@@ -6,8 +6,9 @@
 namespace vps::device {
 namespace {
 
-constexpr double kMargin = 0.8;        // of the passive stiffness: the device's numbers are estimates
-constexpr double kDampingShare = 0.2;  // of the device's damping: more would cost stiffness newton for newton
+constexpr double kMargin = 0.8;  // of the passive stiffness, since the device's numbers are estimates
+constexpr double kDampingShare =
+    0.2;  // of the device's damping; more would reduce the stiffness in proportion
 
 struct Spring {
   double k = 0, b = 0;

@@ -8,8 +8,8 @@
 namespace vps::device {
 namespace {
 
-constexpr int kRounds = 6;           // of finding out who touches; two or three suffice
-constexpr double kCreep_m_s = 1e-3;  // friction is full from this speed on. assumed: 10 um in 10 ms
+constexpr int kRounds = 6;           // of the active-set iteration; two or three suffice
+constexpr double kCreep_m_s = 1e-3;  // above this speed friction has its full value. assumed: 10 um in 10 ms
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  // angular, then linear
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -20,7 +20,7 @@ struct StepSystem {
   Vec6 b = Vec6::Zero();
 };
 
-// A spring that is limited pulls as a softer one, for this step.
+// For this step, a spring at its limit is replaced by a softer one with the same force.
 double softened(double k, double stretch, double limit) {
   return k * stretch > limit ? limit / stretch : k;
 }
@@ -37,7 +37,7 @@ void addCoupling(const CouplingGains& gains, const CouplingState& proxy, const C
   system.b.tail<3>() += dt_s * (k_line * p_error_W + gains.b_Ns_per_m * proxy.V_W.v);
 }
 
-// Force k A (-(gap + dt n.v)) along n where that is positive, friction against the sliding at most mu times
+// Normal force k A (-(gap + dt n.v)) where that is positive; friction opposes sliding with at most mu times
 // it.
 std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size_t stride, const Vec3& p_WG,
                         double dt_s, const Vec6& V, StepSystem& system) {
@@ -127,7 +127,7 @@ bool LocalContact::step(const CouplingGains& gains, const CouplingState& proxy, 
   free.b.tail<3>() += dt_s * part.mass_kg * part.gravity_W;
   addCoupling(gains, proxy, now_, dt_s, free);
 
-  // Who touches depends on the step, and the step on who touches. It starts with the last step's velocity.
+  // The touching set depends on the step and the step on the touching set: iterate, from the last velocity.
   const std::size_t stride = 1 + near_.contacts.size() / std::max<std::size_t>(1, settings_.solve_limit);
   std::size_t touching = 0;
   for (int round = 0; round < kRounds; ++round) {

@@ -8,39 +8,9 @@
 
 namespace vps::device {
 
-Pose WorkspaceMap::toScene(const Pose& X_DH) const noexcept {
-  return {Mat3(X_WD.R * X_DH.R), X_WD * Vec3(scale * X_DH.p)};
-}
-Pose WorkspaceMap::toDevice(const Pose& X_WH) const noexcept {
-  const Mat3 R_DW = X_WD.R.transpose();
-  return {Mat3(R_DW * X_WH.R), Vec3(R_DW * (X_WH.p - X_WD.p) / scale)};
-}
-Twist WorkspaceMap::toScene(const Twist& V_D) const noexcept {
-  return {X_WD.R * V_D.w, scale * (X_WD.R * V_D.v)};
-}
-Twist WorkspaceMap::toDevice(const Twist& V_W) const noexcept {
-  return {X_WD.R.transpose() * V_W.w, X_WD.R.transpose() * V_W.v / scale};
-}
-Wrench WorkspaceMap::toScene(const Wrench& F_D) const noexcept {
-  return rotated(X_WD.R, F_D) * (1 / force_scale);
-}
-Wrench WorkspaceMap::toDevice(const Wrench& F_W) const noexcept {
-  return rotated(X_WD.R.transpose(), F_W) * force_scale;
-}
-
-Grasp Grasp::between(const Pose& X_WH, const Pose& X_WG) noexcept {
-  return {X_WG.p - X_WH.p, X_WH.R.transpose() * X_WG.R};
-}
-Pose Grasp::toGrasp(const Pose& X_WH) const noexcept {
-  return {Mat3(X_WH.R * R_HG), Vec3(X_WH.p + offset_W)};
-}
-Pose Grasp::toHandle(const Pose& X_WG) const noexcept {
-  return {Mat3(X_WG.R * R_HG.transpose()), Vec3(X_WG.p - offset_W)};
-}
-
 HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings)
     : device_(&device), port_(&port), settings_(settings), limits_(device.limits()), guard_(settings.safety) {
-  delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMostDelay));
+  delay_ticks_ = std::clamp(limits_.delay_s / settings_.period_s, 0.0, static_cast<double>(kMaxDelay));
   setGains(settings_.gains);
 }
 
@@ -53,7 +23,7 @@ void HapticLoop::setGains(const CouplingGains& gains) noexcept {
       std::max(0.0, limits_.damping_Ns_per_m - line * (gains.k_N_per_m * half_s + gains.b_Ns_per_m));
   spare_Nms_per_rad_ =
       std::max(0.0, limits_.damping_Nms_per_rad - turn * (gains.k_Nm_per_rad * half_s + gains.b_Nms_per_rad));
-  if (!areUsable(gains)) refuse(SafetyFault::BadGains);
+  if (!areUsable(gains)) latchFault(SafetyFault::BadGains);
 }
 
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
@@ -62,12 +32,12 @@ void HapticLoop::grasp(const Pose& X_WG) noexcept {
   grasp_ = Grasp::between(settings_.map.toScene(sample.X_DH), X_WG);
   report_.X_WG = X_WG;
   is_holding_ = true;
-  clutch_.shut();
+  clutch_.closeAtOnce();
 }
 
 void HapticLoop::handOver(const Pose& X_WG) noexcept {
   grasp(X_WG);
-  clutch_.drop();
+  clutch_.openAtOnce();
   clutch_.close();
 }
 
@@ -81,39 +51,51 @@ void HapticLoop::rearm() noexcept {
   guard_.rearm();
   if (was_faulted && settings_.events != nullptr)
     settings_.events->push({report_.time_s, DeviceEventKind::Rearmed, 0});
-  if (!areUsable(settings_.gains)) refuse(SafetyFault::BadGains);
+  if (!areUsable(settings_.gains)) latchFault(SafetyFault::BadGains);
   has_before_ = false;
-  const CouplingState& part = port_->part.read();
+  const CouplingState& part = received_.part;
   if (is_holding_ && part.X_W.isFinite()) grasp(part.X_W);
 }
 
-void HapticLoop::refuse(SafetyFault fault) noexcept {
-  guard_.refuse(fault);
-  tellFault();
+void HapticLoop::latchFault(SafetyFault fault) noexcept {
+  guard_.latchFault(fault);
+  reportFault();
 }
 
-void HapticLoop::tellFault() noexcept {
+void HapticLoop::reportFault() noexcept {
   const SafetyState& state = guard_.state();
-  if (state.faults == told_faults_) return;
-  told_faults_ = state.faults;
+  if (state.faults == reported_faults_) return;
+  reported_faults_ = state.faults;
   if (settings_.events != nullptr)
     settings_.events->push({report_.time_s, eventOf(state.fault), snapshot_age_s_});
 }
 
-// By ticks, since physics and the device need not share a clock. A time that is not a number is nothing new.
+// Counted in ticks, since physics and the device need not share a clock. A time that is not a number is not
+// new.
 void HapticLoop::watchPhysics(double dt_s) noexcept {
-  const CouplingState& part = port_->part.read();
+  const CouplingState& part = received_.part;
   const bool is_new = part.time_s < snapshot_time_s_ || part.time_s > snapshot_time_s_;
   if (is_new) snapshot_time_s_ = part.time_s;
   snapshot_age_s_ = is_new ? 0 : snapshot_age_s_ + dt_s;
   if (settings_.physics_limit_s > 0 && is_holding_ && part.is_coupled &&
       snapshot_age_s_ > settings_.physics_limit_s)
-    refuse(SafetyFault::PhysicsStalled);
+    latchFault(SafetyFault::PhysicsStalled);
 }
 
-const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
+void HapticLoop::receivePart() noexcept {
+  const std::int32_t step_before = received_.step;
+  received_ = port_->physics.read();
+  if (received_.step != step_before && received_.stored_J) observeStoredEnergy(*received_.stored_J, 0);
+}
+
+const TickReport& HapticLoop::tick(double dt_s) noexcept {
+  receivePart();
+  return tickWithReceivedPart(dt_s);
+}
+
+const TickReport& HapticLoop::tickWithReceivedPart(double elapsed_s) noexcept {
   const double period_s = settings_.period_s;
-  const double dt_s = wished_dt_s > period_s ? std::min(wished_dt_s, 4 * period_s) : period_s;
+  const double dt_s = elapsed_s > period_s ? std::min(elapsed_s, 4 * period_s) : period_s;
   watchPhysics(dt_s);
   const DeviceSample sample = device_->read();
   const bool is_good = sample.status == Status::Ok && sample.X_DH.isFinite() && sample.V_DH.isFinite();
@@ -121,7 +103,7 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   Wrench wanted_D;
   if (is_good) {
     const Twist step_D = stepSince(sample);
-    account(sample, step_D);
+    accountEnergy(sample, step_D);
     moveProxy(step_D, sample.X_DH);
     const double share = clutch_.ratio();
     proxy.X_W = toGrasp(sample.X_DH);
@@ -134,16 +116,15 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   std::rotate(F_written_D_.begin(), F_written_D_.end() - 1, F_written_D_.end());
   F_written_D_[0] = report_.F_hand_D;
 
-  // While safety holds the force at zero the proxy stands still: the part rests where it was, and does not
-  // follow a pose that cannot be trusted.
+  // While safety holds the force at zero the proxy stands still, so that the part does not follow a pose that
+  // cannot be trusted.
   const bool is_faulted = guard_.state().fault != SafetyFault::None;
   if (is_faulted) {
     proxy.X_W = report_.X_WG;
     proxy.V_W = {};
   }
-  port_->proxy.write(proxy);
   report_.time_s = sample.time_s;
-  tellFault();
+  reportFault();
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
   report_.V_WG = proxy.V_W;
@@ -151,12 +132,20 @@ const TickReport& HapticLoop::tick(double wished_dt_s) noexcept {
   report_.F_hand_W = rotated(settings_.map.X_WD.R, report_.F_hand_D);
   ++ticks_;
   ++counts_[std::min(static_cast<std::size_t>(report_.status), kStatusCount - 1)];
+  port_->haptic.write(state());
   return report_;
 }
 
+HapticState HapticLoop::state() const noexcept {
+  return {{report_.X_WG, report_.V_WG, report_.time_s, is_holding_},
+          static_cast<std::int32_t>(ticks_),
+          report_,
+          guard_.state(),
+          passivity_};
+}
+
 Wrench HapticLoop::coupling(const CouplingState& proxy, double dt_s) noexcept {
-  // Read also when not holding, so that the port never hands out a part of long ago.
-  const CouplingState& part = port_->part.read();
+  const CouplingState& part = received_.part;
   if (!is_holding_ || !part.is_coupled) return {};
   if (settings_.local != nullptr)
     return couplingWrench(settings_.gains, proxy,
@@ -171,12 +160,12 @@ Wrench HapticLoop::coupling(const CouplingState& proxy, double dt_s) noexcept {
 
 Wrench HapticLoop::passivityDamping(const Twist& V_DH) const noexcept {
   const bool is_active = settings_.has_passivity_controller && has_stored_;
-  if (!is_active || ledger_.rise_J() <= settings_.injected_bound_J) return {};
+  if (!is_active || passivity_.rise_J() <= settings_.injected_bound_J) return {};
   return {-spare_Nms_per_rad_ * V_DH.w, -spare_Ns_per_m_ * V_DH.v};
 }
 
-// The mean over the period that ends now. A force that comes a part of a period late shares it with the one
-// before.
+// The mean over the period that ends now: a force that acts from within the period on is averaged with the
+// one before it.
 Wrench HapticLoop::actingWrench() const noexcept {
   const auto whole = static_cast<std::size_t>(delay_ticks_);
   const double late = delay_ticks_ - static_cast<double>(whole);
@@ -188,7 +177,7 @@ Twist HapticLoop::stepSince(const DeviceSample& sample) const noexcept {
   return {rotationVector(sample.X_DH.R * X_DH_before_.R.transpose()), Vec3(sample.X_DH.p - X_DH_before_.p)};
 }
 
-// The step was made under the force of the last tick, so it goes through the lever as it was then.
+// The displacement was made under the force of the last tick, so the clutch ratio of that tick applies.
 void HapticLoop::moveProxy(const Twist& step_D, const Pose& X_DH) noexcept {
   if (is_holding_ && !clutch_.isClosed()) {
     const Pose X_WG = clutch_.follow(report_.X_WG, settings_.map.toScene(step_D));
@@ -197,44 +186,44 @@ void HapticLoop::moveProxy(const Twist& step_D, const Pose& X_DH) noexcept {
   clutch_.advance(settings_.period_s, settings_.clutch_s);
 }
 
-void HapticLoop::account(const DeviceSample& sample, const Twist& step) noexcept {
+void HapticLoop::accountEnergy(const DeviceSample& sample, const Twist& step) noexcept {
   const bool had_before = has_before_;
   X_DH_before_ = sample.X_DH;
   has_before_ = true;
   if (!had_before) return;
   const Wrench F_acting_D = actingWrench();
-  accountUnseen(F_acting_D);
+  accountQuantisation(F_acting_D);
   const double work_J = power(F_acting_D, step);
-  (work_J > 0 ? ledger_.to_hand_J : ledger_.from_hand_J) += std::abs(work_J);
+  (work_J > 0 ? passivity_.to_hand_J : passivity_.from_hand_J) += std::abs(work_J);
 
-  // One encoder step per tick is no real speed: the lower of the raw and the filtered estimate counts.
+  // One encoder step per tick is not a real velocity: use the lower of the raw and the filtered estimate.
   const double dt_s = settings_.period_s;
   const double v = std::min(step.v.norm() / dt_s, sample.V_DH.v.norm());
   const double w = std::min(step.w.norm() / dt_s, sample.V_DH.w.norm());
-  ledger_.dissipated_J += dt_s * (limits_.damping_Ns_per_m * v * v + limits_.damping_Nms_per_rad * w * w);
+  passivity_.dissipated_J += dt_s * (limits_.damping_Ns_per_m * v * v + limits_.damping_Nms_per_rad * w * w);
 
   // Scene joules: scene wrench times scene displacement.
   net_scene_J_ += power(settings_.map.toScene(F_acting_D), settings_.map.toScene(step));
 }
 
-void HapticLoop::accountUnseen(const Wrench& F_D) noexcept {
-  force_way_N_ += (F_D.f - F_accounted_D_.f).norm();
-  torque_way_Nm_ += (F_D.tau - F_accounted_D_.tau).norm();
+void HapticLoop::accountQuantisation(const Wrench& F_D) noexcept {
+  force_variation_N_ += (F_D.f - F_accounted_D_.f).norm();
+  torque_variation_Nm_ += (F_D.tau - F_accounted_D_.tau).norm();
   F_accounted_D_ = F_D;
-  const double line_J = limits_.resolution_m * (force_way_N_ + F_D.f.norm()),
-               turn_J = limits_.resolution_rad * (torque_way_Nm_ + F_D.tau.norm());
-  ledger_.quantisation_error_bound_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
+  const double line_J = limits_.resolution_m * (force_variation_N_ + F_D.f.norm()),
+               turn_J = limits_.resolution_rad * (torque_variation_Nm_ + F_D.tau.norm());
+  passivity_.quantisation_error_bound_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
 }
 
 void HapticLoop::observeStoredEnergy(double stored_J, double actuator_J) noexcept {
-  // Device dissipation stands for as much in the scene as the translation it brakes.
-  const double dissipated_J = ledger_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
+  // Device dissipation is converted to scene joules by the scale of the translation that it brakes.
+  const double dissipated_J = passivity_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
   const double balance_J = net_scene_J_ - dissipated_J + stored_J - actuator_J;
   if (!has_stored_) balance_start_J_ = balance_J;
   has_stored_ = true;
-  ledger_.balance_J = balance_J - balance_start_J_;
-  ledger_.least_J = std::min(ledger_.least_J, ledger_.balance_J);
-  ledger_.injected_J = std::max(ledger_.injected_J, ledger_.rise_J());
+  passivity_.balance_J = balance_J - balance_start_J_;
+  passivity_.least_J = std::min(passivity_.least_J, passivity_.balance_J);
+  passivity_.injected_J = std::max(passivity_.injected_J, passivity_.rise_J());
 }
 
 std::uint64_t HapticLoop::count(Status status) const noexcept {

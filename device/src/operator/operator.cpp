@@ -7,13 +7,13 @@
 namespace vps::device {
 namespace {
 
-constexpr double kLeastSegment_s = 0.3;  // no aimed movement is faster
-constexpr double kArrived_m = 2e-3;      // near enough to a way point to go on
-constexpr double kArrivalWait_s = 0.5;   // and how long to wait for that
+constexpr double kLeastSegment_s = 0.3;  // assumed: no aimed movement is shorter
+constexpr double kArrived_m = 2e-3;      // distance from a way point that counts as reached
+constexpr double kArrivalWait_s = 0.5;   // longest wait for that
 constexpr double kRetreat_s = 0.25;
 constexpr double kRamp_s = 0.2;            // of the press, up and down
-constexpr double kPressRate_N_per_s = 10;  // force of a push that meets resistance
-constexpr double kCreep_per_s = 4;         // closes a free shortfall; times the delay of sight well below 1
+constexpr double kPressRate_N_per_s = 10;  // growth of the push against resistance
+constexpr double kCreep_per_s = 4;         // closes a free shortfall; times the visual delay well below 1
 constexpr double kRestWait_s = 2;
 constexpr double kFreeShare = 0.6;       // of the tolerance
 constexpr double kResidualShare = 0.15;  // of the press, kept until release so that the part stays seated
@@ -79,7 +79,7 @@ void VirtualOperator::begin(const OperatorTask& task, double now_s) {
   push_N_ = 0;
   has_stop_ = true;
   retries_ = 0;
-  has_view_ = false;  // the next view says where the hand starts
+  has_view_ = false;  // the next view gives the hand's start
   picture_count_ = 0;
   next_look_s_ = begin_s_ = now_s;
   next_ = 1;
@@ -96,9 +96,9 @@ HandForce VirtualOperator::step(const OperatorView& view, double dt_s) noexcept 
   }
   if (!has_view_) {
     has_view_ = true;
-    X_eq_ = X_hold_ = view.X_WG_hand;
+    X_eq_ = X_rest_ = view.X_WG_hand;
     V_eq_ = {};
-    seen_now_ = {view.time_s, view.X_WP, view.V_WP};
+    seen_ = {view.time_s, view.X_WP, view.V_WP};
     if (phase_ == OperatorPhase::Reach) {
       startSegment(X_eq_, path_[next_], 1, view.time_s);
       if (next_ + 1 == path_.size()) enter(OperatorPhase::Insert, view.time_s);
@@ -112,7 +112,7 @@ HandForce VirtualOperator::step(const OperatorView& view, double dt_s) noexcept 
 
 void VirtualOperator::goOn() noexcept {
   if (phase_ != OperatorPhase::Regrasp) return;
-  fix_m_ = fix_rad_ = Vec3::Zero();  // it starts from where the hand is
+  fix_m_ = fix_rad_ = Vec3::Zero();  // the segment starts at the hand's pose
   has_view_ = false;
   phase_ = OperatorPhase::Reach;
 }
@@ -130,7 +130,7 @@ void VirtualOperator::startSegment(const Pose& X_from, const Pose& X_to, double 
 }
 
 void VirtualOperator::startInsertion(double now_s) noexcept {
-  // From where the part is seen, but on the line: the lateral error is for sight to correct.
+  // From the seen pose, projected on the line: the visual correction removes the lateral error.
   const Pose &X_from = path_[path_.size() - 2], &X_to = path_.back();
   const double length_m = (X_to.p - X_from.p).norm();
   const double share = length_m > 1e-9 ? std::clamp(1 - shortfall_m() / length_m, 0.0, 1.0) : 0.0;
@@ -150,10 +150,10 @@ void VirtualOperator::enter(OperatorPhase phase, double now_s) noexcept {
 }
 
 Pose VirtualOperator::wanted(double now_s) const noexcept {
-  if (phase_ != OperatorPhase::Reach && !isInserting()) return X_hold_;
+  if (phase_ != OperatorPhase::Reach && !isInserting()) return X_rest_;
   const double share = minimumJerk((now_s - segment_.start_s) / segment_.duration_s);
   Pose X = between(segment_.X_from, segment_.X_to, share);
-  // The error of aim grows over the last free leg; it is one of where the hole is thought to be.
+  // The aim error grows over the last free segment; it models the misjudged position of the hole.
   double aim = 1;
   if (phase_ == OperatorPhase::Reach) aim = next_ + 2 == path_.size() ? share : 0;
   X.p += aim * aim_m_ + fix_m_;
@@ -170,33 +170,33 @@ Pose VirtualOperator::wanted(double now_s) const noexcept {
   return X;
 }
 
-// --- Sight
+// --- Vision
 // --------------------------------------------------------------------------------------------------------
 
 void VirtualOperator::look(const OperatorView& view) noexcept {
   if (view.time_s < next_look_s_) return;
   const double period_s = 1 / habits_.see_rate_hz;
   next_look_s_ = view.time_s + period_s;
-  pictures_[picture_count_++ % kSeenCount] = {view.time_s, view.X_WP, view.V_WP};
-  const std::size_t stored = std::min(picture_count_, kSeenCount);
+  pictures_[picture_count_++ % kPictures] = {view.time_s, view.X_WP, view.V_WP};
+  const std::size_t stored = std::min(picture_count_, kPictures);
   for (std::size_t age = 0; age < stored; ++age) {
-    const Seen& picture = pictures_[(picture_count_ - 1 - age) % kSeenCount];
+    const Picture& picture = pictures_[(picture_count_ - 1 - age) % kPictures];
     if (picture.time_s > view.time_s - habits_.see_delay_s) continue;
-    seen_now_ = picture;
+    seen_ = picture;
     break;
   }
   correct(period_s);
 }
 
-// Share of the present segment that a pose has covered; by time when the segment only turns.
+// Share of the present segment that a pose has covered; by time if the segment only rotates.
 double VirtualOperator::progressOf(const Pose& X_WG) const noexcept {
   const Vec3 leg = segment_.X_to.p - segment_.X_from.p;
   const double length2 = leg.squaredNorm();
-  if (length2 < 1e-18) return minimumJerk((seen_now_.time_s - segment_.start_s) / segment_.duration_s);
+  if (length2 < 1e-18) return minimumJerk((seen_.time_s - segment_.start_s) / segment_.duration_s);
   return std::clamp(leg.dot(X_WG.p - segment_.X_from.p) / length2, 0.0, 1.0);
 }
 
-// Integral action on the seen error across the path. Along the path the picture is late, not wrong.
+// Integral action on the seen error across the path. Along the path the error is only the visual delay.
 void VirtualOperator::correct(double dt_s) noexcept {
   if (phase_ != OperatorPhase::Reach && !isInserting()) return;
   const Pose X_seen = seenGrasp();
@@ -217,12 +217,12 @@ double VirtualOperator::shortfall_m() const noexcept {
 
 bool VirtualOperator::isOnTarget(double share) const noexcept {
   const Pose& X = task_.X_WP_target;
-  return (seen_now_.X_WP.p - X.p).norm() <= share * task_.tolerance_m &&
-         rotationVector(seen_now_.X_WP.R * X.R.transpose()).norm() <= share * task_.tolerance_rad;
+  return (seen_.X_WP.p - X.p).norm() <= share * task_.tolerance_m &&
+         rotationVector(seen_.X_WP.R * X.R.transpose()).norm() <= share * task_.tolerance_rad;
 }
 
 bool VirtualOperator::isAtRest() const noexcept {
-  return seen_now_.V_WP.v.norm() < habits_.still_m_s && seen_now_.V_WP.w.norm() < habits_.still_rad_s;
+  return seen_.V_WP.v.norm() < habits_.still_m_s && seen_.V_WP.w.norm() < habits_.still_rad_s;
 }
 
 bool VirtualOperator::isInserting() const noexcept {
@@ -252,7 +252,7 @@ void VirtualOperator::reach(double now_s) noexcept {
   if (!has_arrived && now_s < end_s + kArrivalWait_s) return;
   const auto& index_points = task_.index_points;
   if (std::find(index_points.begin(), index_points.end(), next_ - 1) != index_points.end()) {
-    X_hold_ = wanted(now_s);
+    X_rest_ = wanted(now_s);
     ++next_;
     return enter(OperatorPhase::Regrasp, now_s);
   }
@@ -267,20 +267,20 @@ void VirtualOperator::insert(const OperatorView& view, double dt_s) noexcept {
     retreat_until_s_ = 0;
     startInsertion(now_s);
   }
-  // What nothing stops must be well within, for it may still drift.
+  // A part that nothing stops may still drift, so it must be well within the tolerance.
   if (isOnTarget(has_stop_ ? 1 : kFreeShare)) return enter(OperatorPhase::Press, now_s);
 
   const double shortfall = shortfall_m(), limit_N = pushLimit_N();
   if (now_s > segment_.start_s + segment_.duration_s) {
-    // At the end of the plan: push on against what resists, or creep after what is free.
-    const bool is_held = shortfall > 0.5 * task_.tolerance_m && seen_now_.V_WP.v.norm() < habits_.rest_m_s;
+    // At the end of the plan: push against resistance, or creep towards the target if the part is free.
+    const bool is_held = shortfall > 0.5 * task_.tolerance_m && seen_.V_WP.v.norm() < habits_.rest_m_s;
     const double creep_N_per_s =
         std::clamp(habits_.k_N_per_m * kCreep_per_s * shortfall, -kPressRate_N_per_s, kPressRate_N_per_s);
     push_N_ += dt_s * (is_held ? kPressRate_N_per_s : creep_N_per_s);
     push_N_ = std::clamp(push_N_, -limit_N, limit_N);
   }
 
-  // Stuck: it resists nearly all that this try allows, and gets no further.
+  // Stuck: nearly the whole push of this attempt is resisted, without progress.
   const double resistance_N = -axis_W_.dot(view.F_hand_W.f - task_.weight_W);
   const bool has_progress = -shortfall > progress_m_ + habits_.progress_m;
   if (has_progress) progress_m_ = -shortfall;
@@ -288,7 +288,7 @@ void VirtualOperator::insert(const OperatorView& view, double dt_s) noexcept {
   if (now_s - progress_s_ > habits_.stuck_s) retry(now_s);
 }
 
-// Backs off, and comes again a little elsewhere on a spiral, a little tilted, and pushing a little more.
+// Backs off, and retries at the next offset of a spiral, with another tilt and a stronger push.
 void VirtualOperator::retry(double now_s) noexcept {
   ++retries_;
   progress_m_ = -shortfall_m();
@@ -309,7 +309,7 @@ void VirtualOperator::press(double now_s) noexcept {
   const double t = now_s - phase_s_, down_s = kRamp_s + habits_.press_s;
   if (!has_stop_) return;
   if (t < down_s && -shortfall_m() > task_.tolerance_m) {
-    // It yields: nothing to press against, so from now on it is only put in place.
+    // The part yields: there is no stop to press against, so from now on it is only positioned.
     has_stop_ = false;
     return enter(OperatorPhase::Insert, now_s);
   }
@@ -318,7 +318,7 @@ void VirtualOperator::press(double now_s) noexcept {
 }
 
 void VirtualOperator::finish(OperatorPhase phase, const OperatorView& view) noexcept {
-  X_hold_ = view.X_WG_hand;
+  X_rest_ = view.X_WG_hand;
   enter(phase, view.time_s);
 }
 
@@ -331,7 +331,7 @@ Pose VirtualOperator::limited(const Pose& X_wanted, const Pose& X_hand) const no
     const double along_m = axis_W_.dot(pull_m);
     pull_m -= axis_W_ * std::max(0.0, along_m - pushLimit_N() / habits_.k_N_per_m);
   } else if (phase_ == OperatorPhase::Press && has_stop_) {
-    // A stop gives the position, the hand only the force.
+    // The stop sets the position, the hand only the force.
     pull_m += axis_W_ * (push_N_ / habits_.k_N_per_m - axis_W_.dot(pull_m));
   }
   pull_m = shortened(pull_m, habits_.force_limit_N / habits_.k_N_per_m);
@@ -340,7 +340,7 @@ Pose VirtualOperator::limited(const Pose& X_wanted, const Pose& X_hand) const no
   return {Mat3(rotationFromVector(twist_rad) * X_hand.R), Vec3(X_hand.p + pull_m)};
 }
 
-// Muscles lag: a critically damped second order, solved implicitly, between what is wanted and the
+// Muscle lag: a critically damped second-order filter, solved implicitly, between the wanted pose and the
 // equilibrium.
 void VirtualOperator::follow(const Pose& X_wanted, double dt_s) noexcept {
   const double omega = habits_.lag_rad_s, implicit = 1 / ((1 + dt_s * omega) * (1 + dt_s * omega));

@@ -20,7 +20,7 @@ Beat Metronome::wait() noexcept {
 
   clock_->sleepUntil(due_ns_);
   seen_ns_ = beat.woke_ns = clock_->now_ns();
-  if (beat.woke_ns < now_ns) {  // back while we slept
+  if (beat.woke_ns < now_ns) {  // the clock went back during the sleep
     beat.has_clock_gone_back = true;
     due_ns_ = beat.woke_ns;
   }

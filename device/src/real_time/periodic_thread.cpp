@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kStack_bytes = 256 * 1024;  // assumed: a tick needs some kilobytes
 constexpr std::size_t kPage_bytes = 4096;
 
-// Touches the stack's pages once; volatile, or it would be left out.
+// Touches the stack's pages once; volatile, so that the compiler keeps it.
 void touchStack() noexcept {
   char room[kStack_bytes];
   volatile char* const page = room;
@@ -40,7 +40,7 @@ RealTimeReport PeriodicThread::start(std::function<void(const Beat&)> work) {
   std::promise<RealTimeReport> asked;
   std::future<RealTimeReport> answer = asked.get_future();
   thread_ = std::thread([this, work = std::move(work), asked = std::move(asked)]() mutable {
-    RealTimeReport report = askForRealTime(settings_.priority, settings_.locks_memory);
+    RealTimeReport report = requestRealTime(settings_.priority, settings_.locks_memory);
     touchStack();
     is_running_.store(true, std::memory_order_release);
     asked.set_value(std::move(report));

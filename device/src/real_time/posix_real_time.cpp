@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one file of this folder that asks the system for clocks, priorities and memory (POSIX).
+// Clocks, priorities and memory locking by POSIX; the only file of this folder that calls it.
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -36,7 +36,7 @@ std::string refusal(DeviceEventKind kind, int error) {
   return std::string(toText(kind)) + " (" + std::strerror(error) + "); " + remedyOf(kind);
 }
 
-// With a limit, locking what is yet to come would make allocations fail later: only what is there is locked.
+// With a limit, locking future pages would make later allocations fail, so only the present ones are locked.
 int lockMemory() {
   rlimit limit{};
   const bool is_free =
@@ -56,7 +56,7 @@ void leaveRealTime() noexcept {
   pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
 }
 
-RealTimeReport askForRealTime(int priority, bool locks_memory) {
+RealTimeReport requestRealTime(int priority, bool locks_memory) {
   RealTimeReport report;
   if (priority > 0) {
     const sched_param wish{priority};

@@ -6,7 +6,7 @@
 namespace vps::device {
 namespace {
 
-constexpr std::int64_t kQuietTicks = 1000;  // misses are told once, and again after so many good ticks
+constexpr std::int64_t kQuietTicks = 1000;  // misses are reported once, and again after this many good ticks
 
 RealTimeClock& clockOf(const RealTimeSettings& settings) {
   return settings.clock != nullptr ? *settings.clock : monotonicClock();
@@ -67,19 +67,20 @@ RealTimeReport RealTimeLoop::start() {
 void RealTimeLoop::stop() {
   const bool was_running = thread_.isRunning();
   thread_.stop();
-  if (was_running) device_.write({});  // the motors hold what they were last told
+  if (was_running) device_.write({});  // the motors hold the last command
 }
 
 void RealTimeLoop::beat(const Beat& beat) noexcept {
   const std::int64_t begun_ns = clock_->now_ns();
-  if (beat.has_clock_gone_back) loop_.refuse(SafetyFault::ClockBackwards);
-  tellMisses(beat);
-  tellRefusals();
-  answerRequests();
-  if (settings_.before) settings_.before(loop_, beat.periods);
+  if (beat.has_clock_gone_back) loop_.latchFault(SafetyFault::ClockBackwards);
+  reportMisses(beat);
+  reportRefusals();
+  handleRequests();
+  loop_.receivePart();
+  if (settings_.before_tick) settings_.before_tick(loop_, beat.periods);
   const double dt_s = loop_.settings().period_s * static_cast<double>(beat.periods);
   device_.takeSpent_ns();
-  loop_.tick(dt_s);
+  loop_.tickWithReceivedPart(dt_s);
   const std::int64_t done_ns = clock_->now_ns();
 
   TickTiming timing;
@@ -88,16 +89,15 @@ void RealTimeLoop::beat(const Beat& beat) noexcept {
   timing.device_ns = device_.takeSpent_ns();
   timing.own_ns = done_ns - begun_ns - timing.device_ns;
   timing.snapshot_ns = nanoseconds(loop_.isHolding() ? loop_.snapshotAge_s() : 0);
-  latest_.write({loop_.last(), loop_.safety(), loop_.ledger(), loop_.isHolding()});
-  if (settings_.beside) settings_.beside(loop_, dt_s);
-  timing.beside_ns = clock_->now_ns() - done_ns;
+  if (settings_.after_tick) settings_.after_tick(loop_, dt_s);
+  timing.after_tick_ns = clock_->now_ns() - done_ns;
   statistics_.add(timing);
-  before_ = timing;
+  timing_before_ = timing;
 }
 
-void RealTimeLoop::tellMisses(const Beat& beat) noexcept {
+void RealTimeLoop::reportMisses(const Beat& beat) noexcept {
   if (beat.missed_before > 0)
-    statistics_.miss(static_cast<std::uint64_t>(beat.missed_before), before_.cause(true));
+    statistics_.miss(static_cast<std::uint64_t>(beat.missed_before), timing_before_.cause(true));
   if (beat.missed_asleep > 0)
     statistics_.miss(static_cast<std::uint64_t>(beat.missed_asleep), TickCause::WokenLate);
   const std::int64_t missed = beat.periods - 1;
@@ -106,18 +106,18 @@ void RealTimeLoop::tellMisses(const Beat& beat) noexcept {
   quiet_ticks_ = missed > 0 ? kQuietTicks : quiet_ticks_ - 1;
 }
 
-// The queue has one writer: this thread.
-void RealTimeLoop::tellRefusals() noexcept {
-  const auto tell = [this](std::atomic<bool>& is_untold, DeviceEventKind kind) {
-    if (!is_untold.load(std::memory_order_relaxed)) return;
-    is_untold.store(false, std::memory_order_relaxed);
+// The event queue has one writer, this thread.
+void RealTimeLoop::reportRefusals() noexcept {
+  const auto report = [this](std::atomic<bool>& is_unreported, DeviceEventKind kind) {
+    if (!is_unreported.load(std::memory_order_relaxed)) return;
+    is_unreported.store(false, std::memory_order_relaxed);
     if (events_ != nullptr) events_->push({loop_.last().time_s, kind, 0});
   };
-  tell(lacks_priority_, DeviceEventKind::NoPriority);
-  tell(lacks_locking_, DeviceEventKind::NotLocked);
+  report(lacks_priority_, DeviceEventKind::NoPriority);
+  report(lacks_locking_, DeviceEventKind::NotLocked);
 }
 
-void RealTimeLoop::answer(const Request& request) noexcept {
+void RealTimeLoop::handle(const Request& request) noexcept {
   switch (request.kind) {
     case Request::Grasp:
       return loop_.grasp(request.X_WG);
@@ -133,46 +133,51 @@ void RealTimeLoop::answer(const Request& request) noexcept {
       return loop_.rearm();
     case Request::Gains:
       return loop_.setGains(request.gains);
+    case Request::Call:
+      if (settings_.on_call) settings_.on_call(loop_, request.code);
+      return;
   }
 }
 
-bool RealTimeLoop::ask(const Request& request) noexcept {
-  const std::size_t asked = asked_.load(std::memory_order_relaxed);
-  if (asked - answered_.load(std::memory_order_acquire) == kRequests) return false;
-  requests_[asked % kRequests] = request;
-  asked_.store(asked + 1, std::memory_order_release);
+bool RealTimeLoop::post(const Request& request) noexcept {
+  const std::size_t posted = posted_.load(std::memory_order_relaxed);
+  if (posted - handled_.load(std::memory_order_acquire) == kRequests) return false;
+  requests_[posted % kRequests] = request;
+  posted_.store(posted + 1, std::memory_order_release);
   return true;
 }
 
 bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
-  return ask({Request::Grasp, X_WG, {}});
+  return post({Request::Grasp, X_WG, {}, 0});
 }
 bool RealTimeLoop::handOver(const Pose& X_WG) noexcept {
-  return ask({Request::HandOver, X_WG, {}});
+  return post({Request::HandOver, X_WG, {}, 0});
 }
 bool RealTimeLoop::disengage() noexcept {
-  return ask({Request::Disengage, {}, {}});
+  return post({Request::Disengage, {}, {}, 0});
 }
 bool RealTimeLoop::engage() noexcept {
-  return ask({Request::Engage, {}, {}});
+  return post({Request::Engage, {}, {}, 0});
 }
 bool RealTimeLoop::release() noexcept {
-  return ask({Request::Release, {}, {}});
+  return post({Request::Release, {}, {}, 0});
 }
 bool RealTimeLoop::rearm() noexcept {
-  return ask({Request::Rearm, {}, {}});
+  return post({Request::Rearm, {}, {}, 0});
 }
 bool RealTimeLoop::setGains(const CouplingGains& gains) noexcept {
-  return ask({Request::Gains, {}, gains});
+  return post({Request::Gains, {}, gains, 0});
 }
 
-void RealTimeLoop::answerRequests() noexcept {
-  const std::size_t asked = asked_.load(std::memory_order_acquire);
-  std::size_t answered = answered_.load(std::memory_order_relaxed);
-  for (; answered != asked; ++answered) answer(requests_[answered % kRequests]);
-  answered_.store(answered, std::memory_order_release);
-  const Energies& energies = energies_.read();
-  if (energies.is_told) loop_.observeStoredEnergy(energies.stored_J, energies.actuator_J);
+bool RealTimeLoop::call(std::int32_t code) noexcept {
+  return post({Request::Call, {}, {}, code});
+}
+
+void RealTimeLoop::handleRequests() noexcept {
+  const std::size_t posted = posted_.load(std::memory_order_acquire);
+  std::size_t handled = handled_.load(std::memory_order_relaxed);
+  for (; handled != posted; ++handled) handle(requests_[handled % kRequests]);
+  handled_.store(handled, std::memory_order_release);
 }
 
 }  // namespace vps::device

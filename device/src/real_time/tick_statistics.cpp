@@ -12,7 +12,7 @@ constexpr int kSplitBits = 6;
 static_assert(TickHistogram::kSplit == 1 << kSplitBits);
 constexpr std::int64_t kMost_ns = (std::int64_t{1} << (kSplitBits + TickHistogram::kOctaves)) - 1;
 
-// Below 64 a bucket a nanosecond; above, the octave and the six bits that follow the highest.
+// Below 64 one bucket per nanosecond; above, the octave and the six bits that follow the highest.
 std::size_t bucketOf(std::int64_t ns) {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMost_ns));
   const int octave = std::max(0, static_cast<int>(std::bit_width(value)) - kSplitBits);
@@ -21,14 +21,14 @@ std::size_t bucketOf(std::int64_t ns) {
   return static_cast<std::size_t>(octave) * TickHistogram::kSplit + part;
 }
 
-// The greatest value that falls into a bucket.
+// The greatest value in a bucket.
 std::int64_t endOf(std::size_t bucket) {
   const std::size_t octave = bucket / TickHistogram::kSplit, part = bucket % TickHistogram::kSplit;
   if (octave == 0) return static_cast<std::int64_t>(part);
   return static_cast<std::int64_t>(((TickHistogram::kSplit + part + 1) << (octave - 1)) - 1);
 }
 
-// Only one thread writes: no read-modify-write is needed, and none is paid for.
+// Only one thread writes, so that no read-modify-write is needed.
 template <typename T>
 void increase(std::atomic<T>& value, T by = 1) {
   value.store(value.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
@@ -72,15 +72,15 @@ const char* toText(TickCause cause) noexcept {
       return "the device";
     case TickCause::OwnWork:
       return "the tick's own work";
-    case TickCause::Beside:
+    case TickCause::AfterTick:
       return "work beside the tick";
   }
   return "unknown";
 }
 
-TickCause TickTiming::cause(bool has_beside) const noexcept {
+TickCause TickTiming::cause(bool includes_after_tick) const noexcept {
   const std::array<std::int64_t, kTickCauses> parts = {late_ns, device_ns, own_ns,
-                                                       has_beside ? beside_ns : -1};
+                                                       includes_after_tick ? after_tick_ns : -1};
   return static_cast<TickCause>(std::max_element(parts.begin(), parts.end()) - parts.begin());
 }
 
@@ -96,8 +96,8 @@ void TickStatistics::miss(std::uint64_t periods, TickCause cause) noexcept {
   increase(missed_by_[static_cast<std::size_t>(cause)], periods);
 }
 
-// A reader that meets a field of the new value also meets the odd version before it (release, acquire), and
-// tries again.
+// A reader that sees a field of the new value also sees the odd version before it (release, acquire), and
+// retries.
 void TickStatistics::keepWorst(const TickTiming& timing) noexcept {
   worst_response_ns_ = timing.response_ns();
   const std::uint64_t version = worst_version_.load(std::memory_order_relaxed);
@@ -106,7 +106,7 @@ void TickStatistics::keepWorst(const TickTiming& timing) noexcept {
                                               timing.late_ns,
                                               timing.device_ns,
                                               timing.own_ns,
-                                              timing.beside_ns,
+                                              timing.after_tick_ns,
                                               timing.snapshot_ns};
   for (std::size_t i = 0; i < fields.size(); ++i) worst_[i].store(fields[i], std::memory_order_release);
   worst_version_.store(version + 2, std::memory_order_release);

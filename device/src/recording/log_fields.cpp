@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "vps_device/bytes.h"
+#include "vps_device/detail/bytes.h"
 
 namespace vps::device::log {
 
@@ -59,7 +59,7 @@ struct SchemaText {
   }
 };
 
-/// CDR aligns a value to its size, counted from after the four bytes that say the byte order.
+/// CDR aligns a value to its size, counted from the end of the four bytes that give the byte order.
 class CdrWriter {
  public:
   CdrWriter() : out_(kLittleEndianCdr) {}
@@ -76,7 +76,7 @@ class CdrWriter {
     if constexpr (std::is_same_v<T, Text>) {
       align(4);
       const std::size_t length = ::strnlen(x.data(), x.size());
-      w.put(static_cast<std::uint32_t>(length + 1));  // with its zero
+      w.put(static_cast<std::uint32_t>(length + 1));  // with its terminating zero
       w.bytes({x.data(), length});
       w.put(std::uint8_t{0});
     } else if constexpr (kIsByte<T>) {
@@ -136,7 +136,7 @@ std::string shown(std::int32_t x) {
   return std::to_string(x);
 }
 std::string shown(const Text& x) {
-  // One cell of a table, whatever the words: quotes doubled within quotes.
+  // One CSV cell, quoted, with inner quotes doubled.
   std::string out = "\"";
   for (const char c : std::string_view(x.data(), ::strnlen(x.data(), x.size())))
     out += c == '"' ? "\"\"" : std::string(1, c);
@@ -214,7 +214,7 @@ std::string difference(const LogEntry& recorded, const LogEntry& now) {
   for (std::size_t i = 0; i < was.size(); ++i)
     if (was[i].second != is[i].second)
       return was[i].first + " was " + was[i].second + " and is " + is[i].second;
-  return "the payload of a NaN";  // prints the same, and is not
+  return "the payload of a NaN";  // prints alike, but differs in bits
 }
 
 }  // namespace vps::device::log

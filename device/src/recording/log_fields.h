@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of each log entry, named once: from here come the messages' schema, their bytes, the columns of
-// a CSV file, and the words of a difference.
+// The table of fields of each log entry: source of the messages' schema, their bytes, the columns of a CSV
+// file, and the description of a difference.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 namespace vps::device::log {
 
 /// visit(name, field) for each field: double, Vec3, Mat3 (row by row), int32, uint8-sized enums and numbers,
-/// and the event's text. Doubles stand first, so that no byte of a message is padding.
+/// and the event's text. Doubles come first, so that no byte of a message is padding.
 template <typename Entry, typename Visit>
 requires std::is_same_v<std::remove_const_t<Entry>, DeviceSample>
 void fields(Entry& e, Visit&& visit) {
-  auto& [X_DH, V_DH, time_s, status] = e;  // one that is added and forgotten here does not compile
+  auto& [X_DH, V_DH, time_s, status] = e;  // a new member that is missing here does not compile
   visit("time_s", time_s);
   visit("p_dh_m", X_DH.p);
   visit("r_dh", X_DH.R);
@@ -68,6 +68,10 @@ void fields(Entry& e, Visit&& visit) {
   visit("kind", kind);
 }
 
+/// LogEntry::index() of a SyncEvent.
+inline constexpr std::size_t kSyncKind = 4;
+static_assert(std::is_same_v<std::variant_alternative_t<kSyncKind, LogEntry>, SyncEvent>);
+
 /// Topics and types by LogEntry::index().
 inline constexpr std::size_t kKinds = std::variant_size_v<LogEntry>;
 inline constexpr const char* kTopics[kKinds] = {"/device/read", "/device/write", "/run/event", "/run/trace",
@@ -89,13 +93,13 @@ LogEntry blank(std::size_t kind);
 std::string schema(std::size_t kind);
 /// As CDR, little-endian: ROS 2's wire format.
 std::string encoded(const LogEntry& entry);
-/// False where the bytes are not such a message to the last one; the entry is then not to be used.
+/// False if the bytes are not exactly such a message; the entry must not be used then.
 bool decode(std::string_view bytes, LogEntry& entry);
-/// "time_s,p_dh_m.x,..." and a row; numbers in the fewest digits that read back the same.
+/// "time_s,p_dh_m.x,..." and a row; numbers with the fewest digits that read back to the same value.
 std::string csvHeader(std::size_t kind);
 std::string csvRow(const LogEntry& entry);
-/// The name of the first field in which two entries of one kind differ, with both values; empty: equal to the
-/// bit.
+/// The name of the first field in which two entries of one kind differ, with both values; empty: equal bit
+/// for bit.
 std::string difference(const LogEntry& recorded, const LogEntry& now);
 
 }  // namespace vps::device::log

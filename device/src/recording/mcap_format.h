@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the writer and the reader of MCAP both know.
+// Constants of the MCAP format, for writer and reader.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "recording/crc32.h"
 #include "recording/mcap_format.h"
-#include "vps_device/bytes.h"
-#include "vps_device/mcap.h"
+#include "vps_device/detail/bytes.h"
+#include "vps_device/detail/mcap.h"
 
 namespace vps::device {
 
@@ -48,8 +49,8 @@ class Parser {
     const auto opcode = in.get<std::uint8_t>();
     const auto length = in.get<std::uint64_t>();
     if (!in.isGood() || length > in.left()) {
-      // A length that was changed looks the same; what a chunk's checksum does not vouch for is only kept
-      // where the chunk is the last thing in the file.
+      // A corrupt length looks like a cut file. Messages that no checksum covers are therefore kept only from
+      // a chunk at the file's end.
       fail(at,
            in.left() == 0 && !in.isGood() ? "ends without its closing record"
                                           : "ends in the middle of a record",
@@ -89,7 +90,7 @@ class Parser {
       is_good = channel(in);
     } else if (opcode == kMetadata) {
       is_good = metadata(in);
-    }  // else: an index, which a reader from front to back does not need, or a record of later days
+    }  // else: an index, which a sequential reader does not need, or a record of a later version
     if (!in.isGood() || !is_good) fail(at, kContradiction);
   }
 
@@ -166,7 +167,7 @@ class Parser {
     inside(static_cast<std::size_t>(records.data() - bytes_.data()), records);
   }
 
-  /// What there is of a chunk that the file's end cuts; its checksum cannot be tried.
+  /// The complete messages of a chunk that the file's end cuts; its checksum cannot be verified.
   void cutChunk(std::string_view body) {
     ByteReader in(body);
     in.take(8 + 8 + 8 + 4);
@@ -198,10 +199,10 @@ class Parser {
     const auto crc = in.get<std::uint32_t>();
     if (!in.isGood()) return fail(at, kContradiction);
     if (crc != 0 && crc != crc32(bytes_.substr(0, at)))
-      fail(at, "has a changed byte outside of its messages: which one, nobody can tell");
+      fail(at, "has a changed byte outside of its messages");
   }
 
-  /// From the summary to the file's end. Nothing in it is needed here; it must only be as it was written.
+  /// From the summary to the file's end. Its content is not needed; only its checksum is verified.
   void summary(std::size_t at) {
     constexpr std::size_t kEnd = kRecordHead + kFooterBytes;
     const std::string_view rest = bytes_.substr(at);

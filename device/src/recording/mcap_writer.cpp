@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "recording/crc32.h"
 #include "recording/mcap_format.h"
-#include "vps_device/bytes.h"
-#include "vps_device/mcap.h"
+#include "vps_device/detail/bytes.h"
+#include "vps_device/detail/mcap.h"
 
 namespace vps::device {
 
@@ -75,14 +76,14 @@ McapWriter::McapWriter(Sink sink, const std::string& profile, const std::string&
 }
 
 void McapWriter::emit(std::string_view bytes) {
-  crc_.add(bytes);
+  crc_ = crc32(bytes, crc_);
   at_ += bytes.size();
   sink_(bytes);
 }
 
 std::uint64_t McapWriter::emitRecord(std::uint8_t opcode, const std::string& content) {
   const std::uint64_t begin = at_;
-  // One piece, so that a sink that writes unbuffered leaves whole records.
+  // In one piece, so that an unbuffered sink leaves whole records.
   emit(built([&](ByteWriter& w) {
     w.put(opcode);
     w.text<std::uint64_t>(content);
@@ -108,7 +109,7 @@ std::uint16_t McapWriter::addChannel(McapChannel channel) {
 void McapWriter::addAttachment(const McapAttachment& attachment) {
   flush();
   std::string content = built([&](ByteWriter& w) {
-    w.put(std::uint64_t{0});  // when it was recorded, and made: not known, as files must repeat
+    w.put(std::uint64_t{0});  // times of recording and creation: zero, so that files repeat byte for byte
     w.put(std::uint64_t{0});
     w.text(attachment.name);
     w.text(attachment.media_type);
@@ -206,9 +207,9 @@ std::string McapWriter::statistics() const {
 
 void McapWriter::finish() {
   flush();
-  const std::uint32_t data_crc = crc_.value();
+  const std::uint32_t data_crc = crc_;
   emitRecord(kDataEnd, built([&](ByteWriter& w) { w.put(data_crc); }));
-  crc_ = {};
+  crc_ = 0;
   const std::uint64_t summary_at = at_;
   const std::string offsets = emitSummary();
   const std::uint64_t offsets_at = at_;
@@ -220,7 +221,7 @@ void McapWriter::finish() {
     w.put(summary_at);
     w.put(offsets_at);
   }));
-  const std::uint32_t summary_crc = crc_.value();
+  const std::uint32_t summary_crc = crc_;
   emit(built([&](ByteWriter& w) { w.put(summary_crc); }));
   emit(kMagic);
 }
@@ -241,7 +242,7 @@ std::string McapWriter::chunkBytes(const ChunkPlace& chunk) {
     for (const std::uint64_t value : {chunk.first_ns, chunk.last_ns, chunk.at, chunk.length}) w.put(value);
     w.text(mapBytes(chunk.index_at));
     w.put(chunk.index_length);
-    w.text("");  // not compressed: both sizes are one
+    w.text("");  // not compressed: both sizes are equal
     w.put(chunk.bytes);
     w.put(chunk.bytes);
   });

@@ -19,8 +19,8 @@
 #include "recording/log_fields.h"
 #include "recording/recording_format.h"
 #include "vps/load_error.h"
-#include "vps_device/bytes.h"
-#include "vps_device/entry_ring.h"
+#include "vps_device/detail/bytes.h"
+#include "vps_device/detail/entry_ring.h"
 
 namespace vps::device {
 
@@ -35,7 +35,7 @@ std::string exact(double x) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }
 
-/// The file behind symbolic links: a rename onto a link would replace the link.
+/// Follows symbolic links: a rename onto a link would replace the link.
 fs::path target(const std::string& file) {
   fs::path path = file;
   std::error_code error;
@@ -44,7 +44,7 @@ fs::path target(const std::string& file) {
   return path;
 }
 
-/// Throws LoadError unless nothing is there, nothing is in it, or it is a recording of ours.
+/// Throws LoadError unless the path is free, an empty file, or a recording of this program.
 void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
   std::error_code error;
   if (!fs::exists(path, error)) return;
@@ -60,7 +60,7 @@ void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
                     "is there and is no recording of this program; name another file for the recording");
 }
 
-/// Unbuffered, so that what is handed over is the system's, whatever becomes of this program.
+/// Unbuffered, so that written bytes survive a crash of this program.
 class PlainFile {
  public:
   explicit PlainFile(const std::string& file) : file_(std::fopen(file.c_str(), "wbx")) {
@@ -85,13 +85,13 @@ class PlainFile {
   std::FILE* file_;
 };
 
-/// Simulated seconds as the format's nanoseconds; what is no time stays where the last one was.
+/// Simulated seconds as the format's nanoseconds; an invalid time repeats the last one.
 std::uint64_t nanoseconds(double time_s, std::uint64_t last_ns) {
   constexpr double kLongest_s = 1e9;
   return time_s >= 0 && time_s < kLongest_s ? static_cast<std::uint64_t>(time_s * 1e9 + 0.5) : last_ns;
 }
 
-/// ROS's own messages, so that its tools and Foxglove show the part and the force without being told how.
+/// Standard ROS messages, so that its tools and Foxglove show the part and the force without configuration.
 constexpr const char* kHeaderSchema =
     "================================================================================\n"
     "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
@@ -182,7 +182,7 @@ struct Recorder::Work {
   }
 
   void work() {
-    // The flag is read before the ring: what was there when it was set is written.
+    // The flag is read before the ring, so that all entries added before it was set are written.
     for (bool is_last = false; !is_last;) {
       is_last = is_ending.load(std::memory_order_acquire);
       while (const EntryRing::Slot* slot = ring.front()) {

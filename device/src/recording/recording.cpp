@@ -69,12 +69,15 @@ RecordingHead headOf(const McapContent& content, const std::string& file) {
 
 /// The kind of entry on a channel; kKinds: none of ours.
 std::size_t kindOf(const McapChannel& channel) {
+  const std::string_view topic = channel.topic == recording::kOldSyncTopic
+                                     ? std::string_view(log::kTopics[log::kSyncKind])
+                                     : std::string_view(channel.topic);
   std::size_t kind = 0;
-  while (kind < log::kKinds && channel.topic != log::kTopics[kind]) ++kind;
+  while (kind < log::kKinds && topic != log::kTopics[kind]) ++kind;
   return kind;
 }
 
-/// Reads entries up to the first that is missing or no such message; returns why it stopped there.
+/// Reads entries up to the first that is missing or invalid; returns why it stopped there.
 std::string readEntries(const McapContent& content, RecordedRun& run) {
   std::uint32_t expected = 0;
   for (const McapMessage& message : content.messages) {
@@ -174,7 +177,7 @@ std::optional<std::uint8_t> Recording::phase() const noexcept {
 void ReplayCheck::add(const LogEntry& entry) noexcept {
   if (std::holds_alternative<WrittenWrench>(entry)) ++ticks_;
   if (!departure_.empty()) return;
-  // Beyond the end of a recording that was cut there is nothing to compare with.
+  // After the end of a truncated recording there is nothing to compare with.
   const bool is_beyond = next_ == run_.entries.size();
   if (is_beyond && !run_.damage.empty()) return;
   std::string what;

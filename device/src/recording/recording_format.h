@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the recorder and the reader of recordings both know of the file.
+// Names in the file that the recorder and the reader of recordings share.
 #pragma once
 
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "vps_device/device.h"
 
@@ -14,10 +15,11 @@ inline constexpr const char* kProfile = "ros2";
 inline constexpr const char* kAbout = "vps.run";
 inline constexpr const char* kDevice = "vps.device";
 inline constexpr const char* kEnd = "vps.end";
-inline constexpr const char* kFormat = "1";  ///< goes up when a reader of before would misread
+inline constexpr const char* kFormat = "1";  ///< increases when an older reader would misread the file
+inline constexpr std::string_view kOldSyncTopic = "/run/meeting";  ///< of sync events, in older recordings
 
-/// visit(name, number) for each number of the limits. They are taken apart into as many names as there are
-/// members, so that one that is added and forgotten here does not compile.
+/// visit(name, number) for each number of the limits. The structured binding names every member, so that a
+/// new member that is missing here does not compile.
 template <typename Limits, typename Visit>
 void eachLimit(Limits& limits, Visit&& visit) {
   auto& [force, peak_force, torque, peak_torque, min_D, max_D, rate, delay, damping, turn_damping, coulomb,

@@ -6,7 +6,7 @@
 
 namespace vps::device {
 
-void RunEvent::say(std::string_view words) noexcept {
+void RunEvent::setWords(std::string_view words) noexcept {
   text.fill(0);
   const std::size_t count = std::min(words.size(), text.size() - 1);
   std::copy_n(words.begin(), count, text.begin());

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling between the device's proxy and the part in hand: the force law, and the buffers
-// through which the haptic thread and the physics thread exchange states.
+// The force law of the virtual coupling between the device's proxy and the part in hand. The haptic and the
+// physics thread both evaluate it.
 #pragma once
 
 #include "vps/export.h"
 #include "vps/pose.h"
-#include "vps/triple_buffer.h"
 #include "vps/wrench.h"
 
 namespace vps {
@@ -34,12 +33,5 @@ struct CouplingState {
 /// Source: Colgate, Stanley and Brown 1995 (virtual coupling); rotation error as a rotation vector.
 VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                               const CouplingState& part) noexcept;
-
-/// Exchange between the two threads: the haptic thread writes the proxy, the physics thread writes the part,
-/// and each reads the other's latest state without waiting.
-struct CouplingPort {
-  TripleBuffer<CouplingState> proxy;
-  TripleBuffer<CouplingState> part;
-};
 
 }  // namespace vps

@@ -3,21 +3,13 @@
 
 namespace vps::scenes {
 
-LoopView LoopView::of(const device::HapticLoop& loop, device::OperatorPhase phase) noexcept {
-  const device::TickReport& report = loop.last();
-  return {static_cast<std::int32_t>(loop.ticks()),
-          {report.X_WG, report.V_WG, report.time_s, loop.isHolding()},
-          report,
-          loop.safety(),
-          loop.ledger(),
-          phase};
+void ClockedDriver::publish(const device::PhysicsState& state) {
+  device::PhysicsState numbered = state;
+  numbered.step = ++published_;
+  store(numbered);
 }
 
-void ClockedDriver::publish(const CouplingState& part, std::optional<double> stored_J) {
-  store({part, stored_J.value_or(0), stored_J.has_value(), ++published_});
-}
-
-void ClockedDriver::obey(device::HapticLoop& loop, device::SyncEventKind what) noexcept {
+void ClockedDriver::carryOut(device::HapticLoop& loop, device::SyncEventKind what) noexcept {
   switch (what) {
     case device::SyncEventKind::Begin:
       return hand_.begin();
@@ -45,25 +37,17 @@ void ClockedDriver::obey(device::HapticLoop& loop, device::SyncEventKind what) n
   }
 }
 
-void ClockedDriver::show(device::HapticLoop& loop, CouplingPort& port,
-                         const PhysicsSnapshot& snapshot) noexcept {
-  if (snapshot.number == shown_) return;
-  shown_ = snapshot.number;
-  port.part.write(snapshot.part);
-  if (snapshot.has_stored) loop.observeStoredEnergy(snapshot.stored_J, 0);
-}
-
 void ClockedDriver::rearmIfFaulted() {
   if (view_.safety.fault == device::SafetyFault::None) return;
-  order(device::SyncEventKind::Rearm);
+  command(device::SyncEventKind::Rearm);
   view_.safety.fault = device::SafetyFault::None;
 }
 
-void ClockedDriver::look(const LoopView& view) {
+void ClockedDriver::setView(const device::HapticState& view) {
   view_ = view;
-  if (view.safety.faults == told_faults_) return;
-  told_faults_ = view.safety.faults;
-  tell_(toText(view.safety.fault));
+  if (view.safety.faults == reported_faults_) return;
+  reported_faults_ = view.safety.faults;
+  report_fault_(toText(view.safety.fault));
 }
 
 }  // namespace vps::scenes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run by the clock and its replay have in common: what physics asks of the loop, and what it knows of
-// it.
+// Common base of a real-time run and its replay: the commands of the physics thread, and its view of the
+// loop.
 #pragma once
 
 #include "haptics/haptic_driver.h"
@@ -8,28 +8,8 @@
 
 namespace vps::scenes {
 
-/// What physics publishes after a step.
-struct PhysicsSnapshot {
-  CouplingState part;
-  double stored_J = 0;
-  bool has_stored = false;
-  std::int32_t number = 0;  ///< how many were published, this one too
-};
-
-/// The loop as one tick left it.
-struct LoopView {
-  std::int32_t tick = 0;
-  CouplingState proxy;
-  device::TickReport report;
-  device::SafetyState safety;
-  device::PassivityObserver ledger;
-  device::OperatorPhase phase = device::OperatorPhase::Idle;
-
-  static LoopView of(const device::HapticLoop& loop, device::OperatorPhase phase) noexcept;
-};
-
-/// Physics looks at the loop once a step, in advance(), and asks for one thing at a time. So all that the two
-/// know of each other is a list of sync_events, and who has the list can do it again.
+/// The physics thread reads the loop's state once per step, in advance(), and gives one command at a time. So
+/// the whole interaction of the two threads is a list of SyncEvents, and a replay can repeat it.
 class ClockedDriver : public HapticDriver {
  public:
   [[nodiscard]] const device::LoopSettings& settings() const final { return settings_; }
@@ -37,53 +17,53 @@ class ClockedDriver : public HapticDriver {
 
   void handOver(const Pose& X_WG) final {
     X_WG_ = X_WG;
-    order(device::SyncEventKind::HandOver);
+    command(device::SyncEventKind::HandOver);
   }
-  void openClutch() final { order(device::SyncEventKind::OpenClutch); }
-  void closeClutch() final { order(device::SyncEventKind::CloseClutch); }
+  void openClutch() final { command(device::SyncEventKind::OpenClutch); }
+  void closeClutch() final { command(device::SyncEventKind::CloseClutch); }
   void begin(const device::OperatorTask& task, std::size_t step, double now_s) final {
     hand_.prepare(task, step, now_s);
-    order(device::SyncEventKind::Begin);
+    command(device::SyncEventKind::Begin);
   }
-  void letGo() final { order(device::SyncEventKind::LetGo); }
+  void letGo() final { command(device::SyncEventKind::LetGo); }
   void goBack(std::size_t next) final {
     next_step_ = next;
-    order(device::SyncEventKind::GoBack);
+    command(device::SyncEventKind::GoBack);
   }
-  void recentre() final { order(device::SyncEventKind::Recentre); }
-  void goOn() final { order(device::SyncEventKind::GoOn); }
+  void recentre() final { command(device::SyncEventKind::Recentre); }
+  void goOn() final { command(device::SyncEventKind::GoOn); }
 
-  void publish(const CouplingState& part, std::optional<double> stored_J) final;
+  void publish(const device::PhysicsState& state) final;
   const CouplingState& proxy() final { return view_.proxy; }
   const device::TickReport& last() final { return view_.report; }
-  device::PassivityObserver ledger() final { return view_.ledger; }
+  device::PassivityObserver passivity() final { return view_.passivity; }
 
  protected:
-  ClockedDriver(Hand& hand, const device::LoopSettings& settings, const TellFault& tell)
-      : hand_(hand), settings_(settings), tell_(tell) {}
+  ClockedDriver(Hand& hand, const device::LoopSettings& settings, const ReportFault& report)
+      : hand_(hand), settings_(settings), report_fault_(report) {}
 
-  /// Returns when it is done.
-  virtual void order(device::SyncEventKind what) = 0;
-  virtual void store(const PhysicsSnapshot& snapshot) = 0;
+  /// Returns when the command has been carried out.
+  virtual void command(device::SyncEventKind what) = 0;
+  /// Passes a state with its step number on to the loop.
+  virtual void store(const device::PhysicsState& state) = 0;
 
-  /// Does what was asked for, by whoever runs the loop. Never allocates.
-  void obey(device::HapticLoop& loop, device::SyncEventKind what) noexcept;
-  /// Before a tick: the loop gets the snapshot, once.
-  void show(device::HapticLoop& loop, CouplingPort& port, const PhysicsSnapshot& snapshot) noexcept;
+  /// Carries out a command, on the thread that runs the loop. Never allocates.
+  void carryOut(device::HapticLoop& loop, device::SyncEventKind what) noexcept;
   /// As a person does between steps.
   void rearmIfFaulted();
-  void look(const LoopView& view);
+  /// Takes over the loop's state; reports a new safety fault.
+  void setView(const device::HapticState& view);
 
   Hand& hand_;
   device::LoopSettings settings_;
-  LoopView view_;
+  device::HapticState view_;  ///< the loop as of the last advance()
 
  private:
-  TellFault tell_;
-  Pose X_WG_;                  ///< of HandOver
-  std::size_t next_step_ = 0;  ///< of GoBack
-  std::int32_t published_ = 0, shown_ = 0;
-  std::uint64_t told_faults_ = 0;
+  ReportFault report_fault_;
+  Pose X_WG_;                  ///< argument of HandOver
+  std::size_t next_step_ = 0;  ///< argument of GoBack
+  std::int32_t published_ = 0;
+  std::uint64_t reported_faults_ = 0;
 };
 
 }  // namespace vps::scenes

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/hand.h"
 
+#include <chrono>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "haptics/path_segments.h"
 #include "vps/load_error.h"
-#include "vps_device/simulated_dual_arm.h"
+#include "vps_device/device_kinds.h"
 
 namespace vps::scenes {
 
@@ -15,7 +17,7 @@ namespace {
 
 device::OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
   device::OperatorHabits habits;
-  habits.seed = hand.seed + step;  // each step aims anew, and does not depend on how long the last one took
+  habits.seed = hand.seed + step;  // a new aim error for each step, whatever the step before took
   habits.aim_error_m = hand.aim_error_m;
   habits.aim_error_rad = hand.aim_error_rad;
   habits.speed_m_s = hand.speed_m_s;
@@ -24,20 +26,26 @@ device::OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) 
   return habits;
 }
 
-device::DualArmParameters armsOf(const Scene& scene) {
-  return scene.device.data.empty() ? device::DualArmParameters{}
-                                   : device::loadDualArm(scene.device.data).parameters;
+const device::DeviceKind& kindOf(const Scene& scene) {
+  const device::DeviceKind* kind = device::findDeviceKind(scene.device.kind);
+  if (kind == nullptr)
+    throw LoadError(scene.file, "",
+                    "device kind '" + scene.device.kind + "' is not known; this version has " +
+                        device::deviceKindNames());
+  return *kind;
 }
 
-device::SimulatedDualArmSettings plantSettings(const Scene& scene) {
-  if (scene.device.kind != "dual_arm")
-    throw LoadError(scene.file, "",
-                    "device kind '" + scene.device.kind + "' is not known; this version has dual_arm");
-  device::SimulatedDualArmSettings settings;
-  settings.arms = armsOf(scene);
-  settings.has_quantised_encoders = scene.device.has_quantised_encoders;
-  settings.rate_hz = scene.fidelity.haptic_rate_hz;
-  return settings;
+device::DeviceOptions optionsOf(const Scene& scene) {
+  device::DeviceOptions options;
+  options.parameter_file = scene.device.data;
+  options.has_quantised_encoders = scene.device.has_quantised_encoders;
+  options.rate_hz = scene.fidelity.haptic_rate_hz;
+  return options;
+}
+
+Vec3 workspaceOf(const device::Device& device) {
+  const device::DeviceLimits limits = device.limits();
+  return limits.workspace_max_D - limits.workspace_min_D;
 }
 
 std::vector<PathSegments> allSegments(const Scene& scene, const Vec3& workspace_m) {
@@ -46,23 +54,22 @@ std::vector<PathSegments> allSegments(const Scene& scene, const Vec3& workspace_
   return all;
 }
 
-device::SimulatedDualArmSettings startingAt(device::SimulatedDualArmSettings settings,
-                                            const std::vector<PathSegments>& segments) {
-  settings.X_DH_start = segments.front().X_DH_start.front();
-  return settings;
+/// The handle starts where the first segment does.
+device::DeviceOptions startingAt(device::DeviceOptions options, const std::vector<PathSegments>& segments) {
+  options.X_DH_start = segments.front().X_DH_start.front();
+  return options;
 }
 
 class SimulatedHand final : public Hand {
  public:
   explicit SimulatedHand(const Scene& scene)
       : scene_(scene),
-        settings_(plantSettings(scene)),
-        segments_(allSegments(scene, settings_.arms.workspace_m)),
-        plant_(startingAt(settings_, segments_)) {
-    X_DH_from_ = X_DH_back_ = plant_.truePose();
+        segments_(allSegments(scene, workspaceOf(*kindOf(scene).simulate(optionsOf(scene))))),
+        plant_(kindOf(scene).simulate(startingAt(optionsOf(scene), segments_))) {
+    X_DH_from_ = X_DH_back_ = plant_->truePose();
   }
 
-  device::Device& device() override { return plant_; }
+  device::Device& device() override { return *plant_; }
 
   void prepare(const device::OperatorTask& task, std::size_t step, double now_s) override {
     next_ = device::VirtualOperator(habitsOf(scene_.hand, step));
@@ -75,7 +82,7 @@ class SimulatedHand final : public Hand {
   }
 
   void begin() override {
-    std::swap(operator_, next_);  // moves; what was before is freed by the next prepare()
+    std::swap(operator_, next_);  // no allocation; the old operator is freed by the next prepare()
     time_s_ = next_s_;
     step_ = next_step_;
     segment_ = 0;
@@ -95,8 +102,8 @@ class SimulatedHand final : public Hand {
     is_at_work_ = true;
   }
 
-  void step(const HeldPart& part, const device::HapticLoop& loop, double dt_s) override {
-    plant_.step(dt_s, is_at_work_ ? atWork(part, loop, dt_s) : returning(part, loop, dt_s));
+  void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) override {
+    plant_->step(dt_s, is_at_work_ ? atWork(part, loop, dt_s) : returning(part, loop, dt_s));
   }
 
   [[nodiscard]] device::OperatorPhase phase() const override { return operator_.phase(); }
@@ -105,28 +112,29 @@ class SimulatedHand final : public Hand {
  private:
   void goTo(const Pose& X_DH) {
     X_DH_back_ = X_DH;
-    X_DH_from_ = plant_.truePose();
+    X_DH_from_ = plant_->truePose();
     turn_rad_ = rotationVector(X_DH_back_.R * X_DH_from_.R.transpose());
     back_s_ = 0;
     is_at_work_ = false;
   }
 
-  device::HandForce atWork(const HeldPart& part, const device::HapticLoop& loop, double dt_s) {
+  device::HandForce atWork(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
     device::OperatorView view;
     view.time_s = time_s_;
-    view.X_WG_hand = loop.toGrasp(plant_.truePose());
-    view.V_WG_hand = loop.settings().map.toScene(plant_.trueTwist());
+    view.X_WG_hand = loop.toGrasp(plant_->truePose());
+    view.V_WG_hand = loop.settings().map.toScene(plant_->trueTwist());
     view.X_WP = part.X_WP;
     view.V_WP = part.V_WP;
     view.F_hand_W = loop.last().F_hand_W;
     time_s_ += dt_s;
     device::HandForce hand = operator_.step(view, dt_s);
-    hand.F = hand.F * loop.clutch().ratio();  // it carries what it feels
+    hand.F = hand.F * loop.clutch().ratio();  // the open clutch carries the rest
     return loop.toDevice(hand);
   }
 
-  /// On its way back, or there; where it has a part in hand it carries what the clutch lets it feel.
-  device::HandForce returning(const HeldPart& part, const device::HapticLoop& loop, double dt_s) {
+  /// On its way back, or arrived. With a part in hand it carries the share of the weight that the clutch
+  /// passes.
+  device::HandForce returning(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
     time_s_ += dt_s;
     back_s_ += dt_s;
     const double share = device::minimumJerk(back_s_ / kHandReturn_s);
@@ -139,20 +147,102 @@ class SimulatedHand final : public Hand {
   }
 
   const Scene& scene_;
-  device::SimulatedDualArmSettings settings_;
   std::vector<PathSegments> segments_;  ///< of each step
-  device::SimulatedDualArm plant_;
+  std::unique_ptr<device::SimulatedDevice> plant_;
   device::VirtualOperator operator_, next_;
   double next_s_ = 0;
   std::size_t next_step_ = 0, step_ = 0, segment_ = 0;
   double time_s_ = 0;              ///< of the run
-  double back_s_ = kHandReturn_s;  ///< since it went back
+  double back_s_ = kHandReturn_s;  ///< since the way back began
   bool is_at_work_ = false;
   Pose X_DH_from_, X_DH_back_;
   Vec3 turn_rad_ = Vec3::Zero();
 };
 
-/// Does what was recorded: the samples carry the motion, the events what the hand was about.
+/// Judges a step whose motion comes from a person.
+class PersonHand final : public Hand {
+ public:
+  explicit PersonHand(std::unique_ptr<device::Device> device) : device_(std::move(device)) {}
+  device::Device& device() override { return *device_; }
+  void prepare(const device::OperatorTask& task, std::size_t, double) override { next_ = task; }
+  void begin() override {
+    std::swap(task_, next_);
+    step_s_ = at_target_s_ = 0;
+    phase_ = device::OperatorPhase::Reach;
+  }
+  // The person moves the hand.
+  void goBack(std::size_t) override {}
+  void recentre() override {}
+  void goOn() override {}
+
+  void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) override {
+    if (phase_ != device::OperatorPhase::Reach) return;
+    step_s_ += dt_s;
+    const Twist& V_WG = loop.last().V_WG;
+    const bool is_at_rest = V_WG.v.norm() < kRest_m_s && V_WG.w.norm() < kRest_rad_s;
+    at_target_s_ = is_at_rest && isAtTarget(part.X_WP) ? at_target_s_ + dt_s : 0;
+    if (at_target_s_ >= kDone_s)
+      phase_ = device::OperatorPhase::Done;
+    else if (step_s_ > task_.timeout_s)
+      phase_ = device::OperatorPhase::Failed;
+  }
+  [[nodiscard]] device::OperatorPhase phase() const override { return phase_; }
+  [[nodiscard]] bool canGoOn(int) const override { return true; }
+
+ private:
+  // assumed: longer than a pause within a motion, shorter than a person likes to wait
+  static constexpr double kDone_s = 0.5;
+  // Slower than this a handle counts as at rest. assumed: OperatorHabits::rest_m_s, and that at a lever of
+  // 0.1 m
+  static constexpr double kRest_m_s = 1e-3, kRest_rad_s = 1e-2;
+
+  [[nodiscard]] bool isAtTarget(const Pose& X_WP) const {
+    const Pose& X_target = task_.X_WP_target;
+    return (X_WP.p - X_target.p).norm() <= task_.tolerance_m &&
+           rotationVector(X_WP.R * X_target.R.transpose()).norm() <= task_.tolerance_rad;
+  }
+
+  std::unique_ptr<device::Device> device_;
+  device::OperatorTask task_, next_;
+  device::OperatorPhase phase_ = device::OperatorPhase::Idle;
+  double step_s_ = 0, at_target_s_ = 0;
+};
+
+constexpr std::chrono::seconds kConnect{3};  // assumed: SDL and spacenavd answer within one
+constexpr std::chrono::milliseconds kConnectPoll{10};
+
+/// A handle under rate control has a free range. It gets room for all paths, four times over.
+device::DeviceOptions personOptions(const Scene& scene) {
+  double path_m = 0;
+  for (const SceneStep& step : scene.steps) {
+    Vec3 p_W = step.X_WP_start.p;
+    for (const Pose& X_WP : step.way_points) {
+      path_m += (X_WP.p - p_W).norm();
+      p_W = X_WP.p;
+    }
+    path_m += (step.X_WP_target.p - p_W).norm();
+  }
+  device::DeviceOptions options = optionsOf(scene);
+  options.workspace_m = options.workspace_m.cwiseMax(Vec3::Constant(4 * path_m / scene.device.scale));
+  return options;
+}
+
+std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKind& kind) {
+  const auto refuse = [&](const std::string& why) {
+    throw LoadError(scene.file, "",
+                    "device '" + std::string(kind.name) + "': " + why + "; " + std::string(kind.remedy));
+  };
+  if (const std::string missing = kind.missing(); !missing.empty()) refuse(missing);
+  std::unique_ptr<device::Device> device = kind.open(personOptions(scene));
+  const auto end = std::chrono::steady_clock::now() + kConnect;
+  while (device->read().status != Status::Ok) {
+    if (std::chrono::steady_clock::now() > end) refuse("does not answer");
+    std::this_thread::sleep_for(kConnectPoll);
+  }
+  return personHand(std::move(device));
+}
+
+/// Repeats a recording: the samples carry the motion, the events the hand's phases.
 class RecordedHand final : public Hand {
  public:
   explicit RecordedHand(device::Recording& recording) : recording_(recording) {}
@@ -162,7 +252,7 @@ class RecordedHand final : public Hand {
   void goBack(std::size_t) override {}
   void recentre() override {}
   void goOn() override {}
-  void step(const HeldPart&, const device::HapticLoop&, double) override {}
+  void step(const device::HeldPart&, const device::HapticLoop&, double) override {}
   [[nodiscard]] device::OperatorPhase phase() const override {
     return static_cast<device::OperatorPhase>(recording_.phase().value_or(0));
   }
@@ -182,8 +272,22 @@ class RecordedHand final : public Hand {
 
 }  // namespace
 
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time) {
+  const device::DeviceKind& kind = kindOf(scene);
+  if (kind.isSimulated()) return simulatedHand(scene);
+  if (!is_real_time)
+    throw LoadError(scene.file, "",
+                    "device '" + scene.device.kind +
+                        "' is moved by a person, which simulated time cannot wait for; add --real-time");
+  return connectedPerson(scene, kind);
+}
+
 std::unique_ptr<Hand> simulatedHand(const Scene& scene) {
   return std::make_unique<SimulatedHand>(scene);
+}
+
+std::unique_ptr<Hand> personHand(std::unique_ptr<device::Device> device) {
+  return std::make_unique<PersonHand>(std::move(device));
 }
 
 std::unique_ptr<Hand> recordedHand(device::Recording& recording) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who moves the handle during a run: a simulated device with a virtual operator, or a recording of any
-// device.
+// The source of the handle's motion during a run: a simulated device with a virtual operator, a person at a
+// live device, or a recording of any device.
 #pragma once
 
 #include <cstddef>
@@ -14,46 +14,48 @@
 
 namespace vps::scenes {
 
-/// The part in hand as it is now, in W.
-struct HeldPart {
-  Pose X_WP;
-  Twist V_WP;
-  Vec3 weight_W = Vec3::Zero();  ///< [N]
-};
-
-/// Device and hand together. A run asks it for nothing else.
+/// Device and hand together.
 class Hand {
  public:
   virtual ~Hand() = default;
   virtual device::Device& device() = 0;
-  /// Makes up its mind how to do a step from time now_s on. May allocate; beside step(), by another thread.
+  /// Plans a step that starts at time now_s. May allocate; may run concurrently with step(), on another
+  /// thread.
   virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   /// Starts what was prepared. As step(), never allocates.
   virtual void begin() = 0;
-  /// Empty, goes back to where that step starts, in kHandReturn_s; beyond the last: to the middle. Never
-  /// allocates.
+  /// The empty hand returns to where that step starts, in kHandReturn_s; beyond the last step to the middle
+  /// of the workspace. Never allocates.
   virtual void goBack(std::size_t next) = 0;
-  /// In OperatorPhase::Regrasp: goes, with the clutch open, to where the next segment starts, in
+  /// In OperatorPhase::Regrasp, with the clutch open: moves to where the next segment starts, in
   /// kHandReturn_s, and stays until goOn(). Neither allocates.
   virtual void recentre() = 0;
-  /// Has the part again, where it was: goes on.
+  /// The clutch is closed again: continues the step.
   virtual void goOn() = 0;
   /// One tick of the hand, after the loop's own.
-  virtual void step(const HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
+  virtual void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual device::OperatorPhase phase() const = 0;
-  /// Of a run by the clock that is done again; empty: of none.
+  /// The recorded events of a real-time run that is replayed; empty otherwise.
   [[nodiscard]] virtual std::vector<device::SyncEvent> sync_events() const { return {}; }
-  /// Has it so many ticks left?
+  /// Whether this many ticks are left.
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };
 
-inline constexpr double kHandReturn_s = 1.5;  ///< the hand's way back to the next part
+inline constexpr double kHandReturn_s = 1.5;  ///< duration of the hand's way back to the next part
 
-/// The simulated dual arm and the virtual operator. Throws LoadError for a scene they cannot serve: a device
-/// of another kind, a way that the device cannot reach.
+/// The hand for the scene's [device] kind. Throws LoadError for an unknown kind, a path that a simulated
+/// device cannot reach, and a device that a person moves where the run is not in real time or the device does
+/// not answer within 3 s.
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time);
+
+/// A simulated device and the virtual operator. Throws LoadError as makeHand().
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);
 
-/// A recording, of whatever device and hand; it outlives the hand.
+/// A person at a device. A step is done once the part has been within its tolerance, and the handle at rest,
+/// for half a second: the person releases the cap or stick. It fails at its timeout.
+std::unique_ptr<Hand> personHand(std::unique_ptr<device::Device> device);
+
+/// A recording of any device and hand; it outlives the hand.
 std::unique_ptr<Hand> recordedHand(device::Recording& recording);
 
 }  // namespace vps::scenes

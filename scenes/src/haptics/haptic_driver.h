@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Device, hand and haptic loop of a run, in one of two drivers: simulated time on the caller's thread, or
-// real time on a thread of its own.
+// Device, hand and haptic loop of a run. Three implementations: lockstep (simulated time, the caller's
+// thread), real time (a thread of its own) and the replay of a real-time run.
 #pragma once
 
 #include <functional>
@@ -16,80 +16,81 @@
 
 namespace vps::scenes {
 
-/// What a procedure asks of it, from the physics thread. In lockstep it runs while advance() does; in real
-/// time from resume() to pause(), through all that is asked of it meanwhile.
+/// Commands and state exchange of a procedure, called from the physics thread. In lockstep the haptic loop
+/// runs inside advance(); in real time it runs from resume() to pause(), also while commands are given.
 class HapticDriver {
  public:
   virtual ~HapticDriver() = default;
   virtual void pause() = 0;
-  /// Does nothing but clear a safety fault, as a person does between steps, where it runs already.
+  /// If the loop runs already, only clears a safety fault, as a person would between steps.
   virtual void resume() = 0;
   [[nodiscard]] virtual const device::LoopSettings& settings() const = 0;
 
-  /// The part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before the port
-  /// says that it is coupled.
+  /// Hands over the part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before
+  /// a coupled part is published.
   virtual void handOver(const Pose& X_WG) = 0;
-  /// Begin to; last().clutch_ratio says how far it is.
+  /// Begin to open or close the clutch; last().clutch_ratio tells the progress.
   virtual void openClutch() = 0;
   virtual void closeClutch() = 0;
   /// The hand begins a step; when this returns, phase() is that of the step.
   virtual void begin(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   virtual void letGo() = 0;
-  /// The free hand, as Hand's; when one returns, the hand has begun.
+  /// Moves the free hand, as the functions of Hand; when one returns, the motion has begun.
   virtual void goBack(std::size_t next) = 0;
   virtual void recentre() = 0;
   virtual void goOn() = 0;
 
-  /// Until the next physics step is due: lockstep does that step's ticks, real time waits. False, and nothing
-  /// done, where the hand cannot go on.
-  /// @param part  in hand, as it is now
-  [[nodiscard]] virtual bool advance(const HeldPart& part) = 0;
-  /// The proxy that advance() left, to step with.
+  /// Proceeds until the next physics step is due: lockstep runs that step's ticks, real time waits. False,
+  /// and nothing done, where the hand cannot go on.
+  [[nodiscard]] virtual bool advance() = 0;
+  /// The proxy after advance(), for the physics step.
   virtual const CouplingState& proxy() = 0;
-  /// The part after that step, and, while it is held, the energy stored in the scene.
-  virtual void publish(const CouplingState& part, std::optional<double> stored_J) = 0;
-  /// Whether what is done beside the run is ready: as the caller says, or as it was in a run done again.
+  /// Publishes the state after that step. state.step is set here. state.stored_J is given while a part is
+  /// held.
+  virtual void publish(const device::PhysicsState& state) = 0;
+  /// Whether background work is ready: as the caller says, or as recorded in a run that is replayed.
   virtual bool hasSettled(bool is_ready) { return is_ready; }
-  /// What the caller did between the last two of these; 0 in lockstep.
+  /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
   [[nodiscard]] virtual double busy_s() const { return 0; }
-  /// From the next advance() on, where it goes by the clock: steps of step_s of simulated time, one each
-  /// period_s of the clock's, and other gains. settings() stays what was asked.
+  /// In real time, from the next advance() on: steps of step_s of simulated time, one each period_s of the
+  /// clock, and other gains. settings() stays as given.
   virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
   [[nodiscard]] virtual device::OperatorPhase phase() = 0;
   /// As of the last tick.
   [[nodiscard]] virtual const device::TickReport& last() = 0;
-  /// Haptic periods that had no tick so far; 0 in lockstep.
+  /// Haptic periods without a tick so far; 0 in lockstep.
   [[nodiscard]] virtual std::uint64_t missed() = 0;
-  /// Whether time goes on while the physics thread does other things.
+  /// Whether time goes on while the physics thread does other work.
   [[nodiscard]] virtual bool isByClock() const = 0;
-  [[nodiscard]] virtual device::PassivityObserver ledger() = 0;
+  [[nodiscard]] virtual device::PassivityObserver passivity() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
-  /// What only real time has.
+  /// Figures that exist only in real time.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };
 
-/// Told of each fault of safety, in words.
-using TellFault = std::function<void(const std::string&)>;
+/// Receives each safety fault, in words.
+using ReportFault = std::function<void(const std::string&)>;
 
-/// @param device  the hand's own, or a tap on it; all outlive the side
-std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device, CouplingPort& port,
+/// @param device  the hand's own, or a tap on it; all arguments outlive the driver
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,
+                                                 device::CouplingPort& port,
                                                  const device::LoopSettings& settings, int ticks_per_step,
-                                                 const TellFault& tell);
+                                                 const ReportFault& report);
 /// @param physics_s  period of physics
-/// @param log        may be null; told by the physics thread what a replay needs
-std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port,
+/// @param log        may be null; receives, from the physics thread, what a replay needs
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPort& port,
                                                  const device::LoopSettings& settings, double physics_s,
-                                                 const TellFault& tell, device::RunLog* log);
-/// A run of makeRealTimeDriver's again, in simulated time.
+                                                 const ReportFault& report, device::RunLog* log);
+/// Repeats a run of makeRealTimeDriver() in simulated time.
 /// @param sync_events  as recorded
 /// @param device    the recording, tapped
-/// @param settings  as the loop's then, with physicsLimit_s()
+/// @param settings  of the recorded loop, with physicsLimit_s()
 std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events,
-                                                 device::Device& device, CouplingPort& port,
-                                                 const device::LoopSettings& settings, const TellFault& tell,
-                                                 device::RunLog& log);
-/// How old a snapshot may be, by the clock.
+                                                 device::Device& device, device::CouplingPort& port,
+                                                 const device::LoopSettings& settings,
+                                                 const ReportFault& report, device::RunLog& log);
+/// In real time: how old a physics state may be.
 double physicsLimit_s(double physics_s);
 
 }  // namespace vps::scenes

@@ -4,7 +4,8 @@
 namespace vps::scenes {
 
 void HapticLog::add(const device::LogEntry& entry) noexcept {
-  if (log_ != nullptr) ring_.push(number_++, entry);  // one that finds no room leaves its number out
+  if (log_ != nullptr)
+    ring_.push(number_++, entry);  // an entry that finds no room leaves a gap in the numbers
 }
 
 }  // namespace vps::scenes

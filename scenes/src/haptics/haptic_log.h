@@ -1,40 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the haptic thread logs, on its way to the physics thread, which has the run's log.
+// Transfers log entries from the haptic thread to the physics thread, which owns the run's log.
 #pragma once
 
 #include <functional>
 
-#include "vps_device/entry_ring.h"
+#include "vps_device/detail/entry_ring.h"
 #include "vps_device/run_log.h"
 
 namespace vps::scenes {
 
-/// The haptic thread adds; it neither waits nor allocates. The physics thread passes on, in the order in
-/// which things were done, what it has come to: so the run's log has one writer, and its order is a replay's.
+/// The haptic thread adds entries without waiting or allocating. The physics thread passes them on to the
+/// run's log in the order in which they happened, up to the point that it has reached. So the log has one
+/// writer, and its order is that of a replay.
 class HapticLog final : public device::RunLog {
  public:
-  /// @param log  null: nobody listens
+  /// @param log  null: entries are discarded
   explicit HapticLog(device::RunLog* log) : log_(log), ring_(log != nullptr ? kEntries : 1) {}
 
   /// Haptic thread.
   void add(const device::LogEntry& entry) noexcept override;
 
-  /// Physics thread: all of the ticks up to this one.
+  /// Physics thread: passes on all entries of the ticks up to this one.
   void passUpTo(std::int32_t tick) {
     pass(
-        [tick](const device::SyncEvent* met) {
-          return met != nullptr && met->kind == device::SyncEventKind::Tick && met->tick > tick;
+        [tick](const device::SyncEvent* event) {
+          return event != nullptr && event->kind == device::SyncEventKind::Tick && event->tick > tick;
         },
         [](const device::SyncEvent*) { return false; });
   }
-  /// Up to the next sync_event of a kind, with it.
-  void passThrough(device::SyncEventKind kind) {
+  /// Physics thread: passes on all entries up to and including the next SyncEvent of a kind.
+  void passUntil(device::SyncEventKind kind) {
     pass([](const device::SyncEvent*) { return false; },
-         [kind](const device::SyncEvent* met) { return met != nullptr && met->kind == kind; });
+         [kind](const device::SyncEvent* event) { return event != nullptr && event->kind == kind; });
   }
-  /// Physics thread's own.
-  void tell(const device::SyncEvent& sync_event) {
-    if (log_ != nullptr) log_->add(sync_event);
+  /// Physics thread: adds an event of its own.
+  void addFromPhysics(const device::SyncEvent& event) {
+    if (log_ != nullptr) log_->add(event);
   }
 
  private:
@@ -45,12 +46,12 @@ class HapticLog final : public device::RunLog {
   void pass(const Before& stops_before, const After& stops_after) {
     if (log_ == nullptr) return;
     while (const device::EntryRing::Slot* slot = ring_.front()) {
-      const auto* met = std::get_if<device::SyncEvent>(&slot->entry);
-      if (stops_before(met)) return;
+      const auto* event = std::get_if<device::SyncEvent>(&slot->entry);
+      if (stops_before(event)) return;
       if (slot->number != passed_) log_->lose(slot->number - passed_);
       passed_ = slot->number + 1;
       log_->add(slot->entry);
-      const bool is_last = stops_after(met);
+      const bool is_last = stops_after(event);
       ring_.pop();
       if (is_last) return;
     }

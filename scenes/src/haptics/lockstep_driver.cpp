@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A run in simulated time on the caller's thread: the same scene gives the same bits.
 #include "core/tick_times.h"
 #include "haptics/haptic_driver.h"
 
@@ -7,13 +8,13 @@ namespace {
 
 class LockstepDriver final : public HapticDriver {
  public:
-  LockstepDriver(Hand& hand, device::Device& device, CouplingPort& port, const device::LoopSettings& settings,
-                 int ticks_per_step, const TellFault& tell)
+  LockstepDriver(Hand& hand, device::Device& device, device::CouplingPort& port,
+                 const device::LoopSettings& settings, int ticks_per_step, const ReportFault& report)
       : hand_(hand),
         port_(port),
         loop_(device, port, settings),
         ticks_per_step_(ticks_per_step),
-        tell_(tell),
+        report_fault_(report),
         clock_(settings.period_s) {}
 
   void pause() override {}
@@ -34,51 +35,55 @@ class LockstepDriver final : public HapticDriver {
   void recentre() override { hand_.recentre(); }
   void goOn() override { hand_.goOn(); }
 
-  bool advance(const HeldPart& part) override {
+  bool advance() override {
     if (!hand_.canGoOn(ticks_per_step_)) return false;
     for (int i = 0; i < ticks_per_step_; ++i) {
       clock_.start();
       loop_.tick();
       clock_.stop();
-      tellFaults();
-      hand_.step(part, loop_, loop_.settings().period_s);
+      reportFaults();
+      hand_.step(loop_.received().held, loop_, loop_.settings().period_s);
     }
     return true;
   }
-  const CouplingState& proxy() override { return port_.proxy.read(); }
-  void publish(const CouplingState& part, std::optional<double> stored_J) override {
-    port_.part.write(part);
-    if (stored_J) loop_.observeStoredEnergy(*stored_J, 0);
+  const CouplingState& proxy() override { return port_.haptic.read().proxy; }
+  void publish(const device::PhysicsState& state) override {
+    device::PhysicsState numbered = state;
+    numbered.step = ++published_;
+    port_.physics.write(numbered);
+    loop_.receivePart();  // now rather than with the next tick: a run may end before one
   }
   device::OperatorPhase phase() override { return hand_.phase(); }
   const device::TickReport& last() override { return loop_.last(); }
-  device::PassivityObserver ledger() override { return loop_.ledger(); }
+  device::PassivityObserver passivity() override { return loop_.passivity(); }
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }
 
  private:
-  void tellFaults() {
+  void reportFaults() {
     const device::SafetyState& safety = loop_.safety();
-    if (safety.faults == told_faults_) return;
-    told_faults_ = safety.faults;
-    tell_(toText(safety.fault));
+    if (safety.faults == reported_faults_) return;
+    reported_faults_ = safety.faults;
+    report_fault_(toText(safety.fault));
   }
 
   Hand& hand_;
-  CouplingPort& port_;
+  device::CouplingPort& port_;
   device::HapticLoop loop_;
   int ticks_per_step_;
-  TellFault tell_;
+  ReportFault report_fault_;
   TickClock clock_;
-  std::uint64_t told_faults_ = 0;
+  std::int32_t published_ = 0;
+  std::uint64_t reported_faults_ = 0;
 };
 
 }  // namespace
 
-std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device, CouplingPort& port,
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,
+                                                 device::CouplingPort& port,
                                                  const device::LoopSettings& settings, int ticks_per_step,
-                                                 const TellFault& tell) {
-  return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, tell);
+                                                 const ReportFault& report) {
+  return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, report);
 }
 
 }  // namespace vps::scenes

@@ -17,7 +17,7 @@ PhysicsClock::PhysicsClock(double period_s)
       step_s_(period_s) {}
 
 device::RealTimeReport PhysicsClock::start(bool locks_memory) {
-  device::RealTimeReport report = device::askForRealTime(kPriority, locks_memory);
+  device::RealTimeReport report = device::requestRealTime(kPriority, locks_memory);
   metronome_.start();
   woke_ns_ = 0;
   return report;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A run in real time: the haptic loop on a thread of its own, physics by the clock.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -13,10 +14,10 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kCatchUp =
-    20;  // periods that a simulated device makes up for; beyond that its time stands still
+// Missed periods that a simulated device makes up for; beyond that its time stands still.
+constexpr double kCatchUpPeriods = 20;
 
-constexpr std::chrono::microseconds kOrderWait{200};  // assumed: well below a haptic period
+constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a haptic period
 
 double microseconds(std::int64_t ns) {
   return 1e-3 * static_cast<double>(ns);
@@ -34,30 +35,29 @@ TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t misse
 
 class RealTimeDriver final : public ClockedDriver {
  public:
-  RealTimeDriver(Hand& hand, CouplingPort& port, const device::LoopSettings& settings, double physics_s,
-                 const TellFault& tell, device::RunLog* log)
-      : ClockedDriver(hand, settings, tell),
+  RealTimeDriver(Hand& hand, device::CouplingPort& port, const device::LoopSettings& settings,
+                 double physics_s, const ReportFault& report, device::RunLog* log)
+      : ClockedDriver(hand, settings, report),
         port_(port),
         physics_s_(physics_s),
         haptic_log_(log),
         tapped_(hand.device(), haptic_log_),
-        loop_(tapped_, port, told(settings), realTimeSettings()),
+        loop_(tapped_, port, withEvents(settings), realTimeSettings()),
         clock_(physics_s) {}
   ~RealTimeDriver() override { pause(); }
 
   void pause() override {
     if (loop_.isRunning()) {
       loop_.stop();
-      meet(loop_.loop(), device::SyncEventKind::Paused);
-      haptic_log_.passThrough(device::SyncEventKind::Paused);
-      look(LoopView::of(loop_.loop(), hand_.phase()));
+      logEvent(loop_.loop(), device::SyncEventKind::Paused);
+      haptic_log_.passUntil(device::SyncEventKind::Paused);
+      setView(loop_.loop().state());
     }
     clock_.stop();
   }
   void resume() override {
     rearmIfFaulted();
     if (loop_.isRunning()) return;
-    phase_.store(hand_.phase());
     const device::RealTimeReport report = loop_.start();
     result_.has_priority = report.has_priority;
     result_.has_locked_memory = report.has_locked_memory;
@@ -66,19 +66,19 @@ class RealTimeDriver final : public ClockedDriver {
   }
   std::uint64_t missed() override { return loop_.statistics().summary().missed; }
 
-  bool advance(const HeldPart& part) override {
-    part_.write(part);
+  bool advance() override {
     clock_.wait();
     countFaults();
-    const LoopView& view = views_.read();
-    if (view.tick > ordered_tick_) known_phase_ = view.phase;  // else it is of before the order
+    const device::HapticState& view = port_.haptic.read();
+    known_phase_ = phase_.load(std::memory_order_acquire);
     haptic_log_.passUpTo(view.tick);
-    haptic_log_.tell({view.report.time_s, view.tick, 1, 0, device::SyncEventKind::Step});
-    look(view);
+    haptic_log_.addFromPhysics({view.report.time_s, view.tick, 1, 0, device::SyncEventKind::Step});
+    setView(view);
     return true;
   }
   bool hasSettled(bool is_ready) override {
-    if (is_ready) haptic_log_.tell({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
+    if (is_ready)
+      haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
     return is_ready;
   }
   device::OperatorPhase phase() override { return known_phase_; }
@@ -86,7 +86,7 @@ class RealTimeDriver final : public ClockedDriver {
   void setLoadLevel(double step_s, double period_s, const CouplingGains& gains) override {
     clock_.setLoadLevel(step_s, period_s);
     if (!loop_.isRunning()) return loop_.loop().setGains(gains);
-    while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kOrderWait);
+    while (loop_.isRunning() && !loop_.setGains(gains)) std::this_thread::sleep_for(kCommandPoll);
   }
   TickTimes times() override {
     const device::TickStatistics::Summary all = loop_.statistics().summary();
@@ -95,45 +95,33 @@ class RealTimeDriver final : public ClockedDriver {
   std::optional<RealTimeResult> realTime() override;
 
  protected:
-  void order(device::SyncEventKind what) override {
-    order_.store(what, std::memory_order_release);
-    while (order_.load(std::memory_order_acquire) != kNoOrder && loop_.isRunning())
-      std::this_thread::sleep_for(kOrderWait);
-    if (!loop_.isRunning()) obeyOrder(loop_.loop());  // nobody else would
-    known_phase_ = ordered_phase_;
-    haptic_log_.passThrough(what);
+  void command(device::SyncEventKind what) override {
+    loop_.call(static_cast<std::int32_t>(what));  // one at a time: the ring has room
+    while (loop_.hasOpenRequests() && loop_.isRunning()) std::this_thread::sleep_for(kCommandPoll);
+    if (!loop_.isRunning()) loop_.handleRequests();
+    known_phase_ = phase_.load(std::memory_order_acquire);
+    haptic_log_.passUntil(what);
   }
-  void store(const PhysicsSnapshot& snapshot) override { snapshots_.write(snapshot); }
+  void store(const device::PhysicsState& state) override { port_.physics.write(state); }
 
  private:
-  static constexpr device::SyncEventKind kNoOrder = device::SyncEventKind::Tick;
-
-  // The loop's thread from here on, while it runs.
-  void meet(const device::HapticLoop& loop, device::SyncEventKind kind, std::int64_t periods = 1,
-            std::int32_t snapshot = 0) {
-    haptic_log_.add(device::SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()),
-                                      static_cast<std::int32_t>(periods), snapshot, kind});
+  // Called by the loop's thread while it runs, else by the physics thread.
+  void logEvent(const device::HapticLoop& loop, device::SyncEventKind kind) {
+    haptic_log_.add(
+        device::SyncEvent{loop.last().time_s, static_cast<std::int32_t>(loop.ticks()), 1, 0, kind});
   }
-  void obeyOrder(device::HapticLoop& loop) {
-    const device::SyncEventKind what = order_.load(std::memory_order_acquire);
-    if (what == kNoOrder) return;
-    obey(loop, what);
-    meet(loop, what);
-    ordered_phase_ = hand_.phase();
-    phase_.store(ordered_phase_);
-    ordered_tick_ = static_cast<std::int32_t>(loop.ticks());
-    order_.store(kNoOrder, std::memory_order_release);
+  void carryOutAndLog(device::HapticLoop& loop, device::SyncEventKind what) {
+    carryOut(loop, what);
+    logEvent(loop, what);
+    phase_.store(hand_.phase(), std::memory_order_release);
   }
-  void beforeTick(device::HapticLoop& loop, std::int64_t periods) {
-    obeyOrder(loop);
-    const PhysicsSnapshot& snapshot = snapshots_.read();
-    show(loop, port_, snapshot);
+  void logTick(const device::HapticLoop& loop, std::int64_t periods) {
     const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
     haptic_log_.add(device::SyncEvent{loop.last().time_s, tick, static_cast<std::int32_t>(periods),
-                                      snapshot.number, device::SyncEventKind::Tick});
+                                      loop.received().step, device::SyncEventKind::Tick});
   }
 
-  device::LoopSettings told(device::LoopSettings settings) {
+  device::LoopSettings withEvents(device::LoopSettings settings) {
     settings.events = &events_;
     return settings;
   }
@@ -141,19 +129,20 @@ class RealTimeDriver final : public ClockedDriver {
     device::RealTimeSettings settings;
     settings.stale_s = 2 * physics_s_;
     settings.physics_limit_s = physicsLimit_s(physics_s_);
-    settings.before = [this](device::HapticLoop& loop, std::int64_t periods) { beforeTick(loop, periods); };
-    settings.beside = [this](device::HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
+    settings.before_tick = [this](device::HapticLoop& loop, std::int64_t periods) { logTick(loop, periods); };
+    settings.after_tick = [this](device::HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
+    settings.on_call = [this](device::HapticLoop& loop, std::int32_t code) {
+      carryOutAndLog(loop, static_cast<device::SyncEventKind>(code));
+    };
     return settings;
   }
 
-  // The simulated device and hand go on as far as time did, in steps they are made for.
+  // The simulated device and hand advance by the elapsed time, in steps of the period they are made for.
   void moveHand(device::HapticLoop& loop, double dt_s) {
-    const HeldPart& part = part_.read();
     const double period_s = loop.settings().period_s;
-    const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUp)));
-    for (int i = 0; i < steps; ++i) hand_.step(part, loop, period_s);
-    phase_.store(hand_.phase());
-    views_.write(LoopView::of(loop, hand_.phase()));
+    const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUpPeriods)));
+    for (int i = 0; i < steps; ++i) hand_.step(loop.received().held, loop, period_s);
+    phase_.store(hand_.phase(), std::memory_order_release);
   }
 
   // The physics thread.
@@ -162,19 +151,14 @@ class RealTimeDriver final : public ClockedDriver {
       result_.faults += device::severityOf(event.kind) == device::Severity::Fault;
   }
 
-  CouplingPort& port_;
+  device::CouplingPort& port_;
   double physics_s_;
   device::DeviceEventQueue events_;
   HapticLog haptic_log_;
   device::TappedDevice tapped_;
-  TripleBuffer<HeldPart> part_;
-  TripleBuffer<PhysicsSnapshot> snapshots_;
-  TripleBuffer<LoopView> views_;
-  std::atomic<device::OperatorPhase> phase_{device::OperatorPhase::Idle};
-  device::OperatorPhase known_phase_ = device::OperatorPhase::Idle;  ///< as of the last look or order
-  std::atomic<device::SyncEventKind> order_{kNoOrder};
-  std::int32_t ordered_tick_ = 0;  ///< ticks before the last order; handed over with order_
-  device::OperatorPhase ordered_phase_ = device::OperatorPhase::Idle;  ///< after it, likewise
+  std::atomic<device::OperatorPhase> phase_{device::OperatorPhase::Idle};  ///< of the hand, by its thread
+  /// As of the last advance() or command, so that it stays the same within a physics step.
+  device::OperatorPhase known_phase_ = device::OperatorPhase::Idle;
   RealTimeResult result_;
   device::RealTimeLoop loop_;
   PhysicsClock clock_;
@@ -204,10 +188,10 @@ double physicsLimit_s(double physics_s) {
   return std::max(device::RealTimeSettings{}.physics_limit_s, 10 * physics_s);
 }
 
-std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, CouplingPort& port,
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPort& port,
                                                  const device::LoopSettings& settings, double physics_s,
-                                                 const TellFault& tell, device::RunLog* log) {
-  return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, tell, log);
+                                                 const ReportFault& report, device::RunLog* log) {
+  return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, report, log);
 }
 
 }  // namespace vps::scenes

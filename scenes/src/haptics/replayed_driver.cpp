@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run by the clock again, without a clock: who met whom when is read from its recording.
+// The replay of a real-time run in simulated time: the order in which haptic and physics threads exchanged
+// state is read from its recording.
 #include <deque>
 #include <utility>
 #include <vector>
@@ -13,9 +14,9 @@ namespace {
 class ReplayedDriver final : public ClockedDriver {
  public:
   ReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events, device::Device& device,
-                 CouplingPort& port, const device::LoopSettings& settings, const TellFault& tell,
+                 device::CouplingPort& port, const device::LoopSettings& settings, const ReportFault& report,
                  device::RunLog& log)
-      : ClockedDriver(hand, settings, tell),
+      : ClockedDriver(hand, settings, report),
         port_(port),
         loop_(device, port, settings),
         device_(device),
@@ -26,26 +27,27 @@ class ReplayedDriver final : public ClockedDriver {
   void pause() override {
     if (!is_running_) return;
     is_running_ = false;
-    if (!goTo(device::SyncEventKind::Paused)) return;
+    if (!tickUntil(device::SyncEventKind::Paused)) return;
     device_.write({});
-    note(device::SyncEventKind::Paused);
-    look(LoopView::of(loop_, hand_.phase()));
+    logEvent(device::SyncEventKind::Paused);
+    setView(loop_.state());
   }
   void resume() override {
     rearmIfFaulted();
     is_running_ = true;
   }
 
-  bool advance(const HeldPart&) override {
-    while (next_ < sync_events_.size() && !goTo(device::SyncEventKind::Step)) ++next_;  // beyond a departure
+  bool advance() override {
+    // After a departure from the recording, events that do not fit are skipped.
+    while (next_ < sync_events_.size() && !tickUntil(device::SyncEventKind::Step)) ++next_;
     if (!isAt(device::SyncEventKind::Step)) return false;
-    note(device::SyncEventKind::Step);
-    look(ticked_);
+    logEvent(device::SyncEventKind::Step);
+    setView(port_.haptic.read());  // as the last tick left it, without the commands since
     return true;
   }
   bool hasSettled(bool) override {
     if (!isAt(device::SyncEventKind::Settled)) return false;
-    note(device::SyncEventKind::Settled);
+    logEvent(device::SyncEventKind::Settled);
     return true;
   }
   device::OperatorPhase phase() override { return hand_.phase(); }
@@ -54,21 +56,21 @@ class ReplayedDriver final : public ClockedDriver {
   std::optional<RealTimeResult> realTime() override { return {}; }
 
  protected:
-  void order(device::SyncEventKind what) override {
-    const bool is_met = goTo(what);
-    obey(loop_, what);
-    if (is_met) note(what);
+  void command(device::SyncEventKind what) override {
+    const bool is_recorded = tickUntil(what);
+    carryOut(loop_, what);
+    if (is_recorded) logEvent(what);
   }
-  void store(const PhysicsSnapshot& snapshot) override { snapshots_.push_back(snapshot); }
+  void store(const device::PhysicsState& state) override { states_.push_back(state); }
 
  private:
   [[nodiscard]] bool isAt(device::SyncEventKind kind) const {
     return next_ < sync_events_.size() && sync_events_[next_].kind == kind;
   }
 
-  /// Ticks on until physics is met, and says whether it is for this. A cut recording has no more to tick
-  /// with.
-  bool goTo(device::SyncEventKind kind) {
+  /// Runs the ticks before the next event of the physics thread. True if that event is of this kind. A
+  /// recording that was cut has no samples left to tick with.
+  bool tickUntil(device::SyncEventKind kind) {
     while (isAt(device::SyncEventKind::Tick)) {
       if (!hand_.canGoOn(1)) {
         next_ = sync_events_.size();
@@ -79,33 +81,31 @@ class ReplayedDriver final : public ClockedDriver {
     return isAt(kind);
   }
 
-  void tick(const device::SyncEvent& met) {
-    while (snapshots_.size() > 1 && snapshots_.front().number < met.snapshot) snapshots_.pop_front();
-    if (!snapshots_.empty() && snapshots_.front().number <= met.snapshot)
-      show(loop_, port_, snapshots_.front());
-    note(device::SyncEventKind::Tick);
+  void tick(const device::SyncEvent& event) {
+    while (states_.size() > 1 && states_.front().step < event.snapshot) states_.pop_front();
+    if (!states_.empty() && states_.front().step <= event.snapshot) port_.physics.write(states_.front());
+    loop_.receivePart();
+    logEvent(device::SyncEventKind::Tick);
     clock_.start();
-    loop_.tick(met.periods * settings_.period_s);
+    loop_.tickWithReceivedPart(event.periods * settings_.period_s);
     clock_.stop();
-    ticked_ = LoopView::of(loop_, hand_.phase());
   }
 
-  /// What the recording has next, as this run knows it.
-  void note(device::SyncEventKind kind) {
-    const device::SyncEvent& met = sync_events_[next_++];
+  /// Logs the next recorded event, as this run has it.
+  void logEvent(device::SyncEventKind kind) {
+    const device::SyncEvent& event = sync_events_[next_++];
     const std::uint64_t ticks = loop_.ticks() + (kind == device::SyncEventKind::Tick ? 1 : 0);
-    log_.add(device::SyncEvent{loop_.last().time_s, static_cast<std::int32_t>(ticks), met.periods,
-                               met.snapshot, kind});
+    log_.add(device::SyncEvent{loop_.last().time_s, static_cast<std::int32_t>(ticks), event.periods,
+                               event.snapshot, kind});
   }
 
-  CouplingPort& port_;
+  device::CouplingPort& port_;
   device::HapticLoop loop_;
-  LoopView ticked_;  ///< what a tick leaves is what physics sees, whatever is asked of the loop since
   device::Device& device_;
   std::vector<device::SyncEvent> sync_events_;
   std::size_t next_ = 0;
   device::RunLog& log_;
-  std::deque<PhysicsSnapshot> snapshots_;
+  std::deque<device::PhysicsState> states_;  ///< published, not yet used by a tick
   TickClock clock_;
   bool is_running_ = false;
 };
@@ -113,10 +113,10 @@ class ReplayedDriver final : public ClockedDriver {
 }  // namespace
 
 std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events,
-                                                 device::Device& device, CouplingPort& port,
-                                                 const device::LoopSettings& settings, const TellFault& tell,
-                                                 device::RunLog& log) {
-  return std::make_unique<ReplayedDriver>(hand, std::move(sync_events), device, port, settings, tell, log);
+                                                 device::Device& device, device::CouplingPort& port,
+                                                 const device::LoopSettings& settings,
+                                                 const ReportFault& report, device::RunLog& log) {
+  return std::make_unique<ReplayedDriver>(hand, std::move(sync_events), device, port, settings, report, log);
 }
 
 }  // namespace vps::scenes

@@ -145,7 +145,7 @@ class Procedure {
   };
 
   std::unique_ptr<HapticDriver> sideFor(const Scene& scene, Hand& hand, device::LoopSettings settings,
-                                        const TellFault& tell);
+                                        const ReportFault& tell);
   void mountFixed();
   void runStep(std::size_t index);
   void work(StepResult& result, const SceneStep& step, std::size_t index);
@@ -174,6 +174,9 @@ class Procedure {
 
   /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on.
   [[nodiscard]] bool advance();
+  [[nodiscard]] device::HeldPart heldPart() const {
+    return {poses_[held_.part], simulation_.twist(held_.part), held_.weight_W};
+  }
   void record(int phase);
   void tellPhase();
   void tellEvent(device::RunEventKind kind, const std::string& words);
@@ -195,7 +198,7 @@ class Procedure {
   Simulation simulation_;
   DeafLog deaf_;
   device::TappedDevice tapped_;
-  CouplingPort port_;
+  device::CouplingPort port_;
   device::LocalContact local_;
   std::unique_ptr<HapticDriver> driver_;
   PlacedParts placed_;
@@ -238,9 +241,9 @@ AssembleResult Procedure::run() {
   result_.real_time = driver_->realTime();
   if (result_.real_time) result_.real_time->load_changes = shedder_->changes();
   result_.physics = physics_clock_.summary();
-  const device::PassivityObserver ledger = driver_->ledger();
-  result_.energy = {ledger.to_hand_J, ledger.from_hand_J, ledger.injected_J,
-                    ledger.quantisation_error_bound_J};
+  const device::PassivityObserver passivity = driver_->passivity();
+  result_.energy = {passivity.to_hand_J, passivity.from_hand_J, passivity.injected_J,
+                    passivity.quantisation_error_bound_J};
   result_.contacts_left_out = simulation_.contactsLeftOut();
   result_.modelled = placed_.modelled();
   result_.widened = placed_.widened();
@@ -252,7 +255,7 @@ AssembleResult Procedure::run() {
 }
 
 std::unique_ptr<HapticDriver> Procedure::sideFor(const Scene& scene, Hand& hand,
-                                                 device::LoopSettings settings, const TellFault& tell) {
+                                                 device::LoopSettings settings, const ReportFault& tell) {
   if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, tell, log_);
   device::Device& device = log_ != nullptr ? tapped_ : hand.device();
   if (std::vector<device::SyncEvent> sync_events = hand.sync_events();
@@ -348,7 +351,7 @@ void Procedure::letGo() {
 }
 
 bool Procedure::advance() {
-  if (!driver_->advance({poses_[held_.part], simulation_.twist(held_.part), held_.weight_W})) {
+  if (!driver_->advance()) {
     is_over_ = true;
     log_ = nullptr;  // what follows is no part of the run
     return false;
@@ -371,10 +374,12 @@ bool Procedure::advance() {
       is_holding_;  // its time stays that of the proxy it answers: the loop reckons on from there
   part.V_W = scaled(part.V_W, 1 / shedder_->slower());
   std::optional<double> stored_J;
-  if (is_holding_)
+  // Without a force on the hand, its work is not known, and energy cannot be balanced against it.
+  const bool is_balanced = driver_->settings().safety.force_N > 0;
+  if (is_holding_ && is_balanced)
     stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - held_.held_energy_J +
                springEnergy(faded(shedder_->gains(), grip_), proxy, part);
-  driver_->publish(part, stored_J);
+  driver_->publish({part, 0, stored_J, heldPart()});
   return true;
 }
 
@@ -394,7 +399,7 @@ void Procedure::tellEvent(device::RunEventKind kind, const std::string& words) {
   event.step = step_;
   event.kind = kind;
   if (kind == device::RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(driver_->phase());
-  event.say(words);
+  event.setWords(words);
   log_->add(event);
 }
 
@@ -485,7 +490,7 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
   CouplingState part = simulation_.graspState();
   part.is_coupled = true;
   part.time_s = time_s_;
-  driver_->publish(part, {});
+  driver_->publish({part, 0, {}, heldPart()});
   driver_->resume();
   const auto go_on = [&](int phase) {
     if (isStopped() || !advance()) return false;
@@ -701,7 +706,7 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
     throw LoadError(options.record, "",
                     "a run with local contact cannot be replayed bit for bit; record it without "
                     "--local-contact");
-  const std::unique_ptr<Hand> hand = simulatedHand(scene);
+  const std::unique_ptr<Hand> hand = makeHand(scene, options.is_real_time);
   const device::LoopSettings settings = loopSettings(scene, hand->device());
   if (options.record.empty()) return runProcedure(scene, *hand, nullptr, settings, options);
   RunRecord record(options.record, scene, hand->device(), settings.gains, options);

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "vps/load_error.h"
-#include "vps_device/bytes.h"
+#include "vps_device/detail/bytes.h"
 
 namespace vps::scenes {
 

@@ -10,7 +10,8 @@
 
 #include "scene/scene_file_keys.h"
 #include "vps/load_error.h"
-#include "vps_device/dual_arm_parameters.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/dual_arm/parameters.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
@@ -309,16 +310,18 @@ class SceneReader {
     if (!table) return;
     const SceneKeys keys(*table, context_, "[device]",
                          {"kind", "parameters", "scale", "quantised_encoders", "indexing"});
-    keys.text("kind", scene_.device.kind);
+    if (keys.text("kind", scene_.device.kind) && device::findDeviceKind(scene_.device.kind) == nullptr)
+      keys.fail("kind", "is '" + scene_.device.kind + "'; known are " + device::deviceKindNames());
     if (std::string file; keys.text("parameters", file)) readDeviceFile(keys, file);
     keys.number("scale", scene_.device.scale, kPositive);
     keys.flag("quantised_encoders", scene_.device.has_quantised_encoders);
     keys.flag("indexing", scene_.device.has_indexing);
   }
 
-  /// Read when it is used; looked at here, so that what is wrong with it is said with line and key.
+  /// Used later, when the device is made; checked here, so that a message can name line and key.
   void readDeviceFile(const SceneKeys& keys, const std::string& file) {
-    if (scene_.device.kind != "dual_arm") keys.fail("parameters", "only a dual_arm has");
+    if (!device::findDeviceKind(scene_.device.kind)->isSimulated())
+      keys.fail("parameters", "are those of a dual_arm or an ideal_dual_arm");
     try {
       device::loadDualArm(path(file));
     } catch (const LoadError& error) {

@@ -26,7 +26,7 @@ std::vector<device::Device> devices() {
   return {{"ideal", device::idealDualArm(), true}, {"real", realDualArm(), false}};
 }
 
-// Real encoders and structure are reported, not judged.
+// Results with real encoders and structure are reported, but not judged.
 Figure judged(const device::Device& device, const std::string& what, double value, double bar, double scale,
               const std::string& unit) {
   return device.is_judged ? atMost(what, value, bar, scale, unit) : reported(what, value, scale, unit);
@@ -74,7 +74,7 @@ Press pressBlock(const RigSettings& settings, double stiffness_N_per_m3, double 
   for (int i = 0; i < ticks; ++i) {
     const double z = start_m - speed_m_s * HapticRig::kStep_s * i;
     rig.lead(Vec3(0, 0, z), Vec3::Zero(), {Vec3::Zero(), Vec3(0, 0, -speed_m_s)});
-    // The force that the tick just set answers the handle's place before this millisecond.
+    // The force of this tick was computed from the handle's pose before this millisecond.
     const double force_N = rig.felt().f.z();
     if (force_N > 2) {
       result.worst = std::max(result.worst, std::abs(force_N - series * depth_m) / force_N);
@@ -133,8 +133,8 @@ struct Slide {
   double force_N = 0;
 };
 
-// The hand leads the ball along x, 3 mm too deep, at 20 mm/s: on round surfaces around them by 0.4 rad each
-// way. Off the grid's axes, turned by 0.1 rad about z, and off its planes.
+// The hand moves the ball along x, 3 mm too deep, at 20 mm/s: around round surfaces by 0.4 rad to each side.
+// The surface is rotated by 0.1 rad about z and shifted against the grid.
 Slide slideOver(const RigSettings& settings, const Surface& surface, double length_m) {
   HapticRig rig(settings);
   const double drop_m = surface.is_round ? kRound_m : 5e-3;
@@ -191,7 +191,7 @@ void slideRow(const HapticOptions& options, Table& table) {
 
 namespace {
 
-// Moves a part of 63 g by 0.2 m in a second, as a person reaches, and turns it by 0.5 rad.
+// Moves a part of 63 g by 0.2 m in a second, as a person reaches, and rotates it by 0.5 rad.
 double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
   HapticRig rig(settings);
   rig.take(rig.world().add(block(), Pose{}));

@@ -34,7 +34,7 @@ void HapticRig::take(const dynamics::Placed& held) {
 }
 
 void HapticRig::lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG) {
-  port_.part.write(part_);
+  port_.physics.write({part_, 0, {}, {}});
   loop_.tick();
   device::HandForce hand;
   hand.X_eq = Pose(Mat3(rotationFromVector(turn_rad) * R_WG_taken_), p_WG);
@@ -47,7 +47,7 @@ void HapticRig::lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG) 
   hand.b_Nms_per_rad = 0.4 * Mat3::Identity();
   constexpr int kSubSteps = 4;  // see tests/support/wall_press.h
   for (int i = 0; i < kSubSteps; ++i) arm_.step(kStep_s / kSubSteps, loop_.toDevice(hand));
-  coupling_->setTarget(port_.proxy.read());
+  coupling_->setTarget(port_.haptic.read().proxy);
   world_.step();
   part_ = coupling_->partState();
   part_.is_coupled = true;

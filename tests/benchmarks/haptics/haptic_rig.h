@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated arm, our loop and a Bullet world with VPS contact, in lockstep: a hand leads a part.
+// The simulated arm, the haptic loop and a Bullet world with VPS contact, in lockstep: a hand moves a part.
 #pragma once
 
 #include "dynamics/world.h"
 #include "vps_bullet/coupling.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/gains.h"
 #include "vps_device/loop.h"
-#include "vps_device/simulated_dual_arm.h"
 
 namespace vps::bench {
 
@@ -21,22 +21,22 @@ inline device::SimulatedDualArmSettings realDualArm() {
   return {};
 }
 
-/// Haptics and physics at 1 kHz, gains as derived for the device. The hand leads the part's centre of mass.
+/// Haptics and physics at 1 kHz, gains as derived for the device. The hand moves the part's centre of mass.
 class HapticRig {
  public:
   explicit HapticRig(const RigSettings& settings);
 
   dynamics::World& world() { return world_; }
-  /// Takes a part, where it is and at rest.
+  /// Grasps a part at its present pose, at rest.
   void take(const dynamics::Placed& held);
-  /// One millisecond: the hand draws the grasp frame, with the stiffness of a firm grip, to a place and to so
-  /// much of a turn from where it was taken.
+  /// One millisecond: the hand pulls the grasp frame, with the stiffness of a firm grip, to a position and a
+  /// rotation relative to the grasp.
   void lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG);
 
   [[nodiscard]] const device::SimulatedDualArm& arm() const { return arm_; }
   [[nodiscard]] const device::HapticLoop& loop() const { return loop_; }
   [[nodiscard]] const CouplingGains& gains() const { return loop_.settings().gains; }
-  /// Where the hand truly holds the grasp frame, and the part's.
+  /// The hand's true grasp frame, and the part's.
   [[nodiscard]] Pose trueGrasp() const { return loop_.toGrasp(arm_.truePose()); }
   [[nodiscard]] const CouplingState& part() const { return part_; }
   /// On the hand, by the motors, less the handle's weight: in W, which is D here.
@@ -47,7 +47,7 @@ class HapticRig {
  private:
   dynamics::World world_;
   device::SimulatedDualArm arm_;
-  CouplingPort port_;
+  device::CouplingPort port_;
   device::HapticLoop loop_;
   bullet::CouplingConstraint* coupling_ = nullptr;  // the world's
   CouplingState part_;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "rows.h"
-#include "vps_device/dual_arm.h"
+#include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/random.h"
 
 namespace vps::bench {
@@ -23,7 +23,7 @@ int poses(const HapticOptions& options) {
   return options.is_short ? 2000 : 200000;
 }
 
-// Poses all over the workspace; at(pose, random) says whether the device takes one.
+// Poses over the whole workspace; at(pose, random) returns whether the device reaches one.
 template <typename At>
 int countRefused(const HapticOptions& options, unsigned seed, const device::DualArmParameters& p, At&& at) {
   device::Random random(seed);

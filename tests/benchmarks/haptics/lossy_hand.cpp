@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "dual_arm/gravity.h"
-#include "vps_device/dual_arm.h"
-#include "vps_device/dual_arm_structure.h"
+#include "vps_device/dual_arm/kinematics.h"
+#include "vps_device/dual_arm/structure.h"
 
 namespace vps::bench {
 
 device::DeviceSample LossyDevice::read() noexcept {
   const device::DeviceSample sample = inner_->read();
-  if (!has_sample_ || random_.uniform() >= line_.lost || sample.status != Status::Ok) arrived_ = sample;
+  if (!has_sample_ || random_.uniform() >= connection_.lost || sample.status != Status::Ok) arrived_ = sample;
   has_sample_ = true;
   return arrived_;
 }
@@ -20,27 +20,27 @@ device::DeviceSample LossyDevice::read() noexcept {
 void LossyDevice::write(const Wrench& F) noexcept {
   std::rotate(sent_.begin(), sent_.end() - 1, sent_.end());
   sent_[0] = F;
-  if (random_.uniform() >= line_.lost) held_ = sent_[static_cast<std::size_t>(line_.delay_ticks)];
+  if (random_.uniform() >= connection_.lost) held_ = sent_[static_cast<std::size_t>(connection_.delay_ticks)];
   inner_->write(held_);
 }
 
 device::DeviceLimits LossyDevice::limits() const noexcept {
   device::DeviceLimits limits = inner_->limits();
-  limits.delay_s += line_.delay_ticks / limits.rate_hz;
+  limits.delay_s += connection_.delay_ticks / limits.rate_hz;
   return limits;
 }
 
-void TrueLedger::draw(double now_J) {
+void TrueEnergyBalance::update(double now_J) {
   balance_J = now_J;
   least_J = std::min(least_J, balance_J);
   injected_J = std::max(injected_J, balance_J - least_J);
 }
 
-LossyHand::LossyHand(const scenes::Scene& scene, const Line& line)
+LossyHand::LossyHand(const scenes::Scene& scene, const Connection& connection)
     : scene_(scene),
       hand_(scenes::simulatedHand(scene)),
       arm_(dynamic_cast<device::SimulatedDualArm&>(hand_->device())),
-      device_(arm_, line),
+      device_(arm_, connection),
       limits_(arm_.limits()),
       ticks_per_step_(std::lround(scene.fidelity.haptic_rate_hz / scene.fidelity.physics_rate_hz)) {}
 
@@ -59,14 +59,14 @@ void LossyHand::begin() {
 
 void LossyHand::goBack(std::size_t next) {
   hand_->goBack(next);
-  is_holding_ = false;  // what the springs hold then goes to nobody
+  is_holding_ = false;  // the springs' energy is dropped
 }
 
-double LossyHand::stored_J(const scenes::HeldPart& part, const device::HapticLoop& loop) const {
+double LossyHand::stored_J(const device::HeldPart& part, const device::HapticLoop& loop) const {
   const Pose X_WB = part.X_WP * held_.body.X_PB;
   const Vec3 v = part.V_WP.v + part.V_WP.w.cross(X_WB.p - part.X_WP.p),
              w_B = X_WB.R.transpose() * part.V_WP.w;
-  const Pose X_WG = part.X_WP * held_.X_PG, X_hand = loop.toGrasp(atTheMotors());
+  const Pose X_WG = part.X_WP * held_.X_PG, X_hand = loop.toGrasp(poseAtMotors());
   const CouplingGains& gains = loop.settings().gains;
   // Beyond its limit a spring's force is constant.
   const auto spring = [](double k, double stretch, double most) {
@@ -80,9 +80,9 @@ double LossyHand::stored_J(const scenes::HeldPart& part, const device::HapticLoo
                 gains.max_torque_Nm);
 }
 
-// Where the encoders see the handle: the arms bend between them by what the motors give beyond the handle's
-// weight.
-Pose LossyHand::atTheMotors() const {
+// The handle's pose as the encoders measure it: the arms deflect by the motor efforts in excess of the
+// handle's weight.
+Pose LossyHand::poseAtMotors() const {
   const device::DualArmParameters& p = arm_.plant().settings().arms;
   const Pose& X_DH = arm_.truePose();
   device::DualArmJoints joints;
@@ -98,8 +98,8 @@ Pose LossyHand::atTheMotors() const {
              : X_DH;
 }
 
-// Of the motors on the hand now, less the handle's weight, in D.
-Wrench LossyHand::acting() const {
+// The motors' present wrench on the hand, less the handle's weight, in D.
+Wrench LossyHand::actingWrench() const {
   const device::DualArmParameters& p = arm_.plant().settings().arms;
   Wrench F;
   if (device::handleWrench(p, arm_.truePose(), arm_.plant().efforts(), F) != Status::Ok) return {};
@@ -107,24 +107,24 @@ Wrench LossyHand::acting() const {
   return F;
 }
 
-void LossyHand::step(const scenes::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
+void LossyHand::step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
   const device::WorkspaceMap& map = loop.settings().map;
-  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part is of this instant
+  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part's state is of this instant
     const double now_J = work_J_ - dissipated_J_ * map.scale / map.force_scale + stored_J(part, loop);
-    if (is_new_) start_J_ = now_J - ledger_.balance_J;
+    if (is_new_) start_J_ = now_J - energy_.balance_J;
     is_new_ = false;
-    ledger_.draw(now_J - start_J_);
+    energy_.update(now_J - start_J_);
   }
   constexpr int kSubSteps = 4;
   for (int i = 0; i < kSubSteps; ++i) {
     const Pose before = arm_.truePose();
     hand_->step(part, loop, dt_s / kSubSteps);
-    const Twist way{rotationVector(arm_.truePose().R * before.R.transpose()),
-                    Vec3(arm_.truePose().p - before.p)};
-    work_J_ += power(map.toScene(acting()), map.toScene(way));
-    dissipated_J_ +=
-        (limits_.damping_Ns_per_m * way.v.squaredNorm() + limits_.damping_Nms_per_rad * way.w.squaredNorm()) /
-        (dt_s / kSubSteps);
+    const Twist shift{rotationVector(arm_.truePose().R * before.R.transpose()),
+                      Vec3(arm_.truePose().p - before.p)};
+    work_J_ += power(map.toScene(actingWrench()), map.toScene(shift));
+    dissipated_J_ += (limits_.damping_Ns_per_m * shift.v.squaredNorm() +
+                      limits_.damping_Nms_per_rad * shift.w.squaredNorm()) /
+                     (dt_s / kSubSteps);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene's simulated hand behind a poor line: delay, lost packets. And a ledger of the energy that truly
-// passes the handle, kept from the plant itself.
+// A scene's simulated hand behind a connection with delay and packet loss, and the true energy balance at the
+// handle, computed from the plant.
 #pragma once
 
 #include <array>
@@ -8,23 +8,23 @@
 
 #include "haptics/hand.h"
 #include "vps_bullet/shape.h"
+#include "vps_device/dual_arm/simulated_dual_arm.h"
 #include "vps_device/random.h"
-#include "vps_device/simulated_dual_arm.h"
 
 namespace vps::bench {
 
-struct Line {
+struct Connection {
   int delay_ticks = 0;  ///< of wrenches, on top of the arm's own
-  double lost = 0;      ///< share of samples and of wrenches that never arrive; the one before stands
+  double lost = 0;      ///< share of samples and wrenches that are lost; the last one before is used
   std::uint64_t seed = 1;
 };
 
-/// The device at the far end of the line. States the line's delay in its limits, so that gains reckon with
-/// it.
+/// The device at the far end of the connection. Its limits include the delay, so that gains allow for it.
 class LossyDevice final : public device::Device {
  public:
   /// inner outlives it.
-  LossyDevice(device::Device& inner, const Line& line) : inner_(&inner), line_(line), random_(line.seed) {}
+  LossyDevice(device::Device& inner, const Connection& connection)
+      : inner_(&inner), connection_(connection), random_(connection.seed) {}
   device::DeviceSample read() noexcept override;
   void write(const Wrench& F) noexcept override;
   void rearm() noexcept override { inner_->rearm(); }
@@ -33,7 +33,7 @@ class LossyDevice final : public device::Device {
 
  private:
   device::Device* inner_;
-  Line line_;
+  Connection connection_;
   device::Random random_;
   device::DeviceSample arrived_;
   bool has_sample_ = false;
@@ -41,18 +41,18 @@ class LossyDevice final : public device::Device {
   Wrench held_;
 };
 
-/// DESIGN section 7's balance, of true places and of the forces that truly act; PassivityObserver says what
-/// the rise of it bounds. Device dissipation is the arm's stated least damping alone: its dry friction is to
-/// the hand's good.
-struct TrueLedger {
+/// The energy balance of PassivityObserver, from true poses and the forces that actually act. Device
+/// dissipation is the arm's stated least damping alone: its dry friction is left as a margin.
+struct TrueEnergyBalance {
   double balance_J = 0, least_J = 0, injected_J = 0;
-  void draw(double now_J);
+  void update(double now_J);
 };
 
-/// Runs the scene's own hand over that line, its plant in four steps a tick (see tests/support/wall_press.h).
+/// Runs the scene's own hand over that connection, its plant in four steps a tick (see
+/// tests/support/wall_press.h).
 class LossyHand final : public scenes::Hand {
  public:
-  LossyHand(const scenes::Scene& scene, const Line& line);
+  LossyHand(const scenes::Scene& scene, const Connection& connection);
 
   device::Device& device() override { return device_; }
   void prepare(const device::OperatorTask& task, std::size_t step, double now_s) override;
@@ -60,24 +60,24 @@ class LossyHand final : public scenes::Hand {
   void goBack(std::size_t next) override;
   void recentre() override { hand_->recentre(); }
   void goOn() override { hand_->goOn(); }
-  void step(const scenes::HeldPart& part, const device::HapticLoop& loop, double dt_s) override;
+  void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) override;
   [[nodiscard]] device::OperatorPhase phase() const override { return hand_->phase(); }
   [[nodiscard]] bool canGoOn(int ticks) const override { return hand_->canGoOn(ticks); }
 
-  [[nodiscard]] const TrueLedger& ledger() const { return ledger_; }
+  [[nodiscard]] const TrueEnergyBalance& energy() const { return energy_; }
 
  private:
-  [[nodiscard]] double stored_J(const scenes::HeldPart& part, const device::HapticLoop& loop) const;
-  [[nodiscard]] Pose atTheMotors() const;
-  [[nodiscard]] Wrench acting() const;
+  [[nodiscard]] double stored_J(const device::HeldPart& part, const device::HapticLoop& loop) const;
+  [[nodiscard]] Pose poseAtMotors() const;
+  [[nodiscard]] Wrench actingWrench() const;
 
   const scenes::Scene& scene_;
   std::unique_ptr<scenes::Hand> hand_;
   device::SimulatedDualArm& arm_;
   LossyDevice device_;
   device::DeviceLimits limits_;
-  TrueLedger ledger_;
-  /// What is held, and what is to be held next.
+  TrueEnergyBalance energy_;
+  /// The part that is held, and the next one.
   struct Held {
     Pose X_PG;
     bullet::BodyFrame body;

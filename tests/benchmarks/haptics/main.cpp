@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_bench_haptics: fills in the table of what device and coupling must reach. Exits 1 where a bar is
-// missed, 2 for an option or a row it does not know.
+// vps_bench_haptics: measures the required figures of device and coupling. Exits with 1 if a bound is missed,
+// 2 for an unknown option or row.
 #include <algorithm>
 #include <cstdio>
 #include <sstream>

@@ -9,7 +9,7 @@
 namespace vps::bench {
 
 struct HapticOptions {
-  bool is_short = false;  ///< a few seconds of work for each row, the same bars
+  bool is_short = false;  ///< a few seconds of work for each row, with the same bounds
 };
 
 struct HapticCase {
@@ -26,13 +26,13 @@ void staticsRow(const HapticOptions&, Table&);
 void passivityRow(const HapticOptions&, Table&);
 void ringingRow(const HapticOptions&, Table&);
 void stiffestWallRow(const HapticOptions&, Table&);
-// The arm, our loop, and Bullet with VPS contact.
+// The arm, the haptic loop, and Bullet with VPS contact.
 void pressRow(const HapticOptions&, Table&);
 void slideRow(const HapticOptions&, Table&);
 void freeMotionRow(const HapticOptions&, Table&);
-// Shipped scenes with their hand. Needs vps::scenes.
+// Shipped scenes with their operator. Needs vps::scenes.
 void injectedRow(const HapticOptions&, Table&);
-// By the clock.
+// In real time.
 void tickRow(const HapticOptions&, Table&);
 void pointsRow(const HapticOptions&, Table&);
 

@@ -28,7 +28,7 @@ Row runScene(const std::string& name, const Case& c) {
   return {text("injected_J, %s, physics %.0f Hz, %d ticks, %.0f%% lost", name.c_str(), c.physics_rate_hz,
                c.delay_ticks, 100 * c.lost),
           text("%.2f kN/m, real encoders", settings.gains.k_N_per_m / 1000),
-          {atMost("at the handle", hand.ledger().injected_J, 1e-3, 1e3, "mJ"),
+          {atMost("at the handle", hand.energy().injected_J, 1e-3, 1e3, "mJ"),
            atMost("as the loop reports it", result.energy.injected_J, 1e-3, 1e3, "mJ"),
            reported("to hand", result.energy.to_hand_J, 1e3, "mJ"),
            reported("from hand", result.energy.from_hand_J, 1e3, "mJ"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows about wall time: what they say depends on the machine and on who else uses it.
+// Rows about wall time, which depend on the machine and its load.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::size_t pointsAt(double spacing_m, const Mesh& mesh) {
   return buildPointShell(mesh, settings).size();
 }
 
-/// The coarsest spacing, to 1 %, that gives a part at least so many points.
+/// The coarsest spacing, to 1 %, that gives a part at least this many points.
 double spacingFor(const Mesh& mesh, std::size_t points) {
   double spacing_m = std::sqrt(area(mesh) / static_cast<double>(points));
   while (pointsAt(spacing_m, mesh) < points) spacing_m *= 0.99;

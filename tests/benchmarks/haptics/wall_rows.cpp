@@ -10,8 +10,8 @@ namespace vps::bench {
 
 using test::SampledWall;
 
-// As our loop renders it, over all frequencies: a hand leads the handle, the wall's work is what a damper
-// must take.
+// The wall as the loop renders it, over all frequencies: a hand moves the handle, and a damper must dissipate
+// the wall's work.
 void passivityRow(const HapticOptions& options, Table& table) {
   double most = 0, least_sharp = 1e9, least = 1e9;
   const int stride = options.is_short ? 10 : 1;
@@ -57,7 +57,7 @@ void ringingRow(const HapticOptions& options, Table& table) {
              ""});
 }
 
-// Abbott and Okamura's number is that of a device whose least friction and worst encoder error meet.
+// Abbott and Okamura's number assumes that the least friction and the worst encoder error coincide.
 void stiffestWallRow(const HapticOptions& options, Table& table) {
   for (const double rate_hz : {1000.0, 4000.0}) {
     device::SimulatedDualArmSettings device;

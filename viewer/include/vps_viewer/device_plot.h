@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figure 5 of the paper for the simulated dual arm: the vertical force of the left arm, the right arm and
-// both.
+// Figure 5 of the paper, of the dual arm that this program has: the vertical force of left arm, right arm and
+// pair.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "vps_device/dual_arm_character.h"
+#include "vps_device/dual_arm/character.h"
 #include "vps_viewer/export.h"
 #include "vps_viewer/plot.h"
 
 namespace vps::viewer {
 
-/// Plots the least force along z as surfaces over x and y (left), and the least force over x and z along y
-/// with the paper's 5 N and 12 N (right). Writes file + ".png" and file + ".svg"; the same input gives the
-/// same bytes.
+/// Left: the least force over each column of the workspace, as surfaces over x and y. Right: the least over x
+/// and z, along y, with the paper's 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input
+/// gives the same bytes.
 VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
                                               const std::string& file);
 

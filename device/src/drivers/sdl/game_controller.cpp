@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The game controller by SDL2. The one file that includes SDL.
+// The game controller through SDL2. The only file that includes SDL.
 #include <SDL.h>
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
+#include "drivers/kinds.h"
 #include "drivers/polled_device.h"
 #include "vps_device/hand_controllers.h"
 
@@ -13,7 +14,7 @@ namespace vps::device {
 
 namespace {
 
-constexpr auto kPause = std::chrono::milliseconds(4);  // controllers themselves report each 4 to 8 ms
+constexpr auto kPause = std::chrono::milliseconds(4);  // controllers report every 4 to 8 ms
 
 double axis(SDL_GameController* controller, SDL_GameControllerAxis which) {
   return std::max(-1.0, SDL_GameControllerGetAxis(controller, which) / 32767.0);
@@ -40,20 +41,20 @@ Deflection deflectionOf(SDL_GameController* c) {
 class GameController final : public HandSource {
  public:
   GameController() {
-    // Ctrl-C stays the program's, and a controller counts whichever window is in front.
+    // Leave Ctrl-C to the program, and read the controller whichever window has the focus.
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
     const bool is_first = SDL_WasInit(SDL_INIT_GAMECONTROLLER) == 0;
     is_there_ = SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) == 0;
     if (!is_there_ || !is_first) return;
-    // Nobody else takes events: let none pile up.
+    // Nothing else takes events: do not let them accumulate.
     SDL_JoystickEventState(SDL_IGNORE);
     SDL_GameControllerEventState(SDL_IGNORE);
   }
   ~GameController() override {
     close();
     if (is_there_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
-    SDL_TLSCleanup();  // what SDL keeps for this thread, which is not one of its own
+    SDL_TLSCleanup();  // SDL's data of this thread, which SDL did not create
   }
 
   void poll(HandInput& input) override {
@@ -86,6 +87,22 @@ class GameController final : public HandSource {
 
 std::unique_ptr<Device> openGameController(const RateSettings& settings) {
   return std::make_unique<PolledDevice<GameController>>(settings, "game_controller");
+}
+
+DeviceKind gameControllerKind() {
+  return {"game_controller",
+          "game controller through SDL2, moved by a person; gives no force",
+          "plug a controller in that SDL2 knows",
+          [](const DeviceOptions& options) { return openGameController(rateSettings(options)); },
+          nullptr,
+          [] {
+            if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0) return std::string(SDL_GetError());
+            bool is_found = false;
+            for (int i = 0; i < SDL_NumJoysticks(); ++i)
+              is_found = is_found || SDL_IsGameController(i) == SDL_TRUE;
+            SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+            return std::string(is_found ? "" : "no game controller was found");
+          }};
 }
 
 }  // namespace vps::device

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The game controller in a build without SDL2.
+#include "drivers/kinds.h"
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
@@ -6,6 +8,15 @@ namespace vps::device {
 
 std::unique_ptr<Device> openGameController(const RateSettings&) {
   throw LoadError("", "", "this build has no game controller; install libsdl2-dev and build again");
+}
+
+DeviceKind gameControllerKind() {
+  return {"game_controller",
+          "game controller through SDL2, moved by a person; gives no force",
+          "install libsdl2-dev and build again",
+          [](const DeviceOptions& options) { return openGameController(rateSettings(options)); },
+          nullptr,
+          [] { return std::string("this build lacks SDL2"); }};
 }
 
 }  // namespace vps::device

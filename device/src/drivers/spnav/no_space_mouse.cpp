@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The space mouse in a build without libspnav.
+#include "drivers/kinds.h"
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
@@ -6,6 +8,15 @@ namespace vps::device {
 
 std::unique_ptr<Device> openSpaceMouse(const RateSettings&) {
   throw LoadError("", "", "this build has no space mouse; install libspnav-dev and build again");
+}
+
+DeviceKind spaceMouseKind() {
+  return {"space_mouse",
+          "6-DOF mouse through spacenavd, moved by a person; gives no force",
+          "install libspnav-dev and build again",
+          [](const DeviceOptions& options) { return openSpaceMouse(rateSettings(options)); },
+          nullptr,
+          [] { return std::string("this build lacks libspnav"); }};
 }
 
 }  // namespace vps::device

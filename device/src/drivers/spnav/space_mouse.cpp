@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The space mouse by libspnav 1.0. The one file that includes spnav.h.
+// The space mouse through libspnav 1.0. The only file that includes spnav.h.
 #include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "drivers/kinds.h"
 #include "drivers/polled_device.h"
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
@@ -22,13 +23,14 @@ namespace vps::device {
 namespace {
 
 constexpr double kFull = 350;  // counts at full deflection. assumed: what 3Dconnexion's devices reach
-constexpr int kWait_ms = 20;   // for events; the thread ends within
+constexpr int kWait_ms = 20;   // wait for events, and time that the thread takes to end
 constexpr auto kRetry = std::chrono::milliseconds(500);
 
 std::atomic<bool> is_in_use{false};  // libspnav keeps its connection in globals
 
-/// May a daemon be there? Asked first since spnav_open() of version 1.0 loses some bytes at each failure.
-bool mayBeThere() {
+/// Whether a daemon may be running. Checked first, since spnav_open() of version 1.0 leaks some bytes at each
+/// failure.
+bool mayBeRunning() {
   const char* named = std::getenv("SPNAV_SOCKET");
   return (named != nullptr && access(named, F_OK) == 0) || access("/etc/spnavrc", F_OK) == 0 ||
          access("/var/run/spnav.sock", F_OK) == 0;
@@ -46,8 +48,8 @@ Deflection deflectionOf(const spnav_event_motion& motion) {
 class SpaceMouse final : public HandSource {
  public:
   SpaceMouse() {
-    // libspnav writes to daemons that may be gone; the signal would end the program. It goes to the thread
-    // that writes, which is this one.
+    // libspnav may write to a daemon that has ended, and SIGPIPE would end the program. The signal is
+    // delivered to the thread that writes, which is this one.
     sigset_t pipe;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
@@ -72,21 +74,21 @@ class SpaceMouse final : public HandSource {
  private:
   void connect(HandInput& input) {
     const auto now = std::chrono::steady_clock::now();
-    if (now < next_try_ || !mayBeThere() || spnav_open() != 0) {
+    if (now < next_try_ || !mayBeRunning() || spnav_open() != 0) {
       if (now >= next_try_) next_try_ = now + kRetry;
       std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));
       return;
     }
     is_open_ = true;
-    if (isHungUp()) {  // it died while we came
+    if (isHungUp()) {  // it ended while we connected
       next_try_ = now + kRetry;
       return close();
     }
     input = {};
-    input.is_connected = true;  // a daemon without a mouse says nothing, as does a mouse at rest
+    input.is_connected = true;  // a daemon without a mouse sends nothing, as does a mouse at rest
   }
 
-  /// The library tells neither the end of the daemon nor an error from "no event": look ourselves.
+  /// The library does not distinguish the end of the daemon or an error from "no event".
   static bool isHungUp() {
     char byte = 0;
     const ssize_t count = recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
@@ -122,6 +124,16 @@ std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings) {
   if (is_in_use.exchange(true))
     throw LoadError("", "", "the space mouse is in use by this program already; close that device first");
   return std::make_unique<PolledDevice<SpaceMouse>>(settings, "space_mouse");
+}
+
+DeviceKind spaceMouseKind() {
+  return {"space_mouse",
+          "6-DOF mouse through spacenavd, moved by a person; gives no force",
+          "start spacenavd (Debian: apt install spacenavd), or set SPNAV_SOCKET to its socket, and plug the "
+          "mouse in",
+          [](const DeviceOptions& options) { return openSpaceMouse(rateSettings(options)); },
+          nullptr,
+          [] { return std::string(mayBeRunning() ? "" : "no spacenavd daemon was found"); }};
 }
 
 }  // namespace vps::device

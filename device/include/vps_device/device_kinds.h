@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kinds of device that this build knows, by the name that a scene's [device] kind and `vps device --list`
+// use.
+//
+// To add one: write device/src/drivers/<name>.cpp with a function that returns its DeviceKind, and add that
+// function to the table in device/src/drivers/device_kinds.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "vps_device/export.h"
+#include "vps_device/simulated_device.h"
+
+namespace vps::device {
+
+/// What a device is opened with. A kind ignores what it has no use for.
+struct DeviceOptions {
+  std::string parameter_file;          ///< of the dual arm; empty: the built-in parameters
+  double rate_hz = 1000;               ///< of read-write cycles
+  bool has_quantised_encoders = true;  ///< of a simulated device
+  Pose X_DH_start;                     ///< of a simulated device
+  /// Box about D's origin that the handle can reach, for devices under rate control, whose range is free.
+  Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);
+};
+
+/// Exactly one of `open` and `simulate` is set.
+struct DeviceKind {
+  std::string_view name;         ///< "space_mouse"
+  std::string_view description;  ///< one line
+  std::string_view remedy;       ///< what helps where it does not answer
+  /// Opens a device that a person moves. Throws LoadError. A device that is not plugged in opens, and reads
+  /// as lost (Status::Fault) until it is.
+  std::unique_ptr<Device> (*open)(const DeviceOptions&) = nullptr;
+  /// Makes a simulated device. Throws LoadError.
+  std::unique_ptr<SimulatedDevice> (*simulate)(const DeviceOptions&) = nullptr;
+  /// In words, what keeps it from being used here and now; empty: nothing that is known.
+  std::string (*missing)() = nullptr;
+
+  [[nodiscard]] bool isSimulated() const { return simulate != nullptr; }
+};
+
+/// All kinds, in the order of a listing.
+VPS_DEVICE_API std::span<const DeviceKind> deviceKinds();
+/// Null: no such kind.
+VPS_DEVICE_API const DeviceKind* findDeviceKind(std::string_view name);
+/// "dual_arm, ideal_dual_arm, space_mouse, game_controller"
+VPS_DEVICE_API std::string deviceKindNames();
+
+}  // namespace vps::device

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The device's own Table 1, computed from its model over the whole workspace.
+#pragma once
+
+#include <vector>
+
+#include "vps/coupling_law.h"
+#include "vps/progress.h"
+#include "vps_device/device.h"
+#include "vps_device/dual_arm/forces.h"
+#include "vps_device/export.h"
+
+namespace vps::device {
+
+/// A figure over all sampled places and attitudes.
+struct Extent {
+  double least = 0, median = 0, greatest = 0;
+};
+
+/// A figure with the motors at their continuous limits and at their peak.
+struct Duty {
+  Extent continuous, peak;
+};
+
+struct DualArmCharacter {
+  // Workspace.
+  Vec3 workspace_m = Vec3::Zero();  ///< as stated
+  /// Greatest box of that shape that is reached with the handle straight, as a multiple of it.
+  double straight_scale = 0;
+  double tilted_scale = 0;           ///< the same with every tilt of up to 45 deg
+  double gimbal_sr = 0;              ///< handle directions within the gimbal's range
+  Extent solid_angle_sr;             ///< directions that joints and arms allow, over the workspace
+  double centre_solid_angle_sr = 0;  ///< the same at its centre
+  // Motors. "Worst": available in every direction at that place and attitude. Attitudes: straight, and 45 deg
+  // tilts.
+  Duty straight_force_N, force_N;              ///< worst direction; handle straight, and all attitudes
+  Duty straight_torque_Nm, torque_Nm;          ///< likewise
+  Duty any_force_N, any_torque_Nm;             ///< also over directions: the median is the typical value
+  Duty up_N, left_up_N, right_up_N, sum_up_N;  ///< figure 5, straight
+  // Mechanics.
+  Extent held_stiffness_N_per_m;  ///< the hand holds the handle's direction
+  Extent free_stiffness_N_per_m;  ///< the handle may rotate
+  Extent mass_kg, inertia_kgm2;   ///< reflected, each direction
+  // Reading and friction.
+  Extent resolution_m, resolution_rad;  ///< error of one reading with each encoder half a step off; 45 deg
+  Extent far_resolution_m, far_resolution_rad;  ///< the same in all directions within the gimbal's range
+  /// Dry, against a shift of the straight handle, each direction. A weaker force is not felt.
+  Extent friction_N;
+  double force_ratio = 0, peak_force_ratio = 0;  ///< greatest force over typical friction
+  // Evenness.
+  /// Greatest motor load for a force: least place over greatest place.
+  double pair_isotropy = 0, arm_isotropy = 0;
+  Extent ellipsoid_isotropy;      ///< weakest over strongest direction at a place, of the pair
+  Extent arm_ellipsoid_isotropy;  ///< of one arm
+  Extent arm_manipulability_m2;   ///< Yoshikawa's, sqrt(det J J^T) = d^2 cos t2 of one arm
+  Extent pair_force_mean_N;       ///< geometric mean of the force ellipsoid's half axes, continuous
+  // Between the arms' sliding links.
+  double straight_clearance_m = 0, tilted_clearance_m = 0;  ///< least, with tilts up to 45 deg
+  double far_clearance_m = 0;  ///< least, in all directions that the joints allow; negative: the arms collide
+  // Coupling.
+  DeviceLimits limits_1kHz, limits_4kHz;
+  CouplingGains gains_1kHz, gains_4kHz;  ///< physics at 1 kHz
+};
+
+/// Takes about a second. `progress` may be empty.
+VPS_DEVICE_API DualArmCharacter characterise(const DualArmParameters& parameters,
+                                             const Progress& progress = {});
+
+/// Figure 5: the vertical force at each place of a grid over the workspace.
+struct VerticalForceAt {
+  Vec3 p_DE;
+  VerticalForce force;
+};
+VPS_DEVICE_API std::vector<VerticalForceAt> verticalForces(const DualArmParameters& parameters,
+                                                           double peak_share = 0);
+
+}  // namespace vps::device

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Strength of the dual arm at a place: the least force over all directions, and figure 5's vertical force.
+#pragma once
+
+#include "vps_device/dual_arm/kinematics.h"
+#include "vps_device/export.h"
+
+namespace vps::device {
+
+/// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
+struct VerticalForce {
+  double left_N = 0;   ///< of the left arm alone, at its gimbal
+  double right_N = 0;  ///< of the right arm alone
+  double both_N = 0;   ///< of the pair on the handle, without a couple, in addition to the handle's weight
+  double sum_N = 0;    ///< left_N + right_N less the weight; the hand has to bear the couple
+};
+/// Zero where the device is singular.
+VPS_DEVICE_API VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
+                                           const JointVector& limits) noexcept;
+
+/// Motor efforts for forces along D's axes, or for torques about them: columns x, y, z.
+struct EffortMap {
+  Eigen::Matrix<double, 7, 3> force = Eigen::Matrix<double, 7, 3>::Zero();   ///< N m or N, per N at H
+  Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< per N m about H
+  JointVector weight = JointVector::Zero();                                  ///< to carry the handle
+};
+[[nodiscard]] VPS_DEVICE_API Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
+                                              EffortMap& map) noexcept;
+
+/// Greatest force (or torque) available in every direction in addition to `weight`, exactly: a motor whose
+/// row is a needs |a| per newton in its own worst direction. `efforts` is either map.
+VPS_DEVICE_API double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts,
+                                          const JointVector& weight, const JointVector& limits) noexcept;
+
+/// Greatest force or torque along one direction.
+VPS_DEVICE_API double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
+                                     const JointVector& limits, const Vec3& direction) noexcept;
+
+}  // namespace vps::device

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parameters of the dual-arm device. Values and sources are in data/dual_arm.toml, which is built in; a
+// user's file overrides those that differ.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vps/pose.h"
+#include "vps_device/export.h"
+
+namespace vps::device {
+
+/// Defaults are the values of data/dual_arm.toml. Copies never allocate.
+struct VPS_DEVICE_API DualArmParameters {
+  DualArmParameters();
+
+  // Geometry.
+  Vec3 workspace_m = Vec3::Zero();          ///< box of the handle's origin, centred at D's origin
+  double handle_m = 0;                      ///< L, between gimbal centres
+  Vec3 p_EH = Vec3::Zero();                 ///< from the midpoint (1) to the handle's centre of mass H, in E
+  double base_m = 0;                        ///< from D's origin to each base, along y
+  Vec3 right_shift_m = Vec3::Zero();        ///< of the right base against its nominal pose, in its frame
+  Vec3 right_turn_rad = Vec3::Zero();       ///< likewise, as a rotation vector
+  double reach_min_m = 0, reach_max_m = 0;  ///< d3
+  double plate_max_rad = 0;                 ///< |t1|, |t2|
+  double q2_max_rad = 0, q3_max_rad = 0;    ///< |q2|, |q3|
+  double link_radius_m = 0;                 ///< of a sliding link, for `armClearance_m`
+  // Inertia and friction.
+  double handle_kg = 0;
+  Vec3 handle_kgm2 = Vec3::Zero();  ///< about H, along E's axes
+  double plate_kgm2 = 0;            ///< of plate, link and balance weight, each axis
+  double link_kg = 0;               ///< sliding link with its tendon drive
+  double rotor_kgm2 = 0;            ///< handle's motor with its gear
+  double motor_share = 0;           ///< of these three, the share on the motors' side of the structure
+  double plate_damping_Nms = 0, link_damping_Ns_per_m = 0, rotor_damping_Nms = 0;
+  double plate_coulomb_Nm = 0, link_coulomb_N = 0, rotor_coulomb_Nm = 0;
+  // Structure: elasticity between the motors, where the encoders are, and the handle.
+  double plate_Nm_per_rad = 0, link_N_per_m = 0, rotor_Nm_per_rad = 0;
+  double gimbal_N_per_m = 0;       ///< gimbal and handle, each side, every direction
+  double structure_damping_s = 0;  ///< damping over stiffness
+  // Joint stops.
+  double plate_stop_Nm_per_rad = 0, link_stop_N_per_m = 0, gimbal_stop_Nm_per_rad = 0;
+  double stop_damping_s = 0;  ///< damping over stiffness
+  // Encoders, on the motors' side: one step.
+  double plate_step_rad = 0, link_step_m = 0, rotor_step_rad = 0;
+  double noise_steps = 0;  ///< standard deviation before rounding, in steps
+  /// Error of a reading that gains are derived with; at a tilt the angle's may be greater.
+  double resolution_m = 0, resolution_rad = 0;
+  // Motors, continuous and peak.
+  double plate_torque_Nm = 0, plate_peak_Nm = 0;
+  double link_force_N = 0, link_peak_N = 0;
+  double rotor_torque_Nm = 0, rotor_peak_Nm = 0;
+  double thermal_s = 0;                      ///< time constant of a winding
+  double force_N = 0, force_peak_N = 0;      ///< on the handle
+  double torque_Nm = 0, torque_peak_Nm = 0;  ///< on the handle
+  // Protection.
+  double speed_m_s = 0, turn_rad_s = 0;  ///< of the handle; faster is sharp motion
+  double jump_m = 0;                     ///< of a gimbal centre between two readings
+  double apart_m = 0;                    ///< distance of the gimbal centres against L
+  double watchdog_s = 0;                 ///< longest time without a command or a new reading
+  // Timing.
+  double delay_ticks = 0;        ///< whole ticks between a wrench's reading and its effect, 0 to 8
+  double velocity_filter_s = 0;  ///< time constant of the velocity estimate
+
+ private:
+  friend struct DualArmFileReader;
+  struct Unset {};
+  explicit DualArmParameters(Unset) {}
+};
+
+/// The source of a parameter.
+struct ParameterNote {
+  std::string section, key;
+  std::vector<double> value;
+  bool is_sourced = false;
+  std::string words;  ///< the place in the paper, or the reason; empty for a plain number in a user's file
+};
+
+struct DualArmFile {
+  DualArmParameters parameters;
+  std::vector<ParameterNote> notes;  ///< one for each parameter, in the built-in file's order
+};
+
+/// data/dual_arm.toml, as built in. Allocates.
+VPS_DEVICE_API const DualArmFile& builtInDualArm();
+
+/// The built-in values, overridden by those of `file`. Throws LoadError with file, line, key, what was found
+/// and what is expected.
+VPS_DEVICE_API DualArmFile loadDualArm(const std::string& file);
+
+/// The same from text; `name` stands for the file in messages.
+VPS_DEVICE_API DualArmFile parseDualArm(const std::string& text, const std::string& name);
+
+}  // namespace vps::device

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs in real time in which a person moves the handle, here a device that follows a script.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+
+#include "procedure/procedure.h"
+#include "vps/load_error.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps::scenes {
+namespace {
+
+/// A box that is set down on a plate, 0.2 mm below its start.
+Scene setDown() {
+  Scene scene;
+  scene.file = "scene.toml";
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].is_fixed = true;
+  scene.parts[1].part = {"box", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.steps.resize(1);
+  scene.steps[0].part = 1;
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 2.2e-3});
+  scene.steps[0].X_WP_target = Pose::translation({0, 0, 2e-3});
+  scene.steps[0].timeout_s = 3;
+  scene.fidelity.haptic_rate_hz = 500;
+  scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.1;
+  return scene;
+}
+
+/// Without force, as a space mouse; z of the handle follows the script, tick by tick.
+class ScriptedDevice final : public device::Device {
+ public:
+  explicit ScriptedDevice(std::function<double(double t_s)> z_m) : z_m_(std::move(z_m)) {}
+  device::DeviceSample read() noexcept override {
+    const double t_s = kTick_s * static_cast<double>(++reads_);
+    device::DeviceSample sample;
+    sample.X_DH.p.z() = z_m_(t_s);
+    sample.V_DH.v.z() = (z_m_(t_s) - z_m_(t_s - kTick_s)) / kTick_s;
+    sample.time_s = t_s;
+    return sample;
+  }
+  void write(const Wrench& F) noexcept override { EXPECT_TRUE(F.f.isZero()); }
+  [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "scripted"; }
+
+ private:
+  static constexpr double kTick_s = 2e-3;
+  std::function<double(double)> z_m_;
+  long reads_ = 0;
+};
+
+AssembleResult runWith(std::function<double(double)> z_m) {
+  Scene scene = setDown();
+  AssembleOptions options;
+  options.is_real_time = true;
+  const std::unique_ptr<Hand> hand = personHand(std::make_unique<ScriptedDevice>(std::move(z_m)));
+  return runProcedure(scene, *hand, nullptr, loopSettings(scene, hand->device()), options);
+}
+
+TEST(PersonHand, AStepIsDoneOnceThePartRestsAtItsTarget) {
+  // Down by 0.3 mm at 1 mm/s from 0.6 s on, after the clutch has closed; the plate stops the part at 0.2 mm.
+  const AssembleResult result = runWith([](double t_s) { return -1e-3 * std::clamp(t_s - 0.6, 0.0, 0.3); });
+  ASSERT_EQ(result.steps.size(), 1u);
+  EXPECT_TRUE(result.completed) << result.steps[0].failure_reason;
+  EXPECT_LT(result.steps[0].final_error_m, setDown().steps[0].tolerance_m);
+  EXPECT_EQ(result.energy.injected_J, 0) << "without force, energy is not balanced";
+}
+
+TEST(PersonHand, AStepThatNeverReachesItsTargetFailsAtItsTimeout) {
+  const AssembleResult result = runWith([](double) { return 0.0; });
+  ASSERT_EQ(result.steps.size(), 1u);
+  EXPECT_FALSE(result.completed);
+  EXPECT_NE(result.steps[0].failure_reason.find("not reached in time"), std::string::npos)
+      << result.steps[0].failure_reason;
+}
+
+std::string refusal(const std::string& kind, bool is_real_time) {
+  Scene scene = setDown();
+  scene.device.kind = kind;
+  AssembleOptions options;
+  options.is_real_time = is_real_time;
+  try {
+    assemble(scene, options);
+  } catch (const LoadError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(PersonHand, ADeviceThatAPersonMovesIsRefusedInSimulatedTime) {
+  for (const char* kind : {"space_mouse", "game_controller"})
+    EXPECT_NE(refusal(kind, false).find("add --real-time"), std::string::npos) << refusal(kind, false);
+}
+
+TEST(PersonHand, ASpaceMouseWithoutADaemonIsRefusedWithTheRemedy) {
+  setenv("SPNAV_SOCKET", "/nonexistent/spnav.sock", 1);
+  const std::string words = refusal("space_mouse", true);
+  unsetenv("SPNAV_SOCKET");
+  EXPECT_NE(words.find("scene.toml: device 'space_mouse': "), std::string::npos) << words;
+  EXPECT_NE(words.find("spnav"), std::string::npos) << words;  // the daemon, or the library to build with
+}
+
+TEST(PersonHand, AnUnknownKindIsRefusedWithTheKnownOnes) {
+  EXPECT_NE(refusal("spoon", false).find("dual_arm, ideal_dual_arm, space_mouse, game_controller"),
+            std::string::npos)
+      << refusal("spoon", false);
+}
+
+}  // namespace
+}  // namespace vps::scenes
