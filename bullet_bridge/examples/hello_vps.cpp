@@ -16,14 +16,13 @@ int main() {
   world.setGravity(btVector3(0, 0, vps::bullet::toBt(-9.81)));
   vps::bullet::install(dispatcher);  // from here on, VpsShapes collide: with each other and with Bullet's own
 
-  vps::Part ring;  // of steel, with a hole of 10.1 mm; any closed mesh will do
-  ring.mesh = vps::makeTube(0.010, 0.00505, 0.005, 128);
-  ring.map = std::make_shared<const vps::VoxMap>(vps::buildVoxMap(ring.mesh, {}));
-  ring.shell = std::make_shared<const vps::PointShell>(vps::buildPointShell(ring.mesh, {}));
+  // Of steel, with a hole of 10.1 mm; any closed mesh will do.
+  const auto ring = vps::buildPartModel("ring", vps::makeTube(0.010, 0.00505, 0.005, 128));
 
   // Mass, inertia and centre of mass follow from the mesh; Bullet wants its bodies' origins there.
-  const auto frame = vps::bullet::makeBodyFrame(vps::massProperties(ring.mesh), ring.material.density_kg_m3);
-  vps::bullet::Shape ring_shape(vps::bullet::makeModels(ring), frame.X_PB.inverse());
+  const auto frame =
+      vps::bullet::makeBodyFrame(vps::massProperties(*ring->mesh), ring->material.density_kg_m3);
+  vps::bullet::Shape ring_shape(vps::bullet::makeModels(*ring), frame.X_PB.inverse());
   btRigidBody body(vps::bullet::toBt(frame.mass_kg), nullptr, &ring_shape,
                    vps::bullet::toBt(frame.inertia_kg_m2));
   body.setWorldTransform(vps::bullet::toBt(vps::Pose::translation({0, 0, 0.045}) * frame.X_PB));

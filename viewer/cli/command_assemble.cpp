@@ -10,6 +10,8 @@
 #include "table.h"
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
+#include "vps_scenes/load_level.h"
+#include "vps_scenes/record.h"
 
 namespace vps::viewer {
 
@@ -20,7 +22,7 @@ std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load
   std::string lines;
   for (const scenes::LoadLevelChange& change : load_changes)
     lines += "pace: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
-             change.is + ", since " + change.why + "; " + scenes::inWords(change) + "\n";
+             change.is + ", since " + change.why + "; " + scenes::describeCost(change) + "\n";
   return lines;
 }
 
@@ -52,11 +54,12 @@ int runAssemble(const AssembleArguments& given) {
   fill(options, bar, cache, given.models_everything);
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
-  options.record = given.record;
   options.is_real_time = given.is_real_time;
   options.degrades = given.degrades;
   options.has_local_contact = given.has_local_contact;
-  const scenes::AssembleResult result = scenes::assemble(scene, options);
+  const scenes::AssembleResult result = given.record.empty()
+                                            ? scenes::assemble(scene, options)
+                                            : scenes::assembleAndRecord(scene, given.record, options);
   throwIfStopped();
 
   bar.progress()("writing the report", 1);

@@ -60,10 +60,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   }
   // What was chosen at load has been overruled, and its models with it.
   scene.fidelity_choice.clear();
-  for (scenes::ScenePart& part : scene.parts) {
-    part.part.map.reset();
-    part.part.shell.reset();
-  }
+  for (scenes::ScenePart& part : scene.parts) part.model.reset();
   return scene;
 }
 

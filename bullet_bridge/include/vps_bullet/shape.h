@@ -10,11 +10,7 @@
 #include <vector>
 
 #include "vps/edge_crossing.h"
-#include "vps/mesh.h"
-#include "vps/mesh_distance.h"
-#include "vps/part.h"
-#include "vps/pointshell.h"
-#include "vps/voxmap.h"
+#include "vps/part_model.h"
 
 namespace vps::bullet {
 
@@ -38,21 +34,23 @@ struct Surface {
   std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
-/// What a shape is made of, all in one frame M. Any may be missing: without a map others are tested against
-/// its surfaces (exact, and slower), or, if there are none, cannot be; without a shell it cannot be tested
-/// against others, without triangles rays miss it.
+/// What a shape is made of, all in one frame M. It is not a PartModel because a fixed field merges several
+/// parts: it then has one map and one shell, but one exact surface for each part. Any model may be missing.
+/// Without a map, others are tested against the surfaces (exact, and slower), or, if there are none, cannot
+/// be tested. Without a shell, the shape cannot be tested against others. Without triangles, rays miss it.
 struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Mesh> mesh;
-  /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts;
-  /// these correct the distance and normal of the few that reach the solver, which removes the field's
-  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: the field's word is taken.
+  /// The exact surfaces that the map was built from, in the map's owner order. The map finds the contacts;
+  /// the surfaces correct the distance and normal of the few that reach the solver, which removes the map's
+  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: the map's values are used as they
+  /// are.
   std::vector<Surface> surfaces;
 };
 
-/// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
-ShapeModels makeModels(const Part& part);
+/// The models of one part, whose frame is M. They are shared, not copied: O(1).
+ShapeModels makeModels(const PartModel& part);
 
 /// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. That type is unused by Bullet itself, is concave for
 /// the ray and sweep tests, and where nothing else is registered falls back to convex-against-triangles;

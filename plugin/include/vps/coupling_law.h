@@ -34,6 +34,11 @@ struct CouplingState {
 Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                       const CouplingState& part) noexcept;
 
+/// Energy stored in the coupling's springs [J]. Beyond a spring's limit its force is constant, so the energy
+/// grows linearly there. Takes both states as coupled. Never throws or allocates.
+double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
+                        const CouplingState& part) noexcept;
+
 /// Where the two rates meet: the haptic side writes the proxy, the physics side writes the part; each reads
 /// the other's latest without waiting.
 struct CouplingPort {

@@ -5,6 +5,7 @@
 
 #include "report/html.h"
 #include "report/pictures.h"
+#include "vps_scenes/load_level.h"
 #include "vps_viewer/plot.h"
 #include "vps_viewer/write_file.h"
 
@@ -133,7 +134,7 @@ std::string load_changes(const scenes::AssembleResult& result) {
     rows.push_back({{format(change.time_s, "%.2f"), "n"},
                     {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
                     {escapeHtml(change.why), ""},
-                    {escapeHtml(scenes::inWords(change)), ""}});
+                    {escapeHtml(scenes::describeCost(change)), ""}});
   return "<p>" + behind + ". This is what was given up to hold the rate, and taken back:</p>\n" +
          html::table({"at [s]", "from then on", "why", "what it costs"}, rows);
 }
