@@ -39,15 +39,11 @@ inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25
   Built built;
   built.mesh = mesh;
   built.frame = bullet::makeBodyFrame(massProperties(mesh), density_kg_m3);
-  Part part;
-  part.mesh = mesh;
   VoxMapSettings voxels;
   voxels.voxel_m = voxel_m;
-  part.map = std::make_shared<const VoxMap>(buildVoxMap(mesh, voxels));
   PointShellSettings points;
   points.spacing_m = spacing_m;
-  part.shell = std::make_shared<const PointShell>(buildPointShell(mesh, points));
-  bullet::ShapeModels models = bullet::makeModels(part);
+  bullet::ShapeModels models = bullet::makeModels(*buildPartModel("", mesh, voxels, points));
   built.exact = models.surfaces[0].distance;
   built.shape = std::make_shared<bullet::Shape>(std::move(models), built.frame.X_PB.inverse());
   return built;

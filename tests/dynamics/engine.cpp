@@ -8,15 +8,12 @@ namespace vps::dynamics {
 namespace {
 
 ShapeHandle buildShape(const PartMesh& part, const Resolution& resolution) {
-  Part built;
-  built.mesh = part.mesh;
   VoxMapSettings voxels;
   voxels.voxel_m = resolution.voxel_m;
-  built.map = std::make_shared<const VoxMap>(buildVoxMap(part.mesh, voxels));
   PointShellSettings points;
   points.spacing_m = resolution.spacing_m;
-  built.shell = std::make_shared<const PointShell>(buildPointShell(part.mesh, points));
-  return std::make_shared<bullet::Shape>(bullet::makeModels(built), part.frame.X_PB.inverse());
+  const auto built = buildPartModel("", part.mesh, voxels, points);
+  return std::make_shared<bullet::Shape>(bullet::makeModels(*built), part.frame.X_PB.inverse());
 }
 
 }  // namespace

@@ -38,6 +38,22 @@ TEST(CouplingLaw, PullsThePartTowardsTheProxyByHookesLaw) {
   EXPECT_LT((F.tau - 3 * r).norm(), kEps);
 }
 
+// The energy is the work of the spring's force from zero to this stretch: k x^2 / 2 up to the limit, then
+// force times the remaining stretch.
+TEST(CouplingLaw, EnergyIsTheWorkOfTheLimitedSprings) {
+  CouplingGains gains;
+  gains.k_N_per_m = 1000;
+  gains.max_force_N = 10;
+  gains.k_Nm_per_rad = 2;
+  gains.max_torque_Nm = 1;
+  const CouplingState part = at(Vec3::Zero());
+  EXPECT_EQ(couplingEnergy_J(gains, part, part), 0);
+  EXPECT_NEAR(couplingEnergy_J(gains, at({0.004, 0, 0.003}), part), 0.5 * 1000 * 0.005 * 0.005, kEps);
+  EXPECT_NEAR(couplingEnergy_J(gains, at({0.03, 0, 0}), part), 0.05 + 10 * 0.02, kEps);
+  EXPECT_NEAR(couplingEnergy_J(gains, at(Vec3::Zero(), {0, 0.1, 0}), part), 0.01, kEps);
+  EXPECT_NEAR(couplingEnergy_J(gains, at(Vec3::Zero(), {0, 0.7, 0}), part), 0.25 + 0.2, kEps);
+}
+
 TEST(CouplingLaw, DampsTheDifferenceOfVelocities) {
   CouplingGains gains;
   gains.b_Ns_per_m = 5;

@@ -9,7 +9,7 @@
 namespace vps::scenes {
 namespace {
 
-/// A trace at 1 kHz, grown piece by piece.
+/// Builds a trace at 1 kHz.
 struct TraceMaker {
   std::vector<TraceRow> rows;
   void add(int steps, bool is_touching, double speed_m_s, int phase = 1) {
@@ -53,7 +53,7 @@ TEST(ContactEpisodes, ChatterShorterThanTheBridgeIsOneImpact) {
   EXPECT_EQ(trace.count(true), 0);
 }
 
-TEST(ContactEpisodes, APartLeftAloneOnItsSeatIsNoEpisode) {
+TEST(ContactEpisodes, AReleasedPartOnItsSeatIsNoEpisode) {
   TraceMaker trace;
   trace.add(100, true, 0, 3);
   EXPECT_TRUE(contactEpisodes(trace.rows).empty());
@@ -71,7 +71,7 @@ TEST(TickClock, PercentilesAreNearestRankAndMissesAreThoseAboveThePeriod) {
   EXPECT_EQ(times.max_us, 1001);
 }
 
-TEST(TickClock, EmptyClockSumsUpToZeros) {
+TEST(TickClock, AnEmptyClockGivesZeros) {
   EXPECT_EQ(TickClock(1e-3).summary().count, 0u);
 }
 

@@ -8,6 +8,7 @@
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps_scenes/assemble.h"
+#include "vps_scenes/record.h"
 #include "vps_scenes/replay.h"
 
 namespace vps::scenes {
@@ -19,12 +20,11 @@ Scene twoPins() {
   Scene scene;
   scene.file = "scene.toml";
   scene.parts.resize(3);
-  scene.parts[0].part = {"plate", makeBox({20e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].part = {"plate", makeBox({20e-3, 10e-3, 2e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
   scene.steps.resize(2);
   for (std::size_t i = 0; i < 2; ++i) {
-    scene.parts[i + 1].part = {
-        i == 0 ? "left" : "right", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+    scene.parts[i + 1].part = {i == 0 ? "left" : "right", makeBox({2e-3, 2e-3, 2e-3}), {}, {}};
     const double x_m = i == 0 ? -5e-3 : 5e-3;
     scene.steps[i].part = i + 1;
     scene.steps[i].X_WP_target = Pose::translation({x_m, 0, 2e-3});
@@ -42,12 +42,12 @@ const test::Recorded& realTimeRecording() {
   static const test::Recorded recorded = [] {
     const test::TemporaryFolder folder;
     AssembleOptions options;
-    options.record = folder.path() / "run.mcap";
     options.is_real_time = true;
     Scene scene = twoPins();
     test::Recorded made;
-    made.result = assemble(scene, options);
-    made.run = device::loadRecording(options.record);
+    const std::string file = folder.path() / "run.mcap";
+    made.result = assembleAndRecord(scene, file, options);
+    made.run = device::loadRecording(file);
     return made;
   }();
   return recorded;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/replay.h"
+#include "vps_scenes/record.h"
 
 #include <gtest/gtest.h>
 
@@ -28,10 +29,10 @@ Scene pinOnPlate() {
   scene.file = "some/folder/scene.toml";
   scene.name = "pin on plate";
   scene.parts.resize(2);
-  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
   scene.parts[0].file = "/home/somebody/secret/plate.stl";
-  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}};
   scene.steps.resize(1);
   scene.steps[0].part = 1;
   scene.steps[0].X_WP_target = Pose::translation({0, 0, 2e-3});
@@ -45,12 +46,11 @@ Scene pinOnPlate() {
 
 Recorded recordedPin() {
   const test::TemporaryFolder folder;
-  AssembleOptions options;
-  options.record = folder.path() / "run.mcap";
+  const std::string file = folder.path() / "run.mcap";
   Scene scene = pinOnPlate();
   Recorded recorded;
-  recorded.result = assemble(scene, options);
-  recorded.run = device::loadRecording(options.record);
+  recorded.result = assembleAndRecord(scene, file);
+  recorded.run = device::loadRecording(file);
   return recorded;
 }
 
@@ -116,11 +116,9 @@ TEST(Replay, ACutRecordingRunsUpToTheCut) {
 
 TEST(Replay, ARunThatFailsBeforeItBeginsLeavesNothing) {
   const test::TemporaryFolder folder;
-  AssembleOptions options;
-  options.record = folder.path() / "run.mcap";
   Scene scene = pinOnPlate();
   scene.steps[0].X_WP_start = Pose::translation({0, 0, 1e-3});  // 1 mm deep
-  EXPECT_THROW(assemble(scene, options), LoadError);
+  EXPECT_THROW(assembleAndRecord(scene, folder.path() / "run.mcap"), LoadError);
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 

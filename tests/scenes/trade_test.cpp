@@ -34,9 +34,9 @@ Scene ballOnPlate() {
   Scene scene;
   scene.file = "scene.toml";
   scene.parts.resize(2);
-  scene.parts[0].part = {"plate", makeBox({12e-3, 12e-3, 3e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].part = {"plate", makeBox({12e-3, 12e-3, 3e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
-  scene.parts[1].part = {"ball", makeSphere(kRadius_m, kRings), {}, {}, nullptr, nullptr};
+  scene.parts[1].part = {"ball", makeSphere(kRadius_m, kRings), {}, {}};
   scene.steps.resize(1);
   scene.steps[0].part = 1;
   const double top_m = 1.5e-3;
@@ -64,10 +64,7 @@ TradeRow rowAt(double voxel_m, double spacing_m) {
   EXPECT_EQ(probe.posesInside(), 1u);
   scene.fidelity.voxel_m = voxel_m;
   scene.fidelity.spacing_m = spacing_m;
-  for (ScenePart& part : scene.parts) {
-    part.part.map.reset();
-    part.part.shell.reset();
-  }
+  for (ScenePart& part : scene.parts) part.model.reset();
   buildModels(scene, {});
   TradeRow row;
   row.what.fidelity = scene.fidelity;
@@ -223,27 +220,27 @@ TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
 }
 
 /// Error of depth that 95 of 100 points near a surface do not exceed, at points of the test's own.
-double errorByResampledShells(const Part& part, double reach_m) {
-  const MeshDistance exact(part.mesh);
+double errorByResampledShells(const PartModel& part, double reach_m) {
+  const MeshDistance exact(*part.mesh);
   std::mt19937_64 random(99);
   std::uniform_real_distribution<double> share(0, 1);
   std::vector<double> errors;
   double total = 0;
   std::vector<double> until;
-  for (const auto& [a, b, c] : part.mesh.triangles) {
-    const Vec3 &p = part.mesh.vertices[a], &q = part.mesh.vertices[b], &r = part.mesh.vertices[c];
+  for (const auto& [a, b, c] : part.mesh->triangles) {
+    const Vec3 &p = part.mesh->vertices[a], &q = part.mesh->vertices[b], &r = part.mesh->vertices[c];
     until.push_back(total += (q - p).cross(r - p).norm());
   }
   for (int i = 0; i < 4000; ++i) {
     const auto at = std::lower_bound(until.begin(), until.end(), share(random) * total) - until.begin();
-    const auto& [a, b, c] = part.mesh.triangles[static_cast<std::size_t>(at)];
+    const auto& [a, b, c] = part.mesh->triangles[static_cast<std::size_t>(at)];
     double u = share(random), v = share(random);
     if (u + v > 1) {
       u = 1 - u;
       v = 1 - v;
     }
-    const Vec3 p = part.mesh.vertices[a] + u * (part.mesh.vertices[b] - part.mesh.vertices[a]) +
-                   v * (part.mesh.vertices[c] - part.mesh.vertices[a]) +
+    const Vec3 p = part.mesh->vertices[a] + u * (part.mesh->vertices[b] - part.mesh->vertices[a]) +
+                   v * (part.mesh->vertices[c] - part.mesh->vertices[a]) +
                    Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5) * 2 * reach_m;
     errors.push_back(std::abs(part.map->distance(p) - exact.signedDistance(p)));
   }
@@ -259,9 +256,9 @@ TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
     const FidelityChoice choice = chooseFidelity(scene, wish);
     ASSERT_TRUE(choice.is_met) << choice.failure_reason;
     for (const ScenePart& part : scene.parts) {
-      ASSERT_TRUE(part.part.map);
-      EXPECT_EQ(part.part.map->voxel_m(), choice.fidelity.voxel_m);
-      EXPECT_LE(errorByResampledShells(part.part, tolerance_m), tolerance_m) << part.part.name;
+      ASSERT_TRUE(part.model && part.model->map);
+      EXPECT_EQ(part.model->map->voxel_m(), choice.fidelity.voxel_m);
+      EXPECT_LE(errorByResampledShells(*part.model, tolerance_m), tolerance_m) << part.part.name;
     }
   }
 }
@@ -282,7 +279,7 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   const FidelityChoice few = chooseFidelity(again, quick);
   ASSERT_TRUE(few.is_met) << few.failure_reason;
   const std::size_t sides = few.fidelity.sides == Sides::Both ? 2 : 1;
-  EXPECT_LE(sides * again.parts[1].part.shell->size(), 10910u);
+  EXPECT_LE(sides * again.parts[1].model->shell->size(), 10910u);
   EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points came first
   EXPECT_EQ(few.fidelity.voxel_m, ballOnPlate().fidelity.voxel_m);
 }
@@ -332,7 +329,7 @@ TEST(FidelityChoice, NoMapIsBuiltThatWouldNotFitInMemory) {
   wish.budget_hz = 1;
   wish.machine_bytes = 1e4;
   EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
-  EXPECT_FALSE(scene.parts[0].part.map) << "it was built all the same";
+  EXPECT_FALSE(scene.parts[0].model) << "it was built all the same";
 }
 
 // Flat, round, thin, and of many small faces.

@@ -12,6 +12,8 @@
 #include "table.h"
 #include "terminal.h"
 #include "vps_scenes/assemble.h"
+#include "vps_scenes/load_level.h"
+#include "vps_scenes/record.h"
 
 namespace vps::viewer {
 
@@ -34,7 +36,7 @@ std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load
   std::string lines;
   for (const scenes::LoadLevelChange& change : load_changes)
     lines += "load shedding: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
-             change.is + ", since " + change.why + "; " + scenes::inWords(change) + "\n";
+             change.is + ", since " + change.why + "; " + scenes::describeCost(change) + "\n";
   return lines;
 }
 
@@ -66,11 +68,12 @@ int runAssemble(const AssembleArguments& given) {
   setModelOptions(options, bar, cache, given.scene.models_everything);
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
-  options.record = given.record;
   options.is_real_time = given.is_real_time;
   options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
-  const scenes::AssembleResult result = scenes::assemble(scene, options);
+  const scenes::AssembleResult result = given.record.empty()
+                                            ? scenes::assemble(scene, options)
+                                            : scenes::assembleAndRecord(scene, given.record, options);
   throwIfStopped();
 
   bar.progress()("writing the report", 1);

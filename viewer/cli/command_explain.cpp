@@ -31,26 +31,26 @@ std::string namesOf(const scenes::Scene& scene, const std::vector<std::size_t>& 
   return names.empty() ? "-" : names;
 }
 
-std::string modelsOf(const scenes::PlannedPart& part) {
+std::string modelsOf(const scenes::PartModelPlan& part) {
   if (part.has_map && part.has_shell) return "map and shell";
   return part.has_map ? "map" : part.has_shell ? "shell" : "neither";
 }
 
-std::string whyOf(const scenes::Scene& scene, const scenes::PlannedPart& part) {
+std::string whyOf(const scenes::Scene& scene, const scenes::PartModelPlan& part) {
   if (!part.same_as) return part.why;
   return part.why + "; shares the models of " + scene.parts[*part.same_as].part.name;
 }
 
-std::string whereOf(const scenes::PlannedPart& part) {
+std::string whereOf(const scenes::PartModelPlan& part) {
   if (!part.has_map && !part.has_shell) return "-";
   if (part.kept_P.empty()) return "whole";
   return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
 }
 
-std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedPlan& explained) {
+std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
   Table table({"<part", "<modelled", "<where", "MB", "points", "build [s]", "<why"});
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    const scenes::PlannedPart& part = explained.plan.parts[i];
+    const scenes::PartModelPlan& part = explained.plan.parts[i];
     const scenes::PartCost& cost = explained.cost.parts[i];
     table.add({scene.parts[i].part.name, modelsOf(part), whereOf(part),
                megabytes(cost.map_bytes + cost.shell_bytes), std::to_string(cost.points),
@@ -59,17 +59,17 @@ std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedPlan
   return table.text();
 }
 
-std::string regionOf(const scenes::PlannedStep& step) {
+std::string regionOf(const scenes::FieldPlan& step) {
   if (!step.region_W) return "anywhere";
   const Vec3 size = 1e3 * step.region_W->size();
   return fixed(size.x(), 0) + " x " + fixed(size.y(), 0) + " x " + fixed(size.z(), 0);
 }
 
-std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedPlan& explained) {
+std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
   Table table({"<step", "<moves", "<within [mm]", "<against the field of", "<left out", "field MB", "points",
                "cook [s]"});
   for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
-    const scenes::PlannedStep& step = explained.plan.steps[s];
+    const scenes::FieldPlan& step = explained.plan.steps[s];
     const scenes::StepCost& cost = explained.cost.steps[s];
     table.add({std::to_string(s + 1),
                step.part ? scene.parts[*step.part].part.name : "all parts that are not fixed", regionOf(step),
@@ -79,7 +79,7 @@ std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedPlan
   return table.text();
 }
 
-std::string totalOf(const char* words, const scenes::PlanCost& cost) {
+std::string totalOf(const char* words, const scenes::ModelPlanCost& cost) {
   return std::string(words) + megabytes(cost.most.bytes) + " MB at most (" +
          std::to_string(cost.most.voxmaps) + " voxmaps, " + std::to_string(cost.most.pointshells) +
          " pointshells, " + std::to_string(cost.most.points) + " points and " +
@@ -94,8 +94,9 @@ int runExplain(const ExplainArguments& given) {
   scenes::ModelOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   setModelOptions(options, bar, cache, given.scene.models_everything);
-  const scenes::PlanFor purpose =
-      given.is_for_simulate || scene.steps.empty() ? scenes::PlanFor::Simulate : scenes::PlanFor::Assemble;
+  const scenes::ModelPurpose purpose = given.is_for_simulate || scene.steps.empty()
+                                           ? scenes::ModelPurpose::Simulate
+                                           : scenes::ModelPurpose::Assemble;
   ExplainAnswer answer = {scene, scenes::explain(scene, purpose, options), {}};
   if (!given.scene.models_everything) {
     options.models_everything = true;

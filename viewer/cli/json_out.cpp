@@ -105,8 +105,7 @@ Json step(const scenes::StepResult& step) {
           {"final_error_m", step.final_error_m},
           {"final_error_rad", step.final_error_rad},
           {"rest_drift_m", step.rest_drift_m},
-          {"rest_s", step.rest_s},
-          {"is_placed", step.is_placed}};
+          {"rest_s", step.rest_s}};
 }
 
 }  // namespace
@@ -255,8 +254,8 @@ Json names(const scenes::Scene& scene, const std::vector<std::size_t>& parts) {
   return out;
 }
 
-Json plannedPart(const scenes::Scene& scene, const scenes::ExplainedPlan& explained, std::size_t i) {
-  const scenes::PlannedPart& part = explained.plan.parts[i];
+Json plannedPart(const scenes::Scene& scene, const scenes::ExplainedModels& explained, std::size_t i) {
+  const scenes::PartModelPlan& part = explained.plan.parts[i];
   const scenes::PartCost& cost = explained.cost.parts[i];
   Json kept = Json::array();
   for (const Box& box : part.kept_P) kept.push_back(list(box));
@@ -271,8 +270,8 @@ Json plannedPart(const scenes::Scene& scene, const scenes::ExplainedPlan& explai
           {"why", part.why}};
 }
 
-Json plannedStep(const scenes::Scene& scene, const scenes::ExplainedPlan& explained, std::size_t s) {
-  const scenes::PlannedStep& step = explained.plan.steps[s];
+Json plannedStep(const scenes::Scene& scene, const scenes::ExplainedModels& explained, std::size_t s) {
+  const scenes::FieldPlan& step = explained.plan.steps[s];
   const scenes::StepCost& cost = explained.cost.steps[s];
   return {{"moves", step.part ? Json(scene.parts[*step.part].part.name) : Json(nullptr)},
           {"region_m", step.region_W ? list(*step.region_W) : Json(nullptr)},
@@ -283,7 +282,7 @@ Json plannedStep(const scenes::Scene& scene, const scenes::ExplainedPlan& explai
           {"field_points", cost.points}};
 }
 
-Json explainWall(const scenes::PlanCost& cost) {
+Json explainWall(const scenes::ModelPlanCost& cost) {
   Json parts = Json::array(), steps = Json::array();
   for (const scenes::PartCost& part : cost.parts)
     parts.push_back({{"map_s", part.map_wall_s}, {"shell_s", part.shell_wall_s}});
@@ -358,13 +357,13 @@ Json tradeRowWall(const scenes::TradeRow& row) {
 
 std::string toJson(const ExplainAnswer& answer) {
   const scenes::Scene& scene = answer.scene;
-  const scenes::Plan& plan = answer.chosen.plan;
+  const scenes::ModelPlan& plan = answer.chosen.plan;
   Json parts = Json::array(), steps = Json::array();
   for (std::size_t i = 0; i < plan.parts.size(); ++i) parts.push_back(plannedPart(scene, answer.chosen, i));
   for (std::size_t s = 0; s < plan.steps.size(); ++s) steps.push_back(plannedStep(scene, answer.chosen, s));
   Json json = {{"wall", explainWall(answer.chosen.cost)},
                {"scene", scene.name},
-               {"for", plan.purpose == scenes::PlanFor::Assemble ? "assemble" : "simulate"},
+               {"for", plan.purpose == scenes::ModelPurpose::Assemble ? "assemble" : "simulate"},
                {"models_everything", plan.models_everything},
                {"voxel_m", scene.fidelity.voxel_m},
                {"point_spacing_m", scene.fidelity.spacing_m},

@@ -87,8 +87,8 @@ struct SnapshotAnswer {
 /// What `vps explain` found, beside what everything would cost if that was asked.
 struct ExplainAnswer {
   scenes::Scene scene;
-  scenes::ExplainedPlan chosen;
-  std::optional<scenes::ExplainedPlan> everything;
+  scenes::ExplainedModels chosen;
+  std::optional<scenes::ExplainedModels> everything;
 };
 
 std::string toJson(const scenes::AssembleResult& result);

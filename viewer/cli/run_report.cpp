@@ -27,15 +27,15 @@ std::string csvOf(const std::vector<scenes::StepResult>& steps) {
   std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
                              "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
                              "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
-                             "rest_drift_m", "rest_s", "is_placed", "index_points", "failure_reason"});
+                             "rest_drift_m", "rest_s", "index_points", "failure_reason"});
   for (const scenes::StepResult& step : steps)
-    out += csvLine(
-        {step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
-         csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
-         csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N), csvNumber(step.peak_torque_Nm),
-         std::to_string(step.impacts), std::to_string(step.slides), csvNumber(step.final_error_m),
-         csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m), csvNumber(step.rest_s),
-         step.is_placed ? "1" : "0", std::to_string(step.index_points), step.failure_reason});
+    out +=
+        csvLine({step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
+                 csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
+                 csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N),
+                 csvNumber(step.peak_torque_Nm), std::to_string(step.impacts), std::to_string(step.slides),
+                 csvNumber(step.final_error_m), csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m),
+                 csvNumber(step.rest_s), std::to_string(step.index_points), step.failure_reason});
   return out;
 }
 
@@ -62,7 +62,6 @@ bool printSteps(const scenes::AssembleResult& result) {
     if (step.index_points > 0)
       std::printf("%s: taken anew %s on the way, which is longer than the device's workspace\n", name,
                   step.index_points == 1 ? "once" : (std::to_string(step.index_points) + " times").c_str());
-    if (step.is_placed) std::printf("%s: put on its target all the same, for the next step\n", name);
     if (!scenes::isWithinLimit(step))
       std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());
     if (!scenes::isAtRest(step))

@@ -108,10 +108,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   }
   // The command line replaces what `auto` chose at load, so the models of that choice are of no use.
   scene.fidelity_choice.clear();
-  for (scenes::ScenePart& part : scene.parts) {
-    part.part.map.reset();
-    part.part.shell.reset();
-  }
+  for (scenes::ScenePart& part : scene.parts) part.model.reset();
   return scene;
 }
 

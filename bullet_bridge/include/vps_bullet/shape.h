@@ -11,11 +11,7 @@
 #include <vector>
 
 #include "vps/edge_crossing.h"
-#include "vps/mesh.h"
-#include "vps/mesh_distance.h"
-#include "vps/part.h"
-#include "vps/pointshell.h"
-#include "vps/voxmap.h"
+#include "vps/part_model.h"
 #include "vps_bullet/export.h"
 
 namespace vps::bullet {
@@ -40,9 +36,11 @@ struct Surface {
   std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
-/// A shape's models, all in one frame M. Any may be missing. Without a map, points of other shapes are tested
-/// against the surfaces (exact, but slower), or, without surfaces, not at all. Without a shell, the shape's
-/// own points are not tested against others. Without triangles, rays miss it.
+/// The models of a shape, all in one frame M. This is not a PartModel because a fixed field merges several
+/// parts: it then has one map and one shell, but one exact surface for each part. Any model may be missing.
+/// Without a map, points of other shapes are tested against the surfaces (exact, but slower), or, without
+/// surfaces, not at all. Without a shell, the shape's own points are not tested against others. Without
+/// triangles, rays miss it.
 struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
@@ -53,8 +51,8 @@ struct ShapeModels {
   std::vector<Surface> surfaces;
 };
 
-/// A part's models, with its mesh as the exact surface. Builds one MeshDistance: O(n log n).
-VPS_BULLET_API ShapeModels makeModels(const Part& part);
+/// The models of one part, whose frame is M. They are shared, not copied: O(1).
+VPS_BULLET_API ShapeModels makeModels(const PartModel& part);
 
 /// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. Bullet itself does not use that type; it is concave for
 /// ray and sweep tests, and without a registered algorithm falls back to convex against triangles.

@@ -102,14 +102,12 @@ BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3
   return frame;
 }
 
-ShapeModels makeModels(const Part& part) {
+ShapeModels makeModels(const PartModel& part) {
   ShapeModels models;
   models.map = part.map;
   models.shell = part.shell;
-  if (!part.mesh.triangles.empty()) {
-    models.mesh = std::make_shared<const Mesh>(part.mesh);
-    models.surfaces = {{std::make_shared<const MeshDistance>(welded(part.mesh)), Pose()}};
-  }
+  models.mesh = part.mesh;
+  if (part.surface) models.surfaces = {{part.surface, Pose()}};
   return models;
 }
 

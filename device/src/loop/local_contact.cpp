@@ -64,12 +64,6 @@ std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size
   return touching;
 }
 
-double springEnergy_J(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
-  const double line_m = (proxy.X_W.p - part.X_W.p).norm();
-  const double turn_rad = rotationVector(proxy.X_W.R * part.X_W.R.transpose()).norm();
-  return 0.5 * (gains.k_N_per_m * line_m * line_m + gains.k_Nm_per_rad * turn_rad * turn_rad);
-}
-
 }  // namespace
 
 LocalContact::LocalContact(const LocalContactSettings& settings)
@@ -100,7 +94,7 @@ void LocalContact::startFrom(const CouplingGains& gains, const CouplingState& pr
                              const CouplingState& snapshot) noexcept {
   if (has_snapshot_) {
     report_.jump_J +=
-        std::max(0.0, springEnergy_J(gains, proxy, snapshot) - springEnergy_J(gains, proxy, now_));
+        std::max(0.0, couplingEnergy_J(gains, proxy, snapshot) - couplingEnergy_J(gains, proxy, now_));
     report_.greatest_jump_m = std::max(report_.greatest_jump_m, (snapshot.X_W.p - now_.X_W.p).norm());
   }
   now_ = snapshot;

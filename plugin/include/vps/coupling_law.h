@@ -34,4 +34,9 @@ struct CouplingState {
 VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                               const CouplingState& part) noexcept;
 
+/// Energy stored in the coupling's springs [J]. Beyond a spring's limit its force is constant, so the energy
+/// grows linearly there. Takes both states as coupled. Never throws or allocates.
+VPS_API double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
+                                const CouplingState& part) noexcept;
+
 }  // namespace vps

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/coupling_law.h"
 
+#include <algorithm>
+
 namespace vps {
 namespace {
 
@@ -8,6 +10,12 @@ namespace {
 Vec3 limited(const Vec3& v, double limit) {
   const double length = v.norm();
   return length > limit ? Vec3(v * (limit / length)) : v;
+}
+
+/// Energy of a spring of stiffness k at this stretch, whose force does not exceed `limit`.
+double storedEnergy(double k, double stretch, double limit) {
+  const double elastic = std::min(stretch, limit / k);
+  return 0.5 * k * elastic * elastic + limit * (stretch - elastic);
 }
 
 }  // namespace
@@ -25,6 +33,13 @@ Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                  gains.b_Nms_per_rad * (proxy.V_W.w - part.V_W.w);
   // One test of the result catches velocities and gains that are not finite, and overflow.
   return F_part_W.isFinite() ? F_part_W : Wrench{};
+}
+
+double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
+                        const CouplingState& part) noexcept {
+  return storedEnergy(gains.k_N_per_m, (proxy.X_W.p - part.X_W.p).norm(), gains.max_force_N) +
+         storedEnergy(gains.k_Nm_per_rad, rotationVector(proxy.X_W.R * part.X_W.R.transpose()).norm(),
+                      gains.max_torque_Nm);
 }
 
 }  // namespace vps

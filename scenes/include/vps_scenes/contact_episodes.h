@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells impacts from slides, as figure 9 of the paper does.
+// Contact episodes of a trace, divided into impacts and slides as in figure 9 of the paper.
 #pragma once
 
 #include <span>
@@ -10,20 +10,20 @@
 
 namespace vps::scenes {
 
-/// A time during which the part in the hand touches something.
+/// An interval in which the part in hand is in contact.
 struct ContactEpisode {
   double start_s = 0, end_s = 0;
   int step = -1;
-  bool is_slide = false;  ///< the part moved more than kSlideTravel_m while it touched; else it is an impact
+  bool is_slide = false;  ///< the part moved more than kSlideTravel_m in contact; else it is an impact
 };
 
-/// Touching again within this belongs to the same episode: a part that chatters on a surface has hit it once.
-/// assumed: below what a hand feels as two events (about 30 ms between taps).
+/// Contacts separated by less than this belong to one episode: a part that chatters on a surface has hit it
+/// once. assumed: shorter than what a hand feels as two events (about 30 ms between taps).
 inline constexpr double kEpisodeBridge_s = 0.02;
-/// assumed: well above what a bounce covers.
+/// assumed: well above the travel of a bounce.
 inline constexpr double kSlideTravel_m = 1e-3;
 
-/// The episodes of a trace in order of time, while the hand holds the part (not in phase 3, rest). O(rows).
+/// The episodes of a trace in order of time, without TracePhase::Rest. O(rows).
 VPS_SCENES_API std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace);
 
 }  // namespace vps::scenes

@@ -1,44 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a plan costs: its models built and its fields cooked, without running anything.
+// The cost of a model plan in memory and time: builds its models and cooks its fields, without running
+// anything.
 #pragma once
 
 #include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/model_plan.h"
 #include "vps_scenes/result.h"
 
 namespace vps::scenes {
 
+/// One part's own models; 0 where it has none, or shares those of another part.
 struct PartCost {
-  std::size_t map_bytes = 0, shell_bytes = 0, points = 0;  ///< 0 where it has none, or shares another's
-  double map_wall_s = 0, shell_wall_s = 0;                 ///< to build, or to take from the cache
+  std::size_t map_bytes = 0, shell_bytes = 0, points = 0;
+  double map_wall_s = 0, shell_wall_s = 0;  ///< to build, or to read from the cache
 };
 
-/// Of the fixed field that a step needs, beside the parts' own models.
+/// The fixed field of one step, without what it shares with the parts' own models.
 struct StepCost {
   std::size_t bytes = 0, points = 0;
-  bool is_cooked = false;  ///< false: the one before will do
+  bool is_cooked = false;  ///< false: the field of the step before serves this one as well
   double cook_wall_s = 0;
 };
 
-struct PlanCost {
+struct ModelPlanCost {
   std::vector<PartCost> parts;
   std::vector<StepCost> steps;
-  ModelledCost most;  ///< own models and the largest field
+  ModelledCost most;  ///< the parts' models and the largest field
   double build_wall_s = 0, cook_wall_s = 0;
 };
 
-struct ExplainedPlan {
-  Plan plan;
-  PlanCost cost;
+struct ExplainedModels {
+  ModelPlan plan;
+  ModelPlanCost cost;
 };
 
-/// Builds what the plan says, and cooks each step's field with all parts of earlier steps on their targets. A
-/// run does so too, but for where contact leaves a part. Throws LoadError as assemble().
-VPS_SCENES_API ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options);
+/// Builds the plan's models, and cooks each step's field with the parts of earlier steps at their targets. In
+/// a run those parts lie where contact left them. Throws LoadError as assemble().
+VPS_SCENES_API ExplainedModels explain(Scene scene, ModelPurpose purpose, const ModelOptions& options);
 
-/// What becomes of a part in a step.
-enum class PartUse { Absent, Moves, Cooked, LeftOut };
-VPS_SCENES_API PartUse useOf(const Plan& plan, std::size_t part, std::size_t step);
+/// How a part takes part in a step.
+enum class PartUse {
+  Absent,   ///< not yet in place, or only drawn
+  Moves,    ///< in the hand, or free
+  Cooked,   ///< in the fixed field
+  LeftOut,  ///< in place, but out of the moving part's reach
+};
+VPS_SCENES_API PartUse useOf(const ModelPlan& plan, std::size_t part, std::size_t step);
 
 }  // namespace vps::scenes

@@ -1,59 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run in real time gives up when it cannot hold its rate, in which order, and what it says of it.
+// Load shedding: what a run in real time reduces when it cannot hold its physics rate, and in which order.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 
 #include "vps/fidelity.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/result.h"
 
 namespace vps::scenes {
 
-/// How a run goes, by what its scene asks. Force limits, passivity control and watchdogs are no part of it:
-/// they are given up by none.
+/// A load level relative to the scene's own settings. Force limits, passivity control and watchdogs are the
+/// same at every level.
 struct LoadLevel {
-  double coarser = 1;    ///< spacing of points by the scene's, >= 1
-  int rate_divisor = 1;  ///< of the physics rate
-  int slower = 1;        ///< the clock's time by simulated time
+  double spacing_factor = 1;  ///< spacing of the points by the scene's, >= 1
+  int rate_divisor = 1;       ///< of the physics rate
+  int time_divisor = 1;       ///< simulated time runs at 1/time_divisor of the clock's
 
-  /// Physics periods of the scene's from one step to the next.
-  [[nodiscard]] int periods() const noexcept { return rate_divisor * slower; }
+  /// Duration of one step on the clock, in physics periods of the scene.
+  [[nodiscard]] int periods() const noexcept { return rate_divisor * time_divisor; }
 };
 
-/// The stated order: fewer points, then fewer steps, then slower time; each keeps what was given up before.
-/// Spacing up to four times, as fidelity_choice.h goes. assumed: a quarter of the rate and of the clock's
-/// time, beyond which nobody would call it the same task.
+/// The levels in order: fewer points first, then fewer steps, then slower time; each level keeps the
+/// reductions of the one before. The spacing grows up to four times, as in fidelity_choice.h. assumed: a
+/// quarter of the rate and of the clock's time, beyond which it would no longer be the same task.
 inline constexpr std::array<LoadLevel, 7> kLoadLevels = {
     {{1, 1, 1}, {2, 1, 1}, {4, 1, 1}, {4, 2, 1}, {4, 4, 1}, {4, 4, 2}, {4, 4, 4}}};
 
-/// How many times as much a step may take of its period at the pace before: points go with the inverse square
-/// of their spacing.
-VPS_SCENES_API double dearerBefore(std::size_t level);
+/// The greatest share of its period that a step takes at level - 1, divided by that at `level`: the number of
+/// points goes with the inverse square of their spacing. @param level  1 to 6
+VPS_SCENES_API double costRatio(std::size_t level);
 
-/// "points every 1 mm, physics at 500 Hz, time at 1/2".
-VPS_SCENES_API std::string describe(const LoadLevel& pace, const Fidelity& fidelity);
+/// For example "points every 1 mm, physics at 500 Hz, time at 1/2 of the clock's".
+VPS_SCENES_API std::string describe(const LoadLevel& level, const Fidelity& fidelity);
 
-/// One change of pace.
-struct LoadLevelChange {
-  double time_s = 0;     ///< simulated
-  int from = 0, to = 0;  ///< indices of kLoadLevels
-  std::string was, is;   ///< both in words
-  std::string why;
-  std::string cost;       ///< what it costs in error, or gives back
-  double lost_share = 0;  ///< of the last quarter of a second, that had no step of its own
-  /// How far what touches may be from the nearest point that is looked at: no contact can be deeper unseen.
-  double unseen_bound_m = 0;
-  /// Least distance with the new points less that with the old, where the part was; none if it was beyond the
-  /// map's band.
-  std::optional<double> misread_m;
-  double k_N_per_m = 0;     ///< coupling stiffness from here on
-  double build_wall_s = 0;  ///< from the decision to its effect, for points
-  bool is_done = true;      ///< false: it could not be, and `why` says so
-};
-
-/// What a change costs: known beforehand, and measured where it was made.
-VPS_SCENES_API std::string inWords(const LoadLevelChange& change);
+/// The error that a change of level costs: the bound known beforehand, and the difference measured.
+VPS_SCENES_API std::string describeCost(const LoadLevelChange& change);
 
 }  // namespace vps::scenes

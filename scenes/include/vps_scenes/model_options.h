@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the models of a scene's parts come about.
+// Options for building the models of a scene's parts.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,10 @@ namespace vps::scenes {
 
 struct ModelOptions {
   Progress progress;
-  bool models_everything = false;      ///< no sparing: plan.h
-  const VoxMapCache* cache = nullptr;  ///< where voxmaps are kept; null: built each time
-  /// Told, in one line, of each part whose inside and outside could not be told for sure.
+  bool models_everything = false;      ///< models every part everywhere (model_plan.h)
+  const VoxMapCache* cache = nullptr;  ///< where voxmaps are kept between runs; null: built each time
+  /// Gets one line for each part whose inside and outside could not be told apart with certainty. May be
+  /// empty.
   std::function<void(const std::string&)> warn;
 };
 

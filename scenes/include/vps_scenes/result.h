@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What came of a run: the numbers that reports, plots and JSON are made from.
+// The results of a run, from which reports, plots and JSON are made.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,16 @@
 #include <vector>
 
 #include "vps/wrench.h"
-#include "vps_scenes/load_level.h"
 #include "vps_scenes/snapshot.h"
 
 namespace vps::scenes {
 
-/// Wall-clock statistics of something that repeats [microseconds].
+/// Wall-clock statistics of a repeated task [microseconds].
 struct TickTimes {
   std::uint64_t count = 0;
   std::uint64_t missed = 0;  ///< took longer than the period
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
-  /// The same by the processor time of the thread: without what other programs took meanwhile. 0: not taken.
+  /// Processor time of the thread, without the time that other programs took. 0: not measured.
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
@@ -36,21 +35,20 @@ struct StepResult {
   double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int index_points = 0;  ///< times the hand let go on the way and took the part anew, for a device too small
+  int index_points = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
   double final_error_m = 0, final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
   double rest_s = 0;
-  bool is_placed = false;  ///< not completed, and set on its target by us, for the next step to stand on
-  double cook_wall_s = 0;  ///< making the fixed field of the next step, on a thread of its own
-  double swap_wall_s = 0;  ///< putting it in place, between two physics steps
+  double cook_wall_s = 0;                  ///< cooking the next step's fixed field, on a thread of its own
+  double swap_wall_s = 0;                  ///< putting that field in place, between two physics steps
   std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
 };
 
-/// Greatest drift of a part that was let go and should rest.
+/// Greatest drift of a released part that counts as being at rest.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
-/// Reached, never too deep, and stayed: what a step must be for the whole to be good. One home for report,
-/// table, JSON and exit status.
+/// A step is good if it was completed, within its penetration limit, and at rest afterwards. Report, table,
+/// JSON and exit status all use these functions.
 inline bool isWithinLimit(const StepResult& step) {
   return step.max_penetration_m <= step.penetration_limit_m;
 }
@@ -61,11 +59,14 @@ inline bool isGood(const StepResult& step) {
   return step.completed && isWithinLimit(step) && isAtRest(step);
 }
 
+/// What the hand does with the part.
+enum class TracePhase { Reach, Insert, Press, Rest };
+
 /// One row of the time series (figure 9 of the paper).
 struct TraceRow {
   double time_s = 0;
   int step = -1;
-  int phase = 0;    ///< 0 reach, 1 insert, 2 press, 3 rest
+  int phase = 0;    ///< a TracePhase
   Wrench F_hand_W;  ///< on the hand
   Pose X_WP;        ///< part in hand
   Pose X_W_Proxy;
@@ -75,8 +76,8 @@ struct TraceRow {
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;                  ///< DESIGN.md section 7, by what the encoders show
-  double quantisation_error_bound_J = 0;  ///< what they may have kept from it at the most (PassivityObserver)
+  double injected_J = 0;                  ///< energy that the loop generated, by the encoders' positions
+  double quantisation_error_bound_J = 0;  ///< of injected_J, by the encoders' resolution
 };
 
 struct ModelledCost {
@@ -84,6 +85,25 @@ struct ModelledCost {
   std::size_t points = 0;        ///< of the parts' own shells
   std::size_t field_points = 0;  ///< of the cooked field's
   std::size_t bytes = 0;         ///< of all
+};
+
+/// One change of the load level (load_level.h).
+struct LoadLevelChange {
+  double time_s = 0;      ///< simulated
+  int from = 0, to = 0;   ///< indices of kLoadLevels
+  std::string was, is;    ///< both levels in words
+  std::string why;        ///< the measurement that caused it
+  std::string cost;       ///< its cost in error, or what it restores
+  double lost_share = 0;  ///< share of the last quarter of a second without a step of its own
+  /// Greatest distance from any place of the surface to the nearest point that is tested: no contact can be
+  /// deeper without being detected.
+  double unseen_bound_m = 0;
+  /// Least distance by the new points less that by the old, at the part's pose; none if it was beyond the
+  /// map's band.
+  std::optional<double> misread_m;
+  double k_N_per_m = 0;     ///< coupling stiffness from here on
+  double build_wall_s = 0;  ///< for new points: from the decision to their use
+  bool is_done = true;      ///< false: it failed, and `why` gives the reason
 };
 
 /// What a run in real time adds: how well time was kept.
@@ -97,11 +117,10 @@ struct RealTimeResult {
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;
-  std::uint64_t physics_missed = 0;  ///< physics periods, as asked, without a step of their own
-  double behind_s = 0;  ///< by how much less simulated time went by than the clock's while physics ran
-  std::vector<LoadLevelChange>
-      load_changes;          ///< what was given up to hold the rate, and taken back, in order
-  std::uint64_t faults = 0;  ///< of safety
+  std::uint64_t physics_missed = 0;  ///< periods of the scene's physics rate without a step of their own
+  double behind_s = 0;               ///< by how much simulated time fell behind the clock while physics ran
+  std::vector<LoadLevelChange> load_changes;  ///< in order of time
+  std::uint64_t faults = 0;                   ///< safety faults
 };
 
 struct AssembleResult {
@@ -115,13 +134,13 @@ struct AssembleResult {
   TickTimes haptic, physics;
   std::optional<RealTimeResult> real_time;  ///< of a run in real time
   struct {
-    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was held instead
-    double jump_J = 0, greatest_jump_m = 0;  ///< by new snapshots
+    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was used unchanged
+    double jump_J = 0, greatest_jump_m = 0;  ///< caused by new snapshots
   } local_contact;
   EnergyLedger energy;
-  ModelledCost modelled;  ///< at its most, with the fixed field
-  int widened = 0;        ///< times a part came to the border of its region, so that the rest was modelled
-  std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set
+  ModelledCost modelled;              ///< at its maximum, with the fixed field
+  int widened = 0;                    ///< times a part left its region, so that all fixed parts were modelled
+  std::size_t contacts_left_out = 0;  ///< near points beyond a query's limit; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 

@@ -3,16 +3,26 @@
 // scenes/README.md; nothing here is live.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "vps/fidelity.h"
-#include "vps/part.h"
+#include "vps/part_model.h"
 #include "vps_scenes/export.h"
 
 namespace vps::scenes {
+
+/// What a scene says of a part itself, in the part's own frame P.
+struct Part {
+  std::string name;
+  Mesh mesh;
+  Material material;
+  std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB, 0 to 1
+};
 
 struct ScenePart {
   Part part;
@@ -20,7 +30,9 @@ struct ScenePart {
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another (interference fits)
   std::string file;            ///< where it came from, for messages
-  bool is_cropped = false;     ///< its models are those of a neighbourhood: good for the plan they came from
+  /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
+  std::shared_ptr<const PartModel> model;
+  bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for
 };
 
 /// One step of the procedure: bring `part` from its start to its target by contact.

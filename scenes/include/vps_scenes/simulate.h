@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene's bodies under gravity, no hand.
+// Simulates the scene's bodies under gravity, without a hand.
 #pragma once
 
 #include <atomic>
@@ -22,10 +22,10 @@ struct BodyState {
 };
 
 struct SimulateOptions : ModelOptions {
-  /// By the system's clock: a step begins when it is due. Steps are the same, and so is what comes of them.
+  /// By the system's clock: each step begins when it is due. The steps and their results stay the same.
   bool is_real_time = false;
   const std::atomic<bool>* stop = nullptr;  ///< set it to end early
-  /// Called after every step; empty: no trace.
+  /// Called after every step. May be empty.
   std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
 };
 
@@ -33,17 +33,16 @@ struct SimulateResult {
   std::vector<BodyState> bodies;
   double max_penetration_m = 0;  ///< deepest contact of the run, by the voxmaps
   double kinetic_energy_J = 0;   ///< at the end
-  TickTimes step, contact_step;  ///< all steps; those with contact
+  TickTimes step, contact_step;  ///< of all steps; of those with contact
   ModelledCost modelled;
   double build_wall_s = 0;
-  /// By the clock: what the system refused, and periods that passed without a step of their own.
-  struct Kept {
-    std::uint64_t missed = 0;
+  struct RealTime {
+    std::uint64_t missed = 0;  ///< periods without a step of their own
     bool has_priority = false, has_locked_memory = false;
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings;  ///< what the system refused
     double run_wall_s = 0;
   };
-  std::optional<Kept> real_time;
+  std::optional<RealTime> real_time;  ///< of a run in real time
 };
 
 /// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.

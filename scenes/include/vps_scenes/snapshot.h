@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What viewers, recorders and the network see of one instant. Nobody else reads live state.
+// The state of a run at one instant, for viewers and recorders, which never read live state.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 namespace vps::scenes {
 
 enum class BodyRole {
-  Waiting,   ///< not yet in the procedure: drawn only in the overview of the finished assembly
+  Waiting,   ///< its step is still to come: drawn only in the overview of the finished assembly
   InHand,    ///< coupled to the device
-  Released,  ///< let go, still dynamic
+  Released,  ///< uncoupled, still dynamic
   Mounted,   ///< cooked into the fixed field
 };
 
@@ -23,7 +23,7 @@ struct BodySnapshot {
   BodyRole role = BodyRole::Waiting;
 };
 
-/// A contact as a picture needs it.
+/// A contact, to be drawn.
 struct ContactMark {
   Vec3 p_W = Vec3::Zero();
   Vec3 n_W = Vec3::Zero();
@@ -38,7 +38,7 @@ struct Snapshot {
   std::size_t target_part = 0;
   Pose X_WP_target;
   bool has_hand = false;
-  Pose X_W_Proxy;   ///< where the device's handle is, in the scene
+  Pose X_W_Proxy;   ///< the device's handle
   Wrench F_hand_W;  ///< force and torque on the hand
   std::vector<ContactMark> contacts;
 };

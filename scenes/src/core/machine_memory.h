@@ -4,7 +4,7 @@
 
 namespace vps::scenes {
 
-/// Bytes, all in all; 0 where the system does not say.
+/// Total memory in bytes; 0 where the system does not report it.
 double machineMemoryBytes() noexcept;
 
 }  // namespace vps::scenes

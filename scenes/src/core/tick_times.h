@@ -9,8 +9,7 @@
 
 namespace vps::scenes {
 
-/// Collects durations in a buffer sized once, and sums them up at the end. Not part of any result that must
-/// repeat.
+/// Collects durations and summarises them at the end. Not part of any result that must repeat.
 class TickClock {
  public:
   explicit TickClock(double period_s = 0) : period_us_(period_s * 1e6) {}

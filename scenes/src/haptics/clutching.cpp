@@ -7,59 +7,60 @@ namespace vps::scenes {
 
 namespace {
 
-/// Where safety keeps the clutch from moving, go on as it is after so many times what it takes. assumed.
-constexpr double kPatience = 10;
+/// Where safety keeps the clutch from moving, the run goes on after this multiple of the clutch's time.
+/// assumed.
+constexpr double kWaitLimit = 10;
 
-/// What rounding leaves of a step when all are done.
+/// Share of a step that may be left over by rounding.
 constexpr double kRounding = 1e-6;
 
 }  // namespace
 
-bool ClutchWork::goOnFor(double seconds, const std::function<bool()>& go_on) const {
+bool ClutchWork::advanceFor(double seconds, const std::function<bool()>& advance) const {
   for (double left_s = seconds, step_s = step_s_(); left_s > kRounding * step_s; step_s = step_s_()) {
-    if (!go_on()) return false;
+    if (!advance()) return false;
     left_s -= step_s;
   }
   return true;
 }
 
-// What was asked for shows in the report after a tick only: so at least as long as it takes.
-bool ClutchWork::waitForClutch(double ratio, const std::function<bool()>& go_on) const {
+// The report shows the clutch one tick late, so the wait lasts at least the clutch's time.
+bool ClutchWork::waitForClutch(double ratio, const std::function<bool()>& advance) const {
   const double clutch_s = driver_.settings().clutch_s;
-  if (!goOnFor(clutch_s, go_on)) return false;
-  for (double waited_s = clutch_s; waited_s < kPatience * clutch_s && driver_.last().clutch_ratio != ratio;
+  if (!advanceFor(clutch_s, advance)) return false;
+  for (double waited_s = clutch_s; waited_s < kWaitLimit * clutch_s && driver_.last().clutch_ratio != ratio;
        waited_s += step_s_())
-    if (!go_on()) return false;
+    if (!advance()) return false;
   return true;
 }
 
-bool ClutchWork::takeHold(const std::function<bool()>& go_on) const {
-  return waitForClutch(1, go_on);
+bool ClutchWork::takeHold(const std::function<bool()>& advance) const {
+  return waitForClutch(1, advance);
 }
 
-bool ClutchWork::comeFree(const std::function<bool()>& go_on) const {
+bool ClutchWork::comeFree(const std::function<bool()>& advance) const {
   driver_.openClutch();
-  return waitForClutch(0, go_on);
+  return waitForClutch(0, advance);
 }
 
-bool ClutchWork::setDown(const std::function<bool(double)>& go_on) const {
+bool ClutchWork::setDown(const std::function<bool(double)>& advance) const {
   double left_s = driver_.settings().clutch_s;
   const auto fade = [&] {
     const double step_s = step_s_();
     left_s = left_s > (1 + kRounding) * step_s ? left_s - step_s : 0;
-    return go_on(left_s / driver_.settings().clutch_s);
+    return advance(left_s / driver_.settings().clutch_s);
   };
   while (left_s > 0)
     if (!fade()) return false;
   return true;
 }
 
-bool ClutchWork::index_point(const std::function<bool()>& go_on) const {
-  if (!comeFree(go_on)) return false;
+bool ClutchWork::index(const std::function<bool()>& advance) const {
+  if (!comeFree(advance)) return false;
   driver_.recentre();
-  if (!goOnFor(kHandReturn_s, go_on)) return false;
+  if (!advanceFor(kHandReturn_s, advance)) return false;
   driver_.closeClutch();
-  if (!takeHold(go_on)) return false;
+  if (!takeHold(advance)) return false;
   driver_.goOn();
   return true;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run does by the clutch: from hand to hand at the change of a step, and a new grasp on the way.
+// The clutch work of a run: handing a part over at the start and end of a step, and indexing on the way.
 #pragma once
 
 #include <functional>
@@ -9,29 +9,29 @@
 
 namespace vps::scenes {
 
-/// Each waits in physics steps: all that a step asks for is in go_on, which is false where the run cannot go
-/// on; so are they then. The part stands meanwhile, held by the proxy.
+/// Each function waits in physics steps by calling `advance`, and returns false as soon as `advance` does
+/// (the run cannot go on). Meanwhile the part stands still, held by the proxy.
 class ClutchWork {
  public:
-  /// side outlives it.
-  /// @param step_s  what a step of physics takes of the hand's time, which is the clock's; asked before each
-  ClutchWork(HapticDriver& side, std::function<double()> step_s)
-      : driver_(side), step_s_(std::move(step_s)) {}
+  /// driver outlives it.
+  /// @param step_s  duration of the coming physics step in the hand's time, which is the clock's
+  ClutchWork(HapticDriver& driver, std::function<double()> step_s)
+      : driver_(driver), step_s_(std::move(step_s)) {}
 
-  /// After handOver(): until the hand has all of the part.
-  bool takeHold(const std::function<bool()>& go_on) const;
-  /// Until it has none of it.
-  bool comeFree(const std::function<bool()>& go_on) const;
-  /// The proxy's grip on the part fades, over as long as the clutch takes: what the spring holds is given up
-  /// bit by bit, and the part comes to rest on what it stands on before it is let go.
-  /// @param go_on  gets the share of the grip that is left, down to 0
-  bool setDown(const std::function<bool(double share)>& go_on) const;
-  /// Lets go, goes back to where the next segment starts, takes hold again and goes on.
-  bool index_point(const std::function<bool()>& go_on) const;
+  /// After handOver(): waits until the clutch is closed.
+  bool takeHold(const std::function<bool()>& advance) const;
+  /// Opens the clutch and waits until it is open.
+  bool comeFree(const std::function<bool()>& advance) const;
+  /// Fades out the coupling gains over the clutch's time, so that the spring's energy is released gradually
+  /// and the part comes to rest on its seat before it is released.
+  /// @param advance  gets the share of the gains that is left, down to 0
+  bool setDown(const std::function<bool(double share)>& advance) const;
+  /// Opens the clutch, recentres the handle at the start of the next segment, closes the clutch and goes on.
+  bool index(const std::function<bool()>& advance) const;
 
  private:
-  bool waitForClutch(double ratio, const std::function<bool()>& go_on) const;
-  bool goOnFor(double seconds, const std::function<bool()>& go_on) const;
+  bool waitForClutch(double ratio, const std::function<bool()>& advance) const;
+  bool advanceFor(double seconds, const std::function<bool()>& advance) const;
 
   HapticDriver& driver_;
   std::function<double()> step_s_;

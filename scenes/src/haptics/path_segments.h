@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a device smaller than a part's way carries it along: in segments, each within the workspace.
+// Splits a path that is longer than the device's workspace into segments that fit. Between two segments the
+// device is clutched and recentred (indexing).
 #pragma once
 
 #include <cstddef>
@@ -9,20 +10,20 @@
 
 namespace vps::scenes {
 
-/// Between two segments the clutch opens, the handle goes back and takes the part anew.
+/// The segments of a step's path.
 ///
-///   way       start ----1----2---------- target       1: way point, 2: re-grasp
-///   handle    |---------------|  room
-///                       |---------------|
+///   path      start ----1----2---------- target       1: way point, 2: index point
+///   handle    |--------------|
+///                            |---------------|         each segment fits into the workspace
 struct PathSegments {
-  std::vector<Pose> way_points;           ///< X_WP: the step's own and the re-grasps, in order
-  std::vector<std::size_t> index_points;  ///< which of way_points are re-grasps
-  std::vector<Pose> X_DH_start;           ///< handle at each segment's start; one more than index_points
+  std::vector<Pose> way_points;           ///< X_WP: the step's own way points and the index points, in order
+  std::vector<std::size_t> index_points;  ///< which of way_points are index points
+  std::vector<Pose> X_DH_start;  ///< of the handle at each segment's start; one more than index_points
 };
 
-/// The fewest segments, each of which lies around the middle of a workspace of this size. A way that fits has
-/// one. The last is as long as can be, so that where a part enters another it is in one hand. Throws
-/// LoadError for a way that does not fit where the scene's device has no ratchet.
+/// The fewest segments, each centred in a workspace of this size. A path that fits has one. The last segment
+/// is as long as possible, so that a part is not re-grasped while it enters another. Throws LoadError for a
+/// path that does not fit if the scene's device has no indexing.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
 
 }  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "haptics/clocked_driver.h"
 #include "haptics/haptic_log.h"
-#include "haptics/physics_clock.h"
+#include "simulation/physics_clock.h"
 #include "vps_device/real_time_loop.h"
 
 namespace vps::scenes {

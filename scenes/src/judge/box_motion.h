@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far any point of a part went.
+// The greatest displacement of any point of a part.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSharp_rad = 0.35;  // as pointshells take it: about 20 degrees
+constexpr double kSharp_rad = 0.35;  // about 20 degrees, as for pointshells
 
 struct Deepest {
   double depth_m = 0;
@@ -24,9 +24,9 @@ void keep(Deepest& deepest, double depth_m, const Vec3& p_S) {
   if (depth_m > deepest.depth_m) deepest = {depth_m, p_S};
 }
 
-/// Exact signed distance, known to be no greater than most_m in size: the search need not go farther.
+/// Exact signed distance of a point whose distance is at most most_m, which bounds the search.
 double signedDistance(const JudgedBody& solid, const Vec3& p_S, double most_m) {
-  return solid.distance->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
+  return solid.model->surface->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
 }
 
 /// Deepest point of segment ab in the solid, to kCertain_m.
@@ -37,9 +37,9 @@ Deepest deepestOnSegment(const JudgedBody& solid, const Vec3& a, const Vec3& b) 
     double f_a, f_b;
   };
   Deepest deepest;
-  std::array<Piece, 64> stack;  // halving to kCertain_m: a depth of 64 would be 10^13 m long
+  std::array<Piece, 64> stack;  // bisection to kCertain_m: 64 levels would be an edge of 10^13 m
   std::size_t count = 0;
-  const double f_a = solid.distance->signedDistance(a),
+  const double f_a = solid.model->surface->signedDistance(a),
                f_b = signedDistance(solid, b, std::abs(f_a) + (b - a).norm());
   keep(deepest, -f_a, a);
   keep(deepest, -f_b, b);
@@ -59,15 +59,15 @@ Deepest deepestOnSegment(const JudgedBody& solid, const Vec3& a, const Vec3& b) 
   return deepest;
 }
 
-/// Can no point of segment ab be inside, by the field's proven bound?
+/// True if no point of segment ab can be inside, by the map's proven bound.
 bool isSurelyOutside(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
-  return solid.map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
+  return solid.model->map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
 }
 
 Deepest deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
-  std::vector<FitEdge> near;
-  for (const FitEdge& edge : *other.edges) {
-    const FitEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
+  std::vector<SharpEdge> near;
+  for (const SharpEdge& edge : *other.edges) {
+    const SharpEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
     if (!isSurelyOutside(solid, edge_S.a, edge_S.b)) near.push_back(edge_S);
   }
   std::vector<Deepest> found(near.size());
@@ -79,19 +79,19 @@ Deepest deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose
 }
 
 Deepest deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
-  // Whatever is inside by exact distance reads less than the field's greatest error.
+  // A point that is inside by exact distance reads less than the map's greatest error.
   QueryOptions options;
-  options.cutoff_m = solid.map->sampleError_m();
-  ContactSet candidates(other.shell->size());
-  queryContacts(*solid.map, *other.shell, X_SO, options, candidates);
+  options.cutoff_m = solid.model->map->sampleError_m();
+  ContactSet candidates(other.model->shell->size());
+  queryContacts(*solid.model->map, *other.model->shell, X_SO, options, candidates);
 
   std::vector<double> depths(candidates.contacts.size());
   tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t i) {
     const Contact& contact = candidates.contacts[i];
-    // Deeper than the band the field has no number: then search without bound.
-    const bool is_in_band = std::abs(contact.distance_m) < solid.map->band_m();
-    const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.map->sampleError_m() : 1e3;
-    depths[i] = -signedDistance(solid, X_SO * other.shell->points[contact.id], most_m);
+    // Deeper than the band the map has no value; then the search is not bounded.
+    const bool is_in_band = std::abs(contact.distance_m) < solid.model->map->band_m();
+    const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.model->map->sampleError_m() : 1e3;
+    depths[i] = -signedDistance(solid, X_SO * other.model->shell->points[contact.id], most_m);
   });
   Deepest deepest;
   for (std::size_t i = 0; i < depths.size(); ++i) keep(deepest, depths[i], candidates.contacts[i].p_M);
@@ -107,13 +107,12 @@ Deepest deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& 
 
 }  // namespace
 
-JudgedBody makeJudgedBody(const Part& part, std::shared_ptr<const MeshDistance> distance) {
-  const Mesh& mesh = distance->mesh();
-  std::vector<FitEdge> edges;
+JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
+  const Mesh& mesh = model->surface->mesh();
+  std::vector<SharpEdge> edges;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});
-  return {part.name, part.map, part.shell, std::move(distance),
-          std::make_shared<const std::vector<FitEdge>>(std::move(edges))};
+  return {std::move(model), std::make_shared<const std::vector<SharpEdge>>(std::move(edges))};
 }
 
 void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {
@@ -138,8 +137,8 @@ double OverlapJudge::fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) co
   double least_m = 0;
   for (const auto& [body, X_WB] : mounted_) {
     const Pose X_BP = X_WB.inverse() * X_WP;
-    for (const QueryResult& result : {queryDistance(*body.map, *moving.shell, X_BP),
-                                      queryDistance(*moving.map, *body.shell, X_BP.inverse())})
+    for (const QueryResult& result : {queryDistance(*body.model->map, *moving.model->shell, X_BP),
+                                      queryDistance(*moving.model->map, *body.model->shell, X_BP.inverse())})
       if (result.status == Status::Ok) least_m = std::min(least_m, result.min_distance_m);
   }
   return -least_m;

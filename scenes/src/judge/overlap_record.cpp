@@ -11,13 +11,13 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kSuspects = 50;
+constexpr std::size_t kSuspects = 50;  ///< poses that are judged whatever the stride
 
 }  // namespace
 
-OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
-                     const std::vector<OverlapSample>& samples, std::size_t stride,
-                     const std::atomic<bool>* stop) {
+OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
+                            const std::vector<OverlapSample>& samples, std::size_t stride,
+                            const std::atomic<bool>* stop) {
   std::set<std::size_t> judged;
   for (std::size_t i = 0; i < samples.size(); i += stride) judged.insert(i);
 
@@ -33,7 +33,7 @@ OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
   if (!samples.empty()) judged.insert(samples.size() - 1);
 
   OverlapVerdict verdict;
-  const Box box = bounds(moving.distance->mesh());
+  const Box box = bounds(moving.model->surface->mesh());
   const Pose* last = nullptr;
   for (const std::size_t i : judged) {
     if (stop != nullptr && stop->load()) break;
@@ -41,7 +41,7 @@ OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
     if (last && greatestDisplacement(box, *last, sample.X_WP) < OverlapJudge::kCertain_m) continue;
     last = &sample.X_WP;
     ++verdict.poses_judged;
-    const Penetration found = fit.deepest(moving, sample.X_WP);
+    const Penetration found = judge.deepest(moving, sample.X_WP);
     if (found.depth_m > verdict.worst.depth_m) {
       verdict.worst = found;
       verdict.time_s = sample.time_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The poses a part went through, and how deep it was by exact distance.
+// Judges the poses that a part went through: the deepest penetration by exact distance.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace vps::scenes {
 
-/// A pose of the part that moves, and how deep its contacts were in that pose as the solver saw them.
+/// A pose of the moving part, with the depth of its contacts in that pose as the solver saw them.
 struct OverlapSample {
   double time_s = 0;
   Pose X_WP;
@@ -22,12 +22,12 @@ struct OverlapVerdict {
   std::size_t poses_judged = 0;
 };
 
-/// Judges every `stride`-th pose, the last, and, whatever the stride, the kSuspects poses whose contacts were
-/// deepest. A pose within OverlapJudge::kCertain_m of the last one judged (greatest motion of any point) is
-/// that one.
-/// @param stop  ends it early when set, with what was found by then; may be null
-OverlapVerdict judge(const OverlapJudge& fit, const JudgedBody& moving,
-                     const std::vector<OverlapSample>& samples, std::size_t stride,
-                     const std::atomic<bool>* stop = nullptr);
+/// Judges every `stride`-th pose, the last pose, and the kSuspects poses with the deepest contacts. A pose
+/// that differs from the last one judged by less than OverlapJudge::kCertain_m (greatest motion of any point)
+/// is skipped.
+/// @param stop  ends the search early when set; the result is what was found until then; may be null
+OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
+                            const std::vector<OverlapSample>& samples, std::size_t stride,
+                            const std::atomic<bool>* stop = nullptr);
 
 }  // namespace vps::scenes

@@ -17,10 +17,14 @@ bool isInPlace(const Pose& X_WP) {
   return X_WP.R.isIdentity(0) && X_WP.p.isZero(0);
 }
 
-/// The first part's field in W: its own map where that lies in W already.
+PlacedMesh placedMesh(const FieldPart& part) {
+  return {part.model->mesh.get(), part.placed.X_WP};
+}
+
+/// The first part's map in W: its own, where its frame is W's.
 std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& order) {
-  if (part.map && !order.builds_anew && isInPlace(part.placed.X_WP)) return part.map;
-  VoxMap map = cookVoxMap({{part.mesh, part.placed.X_WP}}, voxMapSettings(order.fidelity));
+  if (part.model->map && !order.rebuilds_maps && isInPlace(part.placed.X_WP)) return part.model->map;
+  VoxMap map = cookVoxMap({placedMesh(part)}, voxMapSettings(order.fidelity));
   if (part.kept_P.empty()) return std::make_shared<VoxMap>(std::move(map));
   std::vector<Box> kept_W;
   for (const Box& box : part.kept_P) kept_W.push_back(moved(box, part.placed.X_WP));
@@ -35,8 +39,7 @@ std::shared_ptr<const VoxMap> mapOf(const FieldOrder& order) {
   std::shared_ptr<const VoxMap> map = order.below;
   for (std::size_t i = map ? order.below_count : 0; i < order.parts.size() && !isStopped(order); ++i) {
     const FieldPart& part = order.parts[i];
-    map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, PlacedMesh{part.mesh, part.placed.X_WP}))
-              : firstMap(part, order);
+    map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, placedMesh(part))) : firstMap(part, order);
   }
   return map;
 }
@@ -45,20 +48,20 @@ std::shared_ptr<const PointShell> shellOf(const FieldOrder& order) {
   std::vector<PointShell> cropped;
   std::vector<const PointShell*> shells;
   std::vector<Pose> poses;
-  cropped.reserve(order.parts.size());  // pointers stay good
+  cropped.reserve(order.parts.size());  // no reallocation: `shells` points into it
   for (const FieldPart& part : order.parts) {
     poses.push_back(part.placed.X_WP);
-    shells.push_back(part.shell.get());
+    shells.push_back(part.model->shell.get());
     if (!order.region_W) continue;
     const Box region_P = moved(*order.region_W, part.placed.X_WP.inverse());
-    shells.back() = &cropped.emplace_back(croppedShell(*part.shell, {region_P}));
+    shells.back() = &cropped.emplace_back(croppedShell(*part.model->shell, {region_P}));
   }
   return std::make_shared<PointShell>(mergedShells(shells, poses));
 }
 
 std::shared_ptr<const Mesh> meshOf(const FieldOrder& order) {
   Mesh mesh;
-  for (const FieldPart& part : order.parts) append(mesh, transformed(*part.mesh, part.placed.X_WP));
+  for (const FieldPart& part : order.parts) append(mesh, transformed(*part.model->mesh, part.placed.X_WP));
   return std::make_shared<Mesh>(std::move(mesh));
 }
 
@@ -84,7 +87,7 @@ CookedField cookField(const FieldOrder& order) {
   if (order.has_mesh) models.mesh = meshOf(order);
   for (const FieldPart& part : order.parts) {
     field.parts.push_back(part.placed);
-    models.surfaces.push_back({part.surface, part.placed.X_WP});
+    models.surfaces.push_back({part.model->surface, part.placed.X_WP});
   }
   field.shape = std::make_unique<bullet::Shape>(std::move(models));
   field.wall_s = wallSeconds() - begun_s;

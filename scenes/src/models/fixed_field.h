@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is fixed, cooked into one field and one body (paper, section 5). Made from immutable parts on any
-// thread, so that a run need not stand still for it.
+// The fixed field: all parts in place, merged ("cooked") into one voxmap, one pointshell and one body (paper,
+// section 5). It is made from immutable models on any thread, so a run need not stop for it.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "vps/fidelity.h"
-#include "vps/mesh_distance.h"
-#include "vps/part.h"
+#include "vps/part_model.h"
 #include "vps_bullet/shape.h"
 
 namespace vps::scenes {
@@ -21,41 +20,39 @@ struct FixedPart {
   Pose X_WP;
 };
 
-/// A part in place with all that cooking reads of it. The mesh outlives the cooking.
+/// A part in place, with its models.
 struct FieldPart {
   FixedPart placed;
-  const Mesh* mesh = nullptr;
-  std::shared_ptr<const VoxMap> map;        ///< its own, may be null
-  std::shared_ptr<const PointShell> shell;  ///< its own; null where the field gets none
-  std::shared_ptr<const MeshDistance> surface;
-  std::vector<Box> kept_P;  ///< as PlannedPart::kept_P
+  std::shared_ptr<const PartModel> model;  ///< mesh and surface; its map may be null, its shell as well
+  std::vector<Box> kept_P;                 ///< as PartModelPlan::kept_P
 };
 
+/// All that cookField() reads.
 struct FieldOrder {
   std::vector<FieldPart> parts;         ///< in the field's owner order
-  std::shared_ptr<const VoxMap> below;  ///< of the first of them, cooked before; null: none
-  std::size_t below_count = 0;          ///< how many
+  std::shared_ptr<const VoxMap> below;  ///< the merged map of the first parts, to build on; null: none
+  std::size_t below_count = 0;          ///< how many parts `below` holds
   std::optional<Box> region_W;          ///< where points are needed; none: everywhere
   bool has_shell = true;
-  bool has_mesh = false;     ///< triangles too, for rays: nothing in a run asks for them
-  bool builds_anew = false;  ///< nothing of the parts' own maps is used
+  bool has_mesh = false;       ///< triangles for ray tests as well; a run needs none
+  bool rebuilds_maps = false;  ///< every map is built from its mesh, and the parts' own maps are not used
   Fidelity fidelity;
-  const std::atomic<bool>* stop = nullptr;  ///< ends it between two parts when set; may be null
+  const std::atomic<bool>* stop = nullptr;  ///< ends cooking between two parts when set; may be null
 };
 
 struct CookedField {
   std::vector<FixedPart> parts;
   std::optional<Box> region_W;
   std::unique_ptr<bullet::Shape> shape;
-  double wall_s = 0;  ///< what it took
+  double wall_s = 0;  ///< time to cook
 
-  /// Beside the parts' own models.
+  /// Memory in addition to the parts' own models.
   [[nodiscard]] std::size_t memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const;
 };
 
-/// From the parts' own meshes, never from a field already merged but `below`, to which they are added. O(the
-/// surface of what is new) and O(points in the region). Same input, same bits. Throws LoadError as
-/// cookVoxMap(). Stopped, it may come without a shape.
+/// Cooks a field from the parts' own meshes and, where given, from `below`, to which the other parts are
+/// added. O(surface of the added parts) and O(points in the region). Same input, same bits. Throws LoadError
+/// as cookVoxMap(). When stopped, the result may have no shape.
 CookedField cookField(const FieldOrder& order);
 
 }  // namespace vps::scenes

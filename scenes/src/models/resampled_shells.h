@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The models of a running simulation once more, with points that lie closer or farther apart; made on any
-// thread.
+// The pointshells of a running simulation at another spacing, for load shedding. They are made on any thread.
 #pragma once
 
 #include <atomic>
@@ -9,27 +8,28 @@
 #include <vector>
 
 #include "models/fixed_field.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/model_plan.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes {
 
-/// Points that stand in for the parts' own, by part; null: its own.
+/// Pointshells that replace the parts' own, by part; null: the part's own is used.
 using ShellSet = std::vector<std::shared_ptr<const PointShell>>;
 
-/// For every part that has a shell, one at so many times the scene's spacing, cropped as the plan says. O(as
-/// building them). Throws as buildPointShell(), and std::runtime_error once `stop` (may be null) is set.
-std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const Plan& plan, double coarser,
+/// For every part that has a shell, one at `coarser` times the scene's spacing, cropped as the plan says.
+/// Takes as long as building them. Throws as buildPointShell(), and std::runtime_error once `stop` (may be
+/// null) is set.
+std::shared_ptr<const ShellSet> coarserShells(const Scene& scene, const ModelPlan& plan, double coarser,
                                               const std::atomic<bool>* stop);
 
-/// What is to be made again: a body, and the field in place where there is one.
+/// The body and the fixed field whose shells are to be replaced.
 struct ResampleOrder {
-  FieldOrder field;  ///< with the map in place as `below`, and the parts' own points; without parts: none
+  FieldOrder field;  ///< with the map in place as `below`, and the parts' own shells; without parts: no field
   std::size_t part = 0;
-  bullet::ShapeModels models;                                   ///< with its own points
-  Pose X_SM;                                                    ///< Shape's
+  std::shared_ptr<const PartModel> model;                       ///< of the body, with its own shell
+  Pose X_SM;                                                    ///< of the body's Shape
   std::shared_ptr<const PointShell> field_before, part_before;  ///< in use; the field's may be null
-  Pose X_WP;                                                    ///< of the part, to compare readings at
+  Pose X_WP;                                                    ///< of the part, where distances are compared
   Sides sides = Sides::Both;
 };
 
@@ -38,13 +38,13 @@ struct ResampledShells {
   std::optional<CookedField> field;
   std::size_t part = 0;
   std::unique_ptr<bullet::Shape> shape;
-  /// Least distance as they read it at ResampleOrder::X_WP, less that of the points before; none where either
-  /// is beyond the map's band.
+  /// Least distance by the new shells at ResampleOrder::X_WP, less that by the shells before; none where
+  /// either is beyond the map's band.
   std::optional<double> misread_m;
 };
 
-/// The maps stay those in place. Same input, same bits. Throws as cookField(), and std::runtime_error
-/// where that was stopped.
+/// Makes body and field with other shells; the maps stay those in place. Same input, same bits. Throws as
+/// cookField(), and std::runtime_error where that was stopped.
 ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellSet> shells);
 
 }  // namespace vps::scenes

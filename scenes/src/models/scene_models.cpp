@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "models/scene_models.h"
 
+#include <algorithm>
 #include <set>
+#include <utility>
 
 #include "core/wall_clock.h"
 #include "vps/load_error.h"
@@ -10,23 +12,6 @@
 #include "vps/voxmap_crop.h"
 
 namespace vps::scenes {
-
-namespace {
-
-/// Builds a part's map, or takes it from the cache.
-std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings& settings,
-                                    const ModelOptions& options) {
-  const std::string& name = part.part.name;
-  MeshReport report;
-  auto map = std::make_shared<VoxMap>(options.cache != nullptr
-                                          ? options.cache->build(part.part.mesh, settings, name, {}, &report)
-                                          : buildVoxMap(part.part.mesh, settings, name, {}, &report));
-  if (report.signed_by_winding && options.warn)
-    options.warn(part.file + ": part '" + name + "' is no closed surface: " + describe(report));
-  return map;
-}
-
-}  // namespace
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity) {
   VoxMapSettings settings;
@@ -46,71 +31,98 @@ bool isEqualGeometry(const Mesh& a, const Mesh& b) {
 
 namespace {
 
-void forgetCropped(ScenePart& scene_part) {
-  if (!scene_part.is_cropped) return;
-  scene_part.part.map.reset();
-  scene_part.part.shell.reset();
-  scene_part.is_cropped = false;
+/// Builds a part's map, or takes it from the cache.
+std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings& settings,
+                                    const ModelOptions& options) {
+  const std::string& name = part.part.name;
+  MeshReport report;
+  auto map = std::make_shared<VoxMap>(options.cache != nullptr
+                                          ? options.cache->build(part.part.mesh, settings, name, {}, &report)
+                                          : buildVoxMap(part.part.mesh, settings, name, {}, &report));
+  if (report.signed_by_winding && options.warn)
+    options.warn(part.file + ": part '" + name + "' is no closed surface: " + describe(report));
+  return map;
 }
 
-void crop(ScenePart& scene_part, const std::vector<Box>& kept_P) {
-  if (kept_P.empty()) return;
-  Part& part = scene_part.part;
-  if (part.map) part.map = std::make_shared<VoxMap>(croppedVoxMap(*part.map, kept_P));
-  if (part.shell) part.shell = std::make_shared<PointShell>(croppedShell(*part.shell, kept_P));
-  scene_part.is_cropped = true;
+/// What is still valid of the models that the part has, or of `shared`, which is the model of a part of equal
+/// geometry. Name and material are always the part's own.
+PartModel startingModel(const ScenePart& scene_part, const PartModel* shared) {
+  const PartModel* from = shared != nullptr ? shared : scene_part.model.get();
+  PartModel model = from != nullptr ? *from : PartModel{};
+  if (shared == nullptr && scene_part.is_cropped) {
+    model.map.reset();
+    model.shell.reset();
+  }
+  model.name = scene_part.part.name;
+  model.material = scene_part.part.material;
+  if (!model.mesh) model.mesh = std::make_shared<const Mesh>(scene_part.part.mesh);
+  return model;
 }
 
-BuildTimes buildPart(ScenePart& scene_part, const PlannedPart& planned, const Fidelity& fidelity,
-                     const ModelOptions& options) {
-  Part& part = scene_part.part;
+void crop(PartModel& model, const std::vector<Box>& kept_P) {
+  if (model.map) model.map = std::make_shared<VoxMap>(croppedVoxMap(*model.map, kept_P));
+  if (model.shell) model.shell = std::make_shared<PointShell>(croppedShell(*model.shell, kept_P));
+}
+
+bool isCooked(const ModelPlan& plan, std::size_t part) {
+  return std::ranges::any_of(
+      plan.steps, [part](const FieldPlan& step) { return std::ranges::count(step.cooked, part) > 0; });
+}
+
+BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const Fidelity& fidelity,
+                     const ModelOptions& options, PartModel& model) {
   BuildTimes times;
   double begun_s = wallSeconds();
-  if (planned.has_map && !part.map) part.map = mapOf(scene_part, voxMapSettings(fidelity), options);
+  if (planned.has_map && !model.map) model.map = mapOf(scene_part, voxMapSettings(fidelity), options);
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
-  if (planned.has_shell && !part.shell)
-    part.shell =
-        std::make_shared<PointShell>(buildPointShell(part.mesh, pointShellSettings(fidelity), part.name));
-  crop(scene_part, planned.kept_P);
+  if (planned.has_shell && !model.shell)
+    model.shell = std::make_shared<PointShell>(
+        buildPointShell(scene_part.part.mesh, pointShellSettings(fidelity), scene_part.part.name));
+  scene_part.is_cropped = !planned.kept_P.empty();
+  if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
   return times;
 }
 
 }  // namespace
 
-std::vector<BuildTimes> buildModels(Scene& scene, const Plan& plan, const ModelOptions& options) {
+std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
   const Progress& progress = options.progress;
   std::vector<BuildTimes> times(scene.parts.size());
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     ScenePart& part = scene.parts[i];
+    const PartModelPlan& planned = plan.parts[i];
     if (progress)
       progress("modelling " + part.part.name,
                static_cast<double>(i) / static_cast<double>(scene.parts.size()));
     requireUsable(part.part.mesh, part.file, part.part.name);
-    forgetCropped(part);
-    if (const auto same_as = plan.parts[i].same_as) {
-      part.part.map = scene.parts[*same_as].part.map;
-      part.part.shell = scene.parts[*same_as].part.shell;
-    } else {
-      times[i] = buildPart(part, plan.parts[i], scene.fidelity, options);
-    }
+    const bool is_modelled = planned.has_map || planned.has_shell || isCooked(plan, i);
+    if (!is_modelled && !part.model) continue;
+    PartModel model =
+        startingModel(part, planned.same_as ? scene.parts[*planned.same_as].model.get() : nullptr);
+    if (planned.same_as)
+      part.is_cropped = false;
+    else
+      times[i] = buildPart(part, planned, scene.fidelity, options, model);
+    if (is_modelled && !model.surface) model.surface = buildSurface(*model.mesh);
+    part.model = std::make_shared<const PartModel>(std::move(model));
   }
   if (progress) progress("modelling", 1);
   return times;
 }
 
 void buildModels(Scene& scene, const ModelOptions& options) {
-  buildModels(scene, makeSharingPlan(scene), options);
+  buildModels(scene, makeSharedModelPlan(scene), options);
 }
 
-void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options) {
+void buildWhole(Scene& scene, ModelPlan& plan, const ModelOptions& options) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    PlannedPart& planned = plan.parts[i];
+    PartModelPlan& planned = plan.parts[i];
     planned.kept_P.clear();
     if (scene.parts[i].is_fixed) planned.has_map = planned.has_shell = true;
   }
-  for (PlannedStep& step : plan.steps) {
+  for (FieldPlan& step : plan.steps) {
     step.region_W.reset();
     step.has_shell = true;
   }
@@ -120,16 +132,17 @@ void buildWhole(Scene& scene, Plan& plan, const ModelOptions& options) {
 ModelledCost modelledCost(const Scene& scene) {
   ModelledCost cost;
   std::set<const void*> seen;
-  for (const ScenePart& scene_part : scene.parts) {
-    const Part& part = scene_part.part;
-    if (part.map && seen.insert(part.map.get()).second) {
+  for (const ScenePart& part : scene.parts) {
+    if (!part.model) continue;
+    const PartModel& model = *part.model;
+    if (model.map && seen.insert(model.map.get()).second) {
       ++cost.voxmaps;
-      cost.bytes += part.map->memoryBytes();
+      cost.bytes += model.map->memoryBytes();
     }
-    if (part.shell && seen.insert(part.shell.get()).second) {
+    if (model.shell && seen.insert(model.shell.get()).second) {
       ++cost.pointshells;
-      cost.points += part.shell->size();
-      cost.bytes += part.shell->memoryBytes();
+      cost.points += model.shell->size();
+      cost.bytes += model.shell->memoryBytes();
     }
   }
   return cost;

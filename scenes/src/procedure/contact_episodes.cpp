@@ -4,7 +4,7 @@
 namespace vps::scenes {
 
 std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace) {
-  constexpr int kRest = 3;
+  constexpr int kRest = static_cast<int>(TracePhase::Rest);
   std::vector<ContactEpisode> episodes;
   double travel_m = 0;
   for (std::size_t i = 0; i < trace.size(); ++i) {

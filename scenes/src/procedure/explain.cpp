@@ -12,30 +12,31 @@ namespace vps::scenes {
 
 namespace {
 
-std::vector<PartCost> costOf(const Scene& scene, const Plan& plan, const std::vector<BuildTimes>& times) {
+std::vector<PartCost> costOf(const Scene& scene, const ModelPlan& plan,
+                             const std::vector<BuildTimes>& times) {
   std::vector<PartCost> costs(scene.parts.size());
   for (std::size_t i = 0; i < costs.size(); ++i) {
     if (plan.parts[i].same_as) continue;
-    const Part& part = scene.parts[i].part;
+    const PartModel* model = scene.parts[i].model.get();
     costs[i].map_wall_s = times[i].map_wall_s;
     costs[i].shell_wall_s = times[i].shell_wall_s;
-    if (part.map) costs[i].map_bytes = part.map->memoryBytes();
-    if (!part.shell) continue;
-    costs[i].shell_bytes = part.shell->memoryBytes();
-    costs[i].points = part.shell->size();
+    if (model != nullptr && model->map) costs[i].map_bytes = model->map->memoryBytes();
+    if (model == nullptr || !model->shell) continue;
+    costs[i].shell_bytes = model->shell->memoryBytes();
+    costs[i].points = model->shell->size();
   }
   return costs;
 }
 
-/// Where the parts that are cooked for a step lie by then.
-class Placed {
+/// The poses at which the parts are cooked: fixed parts as designed, others at their targets.
+class CookedPoses {
  public:
-  explicit Placed(const Scene& scene) {
+  explicit CookedPoses(const Scene& scene) {
     for (const ScenePart& part : scene.parts) X_WP_.push_back(part.X_WP);
     for (const SceneStep& step : scene.steps) X_WP_[step.part] = step.X_WP_target;
   }
-  /// What the field holds already, then what the step adds.
-  [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const PlannedStep& step) const {
+  /// The parts of the field in place, followed by those that the step adds.
+  [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const FieldPlan& step) const {
     for (const std::size_t i : step.cooked)
       if (std::ranges::none_of(parts, [i](const FixedPart& placed) { return placed.part == i; }))
         parts.push_back({i, X_WP_[i]});
@@ -46,16 +47,16 @@ class Placed {
   std::vector<Pose> X_WP_;
 };
 
-void cookSteps(const Scene& scene, const Plan& plan, const ModelOptions& options, PlanCost& cost) {
+void cookSteps(const Scene& scene, const ModelPlan& plan, const ModelOptions& options, ModelPlanCost& cost) {
   Simulation simulation(scene, plan);
-  const Placed placed(scene);
+  const CookedPoses poses(scene);
   const ModelledCost own = cost.most;
   for (std::size_t s = 0; s < plan.steps.size(); ++s) {
     if (options.progress)
       options.progress("cooking for step " + std::to_string(s + 1),
                        static_cast<double>(s) / static_cast<double>(plan.steps.size()));
     StepCost& step = cost.steps.emplace_back();
-    const std::vector<FixedPart> parts = placed.add(simulation.field().parts, plan.steps[s]);
+    const std::vector<FixedPart> parts = poses.add(simulation.field().parts, plan.steps[s]);
     if (simulation.needsField(parts, plan.steps[s])) {
       CookedField field = cookField(simulation.orderField(parts, plan.steps[s]));
       step.is_cooked = true;
@@ -73,9 +74,9 @@ void cookSteps(const Scene& scene, const Plan& plan, const ModelOptions& options
 
 }  // namespace
 
-ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options) {
-  ExplainedPlan explained;
-  explained.plan = makePlan(scene, purpose, options.models_everything);
+ExplainedModels explain(Scene scene, ModelPurpose purpose, const ModelOptions& options) {
+  ExplainedModels explained;
+  explained.plan = makeModelPlan(scene, purpose, options.models_everything);
   const double begun_s = wallSeconds();
   const std::vector<BuildTimes> times = buildModels(scene, explained.plan, options);
   explained.cost.build_wall_s = wallSeconds() - begun_s;
@@ -85,8 +86,8 @@ ExplainedPlan explain(Scene scene, PlanFor purpose, const ModelOptions& options)
   return explained;
 }
 
-PartUse useOf(const Plan& plan, std::size_t part, std::size_t step) {
-  const PlannedStep& planned = plan.steps[step];
+PartUse useOf(const ModelPlan& plan, std::size_t part, std::size_t step) {
+  const FieldPlan& planned = plan.steps[step];
   if (std::ranges::count(planned.cooked, part) > 0) return PartUse::Cooked;
   if (std::ranges::count(planned.left_out, part) > 0) return PartUse::LeftOut;
   if (planned.part ? *planned.part == part : plan.parts[part].has_shell) return PartUse::Moves;

@@ -8,29 +8,30 @@
 
 namespace vps::scenes {
 
-PlacedParts::PlacedParts(Scene& scene, Plan& plan, Simulation& simulation, const ModelOptions& options)
+PlacedParts::PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options)
     : scene_(scene),
       plan_(plan),
       simulation_(simulation),
       options_(options),
-      fit_bodies_(scene.parts.size()),
+      judged_(scene.parts.size()),
       modelled_(modelledCost(scene)) {}
 
 void PlacedParts::addToJudge(std::size_t part) {
   const auto placed = std::ranges::find(placed_, part, &FixedPart::part);
-  if (scene_.parts[part].part.shell) fit_.mount(judgedBody(part), placed->X_WP);
+  if (scene_.parts[part].model && scene_.parts[part].model->shell)
+    judge_.mount(judgedBody(part), placed->X_WP);
 }
 
 const JudgedBody& PlacedParts::judgedBody(std::size_t part) {
-  std::optional<JudgedBody>& body = fit_bodies_[part];
-  if (!body) body = makeJudgedBody(scene_.parts[part].part, simulation_.surface(part));
+  std::optional<JudgedBody>& body = judged_[part];
+  if (!body) body = makeJudgedBody(scene_.parts[part].model);
   return *body;
 }
 
 std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step) {
   const bool is_past_last = step >= plan_.steps.size();
   if (is_past_last && !plan_.models_everything) return {};
-  const PlannedStep& planned = plan_.steps[std::min(step, plan_.steps.size() - 1)];
+  const FieldPlan& planned = plan_.steps[std::min(step, plan_.steps.size() - 1)];
   std::vector<FixedPart> parts = simulation_.field().parts;
   for (const FixedPart& placed : placed_) {
     if (std::ranges::find(parts, placed.part, &FixedPart::part) != parts.end()) continue;
@@ -55,7 +56,7 @@ bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP
   const VoxMapSettings map = voxMapSettings(scene_.fidelity);
   const double farthest_m = box_P.size().norm() + box_P.center().norm();
   const double speed_m_s = V_W.v.norm() + V_W.w.norm() * farthest_m;
-  // Twice: it may gather speed within the step.
+  // The factor of 2 allows for acceleration within the step.
   const double reach_m = map.band_voxels * map.voxel_m + 2 * speed_m_s * dt_s;
   return isWithin(grown(moved(box_P, X_WP), reach_m), *region_W);
 }
@@ -63,11 +64,11 @@ bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP
 void PlacedParts::widen(std::size_t step) {
   ++widened_;
   ModelOptions options;
-  options.cache = options_.cache;  // neither progress nor warnings: both were told of loading
+  options.cache = options_.cache;  // no progress and no warnings: both were given at loading
   buildWhole(scene_, plan_, options);
-  fit_ = OverlapJudge();
+  judge_ = OverlapJudge();
   for (const FixedPart& placed : placed_) {
-    if (scene_.parts[placed.part].is_fixed) fit_bodies_[placed.part].reset();
+    if (scene_.parts[placed.part].is_fixed) judged_[placed.part].reset();
     addToJudge(placed.part);
   }
   setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));

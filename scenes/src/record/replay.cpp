@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/replay.h"
 
-#include "procedure/procedure.h"
+#include "procedure/assembly_run.h"
 #include "record/run_record.h"
 #include "record/scene_archive.h"
 #include "vps/load_error.h"

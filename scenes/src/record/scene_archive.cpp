@@ -141,13 +141,13 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<Part> T>
 void fields(Archive& archive, T& x) {
-  auto& [name, mesh, material, color, map, shell] = x;  // the last two are built again
+  auto& [name, mesh, material, color] = x;
   archive(name, mesh, material, color);
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  [[maybe_unused]] auto& [part, X_WP, is_fixed, allow_overlap, file, is_cropped] =
-      x;  // models are built anew
+  [[maybe_unused]] auto& [part, X_WP, is_fixed, allow_overlap, file, model, is_cropped] =
+      x;  // the model is built again
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>

@@ -6,8 +6,8 @@
 
 #include "core/tick_times.h"
 #include "core/wall_clock.h"
-#include "haptics/physics_clock.h"
 #include "models/scene_models.h"
+#include "simulation/physics_clock.h"
 #include "simulation/simulation.h"
 #include "vps/load_error.h"
 
@@ -15,9 +15,9 @@ namespace vps::scenes {
 
 namespace {
 
-/// All that is fixed at once; one after the other where nothing is to be spared.
-void cookFixed(const Scene& scene, const Plan& plan, Simulation& simulation) {
-  const PlannedStep& step = plan.steps.front();
+/// Cooks all fixed parts at once, or one after the other where everything is modelled.
+void cookFixed(const Scene& scene, const ModelPlan& plan, Simulation& simulation) {
+  const FieldPlan& step = plan.steps.front();
   std::vector<FixedPart> fixed;
   for (const std::size_t i : step.cooked) {
     fixed.push_back({i, scene.parts[i].X_WP});
@@ -26,34 +26,34 @@ void cookFixed(const Scene& scene, const Plan& plan, Simulation& simulation) {
   }
 }
 
-/// Waits for each step where the run goes by the clock.
-class ByTheClock {
+/// In real time, waits for each step to be due; else does nothing.
+class StepPacer {
  public:
-  ByTheClock(double period_s, bool is_wanted) : clock_(period_s), begun_s_(wallSeconds()) {
-    if (!is_wanted) return;
+  StepPacer(double period_s, bool is_real_time) : clock_(period_s), begun_s_(wallSeconds()) {
+    if (!is_real_time) return;
     const device::RealTimeReport report = clock_.start(true);
-    kept_ = {0, report.has_priority, report.has_locked_memory, report.warnings, 0};
+    real_time_ = {0, report.has_priority, report.has_locked_memory, report.warnings, 0};
   }
-  ~ByTheClock() {
-    if (kept_) clock_.stop();
+  ~StepPacer() {
+    if (real_time_) clock_.stop();
   }
-  ByTheClock(const ByTheClock&) = delete;
-  ByTheClock& operator=(const ByTheClock&) = delete;
+  StepPacer(const StepPacer&) = delete;
+  StepPacer& operator=(const StepPacer&) = delete;
   void wait() noexcept {
-    if (kept_) clock_.wait();
+    if (real_time_) clock_.wait();
   }
-  std::optional<SimulateResult::Kept> finish() {
-    if (!kept_) return {};
+  std::optional<SimulateResult::RealTime> finish() {
+    if (!real_time_) return {};
     clock_.stop();
-    kept_->missed = clock_.missed();
-    kept_->run_wall_s = wallSeconds() - begun_s_;
-    return kept_;
+    real_time_->missed = clock_.missed();
+    real_time_->run_wall_s = wallSeconds() - begun_s_;
+    return real_time_;
   }
 
  private:
   PhysicsClock clock_;
   double begun_s_;
-  std::optional<SimulateResult::Kept> kept_;
+  std::optional<SimulateResult::RealTime> real_time_;
 };
 
 }  // namespace
@@ -62,7 +62,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
   const double begun_s = wallSeconds();
-  const Plan plan = makePlan(scene, PlanFor::Simulate, options.models_everything);
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything);
   buildModels(scene, plan, options);
   Simulation simulation(scene, plan);
   std::vector<std::size_t> moving;
@@ -76,7 +76,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   result.build_wall_s = wallSeconds() - begun_s;
 
   const double dt_s = 1 / scene.fidelity.physics_rate_hz;
-  TickClock all(dt_s), touching(dt_s);
+  TickClock all(dt_s), in_contact(dt_s);
   const auto states = [&] {
     std::vector<BodyState> bodies;
     for (const std::size_t i : moving)
@@ -84,26 +84,26 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     return bodies;
   };
   const auto steps = static_cast<long>(std::lround(seconds / dt_s));
-  ByTheClock by_the_clock(dt_s, options.is_real_time);
+  StepPacer pacer(dt_s, options.is_real_time);
   for (long i = 0; i < steps && !(options.stop != nullptr && options.stop->load()); ++i) {
-    by_the_clock.wait();
+    pacer.wait();
     const auto step_begun = std::chrono::steady_clock::now();
     simulation.step(dt_s);
     const double us =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - step_begun).count();
     const TouchState touch = simulation.touch();
     all.add(us);
-    if (touch.contacts > 0) touching.add(us);
+    if (touch.contacts > 0) in_contact.add(us);
     result.max_penetration_m = std::max(result.max_penetration_m, touch.depth_m);
     if (options.trace) options.trace(static_cast<double>(i + 1) * dt_s, states(), touch.depth_m);
     if (options.progress)
       options.progress("simulating", static_cast<double>(i + 1) / static_cast<double>(steps));
   }
-  result.real_time = by_the_clock.finish();
+  result.real_time = pacer.finish();
   result.bodies = states();
   result.kinetic_energy_J = simulation.kineticEnergy();
   result.step = all.summary();
-  result.contact_step = touching.summary();
+  result.contact_step = in_contact.summary();
   result.modelled = modelledCost(scene);
   simulation.addField(result.modelled);
   return result;

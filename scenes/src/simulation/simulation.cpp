@@ -34,7 +34,7 @@ bullet::Settings bulletSettings(const Scene& scene) {
       scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
-    // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
+    // The bridge takes one stiffness for all pairs; the softest part deforms most.
     if (i == 0 || stiffness < settings.stiffness_N_per_m3) settings.stiffness_N_per_m3 = stiffness;
   }
   settings.contact_limit = fidelity.contact_limit;
@@ -53,16 +53,15 @@ bullet::SolverSettings solverSettings(const Fidelity& fidelity) {
 
 struct Simulation::World {
   const Scene& scene;
-  const Plan& plan;
+  const ModelPlan& plan;
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   bullet::Solver solver;
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
 
-  std::map<std::size_t, bullet::ShapeModels> models;  // by part; the exact surface is built once
   std::map<std::size_t, DynamicBody> bodies;
-  std::shared_ptr<const ShellSet> shells;  // in place of the parts' own; null: none
+  std::shared_ptr<const ShellSet> shells;  // these replace the parts' own; null: none
   double dt_s;                             // of the last step
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
@@ -70,33 +69,26 @@ struct Simulation::World {
   std::size_t grasped = 0;
   Pose X_PG;
 
-  World(const Scene& s, const Plan& p)
+  World(const Scene& s, const ModelPlan& p)
       : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
     bullet::install(dispatcher, bulletSettings(scene));
     bullet::tuneWorld(world, scene.fidelity.solver_iterations);
     world.setGravity(bullet::toBt(scene.gravity_W));
   }
   ~World() {
-    letGo();
+    uncouple();
     while (!bodies.empty()) remove(bodies.begin()->first);
     if (fixed_body) world.removeRigidBody(fixed_body.get());
     bullet::uninstall(dispatcher);
   }
 
-  const bullet::ShapeModels& modelsOf(std::size_t part) {
-    const std::size_t own = plan.parts[part].same_as.value_or(part);
-    const auto found = models.find(own);
-    return found != models.end()
-               ? found->second
-               : models.emplace(own, bullet::makeModels(scene.parts[own].part)).first->second;
+  /// A part's models with the shell that is in use.
+  [[nodiscard]] std::shared_ptr<const PartModel> modelOf(std::size_t part) const {
+    const std::shared_ptr<const PartModel>& own = scene.parts[part].model;
+    return shells && (*shells)[part] ? withShell(*own, (*shells)[part]) : own;
   }
 
-  /// The points that a part goes by now.
-  [[nodiscard]] std::shared_ptr<const PointShell> shellOf(std::size_t part) const {
-    return shells && (*shells)[part] ? (*shells)[part] : scene.parts[part].part.shell;
-  }
-
-  void letGo() {
+  void uncouple() {
     if (!coupling) return;
     world.removeConstraint(coupling.get());
     coupling.reset();
@@ -105,43 +97,41 @@ struct Simulation::World {
   void remove(std::size_t part) {
     const auto found = bodies.find(part);
     if (found == bodies.end()) return;
-    if (coupling && grasped == part) letGo();
+    if (coupling && grasped == part) uncouple();
     world.removeRigidBody(found->second.body.get());
     bodies.erase(found);
   }
 
   void setMaterial(btRigidBody& body, std::size_t part) const {
     const Material& material = scene.parts[part].part.material;
+    // Bullet multiplies the two bodies' values. With square roots the product is the geometric mean, so that
+    // two parts of 0.15 have 0.15 between them, as in tables of friction.
     body.setFriction(static_cast<btScalar>(frictionFactor(material.friction)));
     body.setRestitution(static_cast<btScalar>(material.restitution));
   }
 };
 
-Simulation::Simulation(const Scene& scene, const Plan& plan) : world_(std::make_unique<World>(scene, plan)) {}
+Simulation::Simulation(const Scene& scene, const ModelPlan& plan)
+    : world_(std::make_unique<World>(scene, plan)) {}
 Simulation::~Simulation() = default;
 
-bool Simulation::needsField(const std::vector<FixedPart>& parts, const PlannedStep& step) const {
+bool Simulation::needsField(const std::vector<FixedPart>& parts, const FieldPlan& step) const {
   const CookedField& now = world_->field;
   if (parts.size() != now.parts.size()) return true;
   if (parts.empty() || !now.region_W) return false;
   return !step.region_W || !isWithin(*step.region_W, *now.region_W);
 }
 
-FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const PlannedStep& step,
-                                  bool is_anew) {
+FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const FieldPlan& step, bool rebuilds) {
   World& w = *world_;
   FieldOrder order;
   order.region_W = step.region_W;
   order.has_shell = step.has_shell;
-  order.has_mesh = order.builds_anew = w.plan.models_everything;
+  order.has_mesh = order.rebuilds_maps = w.plan.models_everything;
   order.fidelity = w.scene.fidelity;
-  for (const FixedPart& placed : parts) {
-    const Part& part = w.scene.parts[placed.part].part;
-    order.parts.push_back({placed, &part.mesh, part.map, w.shellOf(placed.part),
-                           w.modelsOf(placed.part).surfaces.front().distance,
-                           w.plan.parts[placed.part].kept_P});
-  }
-  if (hasFixed() && !is_anew) {
+  for (const FixedPart& placed : parts)
+    order.parts.push_back({placed, w.modelOf(placed.part), w.plan.parts[placed.part].kept_P});
+  if (hasFixed() && !rebuilds) {
     order.below = w.field.shape->models().map;
     order.below_count = w.field.parts.size();
   }
@@ -164,16 +154,16 @@ ResampleOrder Simulation::orderResampling(std::size_t part) {
   World& w = *world_;
   ResampleOrder order;
   if (hasFixed()) {
-    PlannedStep as_it_is;
-    as_it_is.region_W = w.field.region_W;
+    FieldPlan current;
+    current.region_W = w.field.region_W;
     order.field_before = w.field.shape->models().shell;
-    as_it_is.has_shell = order.field_before != nullptr;
-    order.field = orderField(w.field.parts, as_it_is);
-    for (FieldPart& fixed : order.field.parts) fixed.shell = w.scene.parts[fixed.placed.part].part.shell;
+    current.has_shell = order.field_before != nullptr;
+    order.field = orderField(w.field.parts, current);
+    for (FieldPart& fixed : order.field.parts) fixed.model = w.scene.parts[fixed.placed.part].model;
   }
   const DynamicBody& body = w.bodies.at(part);
   order.part = part;
-  order.models = w.modelsOf(part);
+  order.model = w.scene.parts[part].model;
   order.part_before = body.shape->models().shell;
   order.X_SM = body.shape->X_SM();
   order.X_WP = pose(part);
@@ -181,15 +171,15 @@ ResampleOrder Simulation::orderResampling(std::size_t part) {
   return order;
 }
 
-void Simulation::setShells(ResampledShells points) {
+void Simulation::setShells(ResampledShells resampled) {
   World& w = *world_;
-  w.shells = std::move(points.shells);
-  const auto found = w.bodies.find(points.part);
-  if (found == w.bodies.end() || !points.shape) return;
+  w.shells = std::move(resampled.shells);
+  const auto found = w.bodies.find(resampled.part);
+  if (found == w.bodies.end() || !resampled.shape) return;
   DynamicBody& body = found->second;
-  // Out and in again, so that no pair goes on with points that are gone.
+  // Removing and adding the body discards its pairs, which refer to points of the old shell.
   w.world.removeRigidBody(body.body.get());
-  std::swap(body.shape, points.shape);
+  std::swap(body.shape, resampled.shape);
   body.body->setCollisionShape(body.shape.get());
   w.world.addRigidBody(body.body.get());
 }
@@ -211,12 +201,11 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
   if (!(mass.volume_m3 > 0))
     throw LoadError(
         scene_part.file, scene_part.part.name,
-        "its volume is not positive, so it has no mass: the mesh is open or inside out; mend it, or mark the "
-        "part as fixed");
+        "its volume is not positive, so it has no mass: the mesh is open or inside out; repair it, or mark "
+        "the part as fixed");
   added.frame = bullet::makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
-  bullet::ShapeModels models = w.modelsOf(part);
-  models.shell = w.shellOf(part);
-  added.shape = std::make_unique<bullet::Shape>(std::move(models), added.frame.X_PB.inverse());
+  added.shape =
+      std::make_unique<bullet::Shape>(bullet::makeModels(*w.modelOf(part)), added.frame.X_PB.inverse());
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
@@ -234,7 +223,7 @@ void Simulation::removeBody(std::size_t part) {
 
 void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains) {
   World& w = *world_;
-  w.letGo();
+  w.uncouple();
   DynamicBody& held = w.bodies.at(part);
   w.coupling =
       std::make_unique<bullet::CouplingConstraint>(*held.body, held.frame.X_PB.inverse() * X_PG, gains);
@@ -244,7 +233,7 @@ void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& 
 }
 
 void Simulation::release() {
-  world_->letGo();
+  world_->uncouple();
 }
 
 void Simulation::setGains(const CouplingGains& gains) {
@@ -261,12 +250,12 @@ CouplingState Simulation::graspState() const {
 
 void Simulation::step(double dt_s) {
   world_->dt_s = dt_s;
-  // No sub-steps: the step is the one asked for, so that a run is a fixed sequence.
+  // No sub-steps: each call is exactly one step of dt_s, so that a run is a fixed sequence.
   world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
   for (const auto& [part, b] : world_->bodies)
     if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
       throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
-                      "its pose is no longer a number; check its mass and size, or take a finer fidelity");
+                      "its pose is not finite any more; check its mass and size, or choose a finer fidelity");
 }
 
 Pose Simulation::pose(std::size_t part) const {
@@ -324,10 +313,6 @@ const VoxMap* Simulation::fixedMap() const {
   return hasFixed() ? world_->field.shape->models().map.get() : nullptr;
 }
 
-std::shared_ptr<const MeshDistance> Simulation::surface(std::size_t part) const {
-  return world_->modelsOf(part).surfaces.front().distance;
-}
-
 namespace {
 
 /// Calls visit(point) for every contact point of the last step.
@@ -368,7 +353,7 @@ void Simulation::addField(ModelledCost& cost) const {
   if (!hasFixed()) return;
   std::vector<std::shared_ptr<const VoxMap>> own;
   for (const FixedPart& placed : world_->field.parts)
-    own.push_back(world_->scene.parts[placed.part].part.map);
+    own.push_back(world_->scene.parts[placed.part].model->map);
   const PointShell* shell = world_->field.shape->models().shell.get();
   cost.bytes += world_->field.memoryBytes(own);
   ++cost.voxmaps;

@@ -11,16 +11,16 @@ Touch exactTouch(const JudgedBody& solid, const std::vector<SurfaceSample>& samp
                  const Vec3& p_SO) {
   std::vector<double> reading(samples.size());
   tbb::parallel_for(std::size_t{0}, samples.size(),
-                    [&](std::size_t i) { reading[i] = solid.map->distance(X_SB * samples[i].p); });
-  const double error_m = solid.map->sampleError_m();
+                    [&](std::size_t i) { reading[i] = solid.model->map->distance(X_SB * samples[i].p); });
+  const double error_m = solid.model->map->sampleError_m();
   const double least_m = reading.empty() ? 0 : *std::min_element(reading.begin(), reading.end());
   const double cutoff_m = std::max(least_m + 2 * error_m, error_m);
   std::vector<MeshDistance::Closest> found(samples.size());
   std::vector<double> exact(samples.size(), std::numeric_limits<double>::infinity());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
-    if (reading[i] > cutoff_m || reading[i] >= solid.map->band_m()) return;
+    if (reading[i] > cutoff_m || reading[i] >= solid.model->map->band_m()) return;
     const Vec3 p_S = X_SB * samples[i].p;
-    found[i] = solid.distance->closest(p_S);
+    found[i] = solid.model->surface->closest(p_S);
     const bool is_inside = (p_S - found[i].q).dot(found[i].normal) < 0;
     exact[i] = is_inside ? -found[i].distance_m : found[i].distance_m;
   });

@@ -158,8 +158,11 @@ bool Chooser::findVoxel() {
 void Chooser::count() {
   scene_.fidelity = choice_.fidelity;
   for (ScenePart& part : scene_.parts) {
-    if (part.part.shell && part.part.shell->spacing_m != choice_.fidelity.spacing_m) part.part.shell.reset();
-    if (part.part.map && part.part.map->voxel_m() != choice_.fidelity.voxel_m) part.part.map.reset();
+    if (!part.model) continue;
+    PartModel kept = *part.model;
+    if (kept.shell && kept.shell->spacing_m != choice_.fidelity.spacing_m) kept.shell.reset();
+    if (kept.map && kept.map->voxel_m() != choice_.fidelity.voxel_m) kept.map.reset();
+    part.model = std::make_shared<const PartModel>(std::move(kept));
   }
   buildModels(scene_, {});
   const ModelledCost cost = modelledCost(scene_);
@@ -167,7 +170,7 @@ void Chooser::count() {
   choice_.bytes = 2 * cost.bytes;  // once in the parts, once cooked
   std::size_t most = 0;
   for (const ScenePart& part : scene_.parts)
-    if (!part.is_fixed) most = std::max(most, part.part.shell->size());
+    if (!part.is_fixed) most = std::max(most, part.model->shell->size());
   // The others can touch it with no more surface than it has.
   choice_.points_near = choice_.fidelity.sides == Sides::Both ? 2 * most : most;
   choice_.step_us = kStepBase_us + kStepPoint_us * static_cast<double>(choice_.points_near);

@@ -15,8 +15,8 @@ namespace {
 constexpr int kRepeats = 5;
 
 /// The penalty wrench of one pair, as a haptic loop would ask for it; on P about its origin, in W.
-Reading ask(const Part& fixed, const Pose& X_WM, const Part& held, const Pose& X_WP, const Fidelity& fidelity,
-            bool is_exhaustive) {
+Reading ask(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
+            const Fidelity& fidelity, bool is_exhaustive) {
   QueryOptions options;
   options.gradient = fidelity.gradient;
   options.is_exhaustive = is_exhaustive;
@@ -34,7 +34,8 @@ Reading ask(const Part& fixed, const Pose& X_WM, const Part& held, const Pose& X
   return reading;
 }
 
-double leastOfPair(const Part& fixed, const Pose& X_WM, const Part& held, const Pose& X_WP, Sides sides) {
+double leastOfPair(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
+                   Sides sides) {
   const Pose X_MP = X_WM.inverse() * X_WP;
   double least_m = queryDistance(*fixed.map, *held.shell, X_MP).min_distance_m;
   if (sides == Sides::Both)
@@ -49,7 +50,7 @@ Reading readAll(const Scene& scene, std::size_t moving, const Pose& X_WP, bool i
   for (const ScenePart& part : scene.parts) {
     if (!part.is_fixed) continue;
     const Reading one =
-        ask(part.part, part.X_WP, scene.parts[moving].part, X_WP, scene.fidelity, is_exhaustive);
+        ask(*part.model, part.X_WP, *scene.parts[moving].model, X_WP, scene.fidelity, is_exhaustive);
     all.points += one.points;
     all.F_W.f += one.F_W.f;
     all.F_W.tau += one.F_W.tau;
@@ -61,8 +62,8 @@ double leastDistance(const Scene& scene, std::size_t moving, const Pose& X_WP) {
   double least_m = std::numeric_limits<double>::infinity();
   for (const ScenePart& part : scene.parts)
     if (part.is_fixed)
-      least_m = std::min(
-          least_m, leastOfPair(part.part, part.X_WP, scene.parts[moving].part, X_WP, scene.fidelity.sides));
+      least_m = std::min(least_m, leastOfPair(*part.model, part.X_WP, *scene.parts[moving].model, X_WP,
+                                              scene.fidelity.sides));
   return least_m;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
@@ -19,6 +20,7 @@ class ModelStore {
 
  private:
   using Key = std::pair<std::size_t, double>;
+  std::vector<std::shared_ptr<const PartModel>> models_;  ///< of the last row, by part
   std::map<Key, std::shared_ptr<const VoxMap>> maps_;
   std::map<Key, std::shared_ptr<const PointShell>> shells_;
 };

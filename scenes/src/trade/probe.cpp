@@ -40,9 +40,7 @@ double relative(const Vec3& v, const Vec3& truth) {
 
 Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progress)
     : moving_(scene.steps.front().part), poses_(std::move(poses)) {
-  const auto bodyOf = [&](const ScenePart& part) {
-    return makeJudgedBody(part.part, std::make_shared<MeshDistance>(part.part.mesh));
-  };
+  const auto bodyOf = [](const ScenePart& part) { return makeJudgedBody(part.model); };
   held_.body = bodyOf(scene.parts[moving_]);
   std::vector<Pose> X_PWs;
   for (const Pose& X_WP : poses_) X_PWs.push_back(X_WP.inverse());
@@ -58,13 +56,13 @@ Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progre
     near_held.add(box.max);
   }
   for (spacing_m_ = kFiner * scene.fidelity.spacing_m;; spacing_m_ *= 1.4) {
-    held_.samples = sampleSurface(held_.body.distance->mesh(), spacing_m_, near_held);
+    held_.samples = sampleSurface(held_.body.model->surface->mesh(), spacing_m_, near_held);
     std::size_t most = held_.samples.size();
     for (Side& side : mounted_) {
       std::vector<Pose> X_BPs;
       for (const Pose& X_WP : poses_) X_BPs.push_back(side.X_WB.inverse() * X_WP);
-      side.samples =
-          sampleSurface(side.body.distance->mesh(), spacing_m_, boxAt(held_.body.distance->mesh(), X_BPs));
+      side.samples = sampleSurface(side.body.model->surface->mesh(), spacing_m_,
+                                   boxAt(held_.body.model->surface->mesh(), X_BPs));
       most = std::max(most, side.samples.size());
     }
     if (most <= kMostSamples) break;

@@ -46,7 +46,7 @@ LossyHand::LossyHand(const scenes::Scene& scene, const Connection& connection)
 
 void LossyHand::prepare(const device::OperatorTask& task, std::size_t step, double now_s) {
   hand_->prepare(task, step, now_s);
-  const Part& part = scene_.parts[scene_.steps[step].part].part;
+  const auto& part = scene_.parts[scene_.steps[step].part].part;
   next_ = {task.X_PG, bullet::makeBodyFrame(massProperties(part.mesh), part.material.density_kg_m3)};
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lossy_hand.h"
-#include "procedure/procedure.h"
+#include "procedure/assembly_run.h"
 #include "rows.h"
 
 namespace vps::bench {

@@ -9,14 +9,11 @@
 #include <cstdio>
 
 int main() {
-  vps::Part part;
-  part.mesh = vps::makeBox(vps::Vec3(0.02, 0.02, 0.01));
   vps::VoxMapSettings voxels;
   voxels.voxel_m = 0.5e-3;
-  part.map = std::make_shared<vps::VoxMap>(vps::buildVoxMap(part.mesh, voxels));
   vps::PointShellSettings points;
   points.spacing_m = 1e-3;
-  part.shell = std::make_shared<vps::PointShell>(vps::buildPointShell(part.mesh, points));
+  const auto part = vps::buildPartModel("block", vps::makeBox(vps::Vec3(0.02, 0.02, 0.01)), voxels, points);
 
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
@@ -27,7 +24,7 @@ int main() {
   vps::bullet::tuneWorld(world);
   world.setGravity(btVector3(0, 0, btScalar(-9.81)));
 
-  vps::bullet::Shape shape(vps::bullet::makeModels(part));
+  vps::bullet::Shape shape(vps::bullet::makeModels(*part));
   btVector3 inertia;
   shape.calculateLocalInertia(btScalar(0.03), inertia);
   btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape));

@@ -18,7 +18,7 @@ RenderScene drawnMeshes(const scenes::Scene& scene) {
   RenderScene drawn;
   std::size_t next = 0;
   for (const scenes::ScenePart& part : scene.parts) {
-    const bool has_color = part.part.color != Part().color;
+    const bool has_color = part.part.color != scenes::Part().color;
     drawn.push_back({&part.part.mesh, has_color ? part.part.color : kPalette[next++ % kPalette.size()],
                      part.is_fixed, part.X_WP});
   }

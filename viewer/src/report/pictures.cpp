@@ -32,7 +32,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.show_target = options.show_contacts = options.show_force = options.show_legend = false;
     options.title = result_.scene.empty() ? scene_.name : result_.scene;
-    options.caption = result_.completed ? "as assembled" : "not complete" + placedOnes();
+    options.caption = result_.completed ? "as assembled" : "not complete";
     const Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     pictures.overview = save("overview.png", result_.finished, camera, options);
     options.caption += ", cut through the middle";
@@ -43,15 +43,6 @@ class PictureSet {
   }
 
  private:
-  /// What the picture shows in place although no contact brought it there.
-  [[nodiscard]] std::string placedOnes() const {
-    std::string names;
-    for (const scenes::StepResult& step : result_.steps)
-      if (step.is_placed)
-        names += (names.empty() ? "; drawn at the target although not brought there: " : ", ") + step.part;
-    return names;
-  }
-
   [[nodiscard]] DrawOptions baseOptions() const {
     DrawOptions options;
     options.width = options_.width;

@@ -9,6 +9,7 @@
 #include "report/run_plot.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
+#include "vps_scenes/load_level.h"
 
 namespace vps::viewer {
 namespace {
@@ -169,7 +170,7 @@ std::string loadChanges(const scenes::AssembleResult& result) {
     rows.push_back({{format(change.time_s, "%.2f"), "n"},
                     {escapeHtml((change.is_done ? "" : "not done: ") + change.is), ""},
                     {escapeHtml(change.why), ""},
-                    {escapeHtml(scenes::inWords(change)), ""}});
+                    {escapeHtml(scenes::describeCost(change)), ""}});
   return "<p>" + behind + ". The fidelity was reduced to hold the rate, and restored, as follows:</p>\n" +
          html::table({"at [s]", "change", "reason", "cost"}, rows);
 }

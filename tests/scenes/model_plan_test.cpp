@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_scenes/plan.h"
+#include "vps_scenes/model_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ ScenePart part(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool
   return out;
 }
 
-/// A pin that is set down on a plate of 40 mm; a shelf 100 mm beside it that nothing comes near; a label that
-/// no step moves; a twin of the pin for the second step. At a coarse rate: a second of work.
+/// A pin that is set down on a plate of 40 mm; a shelf 100 mm away that nothing comes near; a label that no
+/// step moves; a twin of the pin for the second step. The low rates keep a run below a second.
 Scene pinsOnPlate() {
   Scene scene;
   scene.file = scene.name = "pins";
@@ -60,7 +60,7 @@ SimulateResult simulated(Scene scene, bool models_everything) {
   return simulate(scene, 0.2, options);
 }
 
-/// How far two runs are apart at the same step, at most; infinite if they have not the same steps.
+/// Greatest distance between the parts of two runs at the same step; infinite if the runs differ in length.
 double greatestDistance(const AssembleResult& a, const AssembleResult& b) {
   if (a.trace.size() != b.trace.size()) return INFINITY;
   double greatest_m = 0;
@@ -69,8 +69,8 @@ double greatestDistance(const AssembleResult& a, const AssembleResult& b) {
   return greatest_m;
 }
 
-TEST(Plan, WhatNobodyCanTouchIsNotModelledAndTheReasonIsSaid) {
-  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble);
+TEST(ModelPlan, PartsThatNothingCanTouchAreNotModelledAndTheReasonIsGiven) {
+  const ModelPlan plan = makeModelPlan(pinsOnPlate(), ModelPurpose::Assemble);
   for (const std::size_t i : {1u, 2u}) {
     EXPECT_FALSE(plan.parts[i].has_map || plan.parts[i].has_shell) << i;
     EXPECT_NE(plan.parts[i].why.find("nobody can touch it"), std::string::npos) << plan.parts[i].why;
@@ -80,105 +80,107 @@ TEST(Plan, WhatNobodyCanTouchIsNotModelledAndTheReasonIsSaid) {
   EXPECT_EQ(useOf(plan, 1, 0), PartUse::LeftOut);
   EXPECT_EQ(useOf(plan, 3, 0), PartUse::Moves);
   EXPECT_EQ(useOf(plan, 4, 0), PartUse::Absent);
-  EXPECT_EQ(useOf(plan, 3, 1), PartUse::LeftOut) << "mounted 8 mm beside the twin's path";
+  EXPECT_EQ(useOf(plan, 3, 1), PartUse::LeftOut) << "mounted 8 mm from the twin's path";
 }
 
-TEST(Plan, EqualGeometryIsBuiltOnce) {
-  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble);
+TEST(ModelPlan, EqualGeometryIsBuiltOnce) {
+  const ModelPlan plan = makeModelPlan(pinsOnPlate(), ModelPurpose::Assemble);
   EXPECT_EQ(plan.parts[4].same_as, std::optional<std::size_t>(3));
   EXPECT_FALSE(plan.parts[3].same_as);
 }
 
-TEST(Plan, ARegionHoldsTheWholePathAndWhatTheHandMayMiss) {
+TEST(ModelPlan, ARegionContainsTheWholePathAndTheErrorOfTheHand) {
   Scene scene = pinsOnPlate();
   scene.steps[0].way_points = {Pose::translation({0, 20 * kMm, 30 * kMm})};
-  const Plan plan = makePlan(scene, PlanFor::Assemble);
-  // The band is 4 voxels of 0.25 mm; 4 deviations of 0.05 mm; the rest comes on top.
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble);
+  // The band is 4 voxels of 0.25 mm, and 4 standard deviations are 0.2 mm; the region is larger than their
+  // sum.
   for (const Pose& X_WP :
        {scene.steps[0].X_WP_start, scene.steps[0].way_points[0], scene.steps[0].X_WP_target})
     EXPECT_TRUE(
         isWithin(grown(moved(bounds(scene.parts[3].part.mesh), X_WP), 1.2 * kMm), *plan.steps[0].region_W));
 }
 
-TEST(Plan, EverythingSparesNothing) {
-  const Plan plan = makePlan(pinsOnPlate(), PlanFor::Assemble, true);
-  for (const PlannedPart& planned : plan.parts)
+TEST(ModelPlan, ModelsEverythingLeavesNothingOut) {
+  const ModelPlan plan = makeModelPlan(pinsOnPlate(), ModelPurpose::Assemble, true);
+  for (const PartModelPlan& planned : plan.parts)
     EXPECT_TRUE(planned.has_map && planned.has_shell && !planned.same_as && planned.kept_P.empty());
-  for (const PlannedStep& step : plan.steps) EXPECT_TRUE(!step.region_W && step.left_out.empty());
+  for (const FieldPlan& step : plan.steps) EXPECT_TRUE(!step.region_W && step.left_out.empty());
 }
 
-TEST(Plan, OneSidedTheLargerBodyNeedsNoPoints) {
+TEST(ModelPlan, InOneSidedQueriesTheLargerBodyNeedsNoPoints) {
   Scene scene = pinsOnPlate();
   scene.fidelity.sides = Sides::One;
-  for (const PlannedStep& step : makePlan(scene, PlanFor::Assemble).steps) EXPECT_FALSE(step.has_shell);
-  scene.parts.resize(4);  // one that is free beside the label
+  for (const FieldPlan& step : makeModelPlan(scene, ModelPurpose::Assemble).steps)
+    EXPECT_FALSE(step.has_shell);
+  scene.parts.resize(4);  // plate, shelf and pin
   scene.parts.erase(scene.parts.begin() + 2);
   scene.steps.clear();
-  const Plan plan = makePlan(scene, PlanFor::Simulate);
-  EXPECT_FALSE(plan.parts[2].has_map) << "nobody's points meet the only part that moves";
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate);
+  EXPECT_FALSE(plan.parts[2].has_map) << "no points are tested against the only part that moves";
   EXPECT_TRUE(plan.parts[2].has_shell);
 }
 
-TEST(Plan, WithNothingThatMovesNothingIsModelled) {
+TEST(ModelPlan, IfNothingMovesNothingIsModelled) {
   Scene scene = pinsOnPlate();
   scene.parts.resize(2);
   scene.steps.clear();
-  const Plan plan = makePlan(scene, PlanFor::Simulate);
-  for (const PlannedPart& planned : plan.parts) EXPECT_FALSE(planned.has_map || planned.has_shell);
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate);
+  for (const PartModelPlan& planned : plan.parts) EXPECT_FALSE(planned.has_map || planned.has_shell);
   EXPECT_TRUE(plan.steps[0].cooked.empty());
 }
 
 // Within its region a part reads the same nodes and the same points in the same order (crop.h): the same
 // bits, so no tolerance.
-TEST(Plan, ASparedAssemblyIsTheOneThatModelsEverythingToTheBitForLess) {
-  const AssembleResult spared = assembled(pinsOnPlate(), false), all = assembled(pinsOnPlate(), true);
-  ASSERT_TRUE(spared.completed) << spared.steps[0].failure_reason;
-  EXPECT_EQ(greatestDistance(spared, all), 0);
+TEST(ModelPlan, AReducedAssemblyEqualsTheWholeOneToTheBitWithLessMemory) {
+  const AssembleResult reduced = assembled(pinsOnPlate(), false), all = assembled(pinsOnPlate(), true);
+  ASSERT_TRUE(reduced.completed) << reduced.steps[0].failure_reason;
+  EXPECT_EQ(greatestDistance(reduced, all), 0);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(spared.steps[i].max_penetration_m, all.steps[i].max_penetration_m);
-    EXPECT_EQ(spared.steps[i].final_error_m, all.steps[i].final_error_m);
-    EXPECT_EQ(spared.steps[i].peak_force_N, all.steps[i].peak_force_N);
+    EXPECT_EQ(reduced.steps[i].max_penetration_m, all.steps[i].max_penetration_m);
+    EXPECT_EQ(reduced.steps[i].final_error_m, all.steps[i].final_error_m);
+    EXPECT_EQ(reduced.steps[i].peak_force_N, all.steps[i].peak_force_N);
   }
-  EXPECT_EQ(spared.widened, 0);
-  EXPECT_LT(spared.modelled.bytes, all.modelled.bytes / 2);
-  EXPECT_LT(spared.modelled.field_points, all.modelled.field_points / 4);
+  EXPECT_EQ(reduced.widened, 0);
+  EXPECT_LT(reduced.modelled.bytes, all.modelled.bytes / 2);
+  EXPECT_LT(reduced.modelled.field_points, all.modelled.field_points / 4);
 }
 
-// It is let go 10 mm above the plate, and falls out of its region onto what was not modelled.
-TEST(Plan, APartThatLeavesItsRegionFindsTheRestModelled) {
+// It is released 10 mm above the plate, and falls out of its region onto a plate that was not modelled.
+TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheOtherFixedPartsAsWell) {
   Scene scene = pinsOnPlate();
   scene.steps.resize(1);
   scene.steps[0].X_WP_start = Pose::translation({0, 0, 12.2 * kMm});
   scene.steps[0].X_WP_target = Pose::translation({0, 0, 12 * kMm});
-  EXPECT_EQ(useOf(makePlan(scene, PlanFor::Assemble), 0, 0), PartUse::LeftOut);
-  const AssembleResult spared = assembled(scene, false), all = assembled(scene, true);
-  EXPECT_EQ(spared.widened, 1);
+  EXPECT_EQ(useOf(makeModelPlan(scene, ModelPurpose::Assemble), 0, 0), PartUse::LeftOut);
+  const AssembleResult reduced = assembled(scene, false), all = assembled(scene, true);
+  EXPECT_EQ(reduced.widened, 1);
   EXPECT_EQ(all.widened, 0);
   // It lies on the plate: 1 mm of plate, 1 mm of pin.
-  EXPECT_NEAR(spared.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
-  // The field is another body from then on, which may turn the pair round, so not the same bits; within what
-  // a part at rest may drift. Measured 0.4 um.
-  EXPECT_LE(greatestDistance(spared, all), kRestDriftLimit_m);
-  EXPECT_LE(spared.steps[0].max_penetration_m, spared.steps[0].penetration_limit_m);
+  EXPECT_NEAR(reduced.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
+  // The new field is another body, which may swap the bodies of the pair, so the bits differ. The limit is
+  // the drift that a part at rest may have; measured 0.4 um.
+  EXPECT_LE(greatestDistance(reduced, all), kRestDriftLimit_m);
+  EXPECT_LE(reduced.steps[0].max_penetration_m, reduced.steps[0].penetration_limit_m);
 }
 
-TEST(Plan, ASparedSimulationIsTheOneThatModelsEverythingToTheBitForLess) {
+TEST(ModelPlan, AReducedSimulationEqualsTheWholeOneToTheBitWithLessMemory) {
   Scene scene = pinsOnPlate();
   scene.steps.clear();
   for (const Sides sides : {Sides::Both, Sides::One}) {
     scene.fidelity.sides = sides;
-    const SimulateResult spared = simulated(scene, false), all = simulated(scene, true);
-    for (std::size_t i = 0; i < spared.bodies.size(); ++i)
-      EXPECT_EQ((spared.bodies[i].X_WP.p - all.bodies[i].X_WP.p).norm(), 0) << spared.bodies[i].name;
-    EXPECT_EQ(spared.max_penetration_m, all.max_penetration_m);
-    EXPECT_GT(spared.contact_step.count, 10u);
-    EXPECT_LT(spared.modelled.bytes, all.modelled.bytes);
+    const SimulateResult reduced = simulated(scene, false), all = simulated(scene, true);
+    for (std::size_t i = 0; i < reduced.bodies.size(); ++i)
+      EXPECT_EQ((reduced.bodies[i].X_WP.p - all.bodies[i].X_WP.p).norm(), 0) << reduced.bodies[i].name;
+    EXPECT_EQ(reduced.max_penetration_m, all.max_penetration_m);
+    EXPECT_GT(reduced.contact_step.count, 10u);
+    EXPECT_LT(reduced.modelled.bytes, all.modelled.bytes);
   }
 }
 
-TEST(Explain, CostsAreThoseOfTheRun) {
+TEST(Explain, CostsEqualThoseOfTheRun) {
   const AssembleResult run = assembled(pinsOnPlate(), false);
-  const ExplainedPlan explained = explain(pinsOnPlate(), PlanFor::Assemble, {});
+  const ExplainedModels explained = explain(pinsOnPlate(), ModelPurpose::Assemble, {});
   EXPECT_EQ(explained.cost.most.bytes, run.modelled.bytes);
   EXPECT_EQ(explained.cost.most.field_points, run.modelled.field_points);
   EXPECT_EQ(explained.cost.parts[1].map_bytes, 0u);

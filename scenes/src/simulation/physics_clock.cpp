@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "haptics/physics_clock.h"
+#include "simulation/physics_clock.h"
 
 #include <cmath>
 

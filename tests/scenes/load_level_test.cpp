@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run by the clock with physics that is made too slow for it. Loads are several times what a step of such a
-// scene takes on any machine, and periods long: a busy machine may add to them, but not take away.
+// Runs in real time with physics that is artificially too slow. The added loads are several times the
+// duration of a step, and the periods are long, so that a busy machine can only add to the load.
 #include "vps_scenes/load_level.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// A pin that is set down on a plate, and another beside it. Physics at 250 Hz.
+/// Two pins that are set down on a plate. Physics at 250 Hz.
 Scene twoPins() {
   Scene scene;
   scene.file = scene.name = "pins";
@@ -37,7 +37,7 @@ Scene twoPins() {
     step.part = i;
     step.X_WP_target = scene.parts[i].X_WP;
     step.X_WP_start = Pose::translation(scene.parts[i].X_WP.p + Vec3(0, 0, 20 * kMm));
-    step.tolerance_m = 1 * kMm;  // what is tested is the pace, not the hand
+    step.tolerance_m = 1 * kMm;  // the load level is tested, not the hand
   }
   scene.fidelity.haptic_rate_hz = 500;
   scene.fidelity.physics_rate_hz = 250;
@@ -50,7 +50,8 @@ void burn(double seconds) {
   }
 }
 
-/// By the clock, with physics steps that take load_s(time_s) more, until so much simulated time has passed.
+/// A run in real time whose physics steps take load_s(time_s) longer, stopped after until_s of simulated
+/// time.
 AssembleResult run(Scene scene, double until_s, const std::function<double(double)>& load_s,
                    bool degrades = true) {
   std::atomic<bool> stop = false;
@@ -70,14 +71,14 @@ void expectInOrder(const std::vector<LoadLevelChange>& load_changes) {
   for (const LoadLevelChange& change : load_changes) {
     EXPECT_EQ(change.from, level);
     EXPECT_TRUE(change.is_done) << change.why;
-    EXPECT_LE(std::abs(change.to - change.from), 1) << change.is;  // 0: the same, of models made anew
+    EXPECT_LE(std::abs(change.to - change.from), 1) << change.is;  // 0: the same level with new models
     EXPECT_FALSE(change.why.empty() || change.cost.empty());
     level = change.to;
   }
 }
 
-// 10 ms of load in a period of 4: too much for 4 and 8, not for 16.
-TEST(LoadLevel, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
+// 10 ms of load do not fit into periods of 4 and 8 ms, but into 16 ms.
+TEST(LoadLevel, AnOverloadedRunReducesPointsThenRateAndStopsWhereItFits) {
   const AssembleResult result = run(twoPins(), 2, [](double) { return 10e-3; });
   const std::vector<LoadLevelChange>& load_changes = result.real_time->load_changes;
   ASSERT_GE(load_changes.size(), 4u);
@@ -91,13 +92,13 @@ TEST(LoadLevel, AnOverloadedRunGivesUpPointsThenRateAndStopsWhereItFits) {
   EXPECT_LT(load_changes[3].k_N_per_m, load_changes[2].k_N_per_m)
       << "a coupling that is passive at the lower rate is softer";
   EXPECT_EQ(load_changes.back().to, 4) << load_changes.back().is;
-  EXPECT_GT(result.real_time->behind_s, 0.5) << "a second went by before that";
+  EXPECT_GT(result.real_time->behind_s, 0.5) << "the four changes took a second";
   EXPECT_EQ(result.real_time->faults, 0u);
 }
 
-// The load is gone after half a second. The hand takes longer than the 2 s after which a rate could come
-// back, and it comes back only when the pin is let go; 9 s of rest have room for four waits of 2 s.
-TEST(LoadLevel, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
+// The load ends after half a second. The hand holds the pin for longer than the 2 s after which a rate could
+// be restored, but rates are restored only after the release; 9 s of rest are enough for four waits of 2 s.
+TEST(LoadLevel, AfterTheLoadEndsAllLevelsAreRestoredInReverseOrder) {
   Scene scene = twoPins();
   scene.steps.resize(1);
   scene.release_s = 9;
@@ -113,17 +114,17 @@ TEST(LoadLevel, WhenTheLoadIsGoneAllIsTakenBackInTheOppositeOrder) {
   EXPECT_EQ(load_changes.back().k_N_per_m, load_changes.front().k_N_per_m)
       << "the coupling is as stiff as before";
   EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].failure_reason << result.steps[0].final_error_m
-                                           << "or nothing could have come back in the hand";
+                                           << "the hand must hold the part for longer than one wait";
   const double released_s = result.steps[0].start_s + result.steps[0].duration_s;
   for (const LoadLevelChange& change : load_changes) {
     if (change.to < change.from && change.from > 2) {
-      EXPECT_GE(change.time_s, released_s) << "a coupling got stiffer in the hand";
+      EXPECT_GE(change.time_s, released_s) << "a coupling became stiffer while the hand held the part";
     }
   }
 }
 
-// At 100 Hz sixteen periods are longer than the watchdog waits for physics (0.1 s); four are not.
-TEST(LoadLevel, NoPaceIsTakenAtWhichPhysicsWouldLookStalled) {
+// At 100 Hz sixteen periods are longer than the watchdog's limit for physics (0.1 s); four are not.
+TEST(LoadLevel, NoLevelIsTakenAtWhichTheWatchdogWouldSeeAStall) {
   Scene scene = twoPins();
   scene.fidelity.physics_rate_hz = 100;
   const AssembleResult result = run(scene, 2.5, [](double) { return 50e-3; });
@@ -131,33 +132,33 @@ TEST(LoadLevel, NoPaceIsTakenAtWhichPhysicsWouldLookStalled) {
   int most = 0;
   for (const LoadLevelChange& change : result.real_time->load_changes) most = std::max(most, change.to);
   EXPECT_EQ(most, 4);
-  EXPECT_FALSE(result.real_time->load_changes.back().is_done) << "nothing is left to give up";
+  EXPECT_FALSE(result.real_time->load_changes.back().is_done) << "there is no further level";
   EXPECT_EQ(result.real_time->faults, 0u);
 }
 
-TEST(LoadLevel, SwitchedOffItOnlyCounts) {
+TEST(LoadLevel, WithoutLoadSheddingMissedPeriodsAreOnlyCounted) {
   const AssembleResult result = run(
       twoPins(), 0.5, [](double) { return 10e-3; }, false);
   EXPECT_TRUE(result.real_time->load_changes.empty());
   EXPECT_GT(result.real_time->physics_missed, result.physics.count) << "two of three periods";
 }
 
-// Points go with the inverse square of their spacing, a period with the divisors.
-TEST(LoadLevel, PointsAreGivenUpBeforeRateAndRateBeforeTimeEachForLess) {
+// The number of points goes with the inverse square of their spacing, a period with the divisors.
+TEST(LoadLevel, PointsAreReducedBeforeRateAndRateBeforeTime) {
   const std::vector<double> expected = {4, 4, 2, 2, 2, 2};
   for (std::size_t level = 1; level < kLoadLevels.size(); ++level) {
-    EXPECT_EQ(dearerBefore(level), expected[level - 1]) << level;
+    EXPECT_EQ(costRatio(level), expected[level - 1]) << level;
     const LoadLevel &now = kLoadLevels[level], &before = kLoadLevels[level - 1];
     if (now.rate_divisor > before.rate_divisor) {
-      EXPECT_EQ(now.coarser, 4) << level;
+      EXPECT_EQ(now.spacing_factor, 4) << level;
     }
-    if (now.slower > before.slower) {
+    if (now.time_divisor > before.time_divisor) {
       EXPECT_EQ(now.rate_divisor, 4) << level;
     }
   }
 }
 
-TEST(LoadLevel, LockstepNeverGivesUpAnything) {
+TEST(LoadLevel, LockstepNeverShedsLoad) {
   Scene scene = twoPins();
   AssembleOptions options;
   options.after_step = [](double time_s) { burn(time_s < 0.5 ? 5e-3 : 0); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A way longer than the device's workspace, in segments.
+// Paths longer than the device's workspace: their segments, and runs that index between them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,21 +9,22 @@
 #include "vps/load_error.h"
 #include "vps_device/random.h"
 #include "vps_scenes/assemble.h"
+#include "vps_scenes/record.h"
 #include "vps_scenes/replay.h"
 
 namespace vps::scenes {
 namespace {
 
-const Vec3 kRoom_m(0.4, 0.6, 0.4);  // the dual arm's
+const Vec3 kWorkspace_m(0.4, 0.6, 0.4);  // the dual arm's
 
-/// A pin that is set down on a plate, from a metre away: the workspace is 0.4 m wide.
+/// A pin that is set down on a plate from a distance of 1 m, with a workspace 0.4 m wide.
 Scene farPin() {
   Scene scene;
   scene.file = "scene.toml";
   scene.parts.resize(2);
-  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
-  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[1].part = {"pin", makeBox({2e-3, 2e-3, 2e-3}), {}, {}};
   scene.steps.resize(1);
   SceneStep& step = scene.steps[0];
   step.part = 1;
@@ -38,46 +39,47 @@ Scene farPin() {
   return scene;
 }
 
-/// Every segment from where the handle starts it, as the part goes: within the room, and end to end.
-void expectWithinRoom(const Scene& scene, const SceneStep& step, const PathSegments& segments) {
+/// The handle stays within the workspace in each segment, and the segments are joined end to end.
+void expectWithinWorkspace(const Scene& scene, const SceneStep& step, const PathSegments& segments) {
   ASSERT_EQ(segments.X_DH_start.size(), segments.index_points.size() + 1);
   const Vec3 p_PG = massProperties(scene.parts[step.part].part.mesh).com;
-  std::vector<Pose> way = {step.X_WP_start};
-  way.insert(way.end(), segments.way_points.begin(), segments.way_points.end());
-  way.push_back(step.X_WP_target);
+  std::vector<Pose> path = {step.X_WP_start};
+  path.insert(path.end(), segments.way_points.begin(), segments.way_points.end());
+  path.push_back(step.X_WP_target);
   std::size_t segment = 0;
   Vec3 p_DH = segments.X_DH_start[0].p;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    if (i > 0) p_DH += (way[i] * p_PG - way[i - 1] * p_PG) / scene.device.scale;
-    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(p_DH[axis]), kRoom_m[axis] / 2 + 1e-12) << i;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (i > 0) p_DH += (path[i] * p_PG - path[i - 1] * p_PG) / scene.device.scale;
+    for (int axis = 0; axis < 3; ++axis) EXPECT_LE(std::abs(p_DH[axis]), kWorkspace_m[axis] / 2 + 1e-12) << i;
     if (segment < segments.index_points.size() && i == segments.index_points[segment] + 1)
       p_DH = segments.X_DH_start[++segment].p;
   }
   EXPECT_EQ(segment, segments.index_points.size());
 }
 
-TEST(PathSegments, AWayThatFitsIsOneStrokeAroundTheMiddle) {
+TEST(PathSegments, APathThatFitsIsOneSegmentAroundTheMiddle) {
   Scene scene = farPin();
   scene.steps[0].X_WP_start = Pose::translation({0.3, 0, 50e-3});
-  const PathSegments segments = splitPath(scene, scene.steps[0], kRoom_m);
+  const PathSegments segments = splitPath(scene, scene.steps[0], kWorkspace_m);
   EXPECT_TRUE(segments.index_points.empty());
   ASSERT_EQ(segments.way_points.size(), 1u);
   ASSERT_EQ(segments.X_DH_start.size(), 1u);
   EXPECT_NEAR(segments.X_DH_start[0].p.x(), 0.15, 1e-12);
 }
 
-TEST(PathSegments, AStraightMetreTakesThreeOfThirtySixCentimetres) {
-  // 0.4 m less 20 mm on each side; the last is the longest, so that the first has what is left over: 0.28 m.
+TEST(PathSegments, AStraightMetreTakesThreeSegmentsOfAtMostThirtySixCentimetres) {
+  // A segment has 0.4 m less 20 mm on each side. The last ones are filled, so the first is the remaining 0.28
+  // m.
   const Scene scene = farPin();
-  const PathSegments segments = splitPath(scene, scene.steps[0], kRoom_m);
+  const PathSegments segments = splitPath(scene, scene.steps[0], kWorkspace_m);
   ASSERT_EQ(segments.index_points, (std::vector<std::size_t>{0, 1}));
   EXPECT_NEAR(segments.way_points[0].p.x(), 0.72, 1e-9);
   EXPECT_NEAR(segments.way_points[1].p.x(), 0.36, 1e-9);
   EXPECT_EQ(segments.way_points[2].p, scene.steps[0].way_points[0].p);
-  expectWithinRoom(scene, scene.steps[0], segments);
+  expectWithinWorkspace(scene, scene.steps[0], segments);
 }
 
-TEST(PathSegments, AnyWayStaysWithinTheRoomAtAnyScale) {
+TEST(PathSegments, AnyPathStaysWithinTheWorkspaceAtAnyScale) {
   device::Random random(5);
   for (int i = 0; i < 200; ++i) {
     Scene scene = farPin();
@@ -86,11 +88,11 @@ TEST(PathSegments, AnyWayStaysWithinTheRoomAtAnyScale) {
     step.way_points.clear();
     for (int n = i % 5; n > 0; --n) step.way_points.push_back(Pose::translation(random.normal3()));
     step.X_WP_start = Pose(rotationFromVector(random.normal3()), 2 * random.normal3());
-    expectWithinRoom(scene, step, splitPath(scene, step, kRoom_m));
+    expectWithinWorkspace(scene, step, splitPath(scene, step, kWorkspace_m));
   }
 }
 
-TEST(Indexing, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
+TEST(Indexing, APartMovesAMetreWithAWorkspaceOfFortyCentimetres) {
   Scene scene = farPin();
   const AssembleResult result = assemble(scene);
   ASSERT_EQ(result.steps.size(), 1u);
@@ -98,15 +100,16 @@ TEST(Indexing, APartComesAMetreThroughAWorkspaceOfFortyCentimetres) {
   EXPECT_TRUE(step.completed) << step.failure_reason;
   EXPECT_EQ(step.index_points, 2);
   EXPECT_LE(result.energy.injected_J, 1e-3);
-  // While the hand goes back the proxy stands, and the part hangs on it by its own weight: it rests.
+  // While the hand returns, the proxy stands still and the part hangs at rest on the coupling.
   int still = 0;
   for (std::size_t i = 1; i < result.trace.size(); ++i)
     still += result.trace[i].X_W_Proxy.p == result.trace[i - 1].X_W_Proxy.p &&
              result.trace[i].X_W_Proxy.p.x() > 0.1;
-  EXPECT_GE(still, 2 * 250);  // two returns of 1.5 s at 250 Hz, less what the part takes to come to rest
+  EXPECT_GE(still,
+            2 * 250);  // two returns of 1.5 s at 250 Hz take 750 steps; the part needs some to come to rest
 }
 
-TEST(Indexing, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
+TEST(Indexing, WithoutIndexingTheRunIsRefusedWithARemedy) {
   Scene scene = farPin();
   scene.device.has_indexing = false;
   try {
@@ -120,13 +123,12 @@ TEST(Indexing, WithoutItTheRunIsRefusedAndSaysWhatWouldHelp) {
   }
 }
 
-TEST(Indexing, ARunWithARatchetReplaysBitForBit) {
+TEST(Indexing, ARunWithIndexingReplaysBitForBit) {
   const test::TemporaryFolder folder;
-  AssembleOptions options;
-  options.record = folder.path() / "run.mcap";
+  const std::string file = folder.path() / "run.mcap";
   Scene scene = farPin();
-  const AssembleResult result = assemble(scene, options);
-  const device::RecordedRun run = device::loadRecording(options.record);
+  const AssembleResult result = assembleAndRecord(scene, file);
+  const device::RecordedRun run = device::loadRecording(file);
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, run.entries.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "haptics/load_governor.h"
+#include "load/load_governor.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 
-/// Six levels below the one asked for, each half as dear as the one above.
+/// Six levels below the scene's own, each at half the cost of the one above.
 LoadGovernor halving() {
   return LoadGovernor(std::vector<double>(6, 2.0));
 }
 
-/// A load that costs load(t) periods a step at level 0, and half as much with each level.
+/// A load of load(t) periods a step at level 0, and half as much with each level.
 struct Course {
   std::vector<int> levels;  ///< after each change
   std::vector<double> times_s;
@@ -44,16 +44,16 @@ TEST(LoadGovernor, ALoadThatFitsChangesNothing) {
   EXPECT_EQ(governor.last().lost_s, 0);
 }
 
-TEST(LoadGovernor, OneLateStepAWindowIsNoReasonHoweverLate) {
+TEST(LoadGovernor, OneLateStepInAWindowChangesNothingHoweverLate) {
   LoadGovernor governor = halving();
   int step = 0;
   const Course course = follow(governor, 20, [&](double) { return ++step % 200 == 0 ? 500.0 : 0.1; });
   EXPECT_TRUE(course.levels.empty());
-  EXPECT_GT(governor.last().lostShare(), 0.5) << "or this load says nothing";
+  EXPECT_GT(governor.last().lostShare(), 0.5) << "the load must be above the limit";
   EXPECT_FALSE(governor.isOverloaded());
 }
 
-// Of 100 steps one may take two periods with 1 % lost; of 10, 9 % are.
+// One step of two periods in 100 loses 1 %; one in 10 loses 9 %.
 TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
   for (const int every : {100, 10}) {
     LoadGovernor governor = halving();
@@ -75,15 +75,15 @@ TEST(LoadGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
   EXPECT_NEAR(governor.last().busy_s, 5e-3 / 8, 1e-12);
 }
 
-TEST(LoadGovernor, WhatNoLevelCanCarryEndsAtTheLastAndIsSaid) {
+TEST(LoadGovernor, ALoadThatNoLevelCanCarryEndsAtTheLastLevelAsOverloaded) {
   LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double) { return 1000.0; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 4, 5, 6}));
   EXPECT_TRUE(governor.isOverloaded());
 }
 
-// A level is taken back after 8 windows of 0.25 s in which the level above would have done.
-TEST(LoadGovernor, WhenTheLoadIsGoneItTakesBackLevelByLevelInTwoSecondsEach) {
+// The governor goes up after 8 windows of 0.25 s in which the level above would have been sufficient.
+TEST(LoadGovernor, AfterTheLoadEndsItGoesUpByOneLevelEveryTwoSeconds) {
   LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double time_s) { return time_s < 1 ? 5.0 : 0.1; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3, 2, 1, 0}));
@@ -91,7 +91,7 @@ TEST(LoadGovernor, WhenTheLoadIsGoneItTakesBackLevelByLevelInTwoSecondsEach) {
     EXPECT_NEAR(course.times_s[i] - course.times_s[i - 1], 2, 0.01);
 }
 
-TEST(LoadGovernor, StallsDoNotKeepItFromTakingBack) {
+TEST(LoadGovernor, StallsDoNotKeepItFromGoingUp) {
   LoadGovernor governor = halving();
   int step = 0;
   const Course course = follow(governor, 8, [&](double time_s) {
@@ -100,22 +100,22 @@ TEST(LoadGovernor, StallsDoNotKeepItFromTakingBack) {
   EXPECT_EQ(course.levels, (std::vector<int>{1, 0}));
 }
 
-// At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so it must not try.
-TEST(LoadGovernor, ItDoesNotTakeBackWhatWouldNotFit) {
+// At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so it must stay.
+TEST(LoadGovernor, ItDoesNotGoUpWhereTheLoadWouldNotFit) {
   LoadGovernor governor = halving();
   EXPECT_EQ(follow(governor, 60, [](double) { return 1.1; }).levels, (std::vector<int>{1}));
 }
 
 // Two seconds of load, three without, for ten minutes: 120 times. Each relapse doubles the wait: 2, 4, 8, 16,
-// 32, 64 s; with pauses of 3 s only the first wait of 2 s can ever be met.
-TEST(LoadGovernor, ALoadThatComesAndGoesDoesNotMakeItFlap) {
+// 32, 64 s; with pauses of 3 s only the first wait of 2 s can end.
+TEST(LoadGovernor, ALoadThatComesAndGoesDoesNotMakeItOscillate) {
   LoadGovernor governor = halving();
   const Course course =
       follow(governor, 600, [](double time_s) { return std::fmod(time_s, 5) < 2 ? 1.5 : 0.1; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 0, 1}));
 }
 
-TEST(LoadGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
+TEST(LoadGovernor, AFailedChangeUpwardsIsTriedAgainAfterTwiceTheTime) {
   LoadGovernor governor = halving();
   follow(governor, 1, [](double) { return 3.0; });
   const int before = governor.level();
@@ -129,7 +129,7 @@ TEST(LoadGovernor, ARiseThatCouldNotBeDoneIsTriedAgainAfterTwiceTheTime) {
   EXPECT_NEAR(again.times_s[0], 4, 0.3) << "sixteen windows of a quarter of a second, after " << first_s;
 }
 
-TEST(LoadGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
+TEST(LoadGovernor, ALevelThatMayNotRiseNowRisesAsSoonAsItMay) {
   LoadGovernor governor = halving();
   (void)follow(governor, 0.3, [](double) { return 1.5; });
   ASSERT_EQ(governor.level(), 1);
@@ -141,11 +141,11 @@ TEST(LoadGovernor, WhatMayNotBeTakenBackNowIsTakenBackAsSoonAsItMay) {
   EXPECT_LE(course.times_s[0], 0.25 + 1e-9) << "at the end of the first window";
 }
 
-TEST(LoadGovernor, TimesThatAreNoNumbersAreNoLoad) {
+TEST(LoadGovernor, DurationsThatAreNotNumbersAreNoLoad) {
   LoadGovernor governor = halving();
   for (const double busy_s : {std::numeric_limits<double>::quiet_NaN(), -1.0})
     for (int i = 0; i < 2000; ++i) ASSERT_EQ(governor.add(busy_s, kPeriod_s), 0);
-  for (int i = 0; i < 4; ++i)  // four leaps of the clock: fewer than five late steps a window
+  for (int i = 0; i < 4; ++i)  // four jumps of the clock: fewer than five late steps in a window
     EXPECT_EQ(governor.add(std::numeric_limits<double>::infinity(), kPeriod_s), 0);
   EXPECT_TRUE(std::isfinite(governor.last().elapsed_s));
 }

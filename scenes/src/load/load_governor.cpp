@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "haptics/load_governor.h"
+#include "load/load_governor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +9,17 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kMostPeriods = 1e6;  ///< that one step counts for: a clock that leapt must not overflow sums
+constexpr double kMostPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
 
-/// Periods from a step's beginning to the next one's.
+/// Periods from the beginning of a step to that of the next.
 double periodsOf(double busy_s, double period_s) {
   return std::clamp(std::ceil(busy_s / period_s), 1.0, kMostPeriods);
 }
 
 }  // namespace
 
-LoadGovernor::LoadGovernor(std::vector<double> dearer, const GovernorSettings& settings)
-    : dearer_(std::move(dearer)), settings_(settings), wait_(settings.calm_windows) {}
+LoadGovernor::LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings)
+    : cost_ratios_(std::move(cost_ratios)), settings_(settings), wait_(settings.calm_windows) {}
 
 int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   if (!(busy_s > 0)) busy_s = 0;
@@ -30,12 +30,13 @@ int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   now_.late += periods > 1;
   ++now_.steps;
   if (level_ > 0) {
-    const double above = periodsOf(dearer_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
+    const double above = periodsOf(cost_ratios_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
     now_.elapsed_above_s += above * period_s;
     now_.lost_above_s += (above - 1) * period_s;
     now_.late_above += above > 1;
   }
-  // Steps of seconds: as many as could be late enough to count, or each would pass for a stall.
+  // With steps of seconds, a window of window_s would hold too few to reach late_limit, and each would count
+  // as a stall.
   const bool is_whole = now_.elapsed_s >= settings_.window_s && now_.steps >= settings_.late_limit;
   return is_whole ? decide(may_rise) : level_;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_scenes/plan.h"
+#include "vps_scenes/model_plan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,17 +12,17 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kDeviations = 4;        // of the hand's aim: 6 in 100,000 steps miss by more
-constexpr double kPeakOverMean = 1.875;  // of a minimum-jerk reach
-constexpr double kSpare_m = 0.5e-3;      // assumed: what the springs give and the path bends
-/// One-sided queries take the smaller body's points. Within this ratio of sizes both are modelled, since the
-/// bridge's boxes lie along other axes than ours.
+constexpr double kDeviations = 4;        // standard deviations of the aim: exceeded in 6 of 100,000 steps
+constexpr double kPeakOverMean = 1.875;  // speed of a minimum-jerk motion
+constexpr double kSpare_m = 0.5e-3;      // assumed: spring deflection and curvature of the path
+/// One-sided queries use the points of the smaller body. Below this ratio of sizes both get points, because
+/// the bridge compares boxes along other axes.
 constexpr double kClearlySmaller = 2;
 
 double margin_m(const Scene& scene, const Box& part) {
   const OperatorSettings& hand = scene.hand;
   const VoxMapSettings map = voxMapSettings(scene.fidelity);
-  // What placed_parts.h asks for ahead of a part that moves as fast as a hand that reaches, at its fastest.
+  // The distance ahead of the part that PlacedParts::isCovered() requires at the peak speed of a reach.
   const double ahead_m = 2 * kPeakOverMean * hand.speed_m_s / scene.fidelity.physics_rate_hz;
   return map.band_voxels * map.voxel_m + kSpare_m + ahead_m +
          kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
@@ -41,27 +41,27 @@ Box pathOf(const SceneStep& step, const Box& part) {
   return path;
 }
 
-/// Decides for one scene. Lives as long as the decision.
+/// Makes the plan of one scene.
 class Planner {
  public:
-  Planner(const Scene& scene, PlanFor purpose) : scene_(scene) {
+  Planner(const Scene& scene, ModelPurpose purpose) : scene_(scene) {
     plan_.purpose = purpose;
     plan_.parts.resize(scene.parts.size());
     for (const ScenePart& part : scene.parts) boxes_.push_back(bounds(part.part.mesh));
   }
 
-  Plan everything() {
+  ModelPlan everything() {
     planEverything();
     return std::move(plan_);
   }
 
-  Plan sharing() {
+  ModelPlan sharing() {
     planEverything();
     shareEqual();
     return std::move(plan_);
   }
 
-  Plan spared() {
+  ModelPlan reduced() {
     planSteps(true);
     for (std::size_t i = 0; i < plan_.parts.size(); ++i) planPart(i);
     shareEqual();
@@ -69,15 +69,15 @@ class Planner {
   }
 
  private:
-  [[nodiscard]] bool isAssembly() const { return plan_.purpose == PlanFor::Assemble; }
+  [[nodiscard]] bool isAssembly() const { return plan_.purpose == ModelPurpose::Assemble; }
 
   void planEverything() {
     plan_.models_everything = true;
-    for (PlannedPart& part : plan_.parts) part = {true, true, {}, {}, "everything is modelled"};
+    for (PartModelPlan& part : plan_.parts) part = {true, true, {}, {}, "everything is modelled"};
     planSteps(false);
   }
 
-  void planSteps(bool is_spared) {
+  void planSteps(bool is_reduced) {
     if (!isAssembly()) return planSimulation();
     std::vector<std::size_t> placed;
     std::vector<Pose> X_WP(scene_.parts.size());
@@ -87,23 +87,24 @@ class Planner {
         X_WP[i] = scene_.parts[i].X_WP;
       }
     for (const SceneStep& step : scene_.steps) {
-      PlannedStep& planned = plan_.steps.emplace_back();
+      FieldPlan& planned = plan_.steps.emplace_back();
       planned.part = step.part;
-      if (is_spared)
+      if (is_reduced)
         planned.region_W = grown(pathOf(step, boxes_[step.part]), margin_m(scene_, boxes_[step.part]));
       for (const std::size_t i : placed) {
-        const bool is_met = !planned.region_W || overlap(moved(boxes_[i], X_WP[i]), *planned.region_W);
-        (is_met ? planned.cooked : planned.left_out).push_back(i);
+        const bool is_near = !planned.region_W || overlap(moved(boxes_[i], X_WP[i]), *planned.region_W);
+        (is_near ? planned.cooked : planned.left_out).push_back(i);
       }
-      planned.has_shell = !is_spared || needsFieldShell(step.part, planned.cooked);
-      planned.why = planned.has_shell ? "" : "one-sided: the moving part's points are the smaller body's";
+      planned.has_shell = !is_reduced || needsFieldShell(step.part, planned.cooked);
+      planned.why =
+          planned.has_shell ? "" : "one-sided: the moving part is the smaller body, so its points are used";
       placed.push_back(step.part);
       X_WP[step.part] = step.X_WP_target;
     }
   }
 
   void planSimulation() {
-    PlannedStep& planned = plan_.steps.emplace_back();
+    FieldPlan& planned = plan_.steps.emplace_back();
     bool has_moving = false;
     for (const ScenePart& part : scene_.parts) has_moving = has_moving || !part.is_fixed;
     for (std::size_t i = 0; i < scene_.parts.size(); ++i)
@@ -115,7 +116,7 @@ class Planner {
       if (!scene_.parts[i].is_fixed) planned.has_shell |= needsFieldShell(i, planned.cooked);
   }
 
-  /// Whether points of what is fixed are ever looked at against this part's map.
+  /// True if points of the fixed field are ever tested against this part's map.
   [[nodiscard]] bool needsFieldShell(std::size_t part, const std::vector<std::size_t>& cooked) const {
     if (scene_.fidelity.sides == Sides::Both) return true;
     double fixed_m = 0;
@@ -124,7 +125,7 @@ class Planner {
   }
 
   void planPart(std::size_t i) {
-    PlannedPart& part = plan_.parts[i];
+    PartModelPlan& part = plan_.parts[i];
     if (!isAssembly()) return planFree(i, part);
     if (scene_.parts[i].is_fixed) return planFixed(i, part);
     for (std::size_t s = 0; s < scene_.steps.size(); ++s) {
@@ -133,10 +134,10 @@ class Planner {
       part.why = "moves in step " + std::to_string(s + 1) + servesLater(i, s);
       return;
     }
-    part.why = "no step moves it and it is not fixed: nobody can touch it, so it is for pictures only";
+    part.why = "no step moves it and it is not fixed: nobody can touch it, so it is only drawn";
   }
 
-  /// For which later steps a part that was mounted is cooked.
+  /// The later steps for which a mounted part is cooked.
   [[nodiscard]] std::string servesLater(std::size_t i, std::size_t moved_in) const {
     std::string steps;
     for (std::size_t s = moved_in + 1; s < plan_.steps.size(); ++s)
@@ -145,29 +146,28 @@ class Planner {
     return steps.empty() ? "; touched by no later step, so never cooked" : "; then cooked, for step " + steps;
   }
 
-  void planFixed(std::size_t i, PlannedPart& part) {
+  void planFixed(std::size_t i, PartModelPlan& part) {
     const Pose X_PW = scene_.parts[i].X_WP.inverse();
-    for (const PlannedStep& step : plan_.steps)
+    for (const FieldPlan& step : plan_.steps)
       if (std::ranges::count(step.cooked, i) > 0) part.kept_P.push_back(moved(*step.region_W, X_PW));
     part.has_map = part.has_shell = !part.kept_P.empty();
     part.why = part.has_map ? "fixed: cooked, where a moving part may come"
                             : "fixed, but no moving part comes near: nobody can touch it";
   }
 
-  void planFree(std::size_t i, PlannedPart& part) {
-    const PlannedStep& all = plan_.steps.front();
+  void planFree(std::size_t i, PartModelPlan& part) {
+    const FieldPlan& all = plan_.steps.front();
     if (scene_.parts[i].is_fixed) {
       const bool is_cooked = std::ranges::count(all.cooked, i) > 0;
       part.has_shell = is_cooked && all.has_shell;
-      part.why =
-          is_cooked ? "fixed: straight into the cooked field" : "nothing moves, so nobody can touch it";
+      part.why = is_cooked ? "fixed: only in the cooked field" : "nothing moves, so nobody can touch it";
       return;
     }
     std::size_t others = 0;
     for (std::size_t j = 0; j < scene_.parts.size(); ++j) others += j != i && !scene_.parts[j].is_fixed;
     part.has_shell = true;
     part.has_map = others > 0 || all.has_shell;
-    part.why = part.has_map ? "moves freely" : "moves freely, one-sided: its points alone are looked at";
+    part.why = part.has_map ? "moves freely" : "moves freely, one-sided: only its points are tested";
   }
 
   void shareEqual() {
@@ -176,31 +176,31 @@ class Planner {
   }
 
   void share(std::size_t i, std::size_t j) {
-    PlannedPart &a = plan_.parts[j], &b = plan_.parts[i];
+    PartModelPlan &a = plan_.parts[j], &b = plan_.parts[i];
     const bool is_modelled = (a.has_map || a.has_shell) && (b.has_map || b.has_shell);
     if (!is_modelled || a.same_as || !isEqualGeometry(scene_.parts[i].part.mesh, scene_.parts[j].part.mesh))
       return;
     a.has_map = b.has_map = a.has_map || b.has_map;
     a.has_shell = b.has_shell = a.has_shell || b.has_shell;
-    a.kept_P.clear();  // whole, for the one that moves
+    a.kept_P.clear();  // everywhere, because one of the two may move
     b.kept_P.clear();
     b.same_as = j;
   }
 
   const Scene& scene_;
-  Plan plan_;
+  ModelPlan plan_;
   std::vector<Box> boxes_;  ///< of the parts, each in its frame
 };
 
 }  // namespace
 
-Plan makeSharingPlan(const Scene& scene) {
-  return Planner(scene, PlanFor::Assemble).sharing();
+ModelPlan makeSharedModelPlan(const Scene& scene) {
+  return Planner(scene, ModelPurpose::Assemble).sharing();
 }
 
-Plan makePlan(const Scene& scene, PlanFor purpose, bool models_everything) {
+ModelPlan makeModelPlan(const Scene& scene, ModelPurpose purpose, bool models_everything) {
   Planner planner(scene, purpose);
-  return models_everything ? planner.everything() : planner.spared();
+  return models_everything ? planner.everything() : planner.reduced();
 }
 
 }  // namespace vps::scenes

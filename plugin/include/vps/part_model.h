@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything that contact needs of one part, built once and never changed: name, mesh, material, voxmap,
+// pointshell and exact surface.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vps/export.h"
+#include "vps/mesh.h"
+#include "vps/mesh_distance.h"
+#include "vps/pointshell.h"
+#include "vps/voxmap.h"
+
+namespace vps {
+
+struct Material {
+  double density_kg_m3 = 7850;       ///< steel
+  double friction = 0.15;            ///< Coulomb, of the material on itself; two materials: geometric mean
+  double restitution = 0;            ///< 0 inelastic to 1 elastic
+  double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (paper, section 4.1)
+};
+
+/// The models of one part, all in the part's own frame P. It is held as `std::shared_ptr<const PartModel>` by
+/// everything that needs the part's models (collision shape, fixed field, overlap judge), on any thread.
+/// Parts of equal geometry share mesh, map, shell and surface and differ in name and material. Each pointer
+/// may be null where nothing needs that model.
+struct PartModel {
+  std::string name;
+  std::shared_ptr<const Mesh> mesh;
+  Material material;
+  std::shared_ptr<const VoxMap> map;
+  std::shared_ptr<const PointShell> shell;
+  std::shared_ptr<const MeshDistance> surface;  ///< exact distance to the welded mesh
+};
+
+/// The exact surface of a mesh, its vertices welded; null for a mesh without triangles. O(n log n).
+VPS_API std::shared_ptr<const MeshDistance> buildSurface(const Mesh& mesh);
+
+/// Builds all models of a part. Throws LoadError as buildVoxMap() and buildPointShell().
+VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
+                                                        const VoxMapSettings& voxels = {},
+                                                        const PointShellSettings& points = {},
+                                                        const Material& material = {});
+
+/// The same part with another sampling of its surface. Everything else stays shared.
+VPS_API std::shared_ptr<const PartModel> withShell(const PartModel& model,
+                                                   std::shared_ptr<const PointShell> shell);
+
+}  // namespace vps

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Decides when a run that cannot hold its rate goes to a cheaper load level, and when it comes back. It uses
+// neither a clock nor models: it gets the duration of each step and returns a level.
+#pragma once
+
+#include <vector>
+
+namespace vps::scenes {
+
+struct GovernorSettings {
+  double window_s = 0.25;    ///< time that one decision is based on. assumed: the delay a person accepts
+  double lost_limit = 0.05;  ///< share of a window's time that may be lost. assumed: the part is 5 % too slow
+  int late_limit = 5;        ///< fewer late steps in a window are a stall, which no level cures. assumed
+  int calm_windows = 8;      ///< calm windows before it goes up. assumed: 2 s, longer than a brief contact
+  int most_calm_windows = 256;  ///< limit of that number, which doubles after each relapse. assumed: 64 s
+};
+
+/// Level 0 is the scene's own; each further level is cheaper. Not thread-safe. Allocates only in its
+/// constructor.
+///
+/// A step that takes longer than its period loses the periods that begin meanwhile.
+/// - Down one level: after a window in which more than lost_limit was lost by at least late_limit late steps.
+/// - Up one level: after the required number of calm windows in a row. A window is calm when, with every step
+/// as
+///   much longer as the level above may make it, no more than half of lost_limit would have been lost, stalls
+///   not counted.
+/// The gap between the two conditions is the hysteresis: neither a single late step nor a load near the limit
+/// changes the level, and a load that comes and goes changes it less and less often.
+class LoadGovernor {
+ public:
+  /// @param cost_ratios  for each level but 0: the share of its period that a step takes one level up,
+  /// divided
+  ///                     by that at this level, at most; >= 1
+  explicit LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings = {});
+
+  /// Adds one step.
+  /// @param busy_s    its duration; a value that is not a number or below 0 counts as 0
+  /// @param period_s  its period, > 0
+  /// @param may_rise  false: the level above is not possible now; the governor goes up once it is
+  /// @return the level from now on, at most one from the one before. O(1).
+  int add(double busy_s, double period_s, bool may_rise = true) noexcept;
+  /// The last change upwards failed: stays at `level`, and waits longer before it tries again.
+  void stayAt(int level) noexcept;
+  [[nodiscard]] int level() const noexcept { return level_; }
+  [[nodiscard]] int lastLevel() const noexcept { return static_cast<int>(cost_ratios_.size()); }
+
+  struct Window {
+    double elapsed_s = 0;  ///< all periods that began in it
+    double lost_s = 0;     ///< those of them without a step of their own
+    double busy_s = 0;     ///< mean duration of a step
+    int late = 0;          ///< steps that took longer than their period
+    [[nodiscard]] double lostShare() const noexcept { return elapsed_s > 0 ? lost_s / elapsed_s : 0; }
+  };
+  /// The last whole window.
+  [[nodiscard]] const Window& last() const noexcept { return last_; }
+  /// True if too much was lost in the last whole window.
+  [[nodiscard]] bool isOverloaded() const noexcept;
+
+ private:
+  struct Counts {
+    double elapsed_s = 0, lost_s = 0, busy_s = 0;
+    double elapsed_above_s = 0, lost_above_s = 0;  ///< as if each step had the cost of one level up
+    int steps = 0, late = 0, late_above = 0;
+  };
+  int decide(bool may_rise) noexcept;
+  void moveTo(int level) noexcept;
+  void waitLonger() noexcept;
+
+  std::vector<double> cost_ratios_;
+  GovernorSettings settings_;
+  Counts now_;
+  Window last_;
+  int level_ = 0;
+  int calm_ = 0;            ///< calm windows in a row
+  int wait_;                ///< calm windows required
+  bool has_risen_ = false;  ///< a change downwards would now be a relapse
+};
+
+}  // namespace vps::scenes

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One run of a scene's procedure, for any hand and any log.
+#pragma once
+
+#include "haptics/hand.h"
+#include "procedure/loop_settings.h"
+#include "vps_device/run_log.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps::scenes {
+
+/// Throws LoadError for a scene without a step.
+void requireSteps(const Scene& scene);
+
+/// Builds the models that the scene lacks and runs every step. A hand that cannot go on (the end of a
+/// recording) ends the run. Throws as assemble().
+/// @param log  may be null; gets what the device reads and is given, the operator's phases, and a trace at
+/// the
+///             scene's csv_rate_hz
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options);
+
+}  // namespace vps::scenes

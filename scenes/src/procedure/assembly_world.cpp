@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/assembly_world.h"
+
+#include <cmath>
+#include <utility>
+
+#include "procedure/loop_settings.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes {
+
+namespace {
+
+constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper than this is refused
+
+/// A grip of this share, with the same limits.
+CouplingGains scaled(CouplingGains gains, double share) {
+  gains.k_N_per_m *= share;
+  gains.b_Ns_per_m *= share;
+  gains.k_Nm_per_rad *= share;
+  gains.b_Nms_per_rad *= share;
+  return gains;
+}
+
+Twist scaled(const Twist& V, double factor) {
+  return {factor * V.w, factor * V.v};
+}
+
+LoadLimits loadLimits(const AssembleOptions& options) {
+  LoadLimits limits;
+  limits.stop = options.stop;
+  // Local contact predicts the part's motion by the clock, so simulated time must not run slower.
+  limits.may_slow = !options.has_local_contact;
+  return limits;
+}
+
+}  // namespace
+
+AssemblyWorld::AssemblyWorld(Scene& scene, const ModelPlan& plan, Hand& hand, device::RunLog* log,
+                             const device::LoopSettings& settings, const AssembleOptions& options,
+                             const ReportFault& on_fault)
+    : scene_(scene),
+      plan_(plan),
+      log_(log),
+      options_(options),
+      simulation_(scene, plan_),
+      tapped_(hand.device(), log != nullptr ? *log : null_log_),
+      placed_(scene, plan_, simulation_, options),
+      dt_s_(1 / scene.fidelity.physics_rate_hz),
+      physics_clock_(dt_s_) {
+  for (const ScenePart& part : scene.parts) state_.X_WP.push_back(part.X_WP);
+  state_.roles.assign(scene.parts.size(), BodyRole::Waiting);
+  driver_ = makeDriver(hand, settings, on_fault);
+  shedder_.emplace(
+      scene_, plan_, simulation_, *driver_, loadLimits(options),
+      [limits = hand.device().limits(), &scene](double rate_hz) {
+        return passiveGains(scene, limits, rate_hz);
+      },
+      [this](CookedField field) { placed_.setField(std::move(field)); });
+  mountFixed();
+}
+
+std::unique_ptr<HapticDriver> AssemblyWorld::makeDriver(Hand& hand, device::LoopSettings settings,
+                                                        const ReportFault& on_fault) {
+  if (options_.has_local_contact) settings.local = &local_;
+  if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, on_fault, log_);
+  device::Device& device = log_ != nullptr ? tapped_ : hand.device();
+  if (std::vector<device::SyncEvent> sync_events = hand.sync_events();
+      !sync_events.empty() && log_ != nullptr) {
+    settings.physics_limit_s = physicsLimit_s(dt_s_);
+    return makeReplayedDriver(hand, std::move(sync_events), device, port_, settings, on_fault, *log_);
+  }
+  return makeLockstepDriver(hand, device, port_, settings, ticksPerStep(scene_), on_fault);
+}
+
+void AssemblyWorld::mountFixed() {
+  for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
+    if (!scene_.parts[i].is_fixed) continue;
+    placed_.add(i, state_.X_WP[i]);
+    placed_.addToJudge(i);
+    state_.roles[i] = BodyRole::Mounted;
+  }
+  if (const auto order = placed_.orderFor(0)) placed_.setField(cookField(*order));
+}
+
+void AssemblyWorld::take(std::size_t index) {
+  const SceneStep& step = scene_.steps[index];
+  state_.step = static_cast<int>(index);
+  state_.X_WP[step.part] = step.X_WP_start;
+  requireFreeStart(step);
+  simulation_.addBody(step.part, step.X_WP_start);
+  state_.roles[step.part] = BodyRole::InHand;
+  state_.moving = {step.part,
+                   Pose::translation(simulation_.centreOfMass(step.part)),
+                   step.X_WP_target,
+                   bounds(scene_.parts[step.part].part.mesh),
+                   simulation_.mass(step.part) * scene_.gravity_W,
+                   simulation_.mechanicalEnergy()};
+  simulation_.grasp(step.part, state_.moving.X_PG, shedder_->gains());
+  grip_ = 1;
+  driver_->handOver(step.X_WP_start * state_.moving.X_PG);
+  state_.is_holding = true;
+  if (options_.has_local_contact) startLocalContact();
+}
+
+void AssemblyWorld::requireFreeStart(const SceneStep& step) {
+  const ScenePart& part = scene_.parts[step.part];
+  if (part.allow_overlap) return;
+  const Penetration overlap = placed_.judge().deepest(placed_.judgedBody(step.part), step.X_WP_start);
+  if (overlap.depth_m > kStartOverlap_m)
+    throw LoadError(scene_.file, part.part.name,
+                    "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
+                        placed_.judge().name(overlap.against) +
+                        "'; move its start, or say allow_overlap = true");
+}
+
+void AssemblyWorld::startLocalContact() {
+  local_.letGo();
+  if (!simulation_.hasFixed()) return;
+  const StepPart& moving = state_.moving;
+  device::LocalPart part;
+  part.map = simulation_.fixedMap();
+  part.shell = scene_.parts[moving.part].model->shell.get();
+  part.X_PG = moving.X_PG;
+  part.mass_kg = simulation_.mass(moving.part);
+  part.inertia_G = simulation_.inertia(moving.part);
+  part.gravity_W = scene_.gravity_W;
+  part.friction = simulation_.friction(moving.part);
+  part.k_N_per_m3 = scene_.parts[moving.part].part.material.stiffness_N_per_m3;
+  local_.take(part);
+}
+
+void AssemblyWorld::pauseLocalContact() {
+  if (options_.has_local_contact) driver_->pause();
+}
+
+void AssemblyWorld::release() {
+  // The energy account goes on without what the coupling's springs hold: releasing gives their energy to
+  // nobody.
+  stored_before_J_ += simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J;
+  simulation_.release();
+  driver_->letGo();
+  local_.letGo();
+  state_.is_holding = false;
+  state_.roles[state_.moving.part] = BodyRole::Released;
+}
+
+void AssemblyWorld::mount(const Pose& X_WP) {
+  const std::size_t part = state_.moving.part;
+  simulation_.removeBody(part);
+  state_.X_WP[part] = X_WP;
+  placed_.addToJudge(part);
+  state_.roles[part] = BodyRole::Mounted;
+}
+
+void AssemblyWorld::setGrip(double share) {
+  grip_ = share;
+  simulation_.setGains(scaled(shedder_->gains(), grip_));
+}
+
+device::HeldPart AssemblyWorld::heldPart() const {
+  return {movingPose(), simulation_.twist(state_.moving.part), state_.moving.weight_W};
+}
+
+bool AssemblyWorld::advance(bool is_settling) {
+  if (!driver_->advance()) {
+    has_ended_ = true;
+    return false;
+  }
+  state_.X_WP_before = movingPose();
+  if (!is_settling) {
+    keepCovered();
+    shedLoad();
+  }
+  step();
+  return true;
+}
+
+void AssemblyWorld::step() {
+  physics_clock_.start();
+  CouplingState proxy = driver_->proxy();
+  proxy.V_W = scaled(proxy.V_W, shedder_->timeDivisor());
+  simulation_.setProxy(proxy);
+  simulation_.step(dt_s_);
+  physics_clock_.stop();
+  state_.time_s += dt_s_;
+  if (options_.after_step) options_.after_step(state_.time_s);
+
+  state_.X_WP[state_.moving.part] = simulation_.pose(state_.moving.part);
+  // The part keeps the time stamp of the proxy that it answers: the loop extrapolates from that time.
+  CouplingState part = simulation_.graspState();
+  part.is_coupled = state_.is_holding;
+  part.V_W = scaled(part.V_W, 1 / shedder_->timeDivisor());
+  std::optional<double> stored_J;
+  // Without a force on the hand, its work is not known, and energy cannot be balanced against it.
+  const bool is_balanced = driver_->settings().safety.force_N > 0;
+  if (state_.is_holding && is_balanced) {
+    const bool is_coupled = proxy.is_coupled && part.is_coupled;
+    stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J +
+               (is_coupled ? couplingEnergy_J(scaled(shedder_->gains(), grip_), proxy, part) : 0);
+  }
+  driver_->publish({part, 0, stored_J, heldPart()});
+}
+
+void AssemblyWorld::keepCovered() {
+  const auto step = static_cast<std::size_t>(state_.step);
+  const std::size_t part = state_.moving.part;
+  if (placed_.isCovered(step, state_.moving.box_P, movingPose(), simulation_.twist(part), dt_s_)) return;
+  if (options_.warn)
+    options_.warn(
+        "'" + scene_.parts[part].part.name +
+        "' came to the border of where it was expected; all that is fixed is modelled from there on");
+  // Physics stands still for as long as modelling takes. By the clock that would be a safety fault, so the
+  // loop is paused.
+  const bool pauses = options_.has_local_contact || driver_->isByClock();
+  if (pauses) driver_->pause();
+  shedder_->beforeNewModels(state_.time_s);
+  placed_.widen(step);
+  shedder_->afterNewModels(state_.time_s, part);
+  if (!pauses) return;
+  if (options_.has_local_contact && state_.is_holding) startLocalContact();
+  driver_->resume();
+}
+
+void AssemblyWorld::shedLoad() {
+  // A recording does not hold load levels, so a recorded run does not change them.
+  if (!options_.degrades || !driver_->isByClock() || log_ != nullptr) return;
+  shedder_->update(driver_->busy_s(), state_.time_s, state_.moving.part, state_.is_holding);
+  dt_s_ = shedder_->dt_s();
+  if (grip_ < 1) setGrip(grip_);  // the level may have changed the gains
+}
+
+void AssemblyWorld::finish() {
+  driver_->pause();
+  state_.step = -1;
+}
+
+void AssemblyWorld::reportProgress(double share_of_step) const {
+  if (!options_.progress) return;
+  const auto count = static_cast<double>(scene_.steps.size());
+  options_.progress("step " + std::to_string(state_.step + 1) + " of " + std::to_string(scene_.steps.size()) +
+                        ": " + scene_.parts[state_.moving.part].part.name,
+                    (static_cast<double>(state_.step) + share_of_step) / count);
+}
+
+void AssemblyWorld::summarise(AssembleResult& result) const {
+  result.haptic = driver_->times();
+  result.real_time = driver_->realTime();
+  if (result.real_time) result.real_time->load_changes = shedder_->changes();
+  result.physics = physics_clock_.summary();
+  const device::PassivityObserver energy = driver_->passivity();
+  result.energy = {energy.to_hand_J, energy.from_hand_J, energy.injected_J,
+                   energy.quantisation_error_bound_J};
+  result.contacts_left_out = simulation_.contactsLeftOut();
+  result.modelled = placed_.modelled();
+  result.widened = placed_.widened();
+  const device::LocalContact::Report& local = local_.report();
+  result.local_contact = {local.held, local.jump_J, local.greatest_jump_m};
+  result.simulated_s = state_.time_s;
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run keeps of its course: trace rows, samples for the judge, pictures, and entries of the run's log.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "judge/overlap_record.h"
+#include "procedure/assembly_world.h"
+#include "vps_device/run_log.h"
+#include "vps_scenes/result.h"
+
+namespace vps::scenes {
+
+class RunTrace {
+ public:
+  /// @param log  may be null; gets events, and trace rows at scene.record.csv_rate_hz
+  RunTrace(const Scene& scene, device::RunLog* log);
+
+  /// After the step's part was taken.
+  void beginStep(const AssemblyWorld& world);
+  /// Keeps the last physics step, and updates the step's peaks.
+  void add(const AssemblyWorld& world, TracePhase phase, StepResult& result);
+  /// Before the step's part is released.
+  void endStep(const AssemblyWorld& world);
+  /// The rows of the current step.
+  [[nodiscard]] std::span<const TraceRow> stepRows() const { return std::span(rows_).subspan(first_row_); }
+  /// Hands over the samples of the current step.
+  [[nodiscard]] std::vector<OverlapSample> takeSamples() { return std::move(samples_); }
+
+  /// Logs an event of the run. After the end of the hand's recording nothing is logged.
+  void logEvent(const AssemblyWorld& world, device::RunEventKind kind, const std::string& text) const;
+  /// Logs the operator's phase if it has changed.
+  void logPhase(const AssemblyWorld& world);
+  /// The next phase is logged even if it is the same.
+  void forgetPhase() { logged_phase_.reset(); }
+
+  /// Moves rows and pictures into the result.
+  void moveTo(AssembleResult& result);
+
+ private:
+  device::RunLog* log_;
+  long log_stride_;  ///< physics steps from one logged row to the next
+  std::vector<TraceRow> rows_;
+  std::size_t first_row_ = 0;  ///< of the current step
+  std::vector<OverlapSample> samples_;
+  std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
+  double peak_contact_N_ = 0;                    ///< of the current step
+  std::optional<device::OperatorPhase> logged_phase_;
+};
+
+/// What a viewer needs of this instant.
+Snapshot snapshotOf(const AssemblyWorld& world);
+
+}  // namespace vps::scenes

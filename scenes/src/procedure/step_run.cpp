@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/step_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptics/clutching.h"
+#include "judge/box_motion.h"
+#include "procedure/settling.h"
+#include "procedure/step_verdict.h"
+#include "vps_scenes/contact_episodes.h"
+
+namespace vps::scenes {
+
+namespace {
+
+device::OperatorTask taskOf(const SceneStep& step, const StepPart& moving) {
+  device::OperatorTask task;
+  task.X_WP_start = step.X_WP_start;
+  task.way_points = step.way_points;
+  task.X_WP_target = step.X_WP_target;
+  task.X_PG = moving.X_PG;
+  task.tolerance_m = step.tolerance_m;
+  task.tolerance_rad = step.tolerance_rad;
+  task.timeout_s = step.timeout_s;
+  task.weight_W = moving.weight_W;
+  return task;
+}
+
+TracePhase tracePhase(device::OperatorPhase phase) {
+  if (phase == device::OperatorPhase::Press || phase == device::OperatorPhase::Done) return TracePhase::Press;
+  return phase == device::OperatorPhase::Insert ? TracePhase::Insert : TracePhase::Reach;
+}
+
+bool isBusy(device::OperatorPhase phase) {
+  return phase != device::OperatorPhase::Done && phase != device::OperatorPhase::Failed;
+}
+
+/// The physics thread tells the haptic loop where the part is before the loop's first tick.
+void startHaptics(AssemblyWorld& world) {
+  CouplingState part = world.simulation().graspState();
+  part.is_coupled = true;
+  part.time_s = world.state().time_s;
+  world.driver().publish({part, 0, {}, world.heldPart()});
+  world.driver().resume();
+}
+
+/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
+void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
+  startHaptics(world);
+  HapticDriver& driver = world.driver();
+  const auto advanceIn = [&](TracePhase phase) {
+    if (world.isStopped() || !world.advance()) return false;
+    trace.add(world, phase, result);
+    return true;
+  };
+  const auto reach = [&] { return advanceIn(TracePhase::Reach); };
+  const auto press = [&] { return advanceIn(TracePhase::Press); };
+  const ClutchWork clutch(driver, [&world] { return world.handStep_s(); });
+  if (!clutch.takeHold(reach)) return;
+  driver.begin(taskOf(step, world.state().moving), static_cast<std::size_t>(world.state().step),
+               world.state().time_s);
+  trace.forgetPhase();
+  trace.logPhase(world);
+  while (isBusy(driver.phase()) && !world.isStopped() && world.advance()) {
+    const device::OperatorPhase phase = driver.phase();
+    trace.logPhase(world);
+    trace.add(world, tracePhase(phase), result);
+    const double elapsed_s = world.state().time_s - result.start_s;
+    world.reportProgress(0.8 * std::min(1.0, elapsed_s / step.timeout_s * 2));
+    if (phase != device::OperatorPhase::Regrasp) continue;
+    ++result.index_points;
+    if (!clutch.index(reach)) return;
+    trace.logPhase(world);
+  }
+  if (!clutch.comeFree(press)) return;
+  clutch.setDown([&](double share) {
+    world.setGrip(share);
+    return press();
+  });
+}
+
+/// The released part is watched for scene.release_s, at least until the empty hand is back where the next
+/// part's path lies around the middle of the workspace.
+void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
+  const Box& box_P = world.state().moving.box_P;
+  const Pose X_WP_released = world.movingPose();
+  world.driver().goBack(static_cast<std::size_t>(world.state().step) + 1);
+  world.driver().resume();
+  const double first_dt_s = world.dt_s();
+  const double steps = std::round(std::max(world.scene().release_s, kHandReturn_s) / first_dt_s);
+  result.rest_s = steps * first_dt_s;
+  for (double left = steps; left > 0 && !world.isStopped() && world.advance();
+       left -= world.dt_s() / first_dt_s) {
+    trace.add(world, TracePhase::Rest, result);
+    result.rest_drift_m =
+        std::max(result.rest_drift_m, greatestDisplacement(box_P, X_WP_released, world.movingPose()));
+  }
+}
+
+}  // namespace
+
+StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
+  world.pauseLocalContact();
+  const SceneStep& step = world.scene().steps[index];
+  StepResult result;
+  result.part = world.scene().parts[step.part].part.name;
+  result.start_s = world.state().time_s;
+  result.penetration_limit_m = penetrationLimit_m(step);
+
+  world.take(index);
+  trace.beginStep(world);
+  trace.logEvent(world, device::RunEventKind::Take, "takes '" + result.part + "'");
+  work(world, trace, step, result);
+  world.pauseLocalContact();
+  for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
+    ++(episode.is_slide ? result.slides : result.impacts);
+  result.duration_s = world.state().time_s - result.start_s;
+  trace.endStep(world);
+
+  world.release();
+  trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
+  rest(world, trace, result);
+  world.reportProgress(0.9);
+  judgeCompletion(world, step, world.movingPose(), result);
+  settleStep(world, trace.takeSamples(), result);
+  return result;
+}
+
+}  // namespace vps::scenes

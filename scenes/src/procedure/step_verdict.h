@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a step reached its target, and if not, why.
+#pragma once
+
+#include "procedure/assembly_world.h"
+#include "vps_scenes/result.h"
+
+namespace vps::scenes {
+
+/// The greatest penetration that a step may have: min(10 um, clearance / 4).
+double penetrationLimit_m(const SceneStep& step);
+
+/// Sets final_error_m, final_error_rad, completed and failure_reason: the step is completed when the hand
+/// reports that it is done and the part, now at rest, is within the step's tolerances.
+/// @param X_WP  of the part, after its rest
+void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
+
+}  // namespace vps::scenes
