@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Models the sample assembly "bearing block" and writes it as STEP and glTF, after checking its fits.
 // Usage: setarch -R vps_make_bearing_block DIR     writes DIR/bearing_block.step and DIR/bearing_block.glb
-// setarch, since Open CASCADE orders colours in STEP by address: without random addresses one build writes
-// the same bytes each time (another build may order the colours otherwise; the .glb is the same from any).
+// setarch is used since Open CASCADE orders colours in STEP by address. Without random addresses one build
+// writes the same bytes each time; another build may order the colours differently, but the .glb is the same.
 //
-// Everything is in mm here, z up. Each part's own frame has its origin on its axis at its seat, so that poses
+// All lengths are in mm, z is up. The frame of a part has its origin on the part's axis at its seat, so poses
 // in the assembly are translations. Section through the bore; the shaft is inserted after the lower bushing:
 //
 //        |=======|  shaft  |=======|   58.0  cover
@@ -19,8 +19,8 @@
 //        |       |   |  |  |       |    5.0  shaft's end
 //    0.0 |_______|         |_______|
 //
-// Why the chamfers: a rim that enters guides itself, and no rim of an entering part lies in a concave corner
-// of its seat, where two normals would meet: at least 0.6 mm stay free there.
+// The chamfers guide a rim that enters, and keep the rims of inserted parts out of the concave corners of
+// their seats, where two normals would meet: at least 0.6 mm are free there.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -108,7 +108,7 @@ TopoDS_Shape revolved(const std::vector<Point2>& profile) {
   return checked(BRepPrimAPI_MakeRevol(face, gp::OZ()).Shape(), "revolution");
 }
 
-/// Hole from z = 0 down, with a mouth chamfer at 45 degrees; reaches 1 above so that a cut leaves no skin.
+/// Hole from z = 0 down, with a mouth chamfer at 45 degrees; extends 1 above so that a cut leaves no skin.
 TopoDS_Shape hole(double diameter, double depth, double chamfer) {
   const double r = diameter / 2;
   return revolved({{0, -depth}, {r, -depth}, {r, -chamfer}, {r + chamfer + 1, 1}, {0, 1}});
@@ -177,7 +177,7 @@ TopoDS_Shape chamfered(const TopoDS_Shape& shape, double size,
   for (int i = 1; i <= edges.Extent(); ++i) {
     const TopoDS_Edge edge = TopoDS::Edge(edges(i));
     const Bnd_Box box = boxOf(edge);
-    // An edge that is tangent to one already added is in that one's contour.
+    // An edge that is tangent to an added one belongs to the contour of that one.
     if (accepts(box.CornerMin(), box.CornerMax()) && maker.Contour(edge) == 0) maker.Add(size, edge);
   }
   return checked(maker.Shape(), "chamfer");
@@ -279,7 +279,7 @@ TopoDS_Shape makeCover() {
   });
 }
 
-/// Cap screw after ISO 4762 M4 x 16, its shank smooth: no thread is modelled. Origin under the head.
+/// Cap screw after ISO 4762 M4 x 16, with a smooth shank, since no thread is modelled. Origin under the head.
 TopoDS_Shape makeScrew() {
   const double r = 2, head = 3.5, c = 0.6, axial = c * std::sqrt(3.0);
   const TopoDS_Shape body = revolved({{0, -kScrewShank},
@@ -378,7 +378,7 @@ double volume(const TopoDS_Shape& shape) {
   return properties.Mass();
 }
 
-/// The cylindrical faces of one diameter, as one compound: the fit's side of a part.
+/// The cylindrical faces of one diameter as one compound: one side of a fit.
 TopoDS_Shape cylinders(const TopoDS_Shape& shape, double diameter) {
   TopoDS_Compound found;
   BRep_Builder builder;
@@ -395,7 +395,7 @@ TopoDS_Shape cylinders(const TopoDS_Shape& shape, double diameter) {
   return found;
 }
 
-/// Prints masses and fits; throws where two parts overlap or a clearance is not what was asked.
+/// Prints masses and fits; throws if two parts overlap or a clearance differs from the stated one.
 void verify(const Assembly& a) {
   std::printf("%-14s %10s %9s\n", "part", "volume/mm3", "mass/g");
   for (const Product& p : a.products) {
@@ -460,7 +460,7 @@ Handle(TDocStd_Document) makeDocument(const Assembly& a) {
 }
 
 void writeStep(const Handle(TDocStd_Document) & document, const std::string& file) {
-  STEPCAFControl_Controller::Init();  // the statics below exist only from here on
+  STEPCAFControl_Controller::Init();  // defines the statics below
   Interface_Static::SetCVal("write.step.unit", "MM");
   Interface_Static::SetCVal("write.step.schema", "AP214IS");
   Interface_Static::SetCVal("write.step.product.name", "bearing_block");

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes peg.stl and hole.stl beside this file: two lathed solids in millimetres, axis z.
+"""Writes peg.stl and hole.stl to this folder: two solids of revolution in millimetres, axis z.
 
-The peg's polygon lies inside its circle and the hole's outside of its own, so the flats never eat into the
-clearance: the peg has 50 to 55 um of play in every direction.
+The peg's polygon is inside its circle and the hole's outside of its own, so the flats do not reduce the clearance:
+the peg has 50 to 55 um of play in every direction.
 """
 import math
 import pathlib
@@ -15,17 +15,17 @@ PEG_LENGTH, HOLE_DEPTH = 30.0, 15.0
 BLOCK_D, BLOCK_HEIGHT = 24.0, 20.0
 CHAMFER = 1.0  # at 45 degrees, on the peg's lower end and the hole's mouth
 
-# Closed outlines (radius, z), from axis to axis with the solid on the left hand.
+# Closed outlines (radius, z), from axis to axis with the solid on the left.
 PEG = [(0, 0), (PEG_D / 2 - CHAMFER, 0), (PEG_D / 2, CHAMFER), (PEG_D / 2, PEG_LENGTH), (0, PEG_LENGTH)]
 HOLE = [(0, -BLOCK_HEIGHT), (BLOCK_D / 2, -BLOCK_HEIGHT), (BLOCK_D / 2, 0), (HOLE_D / 2 + CHAMFER, 0),
         (HOLE_D / 2, -CHAMFER), (HOLE_D / 2, -HOLE_DEPTH), (0, -HOLE_DEPTH)]
 
 
 def lathe(outline, scale):
-    """Triangles of the outline turned about z, counter-clockwise from outside; radii times scale."""
+    """Triangles of the outline rotated about z, counter-clockwise from outside; radii times scale."""
     def ring(r, z):
         turns = [2 * math.pi * i / SEGMENTS for i in range(SEGMENTS)]
-        # Adding 0.0 turns -0.0 on the axis into 0.0: equal corners are then equal to the bit.
+        # Adding 0.0 turns -0.0 on the axis into 0.0, so that equal vertices are equal to the bit.
         return [(scale * r * math.cos(a) + 0.0, scale * r * math.sin(a) + 0.0, z) for a in turns]
 
     triangles = []
@@ -41,7 +41,7 @@ def lathe(outline, scale):
 
 
 def write_stl(path, triangles):
-    """Binary STL. Normals are left zero: readers take them from the winding."""
+    """Binary STL. Normals are zero, since readers compute them from the winding."""
     with open(path, "wb") as out:
         out.write(b"bullet-vps sample, mm".ljust(80, b" ") + struct.pack("<I", len(triangles)))
         for corners in triangles:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// CAD import: parts, poses and units are those of the file, and damaged files are refused.
 #include "vps_scenes/import.h"
 
 #include <algorithm>
@@ -26,14 +27,14 @@ namespace fs = std::filesystem;
 
 const fs::path kBlock = fs::path(VPS_SOURCE_DIR) / "scenes" / "bearing_block";
 
-/// Where real exports lie, which are not ours to commit.
+/// Folder of real CAD exports, whose licences do not allow to commit them.
 fs::path cadFolder() {
   const char* given = std::getenv("VPS_CAD_DIR");
   return given ? fs::path(given) : fs::path(VPS_SOURCE_DIR) / ".." / "shared" / "cad";
 }
 
 #define SKIP_WITHOUT(file) \
-  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " is not here; set VPS_CAD_DIR"
+  if (!fs::exists(file)) GTEST_SKIP() << (file).string() << " does not exist; set VPS_CAD_DIR"
 
 ImportSettings inUnit(const std::string& unit) {
   ImportSettings settings;
@@ -41,7 +42,7 @@ ImportSettings inUnit(const std::string& unit) {
   return settings;
 }
 
-/// Imports, or skips where the format's library is not built in.
+/// The import; empty where the format's library is not built in.
 std::optional<ImportedCad> tryImport(const fs::path& file, const ImportSettings& settings = {}) {
   try {
     return importCad(file.string(), settings);
@@ -192,7 +193,7 @@ TEST(ImportGltf, BearingBlockHasItsPartsNamesPosesAndColours) {
   expectBearingBlock(cad);
 }
 
-TEST(ImportGltf, DowelHasItsFormulasVolumeWithinTheTessellation) {
+TEST(ImportGltf, TheDowelsVolumeIsThatOfItsFormulaWithinTheTessellation) {
   const ImportedCad cad = importCad((kBlock / "bearing_block.glb").string());
   // Pin of radius r, length L; ends are frustums of axial length a down to radius r - c.
   const double r = 2e-3, L = 16e-3, c = 0.6e-3, a = c * std::sqrt(3.0), s = r - c;
@@ -258,7 +259,7 @@ TEST(ImportObj, ClosedObjectsAreParts) {
   EXPECT_EQ(cad.parts[1].name, "other");
 }
 
-TEST(ImportObj, FacesInGroupsOfTheirOwnAreOneClosedPart) {
+TEST(ImportObj, AGroupForEachFaceIsOneClosedPart) {
   const Folder folder;
   std::string text;
   for (const char c : cubeObj(1, "all")) {
@@ -270,7 +271,7 @@ TEST(ImportObj, FacesInGroupsOfTheirOwnAreOneClosedPart) {
   EXPECT_TRUE(checkMesh(cad.parts[0].mesh).isClosed());
 }
 
-TEST(ImportObj, InsideOutIsTurnedAndSaid) {
+TEST(ImportObj, AnInvertedMeshIsFlippedWithAWarning) {
   const Folder folder;
   std::string text = cubeObj(1, "cube");
   for (std::size_t at = text.find("\nv "); at != std::string::npos; at = text.find("\nv ", at + 1)) {
@@ -314,7 +315,7 @@ TEST(ImportInventor, RepeatedNamesAreNumbered) {
   EXPECT_EQ(cad.parts[2].name, "pin_3");
 }
 
-TEST(ImportInventor, AFaceWithAVertexThatIsNotThereIsRefused) {
+TEST(ImportInventor, AFaceWithAMissingVertexIsRefused) {
   const Folder folder;
   for (const auto& [name, text] :
        {std::pair("face.iv",
@@ -331,7 +332,7 @@ TEST(ImportInventor, AFaceWithAVertexThatIsNotThereIsRefused) {
   }
 }
 
-TEST(ImportVrml, WithoutUnitIsMetresAndSaid) {
+TEST(ImportVrml, WithoutUnitIsInMetresWithAWarning) {
   const Folder folder;
   const fs::path file = folder.write("box.wrl", "#VRML V2.0 utf8\nShape { geometry Box { size 1 2 3 } }\n");
   IMPORT_OR_SKIP(cad, file);
@@ -356,14 +357,14 @@ TEST(ImportErrors, MissingEmptyFolderAndUnknownAreOneLine) {
   }
 }
 
-TEST(ImportErrors, ANumberThatIsNoneIsRefused) {
+TEST(ImportErrors, ACoordinateThatIsNotFiniteIsRefused) {
   const Folder folder;
   std::string text = cubeObj(1, "cube");
   text.replace(text.find("v ") + 2, 8, "nan");
   EXPECT_NE(messageOf(folder.write("nan.obj", text), inUnit("m")), "");
 }
 
-/// Cuts a file at many lengths: each cut is refused in words or gives parts that can be used; none crashes.
+/// Cuts a file at many lengths: each cut is refused or gives usable parts, and none crashes.
 void expectCutsAreCalm(const fs::path& source, const std::string& name, bool may_give_parts) {
   const Folder folder;
   const std::string whole = contents(source);
@@ -460,7 +461,7 @@ bool isSameMesh(const Mesh& a, const Mesh& b) {
   return a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-TEST(ImportPly, EveryFirstByteOfTheDataIsReadAsTheAsciiTwinSays) {
+TEST(ImportPly, EveryFirstByteOfTheDataIsReadAsInTheAsciiFile) {
   const Folder folder;
   for (const std::uint8_t first : {0x00, 0x09, 0x0a, 0x0d, 0x20, 0xff}) {
     const std::uint32_t bits = 0x3e800000u | first;  // a little over 0.25
@@ -478,15 +479,15 @@ TEST(ImportPly, EveryFirstByteOfTheDataIsReadAsTheAsciiTwinSays) {
   }
 }
 
-TEST(ImportPly, AFaceWithAVertexThatIsNotThereIsRefused) {
+TEST(ImportPly, AFaceWithAMissingVertexIsRefused) {
   const Folder folder;
   std::string text = cubePly(0, true, "\n");
   text.back() = '\x7f';  // the last corner's highest byte
-  EXPECT_NE(messageOf(folder.write("damaged.ply", text), inUnit("m")).find("is not there"),
+  EXPECT_NE(messageOf(folder.write("damaged.ply", text), inUnit("m")).find("does not exist"),
             std::string::npos);
 }
 
-/// What a reader gives that uses every member.
+/// A result that uses every member.
 import::RawCad smallCad(){import::RawCad cad;
 for (const char* name : {"one", ""}) {
   import::RawPart part;
@@ -511,7 +512,7 @@ std::string messageOfReader(const std::function<import::RawCad(const Progress&)>
   return "";
 }
 
-TEST(OwnProcess, GivesWhatTheReaderGaveAndItsProgress) {
+TEST(OwnProcess, ReturnsTheReadersResultAndProgress) {
   std::vector<std::pair<std::string, double>> heard;
   const pid_t here = ::getpid();
   pid_t there = here;
@@ -541,7 +542,7 @@ TEST(OwnProcess, GivesWhatTheReaderGaveAndItsProgress) {
 
 TEST(OwnProcess, ACrashIsALoadError) {
   const std::string crashed =
-      "a.step: The library crashed while reading it; the file is damaged; export it again";
+      "a.step: The library crashed while reading it; the file is damaged, so export it again";
   EXPECT_EQ(messageOfReader([](const Progress&) -> import::RawCad { std::abort(); }), crashed);
   EXPECT_EQ(messageOfReader([](const Progress&) -> import::RawCad {
               std::raise(SIGSEGV);
@@ -552,13 +553,13 @@ TEST(OwnProcess, ACrashIsALoadError) {
   EXPECT_EQ(messageOfReader([](const Progress&) -> import::RawCad { throw 1; }), crashed);
 }
 
-TEST(OwnProcess, AnErrorKeepsItsWords) {
+TEST(OwnProcess, AnErrorKeepsItsText) {
   EXPECT_EQ(messageOfReader([](const Progress&) -> import::RawCad {
               throw LoadError("a.step", "hub", "is cut; export it again");
             }),
             "a.step: part 'hub': is cut; export it again");
   EXPECT_EQ(messageOfReader([](const Progress&) -> import::RawCad { throw std::bad_alloc(); }),
-            "a.step: needs more memory than there is; is it damaged?");
+            "a.step: needs more memory than is available; the file may be damaged");
 }
 
 TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
@@ -573,7 +574,7 @@ TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
-TEST(OwnProcess, ThreadsImportSideBySide) {
+TEST(OwnProcess, ThreadsImportConcurrently) {
   const std::string block = (kBlock / "bearing_block.glb").string();
   const ImportedCad truth = importCad(block);
   std::vector<ImportedCad> found(4);
@@ -604,7 +605,7 @@ TEST(OwnProcess, GivesTheSameBitsAsThisProcess) {
     EXPECT_TRUE(isSameMesh(here.parts[i].mesh, there.parts[i].mesh)) << here.parts[i].name;
 }
 
-/// The text with some digits changed, the same for the same seed on every machine.
+/// The text with some digits changed; the same seed gives the same text on every machine.
 std::string withOtherDigits(std::string text, unsigned seed, int count) {
   std::minstd_rand random(seed);
   while (count > 0) {

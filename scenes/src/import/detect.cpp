@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which format a file is, by content first: extensions lie. And whether it is all there, where its format
-// says how a whole file ends: a library may take half an assembly for a whole one.
+// Detects a file's format, by content before extension, and refuses a file that is cut, where its format
+// defines the end of a complete file: a library may read half an assembly without an error.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -45,7 +45,7 @@ std::string formatOf(const std::string& head, const std::string& extension, cons
   if (startsWith("#Inventor")) return "Inventor";
   if (startsWith("DBRep_DrawableShape") || startsWith("CASCADE Topology")) return "BREP";
   if (startsWith("glTF") || extension == "GLB" || extension == "GLTF") return "glTF";
-  if (startsWith("\x1f\x8b")) {  // gzip: Inventor and VRML come packed
+  if (startsWith("\x1f\x8b")) {  // gzip: Inventor and VRML files may be compressed
     const std::string inner = upperExtension(fs::path(file).stem().string());  // of "part.wrl.gz"
     if (extension == "WRZ" || inner == "WRL") return "VRML";
     return "Inventor";
@@ -59,7 +59,7 @@ std::string formatOf(const std::string& head, const std::string& extension, cons
   return extension;
 }
 
-/// Says how a whole file of this format ends, and whether this one does.
+/// True if the file ends as a complete file of this format does.
 bool isWhole(const std::string& format, std::ifstream& in, std::uint64_t size, const std::string& head) {
   const std::uint64_t tail_at = size > 1024 ? size - 1024 : 0;
   if (format == "STEP") return bytes(in, tail_at, 1024).find("END-ISO-10303-21") != std::string::npos;
@@ -102,9 +102,9 @@ std::string detectFormat(const std::string& file) {
   const std::string head = bytes(in, 0, 1024);
   const std::string format = formatOf(head, upperExtension(file), file);
   if (!isWhole(format, in, size, head)) {
-    throw LoadError(file, "",
-                    "is cut short or is no " + format + " file (" + std::to_string(size) +
-                        " bytes); copy or export it again");
+    throw LoadError(
+        file, "",
+        "is cut or is no " + format + " file (" + std::to_string(size) + " bytes); copy or export it again");
   }
   return format;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From what a file says to parts one can build on.
+// Turns what a reader found into parts: metres, rigid poses, welded meshes, unique names, warnings.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +17,7 @@ void flip(Mesh& mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
-/// Moves whatever of X_WP is not rigid (scale, mirror, shear) into the vertices, and the unit into both.
+/// Applies the part of X_WP that is not rigid (scale, mirror, shear) to the vertices, and the unit to both.
 ImportedPart inMetres(const RawPart& raw, double unit_m) {
   ImportedPart part;
   part.name = raw.name;
@@ -40,7 +40,7 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   return part;
 }
 
-/// Welds with the least tolerance that closes the mesh; failing that, with the one that leaves fewest open
+/// Welds with the least tolerance that closes the mesh, or else with the one that leaves the fewest open
 /// edges. Exporters round to float (1e-7 of the size) or to CAD tolerance (1 um at most).
 Mesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   const double size_m = bounds(mesh).size().norm();
@@ -57,7 +57,7 @@ Mesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   return best;
 }
 
-/// The parts that a mesh falls into when triangles with a common vertex belong together.
+/// The connected components of a mesh; triangles with a common vertex are connected.
 std::vector<Mesh> shells(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -94,7 +94,8 @@ bool hasVertex(const ImportedPart& part, const Vec3& p_W) {
                      [&](const Vec3& p) { return (part.X_WP * p - p_W).squaredNorm() < 1e-12; });
 }
 
-/// Where open shapes close one another, replaces them by the bodies that they bound, in the assembly's frame.
+/// Replaces open shapes that together form closed surfaces by the bodies that they bound, in the assembly's
+/// frame.
 void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
   std::vector<ImportedPart> kept, open;
   std::size_t open_edges = 0;
@@ -114,7 +115,7 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
     kept.push_back({"", std::move(all), Pose(), open.front().color});
   } else {
     for (Mesh& shell : shells(all)) {
-      // Name and colour of the shape that its first vertex came from.
+      // Name and colour come from the shape with its first vertex.
       const Vec3 p_W = shell.vertices.front();
       const auto source = std::find_if(open.begin(), open.end(),
                                        [&](const ImportedPart& part) { return hasVertex(part, p_W); });

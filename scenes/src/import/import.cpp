@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// importCad(): detects the format, runs its reader, and finishes the parts.
 #include "import/own_process.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -22,16 +23,16 @@ Reader readerOf(const std::string& format) {
 
 ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
   if (settings.unit_m && !(*settings.unit_m > 0))
-    throw LoadError(file, "", "its unit is not a positive length");
+    throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
   if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
-    throw LoadError(file, "", "deflection and angle must be positive");
+    throw LoadError(file, "", "needs a deflection and an angle of more than 0");
   }
   ImportedCad cad;
   cad.file = file;
   cad.format = import::detectFormat(file);
   if (progress) progress("reading " + import::stem(file), 0);
   const Reader reader = readerOf(cad.format);
-  const auto read = [&](const Progress& tell) { return reader.read(file, cad.format, settings, tell); };
+  const auto read = [&](const Progress& inner) { return reader.read(file, cad.format, settings, inner); };
   import::RawCad raw =
       settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
   import::finish(std::move(raw), cad);

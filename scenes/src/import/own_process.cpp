@@ -38,11 +38,11 @@ RawCad inOwnProcess(const std::string&, const std::string&, const Progress& prog
 namespace vps::scenes::import {
 namespace {
 
-// What the child says, one after another: Doing (share, text) any number of times, then once Done (a RawCad)
-// or Failed (the error's text). Both ends are one program, so values travel as they lie in memory.
-enum class Message : std::uint8_t { Doing, Done, Failed };
+// Messages of the child: Progressed (share, text) any number of times, then once Done (a RawCad) or Failed
+// (the text of the error). Both ends are the same program, so values are sent as they lie in memory.
+enum class Message : std::uint8_t { Progressed, Done, Failed };
 
-/// The child's words ended early.
+/// The child's messages ended early.
 struct Broken {};
 
 struct Close {
@@ -75,8 +75,8 @@ class Reader {
   Stream stream_;
 };
 
-// One transfer() for each type serves both directions, so that they cannot disagree: `io` copies bytes out of
-// or into the value.
+// One transfer() for each type serves both directions, so that they cannot disagree: `io` copies the bytes of
+// the value out or in.
 template <class Io, class T>
 requires std::is_arithmetic_v<T> || std::is_enum_v<T>
 void transfer(Io& io, T& value) {
@@ -115,15 +115,14 @@ void transfer(Io& io, RawCad& cad) {
   transfer(io, cad.open_shapes);
 }
 
-/// In the child: a crash is quiet, quick and harms nobody else.
+/// In the child: makes a crash silent, fast and harmless to the parent.
 void prepareToCrash() {
-  // Leaves no core file, and calls no handler that the program has set for crashes of its own.
+  // No core file, and none of the signal handlers that the program has set for itself.
   const rlimit no_core = {0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT, SIGPIPE})
     std::signal(signal, SIG_DFL);
-  // What the program has not flushed yet is its own to write. stderr keeps nothing back, and sanitizers use
-  // it.
+  // The parent writes what it has not flushed yet. stderr is unbuffered, and sanitizers use it.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
 #ifdef __linux__
@@ -133,13 +132,13 @@ void prepareToCrash() {
 #endif
 }
 
-/// The child's life. Ends by _exit: the parent's buffers, handlers and statics are not the child's to finish.
-[[noreturn]] void speak(Stream stream, const std::string& file, const Progress& progress,
-                        const std::function<RawCad(const Progress&)>& read) noexcept {
+/// Runs the child. Ends by _exit, since buffers, handlers and statics belong to the parent.
+[[noreturn]] void runChild(Stream stream, const std::string& file, const Progress& progress,
+                           const std::function<RawCad(const Progress&)>& read) noexcept {
   prepareToCrash();
   Writer out(std::move(stream));
-  const Progress tell = [&](std::string_view doing, double share) {
-    auto message = Message::Doing;
+  const Progress send = [&](std::string_view doing, double share) {
+    auto message = Message::Progressed;
     std::string text(doing);
     transfer(out, message);
     transfer(out, share);
@@ -150,11 +149,11 @@ void prepareToCrash() {
     RawCad cad;
     std::string error;  // none while empty
     try {
-      cad = read(progress ? tell : Progress());
+      cad = read(progress ? send : Progress());
     } catch (const LoadError& e) {
       error = e.what();
     } catch (const std::bad_alloc&) {
-      error = LoadError(file, "", "needs more memory than there is; is it damaged?").what();
+      error = LoadError(file, "", "needs more memory than is available; the file may be damaged").what();
     } catch (const std::exception& e) {
       error = LoadError(file, "", e.what()).what();
     }
@@ -167,7 +166,7 @@ void prepareToCrash() {
     }
     out.flush();
     ::_exit(0);
-  } catch (...) {  // the parent is gone, or the library threw what is no exception
+  } catch (...) {  // the parent has ended, or the library threw something that is no std::exception
     ::_exit(1);
   }
 }
@@ -176,7 +175,7 @@ class Child {
  public:
   explicit Child(pid_t id) : id_(id) {}
   ~Child() {
-    // By now it has said all, or nobody listens: progress threw.
+    // Its result has been read, or progress threw and it is not needed.
     ::kill(id_, SIGKILL);
     while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
     }
@@ -196,8 +195,8 @@ class Child {
 #endif
 #endif
 
-/// AddressSanitizer's malloc, unlike glibc's, is no use in the fork of a program with threads: a lock that
-/// one of them held stays taken (GCC 12: the child hangs).
+/// AddressSanitizer's malloc, unlike glibc's, does not work in the fork of a program with threads: a lock
+/// that one of them held stays locked (GCC 12: the child hangs).
 bool mayFork() {
 #ifdef VPS_ADDRESS_SANITIZER
   std::error_code error;
@@ -208,7 +207,7 @@ bool mayFork() {
 #endif
 }
 
-RawCad listen(Reader& in, const Progress& progress) {
+RawCad receive(Reader& in, const Progress& progress) {
   for (;;) {
     auto message = Message::Failed;
     transfer(in, message);
@@ -219,9 +218,9 @@ RawCad listen(Reader& in, const Progress& progress) {
     }
     double share = 0;
     std::string text;
-    if (message == Message::Doing) transfer(in, share);
+    if (message == Message::Progressed) transfer(in, share);
     transferArray(in, text);
-    if (message != Message::Doing) throw LoadError("", "", text);
+    if (message != Message::Progressed) throw LoadError("", "", text);
     progress(text, share);
   }
 }
@@ -231,28 +230,29 @@ RawCad listen(Reader& in, const Progress& progress) {
 RawCad inOwnProcess(const std::string& file, const std::string& library, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read) {
   if (!mayFork()) return read(progress);
-  // A child forked meanwhile would hold this pipe open, and a crash would be heard only when that one ends.
+  // A child that is forked meanwhile would keep this pipe open, and hide a crash until it ends.
   static std::mutex one_at_a_time;
   std::unique_lock lock(one_at_a_time);
   int ends[2];
   if (::pipe(ends) != 0)
-    throw LoadError(file, "", std::string("no pipe to its reader: ") + std::strerror(errno));
+    throw LoadError(file, "", std::string("cannot make a pipe to its reader: ") + std::strerror(errno));
   for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   Stream from_child(::fdopen(ends[0], "rb")), to_parent(::fdopen(ends[1], "wb"));
   const pid_t id = ::fork();
-  if (id < 0) throw LoadError(file, "", std::string("no process for its reader: ") + std::strerror(errno));
+  if (id < 0)
+    throw LoadError(file, "", std::string("cannot start a process for its reader: ") + std::strerror(errno));
   if (id == 0) {
     from_child.reset();
-    speak(std::move(to_parent), file, progress, read);
+    runChild(std::move(to_parent), file, progress, read);
   }
   to_parent.reset();
   lock.unlock();
   const Child child(id);
   Reader in(std::move(from_child));
   try {
-    return listen(in, progress);
+    return receive(in, progress);
   } catch (const Broken&) {
-    throw LoadError(file, "", library + " crashed while reading it; the file is damaged; export it again");
+    throw LoadError(file, "", library + " crashed while reading it; the file is damaged, so export it again");
   }
 }
 

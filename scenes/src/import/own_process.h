@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A reader in a process of its own, so that a library's crash on a damaged file is an error in words.
+// Runs a reader in a child process, so that a library's crash on a damaged file becomes a LoadError.
 #pragma once
 
 #include <functional>
@@ -9,16 +9,16 @@
 
 namespace vps::scenes::import {
 
-/// Runs read() in a child process and returns what it returns, bit for bit. Its progress reaches `progress`,
-/// in this process and thread; its LoadError is thrown here in the same words. Throws LoadError too if the
-/// child ends without a result: "<file>: <library> crashed while reading it; ...". What else read() does to
-/// memory stays in the child. Where there is no fork(), and under AddressSanitizer in a program with threads,
-/// runs read() here.
+/// Runs read() in a child process and returns its result, bit for bit. Its progress is passed to `progress`
+/// in this process and thread, and its LoadError is thrown here in the same words. If the child ends without
+/// a result, throws LoadError "<file>: <library> crashed while reading it; ...". Other effects of read() on
+/// memory stay in the child. Without fork(), and under AddressSanitizer in a program with threads, runs
+/// read() in this process.
 ///
-/// The child is a fork of this process with the calling thread alone. From a program with more threads, POSIX
-/// promises it little, but glibc makes malloc and stdio work there, and `read` needs no more if it starts no
-/// threads and if no other thread uses the same library in this process, whose locks would stay taken. Cost
-/// beyond read(): a fork (about 1 ms per 100 MB that this process holds) and one copy of the parts.
+/// The child is a fork of this process with the calling thread alone. For a program with more threads POSIX
+/// promises little, but with glibc malloc and stdio work in the child. That suffices if `read` starts no
+/// threads and no other thread of this process uses the same library, whose locks would stay locked. Cost
+/// besides read(): a fork (about 1 ms for each 100 MB of this process) and one copy of the parts.
 RawCad inOwnProcess(const std::string& file, const std::string& library, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada, 3MF and what else it reads.
+// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada, 3MF and others.
 #include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -16,13 +16,13 @@
 namespace vps::scenes::import {
 namespace {
 
-/// Metres per unit of what assimp hands over. It applies Collada's unit itself, in the root's transform; it
-/// drops the units of 3MF and X3D, so these count as formats without one.
+/// Metres per unit of assimp's result. It applies Collada's unit itself, in the root's transform. It drops
+/// the units of 3MF and X3D, so these count as formats without one.
 double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
   if (format == "glTF" || format == "DAE") return 1;
   if (settings.unit_m) return *settings.unit_m;
-  throw LoadError(file, "",
-                  format + " files do not say their unit; set unit = \"mm\" in the scene or give --units mm");
+  throw LoadError(
+      file, "", format + " files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
 }
 
 Eigen::Affine3d affine(const aiMatrix4x4& m) {
@@ -50,7 +50,7 @@ std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_g
   // glTF's factor is linear by its specification; the others mean the colour on the screen.
   if (is_gltf && material.Get(AI_MATKEY_BASE_COLOR, c) == AI_SUCCESS) return {c.r, c.g, c.b};
   if (std::string(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME) {
-    return ImportedPart().color;  // assimp's own grey, not the file's
+    return ImportedPart().color;  // the material is assimp's default, not the file's
   }
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == AI_SUCCESS) return linearFromSrgb({c.r, c.g, c.b});
   return ImportedPart().color;
@@ -77,9 +77,9 @@ struct Walk {
   }
 };
 
-/// glTF is y up by its specification, and exporters turn z-up models, meshes and all; turned back, a part has
-/// the frame that it has in CAD. assimp makes Collada y up by the root's transform alone, so only poses turn
-/// back.
+/// glTF is y-up by its specification, and exporters rotate z-up models with their meshes; rotated back, a
+/// part has its frame in CAD. assimp makes Collada y-up by the root's transform alone, so only poses are
+/// rotated back.
 void makeZUp(RawCad& cad, bool is_gltf) {
   const Eigen::Affine3d X_ZY(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vec3::UnitX()));
   for (RawPart& part : cad.parts) {
@@ -90,9 +90,9 @@ void makeZUp(RawCad& cad, bool is_gltf) {
   }
 }
 
-/// The bytes to hand to assimp in place of a binary PLY whose first value begins with the byte '\n', if it is
-/// one: assimp 5.2.5 takes that byte for the second half of a line end and drops it. A line end of two halves
-/// after the header gives it what it looks for.
+/// For a binary PLY whose first value begins with the byte '\n': the bytes to give to assimp instead.
+/// assimp 5.2.5 takes that byte for the second half of a line end and drops it, so the header gets a line end
+/// of two bytes.
 std::optional<std::string> plyItReadsRight(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   bool is_binary = false;
@@ -106,9 +106,9 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
   return bytes;
 }
 
-/// Are all faces' corners there? assimp's readers pass on what a damaged file says, and its triangulation
-/// then aborts.
-bool hasItsCorners(const aiMesh& mesh) {
+/// True if all vertices of the faces exist. assimp's readers do not check this, and its triangulation then
+/// aborts.
+bool hasAllVertices(const aiMesh& mesh) {
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
     if (face.mNumIndices == 0) return false;
@@ -126,7 +126,7 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   Assimp::Importer importer;  // its logger is silent unless asked
   if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
       format == "IFC") {
-    throw LoadError(file, "", "format not known; export STEP, glTF, STL, OBJ or PLY");
+    throw LoadError(file, "", "has an unknown format; export STEP, glTF, STL, OBJ or PLY");
   }
   RawCad cad;
   cad.unit_m = unitOf(file, format, settings);
@@ -138,28 +138,28 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     scene =
         ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
     for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
-      if (!hasItsCorners(*scene->mMeshes[i]))
+      if (!hasAllVertices(*scene->mMeshes[i]))
         throw LoadError(file, scene->mMeshes[i]->mName.C_Str(),
-                        "a face names a vertex that is not there; export it again");
+                        "has a face with a vertex that does not exist; export it again");
     }
     if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
   } catch (const LoadError&) {
     throw;
   } catch (const std::exception& e) {
     throw LoadError(file, "",
-                    std::string("not a readable ") + format + " file (" + e.what() + "); export it again");
+                    std::string("is no readable ") + format + " file (" + e.what() + "); export it again");
   }
   if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
-    std::string why = importer.GetErrorString();
-    for (char& c : why) c = c == '\n' ? ' ' : c;
-    throw LoadError(file, "", "not a readable " + format + " file (" + why + "); export it again");
+    std::string reason = importer.GetErrorString();
+    for (char& c : reason) c = c == '\n' ? ' ' : c;
+    throw LoadError(file, "", "is no readable " + format + " file (" + reason + "); export it again");
   }
   const bool is_gltf = format == "glTF";
   Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
   for (RawPart& part : cad.parts) {
-    // STL's header and assimp's stand-ins are no names.
+    // STL's header and assimp's placeholders are no names.
     if (format == "STL" && cad.parts.size() == 1) part.name.clear();
     if (part.name.starts_with("<") || part.name == "defaultobject" || part.name == "RootNode")
       part.name.clear();

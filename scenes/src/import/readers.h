@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each format's reader hands to importCad(), which makes it metres, welds it and names it.
+// The readers of CAD formats, and their common result before importCad() finishes it.
 #pragma once
 
 #include <array>
@@ -12,8 +12,7 @@
 
 namespace vps::scenes::import {
 
-/// A part as its file says it: triangles not yet welded, lengths in file units; the name may be empty or
-/// repeat.
+/// A part as in its file: triangles not yet welded, lengths in file units; the name may be empty or repeated.
 struct RawPart {
   std::string name;
   Mesh mesh;
@@ -21,11 +20,11 @@ struct RawPart {
   std::array<float, 3> color = ImportedPart().color;   ///< linear RGB
 };
 
-/// What open shapes mean that close one another.
+/// The meaning of open shapes that together form a closed surface.
 enum class Shapes {
-  AreParts,     ///< nothing: each stays as it is
-  BoundBodies,  ///< VRML of CAD, a shape per face: each connected surface is a part
-  BoundOne,     ///< OBJ of one part, a group per face
+  AreParts,     ///< each is a part
+  BoundBodies,  ///< VRML from CAD, a shape for each face: each connected surface is a part
+  BoundOne,     ///< OBJ of one part, a group for each face
 };
 
 struct RawCad {
@@ -43,14 +42,14 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
                   const Progress& progress);
 
-/// Metres, rigid poses, welding, shapes joined to parts, unique names, warnings in words.
+/// Converts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds warnings.
 void finish(RawCad raw, ImportedCad& cad);
 
-/// "STEP", "IGES", "BREP", "Inventor", "VRML", or the extension in capitals; by content where content tells.
-/// Throws LoadError: missing, a folder, empty, cut (where the format says how it ends).
+/// "STEP", "IGES", "BREP", "Inventor", "VRML", or the extension in capitals; by content where possible.
+/// Throws LoadError for a file that is missing, a folder, empty, or cut (where the format defines its end).
 std::string detectFormat(const std::string& file);
 
-/// The file's name without folder and extensions, for parts that have no name.
+/// The file's name without folder and extensions, for parts without a name.
 std::string stem(const std::string& file);
 
 /// Display colour (sRGB) to linear. Source: IEC 61966-2-1.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Lengths and units as text.
 #include <charconv>
 #include <cmath>
 
@@ -20,7 +21,7 @@ double lengthFromText(const std::string& text, const std::string& what) {
   const std::string remedy = "write a length with its unit, like 0.2mm, 20um or 0.01m (mm, cm, m, um, inch)";
   double value = 0;
   const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);  // the same in every locale
+  const auto [rest, error] = std::from_chars(text.data(), end, value);  // independent of the locale
   if (error != std::errc() || !std::isfinite(value)) {
     throw LoadError(what, "", "'" + text + "' is not a length; " + remedy);
   }

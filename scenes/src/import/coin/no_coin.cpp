@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for Coin where the build has not found it.
+// Replaces the Coin reader in a build without Coin.
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -7,7 +7,7 @@ namespace vps::scenes::import {
 
 RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
-                  format + " needs Coin, which this build has not; install libcoin-dev and build again");
+                  format + " needs Coin, which this build lacks; install libcoin-dev and build again");
 }
 
 }  // namespace vps::scenes::import

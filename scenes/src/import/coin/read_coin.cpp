@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Open Inventor and VRML by Coin, without a display: its callback action hands out triangles, matrices,
+// Open Inventor and VRML by Coin, without a display: its callback action provides triangles, matrices and
 // materials.
 #include <mutex>
 
@@ -32,7 +32,7 @@ std::string oneLine(const char* text) {
   return line;
 }
 
-/// Collects Coin's messages for the life of the object instead of printing them.
+/// Collects Coin's messages during its lifetime, so that Coin does not print them.
 class Messages {
  public:
   Messages() {
@@ -82,7 +82,7 @@ std::string nameOf(const SoCallbackAction& action) {
   const SoPath* path = const_cast<SoCallbackAction&>(action).getCurPath();
   for (int i = path->getLength() - 1; i >= 0; --i) {
     const std::string name = path->getNode(i)->getName().getString();
-    if (!name.empty() && name.front() != '_') return name;  // "_+0" and the like are exporters' counters
+    if (!name.empty() && name.front() != '_') return name;  // exporters use "_+0" and the like as counters
   }
   return "";
 }
@@ -141,7 +141,7 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
   const std::lock_guard lock(one_at_a_time);
   if (!SoDB::isInitialized()) {
     SoDB::init();
-    SoInteraction::init();  // node kits and draggers may stand in a file
+    SoInteraction::init();  // a file may have node kits and draggers
   }
   Messages messages;
   SoInput input;
@@ -153,10 +153,10 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
     is_cut = is_cut || line.find("end of file") != std::string::npos;
   if (!scene || is_cut) {
     const std::string why = messages.lines.empty() ? "no scene in it" : messages.lines.front();
-    throw LoadError(file, "", "not a readable " + format + " file (" + why + "); export it again");
+    throw LoadError(file, "", "is no readable " + format + " file (" + why + "); export it again");
   }
 
-  // Spheres, cones and cylinders as fine as Coin makes them, unless the file says otherwise.
+  // Spheres, cones and cylinders are as fine as Coin makes them, unless the file sets it.
   auto* root = new SoSeparator;
   const NodeHold hold_root(root);
   auto* complexity = new SoComplexity;
@@ -173,7 +173,7 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
 
   if (!collector.damaged.empty()) {
     throw LoadError(file, collector.damaged.front(),
-                    "a face names a vertex that is not there; export it again");
+                    "has a face with a vertex that does not exist; export it again");
   }
 
   RawCad cad = std::move(collector.cad);
@@ -182,8 +182,8 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
   if (!hasUnits(root)) {
     cad.unit_m = settings.unit_m.value_or(1.0);
     if (!settings.unit_m) {
-      cad.warnings.push_back("says no unit: taken as metres, as " + format +
-                             " defines; set unit or --units if not");
+      cad.warnings.push_back("states no unit: metres are assumed, as " + format +
+                             " defines; set unit or --units for another unit");
     }
   }
   return cad;

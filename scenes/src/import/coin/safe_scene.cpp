@@ -21,7 +21,7 @@
 namespace vps::scenes::import {
 namespace {
 
-/// Calls f on every node of type T under root, behind switches too.
+/// Calls f on every node of type T under root, including those behind switches.
 template <class T, class F>
 void forAll(SoNode* root, F f) {
   SoSearchAction search;
@@ -48,7 +48,7 @@ bool areBelow(const SoMFInt32& indices, std::int64_t count) {
   return std::all_of(values, values + indices.getNum(), [&](std::int32_t i) { return i < count; });
 }
 
-/// Whether first + the sum of the counts stays within what there is; a count of -1 means "the rest".
+/// True if first plus the sum of the counts is within the list; a count of -1 means "the rest".
 bool addUpTo(std::int64_t first, const SoMFInt32& counts, std::int64_t available) {
   for (int i = 0; i < counts.getNum(); ++i) first += std::max(counts[i], 0);
   return first <= available;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coin trusts the indices in a file and crashes on wrong ones; these look before it does.
+// Checks a Coin scene first, since Coin does not check the indices in a file and crashes on wrong ones.
 #pragma once
 
 class SoCallbackAction;
@@ -7,12 +7,10 @@ class SoNode;
 
 namespace vps::scenes::import {
 
-/// Takes out what only pictures need and Coin reads unchecked: normals, texture coordinates and their
-/// indices.
+/// Removes normals, texture coordinates and their indices, which only pictures need and Coin reads unchecked.
 void dropNormals(SoNode* root);
 
-/// Whether all vertices that a shape names are there, given the coordinates in force at this point of the
-/// traversal.
+/// True if all vertices of a shape exist, by the coordinates that apply at this point of the traversal.
 bool hasItsVertices(const SoCallbackAction& action, const SoNode& shape);
 
 }  // namespace vps::scenes::import

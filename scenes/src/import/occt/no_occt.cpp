@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for Open CASCADE where the build has not found it.
+// Replaces the Open CASCADE reader in a build without Open CASCADE.
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -8,7 +8,7 @@ namespace vps::scenes::import {
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
                   format +
-                      " needs Open CASCADE, which this build has not; install "
+                      " needs Open CASCADE, which this build lacks; install "
                       "libocct-data-exchange-dev and build again");
 }
 

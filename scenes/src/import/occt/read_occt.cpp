@@ -36,7 +36,7 @@ namespace {
 
 using Color = std::array<float, 3>;
 
-/// Takes Open CASCADE's console printers away for a scope.
+/// Removes Open CASCADE's console printers for a scope.
 class Quiet {
  public:
   Quiet() : printers_(Message::DefaultMessenger()->Printers()) {
@@ -50,7 +50,7 @@ class Quiet {
   Message_SequenceOfPrinters printers_;
 };
 
-/// A document, closed when it goes.
+/// A document that is closed with its scope.
 class Document {
  public:
   Document() { XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document_); }
@@ -71,8 +71,8 @@ Eigen::Affine3d affine(const gp_Trsf& t) {
   return X;
 }
 
-/// The label's name, or nothing where it says nothing: Open CASCADE's own paths and counters of other
-/// writers.
+/// The label's name; empty for names without meaning, as Open CASCADE's own paths and other writers'
+/// counters.
 std::string nameOf(const TDF_Label& label) {
   Handle(TDataStd_Name) attribute;
   if (!label.FindAttribute(TDataStd_Name::GetID(), attribute)) return "";
@@ -86,7 +86,7 @@ std::string nameOf(const TDF_Label& label) {
   return is_counter ? "" : name;
 }
 
-/// Walks an assembly's tree to its leaves and meshes each product once.
+/// Visits the leaves of an assembly's tree and meshes each product once.
 class Tree {
  public:
   Tree(const Handle(TDocStd_Document) & document, const ImportSettings& settings, const Progress& progress,
@@ -102,7 +102,7 @@ class Tree {
     shapes_->GetFreeShapes(roots);
     for (const TDF_Label& root : roots) count(root);
     for (const TDF_Label& root : roots) {
-      // A lone shape may carry a location of its own.
+      // A single shape may have a location.
       const Color* none = nullptr;
       visit(root, "", Eigen::Affine3d::Identity(), none);
     }
@@ -147,7 +147,7 @@ class Tree {
         label == product ? X_WParent
                          : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
     Color own{};
-    // The instance's colour hides its product's, and a colour above hides both only where they have none.
+    // The instance's colour overrides its product's; a colour above applies only where both have none.
     const bool has_own = colorOf(label, own) || colorOf(product, own);
     const Color* color = has_own ? &own : color_above;
     if (XCAFDoc_ShapeTool::IsAssembly(product)) {
@@ -220,10 +220,10 @@ class Tree {
 };
 
 LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
-  return {file, "", "not a readable " + format + " file (" + why + "); export it again"};
+  return {file, "", "is no readable " + format + " file (" + why + "); export it again"};
 }
 
-/// Refuses a file with entities that could not be read: Open CASCADE goes on with null pointers in their
+/// Refuses a file with entities that could not be read: Open CASCADE continues with null pointers in their
 /// place, and crashes on some of them (7.6.3: a face bound without its loop).
 void requireIntact(const Handle(Interface_InterfaceModel) & model, const std::string& file,
                    const std::string& format) {
@@ -262,11 +262,11 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
 RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
             const Progress& progress) {
   RawCad cad;
-  cad.unit_m = 1e-3;  // both readers convert what the file says to mm
+  cad.unit_m = 1e-3;  // both readers convert to mm
   if (format == "BREP") {
     if (!settings.unit_m) {
-      throw LoadError(file, "",
-                      "BREP files do not say their unit; set unit = \"mm\" in the scene or give --units mm");
+      throw LoadError(
+          file, "", "BREP files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
     }
     cad.unit_m = *settings.unit_m;
     TopoDS_Shape shape;
@@ -282,7 +282,7 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
   }
   Document document;
   if (format == "STEP") {
-    STEPCAFControl_Controller::Init();  // the static below exists only from here on
+    STEPCAFControl_Controller::Init();  // defines the static below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
     transfer(reader, file, format, document.get());

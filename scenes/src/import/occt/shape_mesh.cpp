@@ -44,7 +44,7 @@ void appendFace(const TopoDS_Face& face, Mesh& mesh) {
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Shape> found;
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
-  // 1 um [mm], which IGES edges rarely miss; far less where the file says that the part is tiny.
+  // 1 um [mm], which suffices for most IGES edges; far less where the file states that the part is tiny.
   Bnd_Box box;
   BRepBndLib::Add(shape, box);
   const double tolerance = box.IsVoid() ? 1e-3 : std::min(1e-3, 1e-5 * std::sqrt(box.SquareExtent()));
@@ -64,8 +64,7 @@ Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double un
   parameters.Deflection = settings.deflection_m * units_per_m;
   parameters.Angle = settings.angle_rad;
   parameters.InParallel = !settings.in_own_process;  // a forked process may start no threads
-  // Planes and cylinders hold the deflection by their rims alone; other surfaces get inner points all the
-  // same.
+  // Planes and cylinders keep the deflection by their rims alone; other surfaces still get inner points.
   parameters.InternalVerticesMode = false;
   BRepMesh_IncrementalMesh(shape, parameters);
   Mesh mesh;

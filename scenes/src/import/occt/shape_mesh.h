@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Open CASCADE shapes to triangles.
+// Triangulates Open CASCADE shapes.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace vps::scenes::import {
 
-/// The rigid pieces of a shape: each solid, and whatever faces lie in none, sewn together where they meet.
+/// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
 
-/// Triangles of all faces, in the shape's length unit (units_per_m of them a metre), outward for a solid.
+/// Triangles of all faces, in the shape's length unit (a metre has units_per_m of them), outward for a solid.
 /// Faces of one shape share the points of their common edges, so welding closes it.
 Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
 
