@@ -9,6 +9,7 @@
 
 #include "vps/mesh.h"
 #include "vps/progress.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
@@ -45,12 +46,12 @@ struct ImportedCad {
 /// Collada are y-up by definition and are rotated to z-up; other files keep their axes. Inventor without
 /// Units and VRML are in metres unless unit_m is given. Throws LoadError if the file is missing, cut, empty
 /// or damaged, its unit is unknown, or its format is not built in (the message names the package).
-ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
-                      const Progress& progress = {});
+VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
+                                     const Progress& progress = {});
 
 /// Metres per unit of "mm", "cm", "m", "um" and "inch"; empty for other text.
-std::optional<double> unitFromText(const std::string& text);
+VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
-double lengthFromText(const std::string& text, const std::string& what);
+VPS_SCENES_API double lengthFromText(const std::string& text, const std::string& what);
 
 }  // namespace vps::scenes
