@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "models/scene_models.h"
-#include "vps/crop.h"
+#include "vps/shell_crop.h"
 #include "vps/query.h"
 
 namespace vps::scenes {
