@@ -50,7 +50,7 @@ Pose askew() {
 
 /// A function of a point in the shape's own frame, for points and directions of the rotated frame.
 template <typename NormalOf>
-std::function<Vec3(const Vec3&)> device::inFrame(NormalOf normalOf) {
+std::function<Vec3(const Vec3&)> inFrame(NormalOf normalOf) {
   return [=, X_AM = askew()](const Vec3& p) { return Vec3(X_AM.R * normalOf(X_AM.inverse() * p)); };
 }
 
@@ -62,16 +62,15 @@ std::vector<Shape> smoothShapes() {
   };
   std::vector<Shape> all;
   all.push_back({"sphere", false, makeSphere(5 * kMm, 8), everywhere,
-                 device::inFrame([](const Vec3& p) { return p.normalized(); })});
+                 inFrame([](const Vec3& p) { return p.normalized(); })});
   all.push_back({"cylinder", false,
                  test::makePeg({.radius_m = 5 * kMm, .length_m = 20 * kMm, .columns = 4096, .rows = 64}),
-                 isOnWall,
-                 device::inFrame([](const Vec3& p) { return Vec3(p.x(), p.y(), 0).normalized(); })});
-  all.push_back({"torus", false, test::makeTorus(kRing_m, 3 * kMm, 1600, 500), everywhere,
-                 device::inFrame([](const Vec3& p) {
-                   const Vec3 on_ring = kRing_m * Vec3(p.x(), p.y(), 0).normalized();
-                   return (p - on_ring).normalized();
-                 })});
+                 isOnWall, inFrame([](const Vec3& p) { return Vec3(p.x(), p.y(), 0).normalized(); })});
+  all.push_back(
+      {"torus", false, test::makeTorus(kRing_m, 3 * kMm, 1600, 500), everywhere, inFrame([](const Vec3& p) {
+         const Vec3 on_ring = kRing_m * Vec3(p.x(), p.y(), 0).normalized();
+         return (p - on_ring).normalized();
+       })});
   return all;
 }
 

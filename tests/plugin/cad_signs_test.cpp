@@ -114,7 +114,7 @@ struct Agreement {
 /// Compares the signs of a map's nodes, at random positions in and around the part, with the winding number
 /// of all triangles (of the cleaned mesh) and with the parity of eleven rays (of the mesh as given), where
 /// nine agree.
-Agreement viewer::compare(const std::string& name, const Mesh& mesh, int voxels) {
+Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
   Agreement found;
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
   const VoxMap map = buildVoxMap(mesh, {voxel_m, 4}, "", {}, &found.report);
@@ -166,7 +166,7 @@ class CadSigns : public testing::Test {
 TEST_F(CadSigns, Bearing) {
   const fs::path file = find("occt-bearing-motor/bearing.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("bearing", readStl(file, 1e-3), 128);
+  const Agreement found = compare("bearing", readStl(file, 1e-3), 128);
   EXPECT_EQ(found.report.open_edges, 134u);  // as the folder's LICENCE says
   EXPECT_EQ(found.report.flipped_facets, 29u);
   EXPECT_EQ(found.against_windings, 0u);
@@ -175,7 +175,7 @@ TEST_F(CadSigns, Bearing) {
 TEST_F(CadSigns, Motor) {
   const fs::path file = find("occt-bearing-motor/motor.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("motor", readStl(file, 1e-3), 128);
+  const Agreement found = compare("motor", readStl(file, 1e-3), 128);
   EXPECT_GT(found.report.overlapping_shells, 0u);
   EXPECT_GT(found.report.certain_share, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
@@ -184,7 +184,7 @@ TEST_F(CadSigns, Motor) {
 TEST_F(CadSigns, MotorCase) {
   const fs::path file = find("planetary-tiptap/Motor_Case.STL");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("Motor_Case", readStl(file, 1e-3), 128);
+  const Agreement found = compare("Motor_Case", readStl(file, 1e-3), 128);
   EXPECT_EQ(found.report.open_edges, 123u);
   EXPECT_GT(found.report.certain_share, 0.999);
   EXPECT_EQ(found.against_windings, 0u);
@@ -193,7 +193,7 @@ TEST_F(CadSigns, MotorCase) {
 TEST_F(CadSigns, Nut) {
   const fs::path file = find("thread-m16-loose/factory_nut_m16_loose_subdiv_3x.obj");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("nut", readObj(file), 128);
+  const Agreement found = compare("nut", readObj(file), 128);
   EXPECT_EQ(found.report.open_edges, 108u);
   EXPECT_GT(found.report.t_junctions, 50u);
   EXPECT_GT(found.report.certain_share, 0.999);
@@ -203,7 +203,7 @@ TEST_F(CadSigns, Nut) {
 TEST_F(CadSigns, PinHeaderWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinHeader_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("PinHeader", readWrl(file, 2.54e-3), 128);
+  const Agreement found = compare("PinHeader", readWrl(file, 2.54e-3), 128);
   EXPECT_FALSE(found.report.signed_by_winding);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
@@ -211,7 +211,7 @@ TEST_F(CadSigns, PinHeaderWithOneShellPerFace) {
 TEST_F(CadSigns, PinSocketWithOneShellPerFace) {
   const fs::path file = find("kicad-pinheader/PinSocket_1x04_P2.54mm_Vertical.wrl");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("PinSocket", readWrl(file, 2.54e-3), 128);
+  const Agreement found = compare("PinSocket", readWrl(file, 2.54e-3), 128);
   EXPECT_FALSE(found.report.signed_by_winding);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
@@ -219,7 +219,7 @@ TEST_F(CadSigns, PinSocketWithOneShellPerFace) {
 TEST_F(CadSigns, TriangleSoupReportsUncertainSigns) {
   const fs::path file = find("cad-trimesh/soup.stl");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("soup", readStl(file, 1e-3), 64);
+  const Agreement found = compare("soup", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.shells, 100u);
   EXPECT_LT(found.report.certain_share, 0.9);
   EXPECT_EQ(found.against_windings, 0u);
@@ -227,7 +227,7 @@ TEST_F(CadSigns, TriangleSoupReportsUncertainSigns) {
 TEST_F(CadSigns, SharedEdge) {
   const fs::path file = find("cad-trimesh/shared.STL");
   SKIP_WITHOUT(file);
-  const Agreement found = viewer::compare("shared", readStl(file, 1e-3), 64);
+  const Agreement found = compare("shared", readStl(file, 1e-3), 64);
   EXPECT_EQ(found.report.non_manifold_edges, 1u);
   EXPECT_EQ(found.against_windings, 0u);
   EXPECT_EQ(found.against_rays, 0u);
