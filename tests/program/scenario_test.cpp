@@ -189,7 +189,8 @@ TEST_F(Scenario, APartThatDriftsIsNoSuccess) {
 
 TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefusedWithoutARatchet) {
   writePegScene(
-      "", "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n[device]\nratchet = false\n");
+      "",
+      "start = {position = [0, 0, 600]}\ntarget = {position = [0, 0, -15]}\n[device]\nindexing = false\n");
   expectRefused("assemble scene.toml --out out", "longer than the device's workspace");
 }
 

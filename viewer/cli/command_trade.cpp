@@ -72,7 +72,7 @@ std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
 
 /// Picks, and says what to paste into the scene.
 int pick(scenes::Scene scene, const scenes::FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
-  const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, bar.progress());
+  const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, {.progress = bar.progress()});
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
@@ -103,7 +103,7 @@ int runTrade(const TradeArguments& given) {
   options.warn = warn;
   options.is_thorough = given.is_thorough;
   options.stop = &stopRequested();
-  // Reading the scene counts, and plots come after.
+  // ModelResponse the scene counts, and plots come after.
   options.seconds = kSeconds - std::chrono::duration<double>(Clock::now() - begun).count();
   const scenes::TradeResult result = scenes::trade(scene, options);
   const bool is_stopped = stopRequested();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What the commands make of the arguments that several of them share: a scene, a fidelity, a cache.
 #include "commands.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 
 namespace vps::viewer {
@@ -51,6 +53,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
+  scenes::resolveFidelity(scene);
   const Fidelity own = scene.fidelity;
   scene.fidelity = fidelityFrom(given, own);
   if (scene.fidelity_choice.empty()) return scene;
@@ -58,7 +61,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
     say("chosen: " + scene.fidelity_choice);
     return scene;
   }
-  // What was chosen at load has been overruled, and its models with it.
+  // The command line overrides the choice, so its models are of no use.
   scene.fidelity_choice.clear();
   for (scenes::ScenePart& part : scene.parts) {
     part.part.map.reset();

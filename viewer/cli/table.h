@@ -22,9 +22,4 @@ class Table {
 /// A number with this many digits after the point; "-" if it is not finite.
 std::string fixed(double value, int digits);
 
-/// A line of CSV (RFC 4180): cells stand in quotes where they must.
-std::string csvLine(const std::vector<std::string>& cells);
-/// A number for CSV: the shortest text that reads back as the same value.
-std::string csvNumber(double value);
-
 }  // namespace vps::viewer

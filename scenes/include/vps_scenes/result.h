@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What came of a run: the numbers that reports, plots and JSON are made from.
+// The result of a run: the numbers of reports, plots and JSON. result_fields.h has a row for each of them.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@
 
 namespace vps::scenes {
 
-/// Wall-clock statistics of something that repeats [microseconds].
+/// Wall-clock statistics of a repeated action [microseconds].
 struct TickTimes {
   std::uint64_t count = 0;
   std::uint64_t missed = 0;  ///< took longer than the period
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
-  /// The same by the processor time of the thread: without what other programs took meanwhile. 0: not taken.
+  /// By the processor time of the thread, which excludes other programs; 0: not measured.
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
@@ -28,29 +28,29 @@ struct StepResult {
   bool completed = false;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
-  double max_penetration_m = 0;  ///< by exact mesh distance, over the step and the rest after it
+  double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
   std::string deepest_against;
   Vec3 deepest_at_W = Vec3::Zero();
   double deepest_time_s = 0;
   double penetration_limit_m = 0;               ///< min(10 um, clearance / 4)
-  double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
+  double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int index_points = 0;  ///< times the hand let go on the way and took the part anew, for a device too small
+  int index_count = 0;  ///< how often the device was clutched and recentred on the path
   double final_error_m = 0, final_error_rad = 0;
-  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
+  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;
-  bool is_placed = false;  ///< not completed, and set on its target by us, for the next step to stand on
-  double cook_wall_s = 0;  ///< making the fixed field of the next step, on a thread of its own
-  double swap_wall_s = 0;  ///< putting it in place, between two physics steps
+  bool is_placed = false;  ///< failed, and set on its target for the next step
+  double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
+  double swap_wall_s = 0;  ///< time to put it in place, between two physics steps
   std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
 };
 
-/// Greatest drift of a part that was let go and should rest.
+/// Greatest drift of a part at rest after release.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
-/// Reached, never too deep, and stayed: what a step must be for the whole to be good. One home for report,
-/// table, JSON and exit status.
+/// A step is good if it was completed, kept its limit of penetration, and stayed at rest. Report, table, JSON
+/// and exit status use this.
 inline bool isWithinLimit(const StepResult& step) {
   return step.max_penetration_m <= step.penetration_limit_m;
 }
@@ -70,38 +70,37 @@ struct TraceRow {
   Pose X_WP;        ///< part in hand
   Pose X_W_Proxy;
   int contacts = 0;
-  double depth_m = 0;  ///< by the field
+  double depth_m = 0;  ///< by the voxmap
 };
 
 struct EnergyLedger {
   double to_hand_J = 0, from_hand_J = 0;
-  double injected_J = 0;                  ///< DESIGN.md section 7, by what the encoders show
-  double quantisation_error_bound_J = 0;  ///< what they may have kept from it at the most (PassivityObserver)
+  double injected_J = 0;  ///< greatest rise of energy that the simulation added, by the encoders' positions
+  double quantisation_error_bound_J = 0;  ///< bound of its error by their resolution (PassivityObserver)
 };
 
 struct ModelledCost {
   std::size_t voxmaps = 0, pointshells = 0;
-  std::size_t points = 0;        ///< of the parts' own shells
-  std::size_t field_points = 0;  ///< of the cooked field's
+  std::size_t points = 0;        ///< of the parts' own pointshells
+  std::size_t field_points = 0;  ///< of the fixed field
   std::size_t bytes = 0;         ///< of all
 };
 
-/// What a run in real time adds: how well time was kept.
+/// Timing of a run in real time.
 struct RealTimeResult {
   bool has_priority = false, has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< what the system refused, and what would help
-  TickTimes late;                     ///< from a tick's due time to its start
-  TickTimes response;                 ///< from a tick's due time to its wrench
+  std::vector<std::string> warnings;                             ///< what the system refused, with the remedy
+  TickTimes late;                                                ///< from a tick's due time to its start
+  TickTimes response;                                            ///< from a tick's due time to its wrench
   std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
   std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;
-  std::uint64_t physics_missed = 0;  ///< physics periods, as asked, without a step of their own
-  double behind_s = 0;  ///< by how much less simulated time went by than the clock's while physics ran
-  std::vector<LoadLevelChange>
-      load_changes;          ///< what was given up to hold the rate, and taken back, in order
-  std::uint64_t faults = 0;  ///< of safety
+  std::uint64_t physics_missed = 0;  ///< physics periods of the scene's rate without a step of their own
+  double behind_s = 0;               ///< clock time less simulated time while physics ran
+  std::vector<LoadLevelChange> load_changes;  ///< changes of the load level, in order
+  std::uint64_t faults = 0;                   ///< of the safety chain
 };
 
 struct AssembleResult {
@@ -115,12 +114,12 @@ struct AssembleResult {
   TickTimes haptic, physics;
   std::optional<RealTimeResult> real_time;  ///< of a run in real time
   struct {
-    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was held instead
-    double jump_J = 0, greatest_jump_m = 0;  ///< by new snapshots
+    std::uint64_t held = 0;                  ///< ticks that used the last snapshot unchanged
+    double jump_J = 0, greatest_jump_m = 0;  ///< at new snapshots
   } local_contact;
   EnergyLedger energy;
-  ModelledCost modelled;  ///< at its most, with the fixed field
-  int widened = 0;        ///< times a part came to the border of its region, so that the rest was modelled
+  ModelledCost modelled;  ///< at its greatest, with the fixed field
+  int widened = 0;  ///< how often a part reached the border of its region, so that the rest was modelled
   std::size_t contacts_left_out = 0;  ///< near points that found no room in a query; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };

@@ -511,7 +511,7 @@ void Procedure::work(StepResult& result, const SceneStep& step, std::size_t inde
                                                                                          : 0);
     tell(index, 0.8 * std::min(1.0, (time_s_ - result.start_s) / step.timeout_s * 2));
     if (phase != device::OperatorPhase::Regrasp) continue;
-    ++result.index_points;
+    ++result.index_count;
     if (!clutch.index_point(reaching)) return;
     tellPhase();
   }

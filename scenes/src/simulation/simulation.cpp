@@ -29,8 +29,7 @@ struct DynamicBody {
 bullet::Settings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
   bullet::Settings settings;
-  settings.mode =
-      scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
+  settings.mode = scene.fidelity.contact_method;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
     // One stiffness for all pairs, as the bridge takes it: the softest part gives way most.
