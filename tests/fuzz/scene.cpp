@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as the scene that a recording holds.
+// Reads arbitrary bytes as the scene of a recording.
 #include "record/scene_archive.h"
 
 #include "fuzz.h"
@@ -12,12 +12,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     for (const vps::scenes::ScenePart& part : scene.parts)
       for (const auto& triangle : part.part.mesh.triangles)
         for (const std::uint32_t corner : triangle)
-          vps::fuzz::require(corner < part.part.mesh.vertices.size(), "corners are there");
+          vps::fuzz::require(corner < part.part.mesh.vertices.size(), "all corners exist");
     for (const vps::scenes::SceneStep& step : scene.steps)
-      vps::fuzz::require(step.part < scene.parts.size(), "a step has its part");
+      vps::fuzz::require(step.part < scene.parts.size(), "the part of a step exists");
     const std::string again = vps::scenes::sceneToBytes(scene);
     vps::fuzz::require(vps::scenes::sceneToBytes(vps::scenes::sceneFromBytes(again, "fuzz")) == again,
-                       "a scene comes back");
+                       "a scene is read back unchanged");
   } catch (const vps::LoadError&) {
   }
   return 0;

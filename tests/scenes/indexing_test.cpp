@@ -98,7 +98,7 @@ TEST(Indexing, APartMovesAMetreWithAWorkspaceOfFortyCentimetres) {
   ASSERT_EQ(result.steps.size(), 1u);
   const StepResult& step = result.steps[0];
   EXPECT_TRUE(step.completed) << step.failure_reason;
-  EXPECT_EQ(step.index_points, 2);
+  EXPECT_EQ(step.index_count, 2);
   EXPECT_LE(result.energy.injected_J, 1e-3);
   // While the hand returns, the proxy stands still and the part hangs at rest on the coupling.
   int still = 0;
@@ -132,7 +132,7 @@ TEST(Indexing, ARunWithIndexingReplaysBitForBit) {
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, run.entries.size());
-  EXPECT_EQ(replayed.result.steps.at(0).index_points, 2);
+  EXPECT_EQ(replayed.result.steps.at(0).index_count, 2);
   EXPECT_EQ(replayed.result.steps[0].final_error_m, result.steps[0].final_error_m);
 }
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "procedure/procedure.h"
+#include "procedure/assembly_run.h"
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Recorded runs repeat to the bit, and the scene in a recording comes back.
 #include "vps_scenes/replay.h"
 #include "vps_scenes/record.h"
 
@@ -23,7 +24,7 @@ using test::Recorded;
 
 const std::string kFixture = VPS_SOURCE_DIR "/tests/scenes/recorded/peg_in_hole.mcap";
 
-/// A pin that is set down 0.2 mm lower on a plate, at a coarse rate: half a second of work.
+/// A pin that is lowered by 0.2 mm onto a plate, at a low rate: half a second of computing.
 Scene pinOnPlate() {
   Scene scene;
   scene.file = "some/folder/scene.toml";
@@ -54,8 +55,8 @@ Recorded recordedPin() {
   return recorded;
 }
 
-// A run of this repository, as somebody would send it. Where a change to the engine is meant to change what
-// it computes, record it anew, in tests/scenes/recorded:
+// A recording as a user would send it, made by an earlier version. After a change that is meant to change
+// results, record it again, in tests/scenes/recorded:
 //   vps assemble scene.toml --no-pictures --out out --record peg_in_hole.mcap
 TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
 #ifndef VPS_BULLET_DOUBLE
@@ -72,7 +73,7 @@ TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
   EXPECT_GT(replayed.result.steps[0].peak_force_N, 4);  // it was pressed home
 }
 
-TEST(Replay, WhatWasRecordedGivesTheSameReport) {
+TEST(Replay, ARecordedRunGivesTheSameReport) {
   const Recorded recorded = recordedPin();
   EXPECT_EQ(recorded.run.damage, "");
   EXPECT_TRUE(recorded.result.steps.at(0).completed) << recorded.result.steps.at(0).failure_reason;
@@ -88,7 +89,7 @@ TEST(Replay, RecordingChangesNoBitOfTheRun) {
   expectSame(recordedPin().result, assemble(scene));
 }
 
-TEST(Replay, AnotherWorldDepartsAndSaysAtWhichTick) {
+TEST(Replay, AChangedSceneDepartsAndTheTickIsReported) {
   device::RecordedRun run = recordedPin().run;
   Scene heavier = recordedScene(run);
   heavier.parts[1].part.material.density_kg_m3 *= 1.01;
@@ -98,7 +99,7 @@ TEST(Replay, AnotherWorldDepartsAndSaysAtWhichTick) {
   // The first row of the trace follows the first physics step, in which the pin falls.
   EXPECT_EQ(replayed.departure.find("tick 1 (0.004 s): /run/trace: p_wp_m.z was "), 0u) << replayed.departure;
   EXPECT_NE(replayed.other_version.find("was recorded by vps 0.0.1"), std::string::npos);
-  EXPECT_EQ(replayed.result.haptic.count, recordedPin().result.haptic.count);  // to its end all the same
+  EXPECT_EQ(replayed.result.haptic.count, recordedPin().result.haptic.count);  // it went on to its end
 }
 
 TEST(Replay, ACutRecordingRunsUpToTheCut) {
@@ -108,13 +109,13 @@ TEST(Replay, ACutRecordingRunsUpToTheCut) {
   cut.damage = "ends in the middle of a record";
   const ReplayResult replayed = replay(cut);
   EXPECT_EQ(replayed.departure, "");
-  EXPECT_EQ(replayed.result.haptic.count + 1, cut.reads());  // one read was the grasp's
+  EXPECT_EQ(replayed.result.haptic.count + 1, cut.reads());  // one read belongs to the grasp
   EXPECT_EQ(replayed.result.steps.at(0).failure_reason, "the recording ends here");
   for (std::size_t i = 0; i < replayed.result.trace.size(); ++i)
     ASSERT_EQ(replayed.result.trace[i].X_WP.p, recorded.result.trace[i].X_WP.p);
 }
 
-TEST(Replay, ARunThatFailsBeforeItBeginsLeavesNothing) {
+TEST(Replay, ARunThatFailsBeforeItStartsLeavesNoFile) {
   const test::TemporaryFolder folder;
   Scene scene = pinOnPlate();
   scene.steps[0].X_WP_start = Pose::translation({0, 0, 1e-3});  // 1 mm deep
@@ -122,7 +123,7 @@ TEST(Replay, ARunThatFailsBeforeItBeginsLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Replay, ARecordingWithoutASceneIsRefusedInWords) {
+TEST(Replay, ARecordingWithoutASceneIsRefused) {
   device::RecordedRun run = device::loadRecording(kFixture);
   run.head.attachments.clear();
   try {
@@ -133,7 +134,7 @@ TEST(Replay, ARecordingWithoutASceneIsRefusedInWords) {
   }
 }
 
-TEST(SceneArchive, EveryBitComesBackAndNoFolderGoesAlong) {
+TEST(SceneArchive, EveryBitComesBackAndNoFolderIsStored) {
   const Scene scene = pinOnPlate();
   const std::string bytes = sceneToBytes(scene);
   const Scene back = sceneFromBytes(bytes, "x");
@@ -145,6 +146,40 @@ TEST(SceneArchive, EveryBitComesBackAndNoFolderGoesAlong) {
   EXPECT_EQ(back.fidelity.haptic_rate_hz, 250);
   EXPECT_EQ(back.parts[0].file, "plate.stl");
   EXPECT_EQ(bytes.find("somebody"), std::string::npos);
+}
+
+TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
+  Scene scene = pinOnPlate();
+  scene.fidelity.contact_method = ContactMethod::Penalty;
+  scene.device.has_indexing = false;
+  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-3\n";
+  ASSERT_TRUE(bytes.starts_with(magic));
+  // Version 2 brought the contact method, a byte, and version 3 indexing, a byte; each stands at the end.
+  const std::string second = "vps-scene-2\n" + bytes.substr(magic.size(), bytes.size() - magic.size() - 1);
+  const std::string first = "vps-scene-1\n" + second.substr(magic.size(), second.size() - magic.size() - 1);
+  EXPECT_FALSE(sceneFromBytes(bytes, "x").device.has_indexing);
+  EXPECT_TRUE(sceneFromBytes(second, "x").device.has_indexing);
+  EXPECT_EQ(sceneFromBytes(second, "x").fidelity.contact_method, ContactMethod::Penalty);
+  EXPECT_EQ(sceneFromBytes(first, "x").fidelity.contact_method, ContactMethod::Constraint);
+  EXPECT_EQ(sceneFromBytes(first, "x").fidelity.haptic_rate_hz, 250);
+}
+
+TEST(SceneArchive, ALaterVersionIsRefusedWithARemedy) {
+  std::string bytes = sceneToBytes(pinOnPlate());
+  bytes.replace(0, 12, "vps-scene-9\n");
+  try {
+    sceneFromBytes(bytes, "run.mcap");
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("replay it with the version that made it"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(SceneArchive, ASettingOutOfItsRangeIsRefused) {
+  Scene scene = pinOnPlate();
+  scene.fidelity.contact_limit = 0;
+  EXPECT_THROW(sceneFromBytes(sceneToBytes(scene), "x"), LoadError);
 }
 
 TEST(SceneArchive, CutAtAnyByteItIsRefused) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene file: what it says becomes a Scene, and what is wrong with it is said with line and key.
+// The scene file: its values arrive in Scene, and each mistake is reported with line and key.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,8 +42,8 @@ class SceneFile : public testing::Test {
     return loadScene(file());
   }
 
-  /// What loading says, without the folder; "" when it loads.
-  std::string complaint(const std::string& text) const {
+  /// The message of the error, without the folder; "" when the file loads.
+  std::string messageOf(const std::string& text) const {
     try {
       load(text);
       return "";
@@ -77,9 +77,9 @@ TEST_F(SceneFile, TwoMeshesAndOneStepAreAScene) {
   EXPECT_EQ(scene.gravity_W, Vec3(0, 0, -9.81));
 }
 
-TEST_F(SceneFile, AStepStartsAboveAllThatIsInPlace) {
-  // The plate's top is at 5 mm, the pin's foot at its target at -10 mm: 15 mm clear the plate, and half the
-  // pin's height of 20 mm is left free between them.
+TEST_F(SceneFile, AStepStartsAboveThePartsInPlace) {
+  // The plate's top is at 5 mm, the pin's lower end at its target at -10 mm: a lift of 15 mm clears the
+  // plate, and half the pin's height of 20 mm is added.
   const Scene scene = load(kStep);
   EXPECT_NEAR(scene.steps[0].X_WP_start.p.z(), 0.025, 1e-12);
   EXPECT_EQ(scene.steps[0].X_WP_target.p, Vec3(Vec3::Zero()));
@@ -123,6 +123,7 @@ timeout_s = 7
 kind = "dual_arm"
 scale = 2
 quantised_encoders = false
+indexing = false
 [operator]
 seed = 42
 aim_error = "1mm"
@@ -147,6 +148,7 @@ contact_limit = 10
 haptic_rate_hz = 4000
 physics_rate_hz = 2000
 solver_iterations = 50
+contact = "penalty"
 [record]
 csv_rate_hz = 100
 )");
@@ -169,7 +171,8 @@ csv_rate_hz = 100
 
   const SceneStep& step = scene.steps[0];
   EXPECT_NEAR(step.X_WP_start.p.z(), 0.09, 1e-15);
-  EXPECT_NEAR((step.X_WP_start.R - pin.X_WP.R).norm(), 0, 1e-15);  // what a pose leaves out is the target's
+  EXPECT_NEAR((step.X_WP_start.R - pin.X_WP.R).norm(), 0,
+              1e-15);  // the part that a pose leaves out is the target's
   ASSERT_EQ(step.way_points.size(), 2u);
   EXPECT_NEAR(step.way_points[0].p.z(), 0.05, 1e-15);
   EXPECT_NEAR((step.way_points[1].R - Vec3(1, -1, -1).asDiagonal().toDenseMatrix()).norm(), 0, 1e-15);
@@ -181,6 +184,7 @@ csv_rate_hz = 100
 
   EXPECT_EQ(scene.device.scale, 2);
   EXPECT_FALSE(scene.device.has_quantised_encoders);
+  EXPECT_FALSE(scene.device.has_indexing);
   EXPECT_EQ(scene.hand.seed, 42u);
   EXPECT_NEAR(scene.hand.aim_error_m, 1e-3, 1e-17);
   EXPECT_NEAR(scene.hand.aim_error_rad, std::numbers::pi / 90, 1e-16);
@@ -201,11 +205,26 @@ csv_rate_hz = 100
   EXPECT_EQ(scene.fidelity.haptic_rate_hz, 4000);
   EXPECT_EQ(scene.fidelity.physics_rate_hz, 2000);
   EXPECT_EQ(scene.fidelity.solver_iterations, 50);
+  EXPECT_EQ(scene.fidelity.contact_method, ContactMethod::Penalty);
   EXPECT_EQ(scene.record.csv_rate_hz, 100);
 }
 
-TEST_F(SceneFile, APresetMayStandAlone) {
+TEST_F(SceneFile, APresetMayBeGivenByItsName) {
   EXPECT_EQ(load("fidelity = 'fast'\n" + kPin).fidelity.voxel_m, fidelityPreset("fast").voxel_m);
+}
+
+TEST_F(SceneFile, AnAutomaticFidelityIsReadAsAWishAndBuildsNothing) {
+  const Scene scene =
+      load(kPin + "[fidelity]\nauto = true\nbudget_hz = 500\nmemory_MB = 200\ncontact_limit = 7\n");
+  ASSERT_TRUE(scene.fidelity_wish);
+  EXPECT_EQ(scene.fidelity_wish->budget_hz, 500);
+  EXPECT_EQ(scene.fidelity_wish->memory_bytes, 200e6);
+  EXPECT_FALSE(scene.fidelity_wish->tolerance_m);
+  EXPECT_EQ(scene.fidelity_wish->place, file() + ":7");
+  EXPECT_EQ(scene.fidelity.contact_limit, 7);
+  for (const ScenePart& part : scene.parts) EXPECT_FALSE(part.model);
+  EXPECT_EQ(load("fidelity = 'auto'\n" + kPin).fidelity_wish->tolerance_m, 10e-6);
+  EXPECT_FALSE(load(kPin).fidelity_wish);
 }
 
 TEST_F(SceneFile, ACadFileGivesAllItsPartsAndPartsRefineThem) {
@@ -216,11 +235,11 @@ TEST_F(SceneFile, ACadFileGivesAllItsPartsAndPartsRefineThem) {
 
 struct Mistake {
   std::string text;   ///< after a scene of two parts and one step (8 lines), or alone if it begins with '!'
-  std::string line;   ///< "9", or "" where no line can be told
-  std::string words;  ///< that must occur
+  std::string line;   ///< "9"
+  std::string words;  ///< that the message must have
 };
 
-TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
+TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
   const std::vector<Mistake> mistakes = {
       {"frcition = 1\n", "9", "key 'frcition' is unknown"},
       {"tolerence = 1\n", "9", "key 'tolerence' is unknown; did you mean 'tolerance'?"},
@@ -235,7 +254,7 @@ TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
       {"timeout_s = '1'\n", "9", "key 'timeout_s' is the text '1'; expected a number"},
       {"approach = [0, 1]\n", "9", "key 'approach' is a list of 2; expected 3 lengths"},
       {"approach = [0, nan, 1]\n", "9", "key 'approach'"},
-      {"approach = [0, 0, 1]\nstart = {}\n", "9", "key 'approach' stands beside 'start'"},
+      {"approach = [0, 0, 1]\nstart = {}\n", "9", "key 'approach' cannot be combined with 'start'"},
       {"start = [0, 0, 1]\n", "9", "key 'start' is a list of 3; expected {position"},
       {"start = {positon = [0, 0, 1]}\n", "9", "did you mean 'position'?"},
       {"start = {rotation_xyzw = [0, 0, 0, 0]}\n", "9", "key 'rotation_xyzw' has the length 0"},
@@ -265,6 +284,15 @@ TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
       {"[fidelity]\nvoxel = -0.1\n", "10", "key 'voxel' is -0.1; expected more than 0"},
       {"[fidelity]\npreset = 'finest'\n", "10",
        "key 'preset' is 'finest'; expected one of: fast, normal, fine"},
+      {"[device]\nratchet = false\n", "10", "key 'ratchet' was renamed; write 'indexing'"},
+      {"[fidelity]\ncontact = 'rigid'\n", "10",
+       "key 'contact' is 'rigid', which was renamed; write 'constraint'"},
+      {"[fidelity]\ncontact = 'compliant'\n", "10", "which was renamed; write 'penalty'"},
+      {"[fidelity]\ncontact = 'soft'\n", "10",
+       "key 'contact' is 'soft'; expected one of: constraint, penalty"},
+      {"[fidelity]\nauto = true\ntolerance = -1\n", "11", "key 'tolerance' is -1; expected more than 0"},
+      {"[fidelity]\ntolerance = 1\n", "10", "key 'tolerance' has an effect with 'auto = true' only"},
+      {"[fidelity]\nauto = true\nvoxel = 1\n", "11", "key 'voxel' cannot be combined with 'auto = true'"},
       {"[record]\ncsv_rate_hz = 0\n", "10", "key 'csv_rate_hz' is 0"},
       {"clearance = \n", "9", "not valid TOML"},
       {"part = 'pin'\n", "9", "not valid TOML"},
@@ -275,14 +303,14 @@ TEST_F(SceneFile, EveryMistakeIsNamedWithLineAndKey) {
       {"!device = 1\n[[part]]\nfile = 'pin.stl'\n", "3", "key 'file' cannot be used: pin.stl"},  // no unit
       {"!\n[[part]]\nfile = 'pin.stl'\npose = {position = [1, 0, 0]}\n", "3", "key 'file' cannot be used"},
       {"!cad = 'gone.step'\nunit = 'mm'\n", "1", "key 'cad' cannot be used: gone.step"},
-      {"!cad_fallback = 'pin.stl'\nunit = 'mm'\n", "1", "key 'cad_fallback' stands without 'cad'"},
+      {"!cad_fallback = 'pin.stl'\nunit = 'mm'\n", "1", "key 'cad_fallback' needs a 'cad'"},
       {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plat'\n", "4", "did you mean 'plate'?"},
       {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plate'\n[[part]]\nname = 'plate'\n", "5",
        "second time"},
   };
   for (const Mistake& mistake : mistakes) {
     const bool is_alone = mistake.text.starts_with('!');
-    const std::string words = complaint(is_alone ? mistake.text.substr(1) : kStep + mistake.text);
+    const std::string words = messageOf(is_alone ? mistake.text.substr(1) : kStep + mistake.text);
     EXPECT_TRUE(words.starts_with("scene.toml:" + mistake.line + ": ")) << mistake.text << "-> " << words;
     EXPECT_NE(words.find(mistake.words), std::string::npos) << mistake.text << "-> " << words;
   }
@@ -295,7 +323,7 @@ TEST_F(SceneFile, AMissingSceneOrAFolderIsRefused) {
 
 TEST_F(SceneFile, ATruncatedMeshIsNamedByItsLine) {
   write("pin.stl", stlBox(Vec3(4, 4, 20)).substr(0, 300));
-  const std::string words = complaint(kStep);
+  const std::string words = messageOf(kStep);
   EXPECT_TRUE(words.starts_with("scene.toml:6: key 'file' cannot be used: pin.stl")) << words;
 }
 
@@ -314,13 +342,13 @@ TEST_F(SceneFile, CutAtEveryByteItLoadsOrIsRefused) {
   EXPECT_GT(scenes, 0);
 }
 
-TEST_F(SceneFile, TheDualArmMayBeTheUsersOwn) {
+TEST_F(SceneFile, TheDualArmMayHaveParametersOfTheUser) {
   const std::string scene = "unit = 'mm'\n[[part]]\nfile = 'pin.stl'\n[device]\nparameters = 'arms.toml'\n";
-  EXPECT_NE(complaint(scene).find("scene.toml:5: key 'parameters' cannot be used: arms.toml"),
+  EXPECT_NE(messageOf(scene).find("scene.toml:5: key 'parameters' cannot be used: arms.toml"),
             std::string::npos)
-      << complaint(scene);
+      << messageOf(scene);
   write("arms.toml", "[handle]\nmass_kg = 'heavy'\n");
-  EXPECT_NE(complaint(scene).find("key 'parameters' cannot be used: arms.toml"), std::string::npos);
+  EXPECT_NE(messageOf(scene).find("key 'parameters' cannot be used: arms.toml"), std::string::npos);
   write("arms.toml", "[handle]\nmass_kg = {value = 0.3, assumed = 'mine is heavier'}\n");
   EXPECT_EQ(load(scene).device.data, (folder_ / "arms.toml").string());
 }
@@ -328,16 +356,16 @@ TEST_F(SceneFile, TheDualArmMayBeTheUsersOwn) {
 TEST_F(SceneFile, ATableHeaderWithoutAKeyIsRefused) {
   // toml++ 3.3 would abort here where assertions are on.
   for (const char* header : {"[=]\n", "[[#]]\n", "[\n", "[[{x]]\n"})
-    EXPECT_NE(complaint(kStep + header).find("not valid TOML"), std::string::npos) << header;
+    EXPECT_NE(messageOf(kStep + header).find("not valid TOML"), std::string::npos) << header;
 }
 
-TEST_F(SceneFile, AnyByteInTheMiddleIsAnswered) {
+TEST_F(SceneFile, AnyChangedByteLoadsOrIsRefused) {
   // Each byte replaced by characters that TOML gives a meaning, and by some it forbids.
   for (std::size_t at = 0; at < kStep.size(); ++at)
     for (const char byte : {'\0', '"', '\'', '[', ']', '{', '=', '\n', '#', '9', '\xFF', '\\'}) {
       std::string text = kStep;
       text[at] = byte;
-      complaint(text);
+      messageOf(text);
     }
 }
 

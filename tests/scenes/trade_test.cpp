@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Trades between speed and accuracy: the measured rows, and the choice of a fidelity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ namespace {
 constexpr double kRadius_m = 3e-3;
 constexpr int kRings = 5;  // facets of some 0.2 mm
 
-/// A ball over a plate: no scene that anything was tuned on.
+/// A ball over a plate: nothing was tuned on this scene.
 Scene ballOnPlate() {
   Scene scene;
   scene.file = "scene.toml";
@@ -51,8 +52,8 @@ Scene ballOnPlate() {
   return scene;
 }
 
-/// The row of a plate pushed 20 um into a ball, a little aside and turned; only the plate's points are asked,
-/// so that all depth comes out of the ball's round field.
+/// The row of a plate pushed 20 um into a ball, offset and rotated. Only the plate's points are tested, so
+/// that the depth comes from the ball's curved field alone.
 TradeRow rowAt(double voxel_m, double spacing_m) {
   Scene scene = ballOnPlate();
   std::swap(scene.parts[0].part, scene.parts[1].part);
@@ -67,15 +68,15 @@ TradeRow rowAt(double voxel_m, double spacing_m) {
   for (ScenePart& part : scene.parts) part.model.reset();
   buildModels(scene, {});
   TradeRow row;
-  row.what.fidelity = scene.fidelity;
+  row.setting.fidelity = scene.fidelity;
   row.bytes = modelledCost(scene).bytes;
   probe.measure(scene, row);
   return row;
 }
 
-TEST(Trade, AFinerVoxelIsTruerAndLarger) {
+TEST(Trade, AFinerVoxelIsMoreAccurateAndLarger) {
   const double s = 0.125e-3;
-  // Not coarser: with 1 mm, neither the field nor the points find the contact, and 20 um is all there is.
+  // No coarser, since with 1 mm neither the field nor the points find the contact, which is only 20 um deep.
   const TradeRow coarse = rowAt(0.5e-3, s), middle = rowAt(0.25e-3, s), fine = rowAt(0.125e-3, s);
   EXPECT_LT(middle.probe.penetration_m, coarse.probe.penetration_m);
   EXPECT_LT(fine.probe.penetration_m, middle.probe.penetration_m);
@@ -87,20 +88,21 @@ TEST(Trade, AFinerVoxelIsTruerAndLarger) {
   EXPECT_LE(fine.probe.penetration_m, h * h / (4 * inner_m) + s * s / (2 * inner_m) + 0.5e-6);
 }
 
-TEST(Trade, FinerPointsGiveATruerForce) {
+TEST(Trade, FinerPointsGiveAMoreAccurateForce) {
   EXPECT_LT(rowAt(0.125e-3, 0.125e-3).probe.force, rowAt(0.125e-3, 1e-3).probe.force);
 }
 
 TEST(Trade, MorePointsTakeMoreTime) {
-  // An eighth of the spacing is 64 times the points. A tree that works reads far fewer; all of them take
-  // longer by that, less what a query takes by itself: a quarter of it is left for other people's load.
+  // An eighth of the spacing gives 64 times the points. The tree reads far fewer of them; an exhaustive query
+  // takes 64 times as long, less its fixed cost. A quarter of that leaves room for the load of other
+  // programs.
   const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);
   EXPECT_GT(many.points_read, few.points_read);
   EXPECT_GT(many.all_points.cpu_p50_us, 16 * few.all_points.cpu_p50_us);
   EXPECT_GT(many.query.cpu_p50_us, few.query.cpu_p50_us);
 }
 
-TEST(Trade, TheSceneAsItIsIsRunAndTheRestIsMeasuredOrSaidToBeLeftOut) {
+TEST(Trade, TheScenesOwnSettingIsRunAndTheOthersAreMeasuredOrListedAsLeftOut) {
   TradeOptions options;
   options.seconds = 1e-3;  // no time for more than the first
   const Scene scene = ballOnPlate();
@@ -108,21 +110,23 @@ TEST(Trade, TheSceneAsItIsIsRunAndTheRestIsMeasuredOrSaidToBeLeftOut) {
   ASSERT_EQ(result.rows.size(), 1u);
   EXPECT_TRUE(result.rows[0].has_run);
   EXPECT_EQ(result.excerpt, "step 1 of 1: ball");
-  EXPECT_EQ(result.left_out.size(), tradeDesign(scene).size());  // with the reference, without the first
+  EXPECT_EQ(result.left_out.size(),
+            tradeDesign(scene).size());  // the reference is among them, the first setting is not
   EXPECT_EQ(result.fixed.size(), 2u);
 }
 
-/// Progress that does something when a row is spoken of again: first it is announced, then its run tells.
+/// Progress that acts at the second report about a row: the first announces the row, the second comes from
+/// its run.
 Progress inRow(const std::string& name, const std::function<void()>& act) {
-  return [name, act, told = 0](std::string_view doing, double) mutable {
-    if (doing == name && ++told == 2) act();
+  return [name, act, count = 0](std::string_view doing, double) mutable {
+    if (doing == name && ++count == 2) act();
   };
 }
 
 TEST(Trade, ARowThatFailsIsLeftOutWithTheReasonAndTheOthersAreMeasured) {
   const std::function<void()> failures[] = {[] { throw LoadError("", "ball", "is too fine to be modelled"); },
                                             [] { throw std::bad_alloc(); }};
-  const char* const reasons[] = {"all coarser: part 'ball': is too fine", "all coarser: took more memory"};
+  const char* const reasons[] = {"all coarser: part 'ball': is too fine", "all coarser: needed more memory"};
   for (std::size_t i = 0; i < 2; ++i) {
     TradeOptions options;
     options.seconds = 20;
@@ -137,18 +141,18 @@ TEST(Trade, ARowThatFailsIsLeftOutWithTheReasonAndTheOthersAreMeasured) {
     ASSERT_FALSE(result.left_out.empty());
     EXPECT_EQ(result.left_out[0].find(reasons[i]), 0u) << result.left_out[0];
     const auto after = std::find_if(result.rows.begin(), result.rows.end(),
-                                    [](const TradeRow& row) { return row.what.name == "spacing x2"; });
+                                    [](const TradeRow& row) { return row.setting.name == "spacing x2"; });
     ASSERT_NE(after, result.rows.end());
     EXPECT_TRUE(after->has_run);
     const auto failed = std::find_if(result.rows.begin(), result.rows.end(),
-                                     [](const TradeRow& row) { return row.what.name == "all coarser"; });
+                                     [](const TradeRow& row) { return row.setting.name == "all coarser"; });
     ASSERT_NE(failed, result.rows.end()) << "its models were measured before it failed";
     EXPECT_TRUE(failed->has_probe);
     EXPECT_FALSE(failed->has_run);
   }
 }
 
-TEST(Trade, StoppedItKeepsWhatWasMeasuredAndSaysSo) {
+TEST(Trade, AStoppedTradeKeepsTheMeasuredRowsAndReportsTheStop) {
   TradeOptions options;
   std::atomic<bool> stop = false;
   options.stop = &stop;
@@ -162,7 +166,7 @@ TEST(Trade, StoppedItKeepsWhatWasMeasuredAndSaysSo) {
   EXPECT_EQ(result.left_out[1].find("stopped"), 0u);
 }
 
-TEST(Trade, AnExcerptHoldsItsStepAndWhatIsInPlaceByThen) {
+TEST(Trade, AnExcerptHoldsItsStepAndThePartsInPlaceByThen) {
   Scene scene = ballOnPlate();
   scene.parts.push_back(scene.parts[1]);
   scene.parts[2].part.name = "second";
@@ -189,11 +193,11 @@ TradeRow judged(double step_us, double error_m, std::size_t bytes) {
   return row;
 }
 
-TEST(Trade, TheFrontHoldsWhatNothingBeats) {
-  // The third is beaten by the second alone, in one thing alone; so is the last but one by the fourth.
+TEST(Trade, TheFrontHoldsTheRowsThatNoOtherDominates) {
+  // Only the second dominates the third, in one criterion; likewise the fourth the last but one.
   std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 2e-6, 20),
                                 judged(300, 1e-6, 5),  judged(300, 1e-6, 6),  judged(50, 9e-6, 99)};
-  rows.back().run.completed = false;  // quick, and did not get there
+  rows.back().run.completed = false;  // fast, but not completed
   markFront(rows);
   EXPECT_TRUE(rows[0].is_on_front);
   EXPECT_TRUE(rows[1].is_on_front);
@@ -203,15 +207,15 @@ TEST(Trade, TheFrontHoldsWhatNothingBeats) {
   EXPECT_FALSE(rows[5].is_on_front);
 }
 
-TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
+TEST(Trade, AnswersLeaveOutSettingsWithALargeForceError) {
   TradeResult result;
   result.rows = {judged(100, 5e-6, 10), judged(400, 4e-6, 10)};
-  result.rows[0].what.name = "quick";
+  result.rows[0].setting.name = "fast";
   result.rows[0].probe.force = 2.2;
-  result.rows[1].what.name = "slow";
+  result.rows[1].setting.name = "slow";
   result.rows[1].probe.force = 0.1;
   for (const std::string& answer : tradeAnswers(result)) {
-    EXPECT_EQ(answer.find("'quick'"), std::string::npos) << answer;
+    EXPECT_EQ(answer.find("'fast'"), std::string::npos) << answer;
     EXPECT_NE(answer.find("'slow'"), std::string::npos) << answer;
   }
   result.rows.pop_back();
@@ -219,8 +223,8 @@ TEST(Trade, AnswersPassOverAForceThatTellsTheHandNothing) {
     EXPECT_NE(answer.find("no answer"), std::string::npos) << answer;
 }
 
-/// Error of depth that 95 of 100 points near a surface do not exceed, at points of the test's own.
-double errorByResampledShells(const PartModel& part, double reach_m) {
+/// Error of depth that 95 of 100 points near a surface do not exceed, at points that the test draws itself.
+double errorAtOtherPoints(const PartModel& part, double reach_m) {
   const MeshDistance exact(*part.mesh);
   std::mt19937_64 random(99);
   std::uniform_real_distribution<double> share(0, 1);
@@ -248,7 +252,7 @@ double errorByResampledShells(const PartModel& part, double reach_m) {
   return errors[errors.size() * 95 / 100];
 }
 
-TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
+TEST(FidelityChoice, KeepsItsToleranceOnAnotherSceneAtOtherPoints) {
   for (const double tolerance_m : {20e-6, 5e-6, 2e-6}) {
     Scene scene = ballOnPlate();
     FidelityWish wish;
@@ -258,7 +262,7 @@ TEST(FidelityChoice, KeepsItsToleranceOnAStrangeSceneAtOtherPoints) {
     for (const ScenePart& part : scene.parts) {
       ASSERT_TRUE(part.model && part.model->map);
       EXPECT_EQ(part.model->map->voxel_m(), choice.fidelity.voxel_m);
-      EXPECT_LE(errorByResampledShells(*part.model, tolerance_m), tolerance_m) << part.part.name;
+      EXPECT_LE(errorAtOtherPoints(*part.model, tolerance_m), tolerance_m) << part.part.name;
     }
   }
 }
@@ -284,7 +288,7 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   EXPECT_EQ(few.fidelity.voxel_m, ballOnPlate().fidelity.voxel_m);
 }
 
-TEST(FidelityChoice, TakesOneSideForARateAloneButNotBesideATolerance) {
+TEST(FidelityChoice, TakesOneSideForARateAloneButNotWithATolerance) {
   FidelityWish wish;
   wish.budget_hz = 1e6 / (kStepBase_us + 1);  // 18 points: fewer than any spacing leaves both sides
   Scene scene = ballOnPlate();
@@ -296,44 +300,41 @@ TEST(FidelityChoice, TakesOneSideForARateAloneButNotBesideATolerance) {
   EXPECT_NE(kept.failure_reason.find("more tolerance"), std::string::npos) << kept.failure_reason;
 }
 
-TEST(FidelityChoice, SaysWhichWishNobodyCanMeet) {
+TEST(FidelityChoice, NamesTheBoundThatCannotBeKept) {
   Scene scene = ballOnPlate();
   FidelityWish wish;
   wish.budget_hz = 1e5;
-  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("ask for a lower rate"), std::string::npos);
+  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("allow a lower rate"), std::string::npos);
   wish = {};
   wish.memory_bytes = 10;
-  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("ask for more memory"), std::string::npos);
+  EXPECT_NE(chooseFidelity(scene, wish).failure_reason.find("allow more memory"), std::string::npos);
   wish = {};
   wish.tolerance_m = 1e-12;
   EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
 }
 
 // Halved until they are 15 um, the ball's map and the plate's would take 256 MB and more.
-TEST(FidelityChoice, NoMapIsBuiltThatWouldNotFitInMemory) {
+TEST(FidelityChoice, BuildsNoMapThatWouldNotFitIntoMemory) {
   Scene scene = ballOnPlate();
   FidelityWish wish;
   wish.tolerance_m = 0.01e-6;  // so that the search goes on to the finest
-  wish.machine_bytes = 40e6;
-  const FidelityChoice none = chooseFidelity(scene, wish);
+  const FidelityChoice none = chooseFidelity(scene, wish, {.progress = {}, .machine_bytes = 40e6});
   EXPECT_FALSE(none.is_met);
   EXPECT_NE(none.failure_reason.find("half of this machine's memory"), std::string::npos)
       << none.failure_reason;
-  wish.machine_bytes = 0;
   wish.memory_bytes = 2e6;
   const FidelityChoice small = chooseFidelity(scene, wish);
   EXPECT_FALSE(small.is_met);
   EXPECT_NE(small.failure_reason.find("only 2 MB are allowed"), std::string::npos) << small.failure_reason;
-  // Nothing to find, and the scene's own maps are too much.
+  // Without a tolerance there is no search, and the scene's own maps are too large.
   wish = {};
   wish.budget_hz = 1;
-  wish.machine_bytes = 1e4;
-  EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
-  EXPECT_FALSE(scene.parts[0].model) << "it was built all the same";
+  EXPECT_FALSE(chooseFidelity(scene, wish, {.progress = {}, .machine_bytes = 1e4}).is_met);
+  EXPECT_FALSE(scene.parts[0].model) << "it was built nevertheless";
 }
 
 // Flat, round, thin, and of many small faces.
-TEST(FidelityChoice, WhatMapsAreExpectedToTakeIsNoLessThanTheyDoAndNoMoreThanStated) {
+TEST(FidelityChoice, TheEstimatedMemoryOfMapsIsAtLeastTheirOwnAndAtMostTheStatedMultiple) {
   const Mesh meshes[] = {makeBox({12e-3, 12e-3, 3e-3}), makeSphere(3e-3, 5), makeBox({30e-3, 30e-3, 0.3e-3}),
                          makeCylinder(4e-3, 15e-3, 64)};
   for (const Mesh& mesh : meshes)
@@ -346,13 +347,17 @@ TEST(FidelityChoice, WhatMapsAreExpectedToTakeIsNoLessThanTheyDoAndNoMoreThanSta
     }
 }
 
-TEST(FidelityChoice, ASceneFileThatSaysAutoIsTheSameEachTimeAndGoesIntoTheRecording) {
+TEST(FidelityChoice, AnAutomaticFidelityIsTheSameEachTimeAndIsRecorded) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "plate.stl", std::ios::binary) << stlBox(Vec3(20, 20, 5));
   const std::string file = folder.path() / "scene.toml";
   std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\n[fidelity]\nauto = true\n"
                          "tolerance = 0.05\n";
-  const Scene scene = loadScene(file), again = loadScene(file);
+  Scene scene = loadScene(file), again = loadScene(file);
+  EXPECT_THROW(buildModels(scene, {}), LoadError) << "the fidelity was not chosen yet";
+  resolveFidelity(scene);
+  resolveFidelity(again);
+  EXPECT_FALSE(scene.fidelity_wish);
   EXPECT_FALSE(scene.fidelity_choice.empty());
   EXPECT_EQ(scene.fidelity_choice, again.fidelity_choice);
   EXPECT_EQ(sceneToBytes(scene), sceneToBytes(again));
@@ -361,26 +366,36 @@ TEST(FidelityChoice, ASceneFileThatSaysAutoIsTheSameEachTimeAndGoesIntoTheRecord
   EXPECT_EQ(back.fidelity.spacing_m, scene.fidelity.spacing_m);
 }
 
-TEST(FidelityChoice, ASceneFileWhoseWishCannotBeMetIsRefusedByLine) {
+TEST(FidelityChoice, AWishThatCannotBeMetIsRefusedWithItsLine) {
+  Scene scene = ballOnPlate();
+  resolveFidelity(scene);  // without a wish nothing happens
+  EXPECT_EQ(scene.fidelity_choice, "");
+  scene.fidelity_wish.emplace().memory_bytes = 1;
+  scene.fidelity_wish->place = "scene.toml:4";
+  try {
+    resolveFidelity(scene);
+    FAIL();
+  } catch (const LoadError& error) {
+    EXPECT_EQ(std::string(error.what()).find("scene.toml:4: key 'fidelity' is auto and cannot be met: "), 0u)
+        << error.what();
+  }
+}
+
+TEST(FidelityChoice, ItsLinesGiveTheSameFidelityInASceneFile) {
+  Fidelity fidelity;
+  fidelity.voxel_m = 0.125e-3;
+  fidelity.sides = Sides::One;
+  fidelity.contact_limit = 7;
+  fidelity.contact_method = ContactMethod::Penalty;
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "plate.stl", std::ios::binary) << stlBox(Vec3(20, 20, 5));
-  const std::string file = folder.path() / "scene.toml";
-  const std::string head = "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\n[fidelity]\n";
-  const auto complaint = [&](const std::string& keys) {
-    std::ofstream(file) << head << keys;
-    try {
-      loadScene(file);
-      return std::string();
-    } catch (const LoadError& error) {
-      return std::string(error.what());
-    }
-  };
-  EXPECT_NE(complaint("auto = true\nmemory_MB = 1e-6\n").find("cannot be met"), std::string::npos);
-  EXPECT_NE(complaint("auto = true\ntolerance = -1\n").find("tolerance"), std::string::npos);
-  EXPECT_NE(complaint("tolerance = 1\n").find("stands without 'auto = true'"), std::string::npos);
-  EXPECT_NE(complaint("auto = true\nvoxel = 1\n").find("stands beside 'auto = true'"), std::string::npos);
-  EXPECT_NE(complaint("voxle = 1\n").find("voxle"), std::string::npos);
-  EXPECT_EQ(complaint("contact = 'penalty'\n"), "");
+  std::ofstream(folder.path() / "scene.toml") << "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\n"
+                                              << toToml(fidelity);
+  const Fidelity back = loadScene(folder.path() / "scene.toml").fidelity;
+  EXPECT_DOUBLE_EQ(back.voxel_m, fidelity.voxel_m);
+  EXPECT_EQ(back.sides, Sides::One);
+  EXPECT_EQ(back.contact_limit, 7);
+  EXPECT_EQ(back.contact_method, ContactMethod::Penalty);
 }
 
 }  // namespace

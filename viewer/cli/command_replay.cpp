@@ -14,6 +14,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/replay.h"
+#include "vps_viewer/csv.h"
 
 namespace vps::viewer {
 

@@ -13,6 +13,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/simulate.h"
+#include "vps_viewer/csv.h"
 
 namespace vps::viewer {
 

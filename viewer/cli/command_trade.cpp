@@ -85,7 +85,7 @@ std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
 
 /// Picks a fidelity and prints the lines to paste into the scene.
 int pick(scenes::Scene scene, const scenes::FidelityWish& wish, OutputFile& json, ProgressBar& bar) {
-  const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, bar.progress());
+  const scenes::FidelityChoice choice = scenes::chooseFidelity(scene, wish, {.progress = bar.progress()});
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {

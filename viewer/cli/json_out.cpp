@@ -1,161 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one file that includes nlohmann/json.
+// Results as JSON. The only source file that includes nlohmann/json.
 #include "json_out.h"
 
-#include <nlohmann/json.hpp>
-
+#include "json_fields.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/fidelity_choice.h"
-#include "vps_scenes/trade.h"
+#include "vps_scenes/result_fields.h"
+#include "vps_scenes/trade_fields.h"
 
 namespace vps::viewer {
 
 namespace {
 
-// Ordered: keys stand as they are put here, `wall` first.
-using Json = nlohmann::ordered_json;
-
-Json list(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-Json list(const Quat& q) {
-  return {q.x(), q.y(), q.z(), q.w()};
-}
-
-/// Names come from files and need not be UTF-8; a bad byte becomes U+FFFD instead of an exception.
+/// Names come from files and need not be UTF-8; an invalid byte becomes U+FFFD and is no exception.
 std::string text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json shortTimes(const scenes::TickTimes& times) {
-  return {{"median", times.p50_us}, {"p99", times.p99_us}, {"max", times.max_us}};
-}
-
-Json loop(double rate_hz, const scenes::TickTimes& times) {
-  return {{"rate_hz", rate_hz}, {"ticks", times.count}};
-}
-
-Json percentiles(const scenes::TickTimes& times) {
-  return {{"p50", times.p50_us}, {"p99", times.p99_us}, {"p999", times.p999_us}, {"max", times.max_us}};
-}
-
-Json loopWall(const scenes::TickTimes& times) {
-  return {{"missed", times.missed}, {"tick_us", percentiles(times)}};
-}
-
-Json pace(const scenes::LoadLevelChange& change) {
-  return {{"time_s", change.time_s},
-          {"from", {{"level", change.from}, {"words", change.was}}},
-          {"to", {{"level", change.to}, {"words", change.is}}},
-          {"is_done", change.is_done},
-          {"why", change.why},
-          {"lost_share", change.lost_share},
-          {"cost", change.cost},
-          {"unseen_bound_m", change.unseen_bound_m},
-          {"misread_m", change.misread_m ? Json(*change.misread_m) : Json(nullptr)},
-          {"k_N_per_m", change.k_N_per_m},
-          {"build_s", change.build_wall_s}};
-}
-
-/// How well a run in real time kept its time, into the haptic and the physics loop's object.
-void addRealTime(const scenes::RealTimeResult& kept, Json& haptic, Json& physics) {
-  haptic["missed_by"] = Json::object();
-  for (const auto& [cause, periods] : kept.missed_by) haptic["missed_by"][cause] = periods;
-  haptic["late_us"] = percentiles(kept.late);
-  haptic["response_us"] = percentiles(kept.response);
-  haptic["worst"] = {{"tick", kept.worst_tick}, {"response_us", kept.worst_us}, {"cause", kept.worst_cause}};
-  haptic["stale_ticks"] = kept.stale_ticks;
-  haptic["faults"] = kept.faults;
-  haptic["has_priority"] = kept.has_priority;
-  haptic["has_locked_memory"] = kept.has_locked_memory;
-  haptic["warnings"] = kept.warnings;
-  physics["missed_periods"] = kept.physics_missed;
-  physics["behind_s"] = kept.behind_s;
-  physics["load_changes"] = Json::array();
-  for (const scenes::LoadLevelChange& change : kept.load_changes)
-    physics["load_changes"].push_back(pace(change));
+  return toObject(times, scenes::kShortTimes);
 }
 
 Json modelled(const scenes::ModelledCost& cost) {
-  return {{"voxmaps", cost.voxmaps},
-          {"pointshells", cost.pointshells},
-          {"points", cost.points},
-          {"field_points", cost.field_points},
-          {"bytes", cost.bytes}};
-}
-
-Json step(const scenes::StepResult& step) {
-  return {{"part", step.part},
-          {"completed", step.completed},
-          {"failure_reason", step.failure_reason},
-          {"start_s", step.start_s},
-          {"duration_s", step.duration_s},
-          {"max_penetration_m", step.max_penetration_m},
-          {"penetration_limit_m", step.penetration_limit_m},
-          {"deepest_against", step.deepest_against},
-          {"deepest_at_m", list(step.deepest_at_W)},
-          {"deepest_time_s", step.deepest_time_s},
-          {"field_penetration_m", step.field_penetration_m},
-          {"peak_force_N", step.peak_force_N},
-          {"peak_torque_Nm", step.peak_torque_Nm},
-          {"impacts", step.impacts},
-          {"slides", step.slides},
-          {"index_points", step.index_points},
-          {"final_error_m", step.final_error_m},
-          {"final_error_rad", step.final_error_rad},
-          {"rest_drift_m", step.rest_drift_m},
-          {"rest_s", step.rest_s}};
+  return toObject(cost, scenes::kModelledFields);
 }
 
 }  // namespace
 
 std::string toJson(const scenes::AssembleResult& result) {
-  Json cook_s = Json::array(), swap_s = Json::array(), missed = Json::array(), steps = Json::array();
-  for (const scenes::StepResult& s : result.steps) {
-    cook_s.push_back(s.cook_wall_s);
-    swap_s.push_back(s.swap_wall_s);
-    missed.push_back(s.missed_while_cooking);
-    steps.push_back(step(s));
-  }
-  Json haptic = loopWall(result.haptic), physics = loopWall(result.physics);
-  if (result.real_time) addRealTime(*result.real_time, haptic, physics);
-  return text({{"wall",
-                {{"build_s", result.build_wall_s},
-                 {"run_s", result.run_wall_s},
-                 {"cook_s", cook_s},
-                 {"swap_s", swap_s},
-                 {"missed_while_cooking", missed},
-                 {"haptic", haptic},
-                 {"physics", physics}}},
-               {"scene", result.scene},
-               {"completed", result.completed},
-               {"contacts_left_out", result.contacts_left_out},
-               {"simulated_s", result.simulated_s},
-               {"steps", steps},
-               {"haptic", loop(result.haptic_rate_hz, result.haptic)},
-               {"physics", loop(result.physics_rate_hz, result.physics)},
-               {"energy",
-                {{"to_hand_J", result.energy.to_hand_J},
-                 {"from_hand_J", result.energy.from_hand_J},
-                 {"injected_J", result.energy.injected_J},
-                 {"quantisation_error_bound_J", result.energy.quantisation_error_bound_J}}},
-               {"local_contact",
-                {{"held_ticks", result.local_contact.held},
-                 {"jump_J", result.local_contact.jump_J},
-                 {"greatest_jump_m", result.local_contact.greatest_jump_m}}},
-               {"widened", result.widened},
-               {"modelled", modelled(result.modelled)}});
+  Json json = {{"wall", toObject(result, scenes::kAssembleWallFields)}};
+  addFields(json, result, scenes::kAssembleFields);
+  return text(json);
 }
 
 std::string toJson(const std::string& scene, double seconds, const scenes::SimulateResult& result) {
   Json bodies = Json::array();
   for (const scenes::BodyState& body : result.bodies)
     bodies.push_back({{"name", body.name},
-                      {"position_m", list(body.X_WP.p)},
-                      {"rotation_xyzw", list(body.X_WP.quaternion())},
-                      {"velocity_m_s", list(body.V_WP_W.v)},
-                      {"angular_velocity_rad_s", list(body.V_WP_W.w)}});
+                      {"position_m", toValue(body.X_WP.p)},
+                      {"rotation_xyzw", toValue(body.X_WP.quaternion())},
+                      {"velocity_m_s", toValue(body.V_WP_W.v)},
+                      {"angular_velocity_rad_s", toValue(body.V_WP_W.w)}});
   Json wall = {{"build_s", result.build_wall_s},
                {"step_us", shortTimes(result.step)},
                {"contact_step_us", shortTimes(result.contact_step)}};
@@ -179,16 +64,16 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
 std::string toJson(const QueryAnswer& answer) {
   Json poses = Json::array();
   for (const PoseAnswer& pose : answer.poses) {
-    Json entry = {{"position_m", list(pose.X_AB.p)},
-                  {"rotation_xyzw", list(pose.X_AB.quaternion())},
+    Json entry = {{"position_m", toValue(pose.X_AB.p)},
+                  {"rotation_xyzw", toValue(pose.X_AB.quaternion())},
                   {"min_distance_m", pose.is_beyond ? Json(nullptr) : Json(pose.min_distance_m)},
                   {"max_depth_m", pose.is_beyond ? 0 : pose.maxDepth_m()},
                   {"is_depth_saturated", pose.is_saturated},
                   {"contact_count", pose.contact_count},
                   {"points_total", answer.points_total},
                   {"points_tested", pose.points_tested},
-                  {"force_N", list(pose.F_Bo_A.f)},
-                  {"torque_Nm", list(pose.F_Bo_A.tau)}};
+                  {"force_N", toValue(pose.F_Bo_A.f)},
+                  {"torque_Nm", toValue(pose.F_Bo_A.tau)}};
     if (pose.is_beyond) entry["beyond_m"] = pose.min_distance_m;
     poses.push_back(std::move(entry));
   }
@@ -208,7 +93,7 @@ std::string toJson(const ImportAnswer& answer) {
                      {"file", part.file},
                      {"triangles", part.triangles},
                      {"closed", part.is_closed},
-                     {"size_m", list(part.size_m)}});
+                     {"size_m", toValue(part.size_m)}});
   return text(
       {{"cad", answer.cad}, {"format", answer.format}, {"parts", parts}, {"warnings", answer.warnings}});
 }
@@ -244,10 +129,6 @@ std::string toJson(const SnapshotAnswer& answer) {
 
 namespace {
 
-Json list(const Box& box) {
-  return {list(box.min), list(box.max)};
-}
-
 Json names(const scenes::Scene& scene, const std::vector<std::size_t>& parts) {
   Json out = Json::array();
   for (const std::size_t i : parts) out.push_back(scene.parts[i].part.name);
@@ -258,7 +139,7 @@ Json plannedPart(const scenes::Scene& scene, const scenes::ExplainedModels& expl
   const scenes::PartModelPlan& part = explained.plan.parts[i];
   const scenes::PartCost& cost = explained.cost.parts[i];
   Json kept = Json::array();
-  for (const Box& box : part.kept_P) kept.push_back(list(box));
+  for (const Box& box : part.kept_P) kept.push_back(toValue(box));
   return {{"part", scene.parts[i].part.name},
           {"map", part.has_map},
           {"shell", part.has_shell},
@@ -274,7 +155,7 @@ Json plannedStep(const scenes::Scene& scene, const scenes::ExplainedModels& expl
   const scenes::FieldPlan& step = explained.plan.steps[s];
   const scenes::StepCost& cost = explained.cost.steps[s];
   return {{"moves", step.part ? Json(scene.parts[*step.part].part.name) : Json(nullptr)},
-          {"region_m", step.region_W ? list(*step.region_W) : Json(nullptr)},
+          {"region_m", step.region_W ? toValue(*step.region_W) : Json(nullptr)},
           {"cooked", names(scene, step.cooked)},
           {"left_out", names(scene, step.left_out)},
           {"is_cooked_anew", cost.is_cooked},
@@ -288,69 +169,6 @@ Json explainWall(const scenes::ModelPlanCost& cost) {
     parts.push_back({{"map_s", part.map_wall_s}, {"shell_s", part.shell_wall_s}});
   for (const scenes::StepCost& step : cost.steps) steps.push_back(step.cook_wall_s);
   return {{"build_s", cost.build_wall_s}, {"cook_s", cost.cook_wall_s}, {"parts", parts}, {"steps", steps}};
-}
-
-Json fidelity(const Fidelity& f) {
-  return {{"voxel_m", f.voxel_m},
-          {"spacing_m", f.spacing_m},
-          {"sides", toText(f.sides)},
-          {"gradient", toText(f.gradient)},
-          {"contact_limit", f.contact_limit},
-          {"haptic_rate_hz", f.haptic_rate_hz},
-          {"physics_rate_hz", f.physics_rate_hz},
-          {"solver_iterations", f.solver_iterations}};
-}
-
-Json cpuTimes(const scenes::TickTimes& times) {
-  return {{"median", times.p50_us},
-          {"p99", times.p99_us},
-          {"cpu_median", times.cpu_p50_us},
-          {"cpu_p99", times.cpu_p99_us}};
-}
-
-Json tradeRow(const scenes::TradeRow& row) {
-  Json json = {{"name", row.what.name},
-               {"knob", toText(row.what.knob)},
-               {"fidelity", fidelity(row.what.fidelity)},
-               {"contact", toText(row.what.contact)},
-               {"points", row.points},
-               {"models_bytes", row.bytes}};
-  if (row.has_probe)
-    json["probe"] = {{"distance_error_m", row.probe.distance_m},
-                     {"penetration_error_m", row.probe.penetration_m},
-                     {"force_error", row.probe.force},
-                     {"torque_error", row.probe.torque},
-                     {"points_read", row.points_read}};
-  if (row.has_run)
-    json["run"] = {{"completed", row.run.completed},
-                   {"max_penetration_m", row.run.deepest_m},
-                   {"final_error_m", row.run.final_error_m},
-                   {"peak_force_N", row.run.peak_force_N},
-                   {"to_hand_J", row.run.to_hand_J},
-                   {"injected_J", row.run.injected_J},
-                   {"contacts_left_out", row.run.contacts_left_out},
-                   {"bytes", row.run.bytes}};
-  if (row.has_reference)
-    json["off_reference"] = {{"final_m", row.off.final_m},
-                             {"peak_force_N", row.off.peak_force_N},
-                             {"to_hand_J", row.off.to_hand_J}};
-  return json;
-}
-
-Json tradeRowWall(const scenes::TradeRow& row) {
-  Json json = {{"name", row.what.name}, {"models_s", row.models_wall_s}, {"on_front", row.is_on_front}};
-  if (row.has_probe) {
-    json["query_us"] = cpuTimes(row.query);
-    json["all_points_us"] = cpuTimes(row.all_points);
-  }
-  if (row.has_run) {
-    json["build_s"] = row.run.build_wall_s;
-    json["run_s"] = row.run.wall_s;
-    json["physics_us"] = cpuTimes(row.run.physics);
-    json["haptic_us"] = cpuTimes(row.run.haptic);
-    json["rate_hz"] = scenes::rateOf(row);
-  }
-  return json;
 }
 
 }  // namespace
@@ -379,23 +197,17 @@ std::string toJson(const ExplainAnswer& answer) {
 }
 
 std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice) {
-  const Json json = {{"scene", scene},
-                     {"is_met", choice.is_met},
-                     {"failure_reason", choice.failure_reason},
-                     {"fidelity", fidelity(choice.fidelity)},
-                     {"error_m", choice.error_m},
-                     {"points", choice.points},
-                     {"points_near", choice.points_near},
-                     {"bytes", choice.bytes},
-                     {"step_by_model_us", choice.step_us}};
+  Json json = {{"scene", scene}};
+  addFields(json, choice, scenes::kChoiceFields);
   return text(json);
 }
 
 std::string toJson(const scenes::TradeResult& result) {
   Json rows = Json::array(), wall = Json::array();
   for (const scenes::TradeRow& row : result.rows) {
-    rows.push_back(tradeRow(row));
-    wall.push_back(tradeRowWall(row));
+    rows.push_back(toObject(row, scenes::kTradeRowFields));
+    wall.push_back({{"name", row.setting.name}});
+    addFields(wall.back(), row, scenes::kTradeRowWallFields);
   }
   return text({{"wall",
                 {{"rows", wall},
@@ -448,7 +260,7 @@ Json parameters(const device::DualArmFile& file) {
 std::string toJson(const device::DualArmCharacter& c, const device::DualArmFile& file) {
   Json json;
   json["device"] = "dual_arm";
-  json["workspace"] = {{"size_m", list(c.workspace_m)},
+  json["workspace"] = {{"size_m", toValue(c.workspace_m)},
                        {"straight_scale", c.straight_scale},
                        {"tilted_scale", c.tilted_scale},
                        {"gimbal_sr", c.gimbal_sr},

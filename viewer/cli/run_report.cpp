@@ -6,6 +6,8 @@
 #include "json_out.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps_scenes/result_fields.h"
+#include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer {
@@ -23,22 +25,6 @@ std::string tableOf(const std::vector<scenes::StepResult>& steps) {
   return table.text();
 }
 
-std::string csvOf(const std::vector<scenes::StepResult>& steps) {
-  std::string out = csvLine({"part", "completed", "start_s", "duration_s", "max_penetration_m",
-                             "penetration_limit_m", "deepest_against", "field_penetration_m", "peak_force_N",
-                             "peak_torque_Nm", "impacts", "slides", "final_error_m", "final_error_rad",
-                             "rest_drift_m", "rest_s", "index_points", "failure_reason"});
-  for (const scenes::StepResult& step : steps)
-    out +=
-        csvLine({step.part, step.completed ? "1" : "0", csvNumber(step.start_s), csvNumber(step.duration_s),
-                 csvNumber(step.max_penetration_m), csvNumber(step.penetration_limit_m), step.deepest_against,
-                 csvNumber(step.field_penetration_m), csvNumber(step.peak_force_N),
-                 csvNumber(step.peak_torque_Nm), std::to_string(step.impacts), std::to_string(step.slides),
-                 csvNumber(step.final_error_m), csvNumber(step.final_error_rad), csvNumber(step.rest_drift_m),
-                 csvNumber(step.rest_s), std::to_string(step.index_points), step.failure_reason});
-  return out;
-}
-
 }  // namespace
 
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
@@ -48,7 +34,7 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
   report.has_pictures = files.has_pictures;
   ReportOutcome outcome = writeReport(scene, result, out.partial(), report);
   throwIfStopped();
-  out.write("steps.csv", csvOf(result.steps));
+  out.write("steps.csv", toCsv(result.steps, scenes::kStepFields));
   out.write("assemble.json", toJson(result));
   return std::move(outcome.notes);
 }
@@ -59,18 +45,19 @@ bool printSteps(const scenes::AssembleResult& result) {
   for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
     if (!step.completed) std::printf("%s: %s\n", name, step.failure_reason.c_str());
-    if (step.index_points > 0)
-      std::printf("%s: taken anew %s on the way, which is longer than the device's workspace\n", name,
-                  step.index_points == 1 ? "once" : (std::to_string(step.index_points) + " times").c_str());
+    if (step.index_count > 0)
+      std::printf("%s: the device was recentred %s, since the path is longer than its workspace\n", name,
+                  step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
     if (!scenes::isWithinLimit(step))
-      std::printf("%s: deepest against %s, beyond its limit\n", name, step.deepest_against.c_str());
+      std::printf("%s: penetrated %s by more than its limit\n", name, step.deepest_against.c_str());
     if (!scenes::isAtRest(step))
-      std::printf("%s: drifted more than %g um after it was let go\n", name, scenes::kRestDriftLimit_m * 1e6);
+      std::printf("%s: drifted by more than %g um after its release\n", name,
+                  scenes::kRestDriftLimit_m * 1e6);
     is_good = is_good && scenes::isGood(step);
   }
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
-         " near points found no room in a query; take a coarser spacing");
+         " near points found no room in a query; choose a coarser spacing");
   return is_good;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `vps assemble` and `vps replay` tell of a run: tables, report, JSON.
+// Output that `vps assemble` and `vps replay` share: tables, report, JSON.
 #pragma once
 
 #include <string>
@@ -11,16 +11,17 @@
 
 namespace vps::viewer {
 
-/// Fills the folder (not yet committed): report.html with pictures and plots, trace.csv, steps.csv,
-/// assemble.json. Notes on what could not be drawn go to stderr at the end, by the caller.
 struct RunFiles {
-  std::string command;  ///< how to repeat it
+  std::string command;  ///< that repeats the run
   bool has_pictures = true;
 };
+
+/// Fills the folder, which is not yet committed: report.html with pictures and plots, trace.csv, steps.csv
+/// and assemble.json. Returns notes on what could not be drawn, for stderr at the end.
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files);
 
-/// Prints the table of steps, and a line for each step that is not good. Returns whether all are.
+/// Prints the table of steps, and a line for each problem of a step. Returns true if all steps are good.
 bool printSteps(const scenes::AssembleResult& result);
 
 }  // namespace vps::viewer

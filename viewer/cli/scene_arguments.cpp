@@ -8,6 +8,7 @@
 #include "progress_bar.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 
 namespace vps::viewer {
@@ -99,6 +100,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
+  scenes::resolveFidelity(scene);
   const Fidelity own = scene.fidelity;
   scene.fidelity = fidelityFrom(given, own);
   if (scene.fidelity_choice.empty()) return scene;
@@ -106,7 +108,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
     say("chosen: " + scene.fidelity_choice);
     return scene;
   }
-  // The command line replaces what `auto` chose at load, so the models of that choice are of no use.
+  // The command line overrides the choice, so its models are of no use.
   scene.fidelity_choice.clear();
   for (scenes::ScenePart& part : scene.parts) part.model.reset();
   return scene;

@@ -2,7 +2,6 @@
 #include "table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -56,24 +55,6 @@ std::string fixed(double value, int digits) {
   // A number that rounds to zero is printed without a sign.
   const bool is_zero = std::string(text).find_first_of("123456789") == std::string::npos;
   return is_zero && text[0] == '-' ? text + 1 : text;
-}
-
-std::string csvLine(const std::vector<std::string>& cells) {
-  std::string out;
-  for (const std::string& cell : cells) {
-    if (&cell != &cells.front()) out += ',';
-    const bool is_quoted = cell.find_first_of(",\"\n\r") != std::string::npos;
-    if (is_quoted) out += '"';
-    for (const char c : cell) out.append(c == '"' ? 2 : 1, c);
-    if (is_quoted) out += '"';
-  }
-  return out += '\n';
-}
-
-std::string csvNumber(double value) {
-  char text[40];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
 }
 
 }  // namespace vps::viewer

@@ -23,9 +23,4 @@ class Table {
 /// A number with this many digits after the decimal point; "-" if it is not finite.
 std::string fixed(double value, int digits);
 
-/// A line of CSV (RFC 4180) with quotes around the cells that need them.
-std::string csvLine(const std::vector<std::string>& cells);
-/// The shortest text that reads back as the same value.
-std::string csvNumber(double value);
-
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `vps trade` tells: a table, a CSV, a plot.
+// Output of `vps trade`: a table, CSV, a plot.
 #pragma once
 
 #include <string>
@@ -10,9 +10,10 @@
 namespace vps::viewer {
 
 std::string tradeTable(const scenes::TradeResult& result);
-/// One line a row, SI but for microseconds; the columns are in README.md.
+/// One line for each row, SI but for microseconds. A column's name is its path in the JSON file, joined by
+/// "_".
 std::string tradeCsv(const scenes::TradeResult& result);
-/// Time a step over error of depth, the front as a line; file + ".png" and file + ".svg".
+/// Error of depth over the time of a step, with the front as a line; writes file + ".png" and file + ".svg".
 PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file);
 
 }  // namespace vps::viewer

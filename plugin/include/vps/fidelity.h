@@ -42,6 +42,7 @@ struct Fidelity {
   double haptic_rate_hz = 1000;
   double physics_rate_hz = 1000;
   int solver_iterations = 100;
+  ContactMethod contact_method = ContactMethod::Constraint;
 };
 
 /// Presets "fast", "normal", "fine"; throws LoadError for another name.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs a recorded run again, from its recording alone.
+// Repeats a recorded run from its recording alone.
 #pragma once
 
 #include <atomic>
@@ -19,17 +19,17 @@ struct ReplayOptions : ModelOptions {
 struct ReplayResult {
   Scene scene;  ///< as recorded
   AssembleResult result;
-  std::string departure;  ///< empty: every wrench, event and traced pose is the recorded one to the bit
   std::string
-      other_version;      ///< empty: recorded by this very program; else "was recorded by ..., this is ..."
-  std::size_t equal = 0;  ///< entries that agree
+      departure;  ///< first difference; empty: all wrenches, events and traced poses are equal to the bit
+  std::string other_version;  ///< "was recorded by ..., this is ..."; empty: recorded by this version
+  std::size_t equal = 0;      ///< entries that agree
 };
 
-/// The scene of a recorded run. Throws LoadError where the recording has none (of a device alone, say).
+/// The scene of a recorded run. Throws LoadError if the recording has none, as that of a device alone.
 VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 
-/// The device is the recording, the rest is run anew and compared as it goes. A run that departs goes on to
-/// its end all the same, to show where it leads. A cut recording ends the run where it ends. Throws as
+/// Takes the device's samples from the recording, computes everything else again and compares it. After a
+/// difference the run continues to its end. A cut recording ends the run at the cut. Throws as
 /// recordedScene() and assemble().
 VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 

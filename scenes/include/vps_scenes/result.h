@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The results of a run, from which reports, plots and JSON are made.
+// The result of a run: the numbers of reports, plots and JSON. result_fields.h has a row for each of them.
 #pragma once
 
 #include <cstdint>
@@ -27,20 +27,20 @@ struct StepResult {
   bool completed = false;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
-  double max_penetration_m = 0;  ///< by exact mesh distance, over the step and the rest after it
+  double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
   std::string deepest_against;
   Vec3 deepest_at_W = Vec3::Zero();
   double deepest_time_s = 0;
   double penetration_limit_m = 0;               ///< min(10 um, clearance / 4)
-  double field_penetration_m = 0;               ///< the same by the voxmap, for comparison
+  double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int index_points = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
+  int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
   double final_error_m = 0, final_error_rad = 0;
-  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in the rest_s after release
+  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;
-  double cook_wall_s = 0;                  ///< cooking the next step's fixed field, on a thread of its own
-  double swap_wall_s = 0;                  ///< putting that field in place, between two physics steps
+  double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
+  double swap_wall_s = 0;  ///< time to put it in place, between two physics steps
   std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
 };
 
@@ -71,7 +71,7 @@ struct TraceRow {
   Pose X_WP;        ///< part in hand
   Pose X_W_Proxy;
   int contacts = 0;
-  double depth_m = 0;  ///< by the field
+  double depth_m = 0;  ///< by the voxmap
 };
 
 struct EnergyLedger {
@@ -82,8 +82,8 @@ struct EnergyLedger {
 
 struct ModelledCost {
   std::size_t voxmaps = 0, pointshells = 0;
-  std::size_t points = 0;        ///< of the parts' own shells
-  std::size_t field_points = 0;  ///< of the cooked field's
+  std::size_t points = 0;        ///< of the parts' own pointshells
+  std::size_t field_points = 0;  ///< of the fixed field
   std::size_t bytes = 0;         ///< of all
 };
 
@@ -106,12 +106,12 @@ struct LoadLevelChange {
   bool is_done = true;      ///< false: it failed, and `why` gives the reason
 };
 
-/// What a run in real time adds: how well time was kept.
+/// Timing of a run in real time.
 struct RealTimeResult {
   bool has_priority = false, has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< what the system refused, and what would help
-  TickTimes late;                     ///< from a tick's due time to its start
-  TickTimes response;                 ///< from a tick's due time to its wrench
+  std::vector<std::string> warnings;                             ///< what the system refused, with the remedy
+  TickTimes late;                                                ///< from a tick's due time to its start
+  TickTimes response;                                            ///< from a tick's due time to its wrench
   std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
   std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
   std::uint64_t worst_tick = 0;   ///< the longest response

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene as it stands in its file: parts, poses, device, operator, fidelity, procedure. Documented in
-// scenes/README.md; nothing here is live.
+// A scene as data, as its file says it: parts, poses, device, operator, fidelity, procedure. The file's
+// format is documented in scenes/README.md.
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@ struct Part {
 
 struct ScenePart {
   Part part;
-  Pose X_WP;                   ///< as designed: the pose in the CAD file, or the scene file's
+  Pose X_WP;                   ///< as designed: the pose in the CAD file, or that of the scene file
   bool is_fixed = false;       ///< never moves; in place from the start
-  bool allow_overlap = false;  ///< may start inside another (interference fits)
-  std::string file;            ///< where it came from, for messages
+  bool allow_overlap = false;  ///< may start inside another part (interference fits)
+  std::string file;            ///< file that the mesh was read from, for messages
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for
@@ -47,14 +47,14 @@ struct SceneStep {
   double timeout_s = 20;
 };
 
-/// The hand and its habits. Values and sources: vps_device/operator.h.
+/// The virtual operator. Values and sources: vps_device/operator.h.
 struct OperatorSettings {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation of the aim across the path
   double aim_error_rad = 0.005;
   double speed_m_s = 0.05;    ///< average along the path
-  double press_N = 5;         ///< force the hand presses home with
-  double force_limit_N = 15;  ///< the hand backs off above this
+  double press_N = 5;         ///< force with which the operator presses a part home
+  double force_limit_N = 15;  ///< the operator backs off above this
 };
 
 struct DeviceSettings {
@@ -62,11 +62,12 @@ struct DeviceSettings {
   std::string data;               ///< parameter file; empty: the built-in dual arm
   double scale = 1;               ///< scene metres per device metre
   bool has_quantised_encoders = true;
-  /// Where a way is longer than the workspace: lets go of the part by the clutch, goes back, takes it anew.
+  /// A path longer than the workspace is split; the device is clutched and recentred between the segments.
   bool has_indexing = true;
 };
 
-/// What the scene asks of the coupling; the rest follows from the device's numbers and rates (deriveGains).
+/// Coupling gains that a scene prescribes; the others follow from the device's numbers and rates
+/// (deriveGains).
 struct CouplingWishes {
   std::optional<double> k_N_per_m, b_Ns_per_m, k_Nm_per_rad, b_Nms_per_rad, max_force_N, max_torque_Nm;
 };
@@ -75,24 +76,36 @@ struct RecordSettings {
   double csv_rate_hz = 250;  ///< rows of trace.csv a second; above the physics rate: every step
 };
 
+/// Bounds that a fidelity must keep; what is not set does not matter. chooseFidelity() finds one.
+struct FidelityWish {
+  std::optional<double> budget_hz;    ///< physics steps a second
+  std::optional<double> tolerance_m;  ///< greatest error of depth at 95 of 100 points of every surface
+  std::optional<double> memory_bytes;
+  std::string place;  ///< "scene.toml:4", where the wish stands, for messages
+};
+
+/// What a scene file says. settings_fields.h has a row for each of its keys.
 struct Scene {
   std::string file;
   std::string name;
-  std::vector<std::string> warnings;  ///< what the CAD files were found to lack, one line each
+  std::vector<std::string> warnings;  ///< defects found in the CAD files, one line each
   std::vector<ScenePart> parts;
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);
   Fidelity fidelity;
-  ContactMethod contact = ContactMethod::Constraint;
+  /// Of `fidelity = "auto"`: not yet chosen. resolveFidelity() (fidelity_choice.h) turns it into `fidelity`;
+  /// without that no run takes the scene.
+  std::optional<FidelityWish> fidelity_wish;
   std::string fidelity_choice;  ///< what was chosen for `auto`, in words; empty: nothing was
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;
   RecordSettings record;
-  double release_s = 2;  ///< a mounted part stays dynamic this long before it is cooked
+  double release_s = 2;  ///< a mounted part stays dynamic for this long before it joins the fixed field
 };
 
-/// Reads a scene file and the CAD it names. Throws LoadError with file, line and key, and what would help.
+/// Reads a scene file and the CAD files that it names; builds no models. Throws LoadError with file, line,
+/// key and remedy.
 VPS_SCENES_API Scene loadScene(const std::string& file);
 
 }  // namespace vps::scenes

@@ -88,6 +88,9 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
 }  // namespace
 
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
+  if (scene.fidelity_wish)
+    throw LoadError(scene.file, "",
+                    "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");
   const Progress& progress = options.progress;
   std::vector<BuildTimes> times(scene.parts.size());
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {

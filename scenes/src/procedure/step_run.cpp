@@ -69,7 +69,7 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
     const double elapsed_s = world.state().time_s - result.start_s;
     world.reportProgress(0.8 * std::min(1.0, elapsed_s / step.timeout_s * 2));
     if (phase != device::OperatorPhase::Regrasp) continue;
-    ++result.index_points;
+    ++result.index_count;
     if (!clutch.index(reach)) return;
     trace.logPhase(world);
   }

@@ -5,22 +5,41 @@
 
 #include "record/scene_archive.h"
 #include "vps/version.h"
+#include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kRingEntries = 1 << 15;  // assumed: 8 s of a run by the clock at 1 kHz
+constexpr std::size_t kRingEntries = 1 << 15;  // assumed: 8 s of a real-time run at 1 kHz
 
-std::string exact(double x) {
+std::string inFull(double x) {
   char buffer[32];
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
 }
+std::string inFull(int x) {
+  return std::to_string(x);
+}
+std::string inFull(const std::optional<double>& x) {
+  return x ? inFull(*x) : "";
+}
+template <class Enum>
+requires std::is_enum_v<Enum> std::string inFull(Enum x) {
+  return toText(x);
+}
 
-/// What a person and a tool want to know; the replay takes it from the scene.
-std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGains& gains,
-                                            const std::string& scene_bytes, const AssembleOptions& options) {
-  const Fidelity& f = scene.fidelity;
+/// Adds "<prefix><key>" for each setting of a table.
+template <class Struct, class Rows>
+void describe(const Struct& settings, const Rows& rows, const std::string& prefix,
+              std::map<std::string, std::string>& about) {
+  forEachRow(rows,
+             [&](const auto& row) { about[prefix + siKey(row)] = inFull(std::invoke(row.get, settings)); });
+}
+
+/// For people and tools; the replay takes everything from the scene.
+/// @param scene  with the coupling gains that were chosen
+std::map<std::string, std::string> aboutRun(const Scene& scene, const std::string& scene_bytes,
+                                            const AssembleOptions& options) {
   std::map<std::string, std::string> about = {
       {"program", "vps assemble"},
       {"version", programVersion()},
@@ -30,22 +49,9 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const CouplingGa
       {"real_time", options.is_real_time ? "1" : "0"},
       {"keeps_going", options.keep_going ? "1" : "0"},
       {"models_everything", options.models_everything ? "1" : "0"},
-      {"fidelity.voxel_m", exact(f.voxel_m)},
-      {"fidelity.spacing_m", exact(f.spacing_m)},
-      {"fidelity.sides", toText(f.sides)},
-      {"fidelity.gradient", toText(f.gradient)},
-      {"fidelity.contact", toText(scene.contact)},
-      {"fidelity.contact_limit", std::to_string(f.contact_limit)},
-      {"fidelity.haptic_rate_hz", exact(f.haptic_rate_hz)},
-      {"fidelity.physics_rate_hz", exact(f.physics_rate_hz)},
-      {"fidelity.solver_iterations", std::to_string(f.solver_iterations)},
-      {"chosen.k_N_per_m", exact(gains.k_N_per_m)},
-      {"chosen.b_Ns_per_m", exact(gains.b_Ns_per_m)},
-      {"chosen.k_Nm_per_rad", exact(gains.k_Nm_per_rad)},
-      {"chosen.b_Nms_per_rad", exact(gains.b_Nms_per_rad)},
-      {"chosen.max_force_N", exact(gains.max_force_N)},
-      {"chosen.max_torque_Nm", exact(gains.max_torque_Nm)},
   };
+  describe(scene.fidelity, kFidelityFields, "fidelity.", about);
+  describe(scene.coupling, kCouplingFields, "chosen.", about);
   if (!scene.fidelity_choice.empty()) about["chosen.fidelity"] = scene.fidelity_choice;
   for (const ScenePart& part : scene.parts)
     about["mesh_hash." + part.part.name] = contentHash(part.part.mesh);
@@ -61,7 +67,7 @@ device::RecordingHead headOf(const Scene& scene, const device::Device& device, c
   head.device = device.name();
   head.limits = device.limits();
   head.attachments = {{kSceneAttachment, "application/octet-stream", sceneToBytes(chosen)}};
-  head.about = aboutRun(scene, gains, head.attachments[0].data, options);
+  head.about = aboutRun(chosen, head.attachments[0].data, options);
   return head;
 }
 
@@ -75,7 +81,7 @@ RunRecord::RunRecord(const std::string& file, const Scene& scene, const device::
 
 RunRecord::~RunRecord() {
   if (is_finished_ || !has_read_ || !warn_) return;
-  warn_("the recording was not finished; up to here it stands in " + recorder_.unfinished());
+  warn_("the recording is incomplete; what was recorded so far is in " + recorder_.unfinished());
 }
 
 void RunRecord::add(const device::LogEntry& entry) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run of a procedure on its way into a recording.
+// Writes a run of a procedure to a recording.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,18 @@
 
 namespace vps::scenes {
 
-/// The names of a recording's attachments.
+/// Name of the attachment that holds the scene.
 inline constexpr const char* kSceneAttachment = "scene.vps";
 
-/// In simulated time a run waits where the recorder's ring is full. By the clock it does not: the recording
-/// then says that it ends there.
+/// When the recorder's ring is full, a run in simulated time waits. A run in real time does not: the
+/// recording then states that it ends there.
 class RunRecord final : public device::RunLog {
  public:
-  /// The head says which program, scene, seeds, fidelity and choices. The scene in it wishes for the gains
+  /// The head states program, scene, seeds, fidelity and choices. Its scene prescribes the coupling gains
   /// that were chosen, so that a replay does not choose again. Throws as Recorder.
   RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
             const CouplingGains& gains, const AssembleOptions& options);
-  /// Without finish(): says by options.warn where the unfinished recording is.
+  /// Without finish(): reports through options.warn where the unfinished recording is.
   ~RunRecord() override;
 
   void add(const device::LogEntry& entry) noexcept override;
@@ -36,7 +36,8 @@ class RunRecord final : public device::RunLog {
   bool waits_, has_read_ = false, is_finished_ = false;
 };
 
-/// "0.1.0, GCC 12.2.0, double": what a recording was made with, and what this program is.
+/// Version, compiler and precision of this program: "0.1.0, compiler 12.2.0, Bullet double". Recordings hold
+/// it.
 std::string programVersion();
 
 }  // namespace vps::scenes

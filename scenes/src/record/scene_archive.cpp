@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One list of fields serves both directions. It takes each struct apart into as many names as it has members,
-// so a member that is added and forgotten here does not compile.
+// Version n of the format holds the fields that came with version 1, then those of version 2, and so on to n,
+// each time in the order of the field tables (FieldTraits::since). A new setting is thus one row of a table,
+// and every older recording stays readable. Structs without a table are taken apart into as many names as
+// they have members, so that a member that is added and forgotten here does not compile.
 #include "record/scene_archive.h"
 
 #define XXH_INLINE_ALL
@@ -11,17 +13,33 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "vps/load_error.h"
 #include "vps_device/detail/bytes.h"
+#include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes {
 
 namespace {
 
-// What came with each: the scene; Scene::contact; DeviceSettings::has_indexing.
-constexpr std::array<std::string_view, 3> kMagics = {"vps-scene-1\n", "vps-scene-2\n", "vps-scene-3\n"};
+std::string magicOf(int version) {
+  return "vps-scene-" + std::to_string(version) + "\n";
+}
+
+/// The greatest `since` of all settings.
+constexpr int latestVersion() {
+  int latest = 1;
+  const auto look = [&](const auto& row) {
+    if constexpr (requires { row.traits.since; }) latest = std::max(latest, row.traits.since);
+  };
+  forEachRow(std::tuple_cat(kMaterialFields, kStepKeys, kFidelityFields, kCouplingFields, kDeviceKeys,
+                            kOperatorFields, kRecordFields),
+             look);
+  return latest;
+}
+constexpr int kLatestVersion = latestVersion();
 
 class Writer {
  public:
@@ -84,8 +102,8 @@ class Reader {
   requires std::is_enum_v<T>
   void get(T& x) {
     const auto value = bytes_.get<std::uint8_t>();
-    is_good_ = is_good_ && value <= 1;  // all enums of a scene have two values
-    x = static_cast<T>(value & 1);
+    is_good_ = is_good_ && value < kValueCount<T>;
+    x = static_cast<T>(is_good_ ? value : 0);
   }
   void get(int& x) { x = bytes_.getInt(); }
   template <std::unsigned_integral T>
@@ -112,7 +130,7 @@ class Reader {
   }
   template <typename T>
   void get(std::vector<T>& list) {
-    // Grows as bytes come, not by the count they claim.
+    // Grows with the bytes that are there, not by the count that they claim.
     const auto count = bytes_.get<std::uint64_t>();
     for (std::uint64_t i = 0; i < count && bytes_.isGood(); ++i) get(list.emplace_back());
   }
@@ -129,11 +147,15 @@ class Reader {
 template <typename T, typename U>
 concept Either = std::is_same_v<std::remove_const_t<T>, U>;
 
-template <typename Archive, Either<Material> T>
-void fields(Archive& archive, T& x) {
-  auto& [density, friction, restitution, stiffness] = x;
-  archive(density, friction, restitution, stiffness);
+/// The settings of a table that came with a version.
+template <typename Archive, typename T, typename Rows>
+void settings(Archive& archive, T& x, const Rows& rows, int version = 1) {
+  forEachRow(rows, [&](const auto& row) {
+    if constexpr (requires { row.traits.since; })
+      if (row.traits.since == version) archive(std::invoke(row.get, x));
+  });
 }
+
 template <typename Archive, Either<Mesh> T>
 void fields(Archive& archive, T& x) {
   auto& [vertices, triangles] = x;
@@ -142,72 +164,96 @@ void fields(Archive& archive, T& x) {
 template <typename Archive, Either<Part> T>
 void fields(Archive& archive, T& x) {
   auto& [name, mesh, material, color] = x;
-  archive(name, mesh, material, color);
+  archive(name, mesh);
+  settings(archive, material, kMaterialFields);
+  archive(color);
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  [[maybe_unused]] auto& [part, X_WP, is_fixed, allow_overlap, file, model, is_cropped] =
-      x;  // the model is built again
+  // The model is built again.
+  [[maybe_unused]] auto& [part, X_WP, is_fixed, allow_overlap, file, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>
 void fields(Archive& archive, T& x) {
-  auto& [part, start, target, way_points, tolerance_m, tolerance_rad, clearance_m, timeout_s] = x;
-  archive(part, start, target, way_points, tolerance_m, tolerance_rad, clearance_m, timeout_s);
-}
-template <typename Archive, Either<Fidelity> T>
-void fields(Archive& archive, T& x) {
-  auto& [voxel, spacing, sides, gradient, contact_limit, haptic, physics, iterations] = x;
-  archive(voxel, spacing, sides, gradient, contact_limit, haptic, physics, iterations);
-}
-template <typename Archive, Either<CouplingWishes> T>
-void fields(Archive& archive, T& x) {
-  auto& [k, b, k_turn, b_turn, force, torque] = x;
-  archive(k, b, k_turn, b_turn, force, torque);
+  archive(x.part, x.X_WP_start, x.X_WP_target, x.way_points);
+  settings(archive, x, kStepKeys);
 }
 template <typename Archive, Either<DeviceSettings> T>
 void fields(Archive& archive, T& x) {
-  auto& [kind, data, scale, is_quantised, has_indexing] = x;  // the last: since vps-scene-3
-  archive(kind, data, scale, is_quantised);
+  forEachRow(kDeviceKeys, [&](const auto& row) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row)>, Key>)
+      archive(x.data);
+    else if (row.traits.since == 1)
+      archive(std::invoke(row.get, x));
+  });
 }
-template <typename Archive, Either<OperatorSettings> T>
-void fields(Archive& archive, T& x) {
-  auto& [seed, aim_m, aim_rad, speed, press, limit] = x;
-  archive(seed, aim_m, aim_rad, speed, press, limit);
-}
-template <typename Archive, Either<RecordSettings> T>
-void fields(Archive& archive, T& x) {
-  auto& [csv_rate_hz] = x;
-  archive(csv_rate_hz);
-}
+/// A wish is not archived: a recorded scene has its fidelity.
 template <typename Archive, Either<Scene> T>
 void fields(Archive& archive, T& x) {
-  auto& [file, name, warnings, parts, steps, gravity, fidelity, contact, choice, coupling, device, hand,
-         record, release_s] = x;
-  archive(file, name, parts, steps, gravity, fidelity, coupling, device, hand, record, release_s);
+  [[maybe_unused]] auto& [file, name, warnings, parts, steps, gravity, fidelity, wish, choice, coupling,
+                          device, hand, record, release_s] = x;
+  archive(file, name, parts, steps, gravity);
+  settings(archive, fidelity, kFidelityFields);
+  settings(archive, coupling, kCouplingFields);
+  archive(device);
+  settings(archive, hand, kOperatorFields);
+  settings(archive, record, kRecordFields);
+  archive(release_s);
+}
+
+/// What came with a version after the first.
+template <typename Archive, Either<Scene> T>
+void laterFields(Archive& archive, T& x, int version) {
+  for (auto& part : x.parts) settings(archive, part.part.material, kMaterialFields, version);
+  for (auto& step : x.steps) settings(archive, step, kStepKeys, version);
+  settings(archive, x.fidelity, kFidelityFields, version);
+  settings(archive, x.coupling, kCouplingFields, version);
+  settings(archive, x.device, kDeviceKeys, version);
+  settings(archive, x.hand, kOperatorFields, version);
+  settings(archive, x.record, kRecordFields, version);
 }
 
 std::string lastPiece(const std::string& file) {
   return std::filesystem::path(file).filename().string();
 }
 
-/// What would crash or never end further on, were it true.
-const char* impossible(const Scene& scene) {
+/// The key of a setting that is out of its range; empty if there is none.
+template <typename T, typename Rows>
+std::string outOfRange(const T& x, const Rows& rows) {
+  std::string found;
+  const auto check = [&](const auto& row, double value) {
+    if (!row.traits.range.contains(value)) found = row.key;
+  };
+  forEachRow(rows, [&](const auto& row) {
+    if constexpr (requires { row.traits; }) {
+      const auto& value = std::invoke(row.get, x);
+      if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::optional<double>>) {
+        if (value) check(row, *value);
+      } else if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+        check(row, static_cast<double>(value));
+      }
+    }
+  });
+  return found;
+}
+
+/// A reason why a run of the scene would crash or not end; empty if there is none.
+std::string impossible(const Scene& scene) {
   for (const ScenePart& part : scene.parts) {
     for (const auto& triangle : part.part.mesh.triangles)
       for (const std::uint32_t corner : triangle)
-        if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner is not there";
-    if (!part.X_WP.isFinite()) return "a pose that is no number";
+        if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner does not exist";
+    if (!part.X_WP.isFinite()) return "a pose that is not finite";
   }
   for (const SceneStep& step : scene.steps)
-    if (step.part >= scene.parts.size()) return "a step whose part is not there";
-  const Fidelity& f = scene.fidelity;
-  const auto isPositive = [](double x) { return x > 0 && std::isfinite(x); };
-  if (!isPositive(f.haptic_rate_hz) || !isPositive(f.physics_rate_hz) || !isPositive(f.voxel_m) ||
-      !isPositive(f.spacing_m) || !isPositive(scene.device.scale) || !isPositive(scene.record.csv_rate_hz))
-    return "a rate, step or scale that is not positive";
+    if (step.part >= scene.parts.size()) return "a step whose part does not exist";
+  std::string key = outOfRange(scene.fidelity, kFidelityFields);
+  if (key.empty()) key = outOfRange(scene.device, kDeviceKeys);
+  if (key.empty()) key = outOfRange(scene.record, kRecordFields);
+  if (!key.empty()) return "a setting '" + key + "' out of its range";
   if (!(scene.release_s >= 0 && scene.release_s < 1e6)) return "a release time out of range";
-  return nullptr;
+  return {};
 }
 
 std::string hex(XXH128_hash_t hash) {
@@ -224,26 +270,28 @@ std::string sceneToBytes(const Scene& scene) {
   plain.file = lastPiece(scene.file);
   for (ScenePart& part : plain.parts) part.file = lastPiece(part.file);
   plain.device.data = lastPiece(scene.device.data);
-  std::string out(kMagics.back());
+  std::string out = magicOf(kLatestVersion);
   Writer writer(out);
   fields(writer, std::as_const(plain));
-  writer(plain.contact, plain.device.has_indexing);
+  for (int version = 2; version <= kLatestVersion; ++version)
+    laterFields(writer, std::as_const(plain), version);
   return out;
 }
 
 Scene sceneFromBytes(std::string_view bytes, const std::string& file) {
   Scene scene;
-  const auto* const form = std::find_if(kMagics.begin(), kMagics.end(),
-                                        [&](std::string_view magic) { return bytes.starts_with(magic); });
-  if (form == kMagics.end())
-    throw LoadError(file, "", "holds a scene in a form that this version does not know");
-  Reader reader(bytes.substr(form->size()));
+  int form = 1;
+  while (form <= kLatestVersion && !bytes.starts_with(magicOf(form))) ++form;
+  if (form > kLatestVersion)
+    throw LoadError(
+        file, "",
+        "holds a scene in a format that this version does not know; replay it with the version that made it");
+  Reader reader(bytes.substr(magicOf(form).size()));
   fields(reader, scene);
-  if (form > kMagics.data()) reader(scene.contact);
-  if (form > kMagics.data() + 1) reader(scene.device.has_indexing);
-  if (!reader.isAllRead()) throw LoadError(file, "", "holds a scene that is not whole");
-  if (const char* what = impossible(scene))
-    throw LoadError(file, "", std::string("holds a scene with ") + what);
+  for (int version = 2; version <= form; ++version) laterFields(reader, scene, version);
+  if (!reader.isAllRead()) throw LoadError(file, "", "holds a scene that is cut or damaged");
+  if (const std::string what = impossible(scene); !what.empty())
+    throw LoadError(file, "", "holds a scene with " + what);
   return scene;
 }
 

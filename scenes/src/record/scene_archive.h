@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole scene, meshes included, as bytes: what makes a recording all that a bug report needs.
+// A whole scene with its meshes as bytes, so that a recording is complete.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace vps::scenes {
 
-/// All of the scene but its models, which follow from the rest; numbers to the bit. Of file names only the
-/// last piece is kept: folders are nobody else's business.
+/// The scene without its models, which follow from the rest; numbers to the bit. Of file names only the last
+/// component is kept, since folders may be private.
 std::string sceneToBytes(const Scene& scene);
 
-/// Throws LoadError naming `file` where the bytes are no such scene. Memory: a few times the bytes at most.
+/// Reads this version's format and every earlier one. Throws LoadError naming `file` where the bytes are no
+/// such scene. Needs memory of a few times the bytes at most.
 Scene sceneFromBytes(std::string_view bytes, const std::string& file);
 
-/// 128 bits (XXH3) of a mesh and of a scene's bytes, in hexadecimal.
+/// Hash (XXH3, 128 bits) of a mesh, and of the bytes of a scene, in hexadecimal.
 std::string contentHash(const Mesh& mesh);
 std::string contentHash(std::string_view bytes);
 

@@ -62,11 +62,27 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
+struct Renamed {
+  std::string_view place, old_name, new_name;
+};
+constexpr Renamed kRenamedKeys[] = {{"[device]", "ratchet", "indexing"}};
+/// Words of a key's value; `place` is the key.
+constexpr Renamed kRenamedWords[] = {{"contact", "rigid", "constraint"}, {"contact", "compliant", "penalty"}};
+
+/// The new name of something in a place; empty when it was not renamed.
+template <std::size_t N>
+std::string_view newName(const Renamed (&table)[N], std::string_view place, std::string_view name) {
+  const auto* const found = std::find_if(std::begin(table), std::end(table), [&](const Renamed& entry) {
+    return entry.place == place && entry.old_name == name;
+  });
+  return found == std::end(table) ? std::string_view() : found->new_name;
+}
+
 }  // namespace
 
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known) {
   std::string nearest;
-  // A third of the letters wrong still reads as the same word; more is a guess.
+  // assumed: up to a third of the letters may be wrong.
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = editDistance(word, candidate);
@@ -79,10 +95,12 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
 }
 
 SceneKeys::SceneKeys(const toml::table& table, const SceneFileContext& context, std::string place,
-                     std::initializer_list<std::string_view> known)
+                     const std::vector<std::string_view>& known)
     : table_(table), context_(context), place_(std::move(place)) {
   for (const auto& [key, value] : table_) {
     if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+    if (const auto renamed = newName(kRenamedKeys, place_, key.str()); !renamed.empty())
+      fail(key.str(), "was renamed; write '" + std::string(renamed) + "'");
     const std::vector<std::string> words(known.begin(), known.end());
     const std::string nearest = nearestWord(key.str(), words);
     fail(key.str(), nearest.empty() ? "is unknown; " + (place_.empty() ? "the top of the file" : place_) +
@@ -176,6 +194,8 @@ bool SceneKeys::poses(std::string_view key, const Pose& from, std::vector<Pose>&
 bool SceneKeys::word(std::string_view key, const std::vector<std::string>& words, std::size_t& out) const {
   std::string value;
   if (!text(key, value)) return false;
+  if (const auto renamed = newName(kRenamedWords, key, value); !renamed.empty())
+    fail(key, "is '" + value + "', which was renamed; write '" + std::string(renamed) + "'");
   const auto match = std::find(words.begin(), words.end(), value);
   if (match == words.end()) fail(key, "is '" + value + "'; expected one of: " + joined(words));
   out = static_cast<std::size_t>(match - words.begin());
@@ -202,13 +222,15 @@ std::vector<const toml::table*> SceneKeys::tables(std::string_view key) const {
   return out;
 }
 
-void SceneKeys::fail(std::string_view key, const std::string& found_and_remedy) const {
-  // The key's own line, not the value's: a list may begin on the next one.
+std::string SceneKeys::placeOf(std::string_view key) const {
+  // The line of the key, since a list may begin on the line after it.
   const auto entry = table_.find(key);
-  const toml::node* where = entry == table_.end() ? static_cast<const toml::node*>(&table_) : &entry->second;
-  const auto line = entry == table_.end() ? where->source().begin.line : entry->first.source().begin.line;
-  throw LoadError(context_.file + ":" + std::to_string(line), "",
-                  "key '" + std::string(key) + "' " + found_and_remedy);
+  const auto line = entry == table_.end() ? table_.source().begin.line : entry->first.source().begin.line;
+  return context_.file + ":" + std::to_string(line);
+}
+
+void SceneKeys::fail(std::string_view key, const std::string& found_and_remedy) const {
+  throw LoadError(placeOf(key), "", "key '" + std::string(key) + "' " + found_and_remedy);
 }
 
 void SceneKeys::failWhole(const std::string& found_and_remedy) const {
@@ -223,8 +245,7 @@ void SceneKeys::failAt(const toml::node* where, const std::string& message) cons
 
 void SceneKeys::require(std::string_view key, double value, Range range,
                         const std::string& as_written) const {
-  const bool is_low = range.is_open_min ? !(value > range.min) : !(value >= range.min);
-  if (is_low || !(value <= range.max)) fail(key, "is " + as_written + "; expected " + wanted(range));
+  if (!range.contains(value)) fail(key, "is " + as_written + "; expected " + wanted(range));
 }
 
 double SceneKeys::requireNumber(std::string_view key, const toml::node& node, Range range) const {
@@ -274,14 +295,15 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
   keys.position("position", from.p);
   double q[4], rpy_deg[3];
   if (keys.numbers("rotation_xyzw", 4, q)) {
-    if (keys.has("rpy_deg")) keys.fail("rpy_deg", "stands beside 'rotation_xyzw'; give one of them");
+    if (keys.has("rpy_deg"))
+      keys.fail("rpy_deg", "cannot be combined with 'rotation_xyzw'; give one of them");
     const Quat rotation(q[3], q[0], q[1], q[2]);
-    // Files carry four digits or more; further off is a mistake rather than rounding.
+    // Files carry four digits or more, so a larger deviation is a mistake and not rounding.
     if (std::abs(rotation.norm() - 1) > 1e-3)
       keys.fail("rotation_xyzw", "has the length " + shortNumber(rotation.norm()) + "; a rotation's is 1");
     from = Pose(rotation, from.p);
   } else if (keys.numbers("rpy_deg", 3, rpy_deg)) {
-    // Fixed axes: roll about x first, then pitch about y, then yaw about z.
+    // About fixed axes: first roll about x, then pitch about y, then yaw about z.
     from.R = (Eigen::AngleAxisd(rpy_deg[2] * kRadPerDeg, Vec3::UnitZ()) *
               Eigen::AngleAxisd(rpy_deg[1] * kRadPerDeg, Vec3::UnitY()) *
               Eigen::AngleAxisd(rpy_deg[0] * kRadPerDeg, Vec3::UnitX()))

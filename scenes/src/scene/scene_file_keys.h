@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the keys of one TOML table of a scene file, and says what is wrong with them: file, line, key,
-// remedy.
+// Reads the keys of one TOML table of a scene file; errors state file, line, key and remedy.
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "vps/pose.h"
+#include "vps_scenes/fields.h"
 
 // toml++ 3.3 asserts (under clang: assumes) that a table header holds a key, so "[=]" in a user's file would
 // abort. With the assertion off its next lines report the mistake as they should.
@@ -23,34 +21,25 @@
 
 namespace vps::scenes {
 
-/// What all tables of one scene file share.
+/// Shared by all tables of one scene file.
 struct SceneFileContext {
   std::string file;              ///< as the user named it, for messages
   std::optional<double> unit_m;  ///< metres per plain number where a length is meant; empty: not stated
 };
 
-/// The values a number may take; both ends are included unless is_open_min.
-struct Range {
-  double min = -std::numeric_limits<double>::max();
-  double max = std::numeric_limits<double>::max();
-  bool is_open_min = false;
-};
-inline constexpr Range kAny{};
-inline constexpr Range kPositive{.min = 0, .is_open_min = true};
-inline constexpr Range kNotNegative{.min = 0};
-
-/// The word of `known` that `word` was probably meant to be; empty when none is near.
+/// The word of `known` with the least edit distance to `word`; empty when none is similar.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
-/// One table. Each read leaves `out` as it is and returns false when the key is not there; throws LoadError
-/// when it is there and is wrong (type, range, not finite).
+/// One table. Each read returns false and leaves `out` unchanged when the key is absent, and throws LoadError
+/// when its value is wrong (type, range, not finite).
 class SceneKeys {
  public:
-  /// @param place  what messages call the table: "[[part]]", "[device]"; "" at the top
-  /// @param known  every key the table may have; another one throws at once, before a missing key is
-  /// complained of
+  /// @param place  name of the table in messages: "[[part]]", "[device]"; "" at the top
+  /// @param known  every key that the table may have. Another key throws LoadError at once, with the new name
+  /// for a key
+  ///               that was renamed.
   SceneKeys(const toml::table& table, const SceneFileContext& context, std::string place,
-            std::initializer_list<std::string_view> known);
+            const std::vector<std::string_view>& known);
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
   [[nodiscard]] bool isText(std::string_view key) const { return has(key) && node(key)->is_string(); }
@@ -66,16 +55,19 @@ class SceneKeys {
   bool angle(std::string_view key, double& out_rad, Range range = kAny) const;
   /// Three lengths.
   bool position(std::string_view key, Vec3& out_m) const;
-  /// {position = [..], rotation_xyzw = [..] or rpy_deg = [..]}; what is left out stays as in `out`.
+  /// {position = [..], rotation_xyzw = [..] or rpy_deg = [..]}; what is left out keeps its value.
   bool pose(std::string_view key, Pose& out) const;
-  /// A list of poses; each starts from `from`.
+  /// A list of poses; what one leaves out is taken from `from`.
   bool poses(std::string_view key, const Pose& from, std::vector<Pose>& out) const;
   /// One of the words; index into them.
   bool word(std::string_view key, const std::vector<std::string>& words, std::size_t& out) const;
 
-  /// The table or the tables under a key, for readers of their own; throws when it is neither.
+  /// The table, or the list of tables, under a key; throws LoadError when the value is something else.
   [[nodiscard]] const toml::table* table(std::string_view key) const;
   [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key) const;
+
+  /// "file:line" of a key, or of the table when it has no such key.
+  [[nodiscard]] std::string placeOf(std::string_view key) const;
 
   /// Throws LoadError "file:line: key 'key' <found_and_remedy>" for a key, and "file:line: [[part]] <..>" for
   /// the table as a whole.

@@ -30,8 +30,7 @@ struct DynamicBody {
 bullet::Settings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
   bullet::Settings settings;
-  settings.contact_method =
-      scene.contact == ContactMethod::Penalty ? ContactMethod::Penalty : ContactMethod::Constraint;
+  settings.contact_method = fidelity.contact_method;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
     // The bridge takes one stiffness for all pairs; the softest part deforms most.

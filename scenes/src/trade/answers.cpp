@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a trade's rows come to, in words.
+// The conclusions of a trade in words.
 #include <algorithm>
 #include <cstdio>
 
@@ -19,7 +19,7 @@ std::string micrometres(double m) {
   return number("%.3g um", 1e6 * m);
 }
 
-constexpr double kForceLimit = 0.5;  // assumed: a force that is farther off tells the hand nothing
+constexpr double kForceLimit = 0.5;  // assumed: a force with a larger error is of no use to the operator
 
 bool isUsable(const TradeRow& row) {
   return row.has_run && row.has_probe && row.run.completed && row.probe.force <= kForceLimit;
@@ -27,61 +27,61 @@ bool isUsable(const TradeRow& row) {
 
 /// "'voxel x2' (voxel 0.5 mm, spacing 0.5 mm, both sides)"
 std::string named(const TradeRow& row) {
-  const Fidelity& f = row.what.fidelity;
-  return "'" + row.what.name + "' (voxel " + number("%.4g mm", 1e3 * f.voxel_m) + ", spacing " +
+  const Fidelity& f = row.setting.fidelity;
+  return "'" + row.setting.name + "' (voxel " + number("%.4g mm", 1e3 * f.voxel_m) + ", spacing " +
          number("%.4g mm", 1e3 * f.spacing_m) + ", " + inWords(f.sides) + ")";
 }
 
 std::string errorWords(const TradeRow& row) {
-  return "depth is read to " + micrometres(row.probe.penetration_m) + ", no part was deeper than " +
-         micrometres(row.run.deepest_m) + ", force within " + number("%.2g %%", 100 * row.probe.force);
+  return "depth error " + micrometres(row.probe.penetration_m) + ", deepest penetration " +
+         micrometres(row.run.deepest_m) + ", force error " + number("%.2g %%", 100 * row.probe.force);
 }
 
 std::string forRate(const TradeResult& result, double rate_hz) {
   const TradeRow* best = nullptr;
-  const TradeRow* quickest = nullptr;
+  const TradeRow* fastest = nullptr;
   for (const TradeRow& row : result.rows) {
     if (!isUsable(row)) continue;
-    if (quickest == nullptr || rateOf(row) > rateOf(*quickest)) quickest = &row;
+    if (fastest == nullptr || rateOf(row) > rateOf(*fastest)) fastest = &row;
     if (rateOf(row) < rate_hz) continue;
     const bool is_better = best == nullptr || errorOf(row) < errorOf(*best) ||
                            (errorOf(row) == errorOf(*best) && row.probe.force < best->probe.force);
     if (is_better) best = &row;
   }
   const std::string head = "for " + number("%.0f Hz", rate_hz) + " of physics on this machine ";
-  if (quickest == nullptr)
-    return head + "nothing that ran to the end gave a force within 50 %, so there is no answer";
+  if (fastest == nullptr)
+    return head + "there is no answer, since no setting that completed the run had a force error within 50 %";
   if (best == nullptr)
-    return head + "no setting tried will do; the quickest, " + named(*quickest) + ", sustains " +
-           number("%.0f Hz", rateOf(*quickest));
+    return head + "no measured setting suffices; the fastest, " + named(*fastest) + ", sustains " +
+           number("%.0f Hz", rateOf(*fastest));
   return head + "choose " + named(*best) + ": it sustains " + number("%.0f Hz", rateOf(*best)) + "; " +
          errorWords(*best);
 }
 
 std::string forError(const TradeResult& result, double error_m) {
   const TradeRow* best = nullptr;
-  const TradeRow* truest = nullptr;
+  const TradeRow* most_accurate = nullptr;
   for (const TradeRow& row : result.rows) {
     if (!isUsable(row)) continue;
-    if (truest == nullptr || errorOf(row) < errorOf(*truest)) truest = &row;
+    if (most_accurate == nullptr || errorOf(row) < errorOf(*most_accurate)) most_accurate = &row;
     if (errorOf(row) <= error_m && (best == nullptr || rateOf(row) > rateOf(*best))) best = &row;
   }
   const std::string head = "for " + micrometres(error_m) + " of depth ";
-  if (truest == nullptr)
-    return head + "nothing that ran to the end gave a force within 50 %, so there is no answer";
+  if (most_accurate == nullptr)
+    return head + "there is no answer, since no setting that completed the run had a force error within 50 %";
   if (best == nullptr)
-    return head + "no setting tried will do; the truest, " + named(*truest) + ", comes to " +
-           micrometres(errorOf(*truest));
+    return head + "no measured setting suffices; the most accurate, " + named(*most_accurate) +
+           ", has an error of " + micrometres(errorOf(*most_accurate));
   return head + "choose " + named(*best) + ": it sustains " + number("%.0f Hz", rateOf(*best)) + " here; " +
          errorWords(*best);
 }
 
-/// What a knob bought against the scene's own setting, from the rows that change nothing else.
+/// The effect of a knob against the scene's own setting, from the rows that change nothing else.
 std::string knobLine(const TradeRow& own, const TradeRow& row) {
   const auto change = [](double value, double from) {
     return from > 0 ? number("%+.0f %%", 100 * (value / from - 1)) : std::string("-");
   };
-  std::string words = row.what.name + ": ";
+  std::string words = row.setting.name + ": ";
   if (row.points != own.points || row.bytes != own.bytes || row.points_read != own.points_read)
     words += "memory " + change(static_cast<double>(row.bytes), static_cast<double>(own.bytes)) +
              ", depth error " + change(row.probe.penetration_m, own.probe.penetration_m) + ", force error " +
@@ -109,10 +109,10 @@ std::vector<std::string> tradeAnswers(const TradeResult& result) {
 std::vector<std::string> tradeKnobs(const TradeResult& result) {
   std::vector<std::string> lines;
   const auto own = std::find_if(result.rows.begin(), result.rows.end(),
-                                [](const TradeRow& row) { return row.what.knob == TradeKnob::Own; });
+                                [](const TradeRow& row) { return row.setting.knob == TradeKnob::Own; });
   if (own == result.rows.end()) return lines;
   for (const TradeRow& row : result.rows)
-    if (row.what.knob != TradeKnob::Own && row.what.knob != TradeKnob::Reference)
+    if (row.setting.knob != TradeKnob::Own && row.setting.knob != TradeKnob::Reference)
       lines.push_back(knobLine(*own, row));
   return lines;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which fidelities are worth measuring around a scene's own.
+// The fidelities that a trade measures around the scene's own.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace vps::scenes {
 
-/// The scene's own, each knob by itself coarser and finer (most telling first), all together coarser and
-/// finer.
-std::vector<TradeTry> tradeDesign(const Scene& scene);
+/// The scene's own, each knob alone coarser and finer (the most informative first), and all together coarser
+/// and finer.
+std::vector<TradeSetting> tradeDesign(const Scene& scene);
 
-/// What the other rows are compared with, the best first: half the lengths, twice the rates, four times the
-/// solver; then, for want of time, the scene's own rates; then 0.7 of the lengths.
-std::vector<TradeTry> tradeReferences(const Scene& scene);
+/// References to compare the other rows with, the best first: half the lengths, twice the rates and four
+/// times the solver iterations; for less time the scene's own rates; for still less 0.7 of the lengths.
+std::vector<TradeSetting> tradeReferences(const Scene& scene);
 
-/// Each knob where it is cheapest without an error that is more than a tenth above the scene's own; empty
-/// name where that is the scene's own.
-TradeTry tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows);
+/// Combines, for each knob, the cheapest setting whose error is at most a tenth above the scene's own. Its
+/// name is empty where that changes fewer than two knobs.
+TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows);
 
 }  // namespace vps::scenes

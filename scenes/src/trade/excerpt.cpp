@@ -20,7 +20,7 @@ Scene excerptOf(const Scene& scene, std::size_t step) {
     if (i == moving || excerpt.parts[i].is_fixed) kept.push_back(excerpt.parts[i]);
   }
   excerpt.parts = std::move(kept);
-  excerpt.hand.seed += step;  // each step of a procedure aims by its own seed
+  excerpt.hand.seed += step;  // each step of a procedure has its own seed
   return excerpt;
 }
 

@@ -6,8 +6,8 @@
 
 namespace vps::scenes {
 
-/// The step with all that is in place by then: fixed parts, and those of earlier steps, fixed on their
-/// targets. Parts of later steps are left out. The hand aims as it does in the whole scene.
+/// The step with the parts that are in place by then: fixed parts, and those of earlier steps, fixed at their
+/// targets. Parts of later steps are left out. The operator aims as in the whole scene.
 Scene excerptOf(const Scene& scene, std::size_t step);
 
 }  // namespace vps::scenes

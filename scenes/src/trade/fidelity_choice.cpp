@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The search for a fidelity that keeps given bounds, and its words.
 #include "vps_scenes/fidelity_choice.h"
 
 #include <algorithm>
@@ -10,26 +11,27 @@
 #include "models/scene_models.h"
 #include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
+#include "vps/load_error.h"
 #include "vps/map_estimate.h"
 #include "vps/mesh_distance.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes {
 
 namespace {
 
 constexpr double kCoarsest_m = 2e-3, kFinest_m = 15e-6;
-constexpr double kStep = 0.70710678118654752;  ///< from one voxel size tried to the next
-constexpr std::size_t kSamples = 2000;         ///< a part
+constexpr double kStep = 0.70710678118654752;  ///< ratio of successive voxel sizes
+constexpr std::size_t kSamples = 2000;         ///< of each part
 constexpr double kShare = 0.95;
-constexpr double kMargin = 0.8;      ///< of the tolerance: other samples than these must keep it too
-constexpr double kFewestPoints = 4;  ///< spacing by that at first, at most
-
-constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points, and for other programs
+constexpr double kMargin =
+    0.8;  ///< share of the tolerance, so that points other than the samples keep it too
+constexpr double kMostSpacing = 4;     ///< greatest ratio of the spacing to the first one
+constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points and for other programs
 constexpr double kExpectedOverKept =
-    2.5;  ///< of expectedMapBytes() by what a map keeps, measured: tests hold it
+    2.5;  ///< greatest ratio of expectedMapBytes() to a map's memory; tests check it
 
-/// Points on and just off a part's surface, with their exact distances.
+/// Points on and near a part's surface, with their exact distances.
 struct Check {
   std::vector<Vec3> points;
   std::vector<double> exact_m;
@@ -60,11 +62,11 @@ double errorOf(const VoxMap& map, const Check& check) {
   return errors[static_cast<std::size_t>(kShare * static_cast<double>(errors.size() - 1))];
 }
 
-/// One scene's models at settings that change.
+/// Builds a scene's models at one setting after another.
 class Chooser {
  public:
-  Chooser(Scene& scene, const FidelityWish& wish, const Progress& progress)
-      : scene_(scene), wish_(wish), progress_(progress) {
+  Chooser(Scene& scene, const FidelityWish& wish, const ChoiceOptions& options)
+      : scene_(scene), wish_(wish), options_(options) {
     choice_.fidelity = scene.fidelity;
   }
 
@@ -85,7 +87,7 @@ class Chooser {
   }
   [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
 
-  /// Looks at maps of a size before they are built, and says so in failure_reason where they cannot be had.
+  /// Estimates the memory of maps before they are built; sets failure_reason where it is too much.
   bool hasRoomForMaps(double voxel_m);
   bool findVoxel();
   [[nodiscard]] double worstError(double voxel_m, double enough_m);
@@ -95,13 +97,13 @@ class Chooser {
 
   Scene& scene_;
   const FidelityWish& wish_;
-  const Progress& progress_;
+  const ChoiceOptions& options_;
   std::vector<Check> checks_;
   double first_spacing_m_ = 0;
   FidelityChoice choice_;
 };
 
-/// Over the parts that are not yet known to be worse than `enough_m`: the first that is ends the search.
+/// The worst error of all parts; the first part that exceeds `enough_m` ends the search.
 double Chooser::worstError(double voxel_m, double enough_m) {
   double worst_m = 0;
   VoxMapSettings settings;
@@ -119,9 +121,9 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
   double bytes = 0;
   for (const ScenePart& part : scene_.parts) bytes += expectedMapBytes(part.part.mesh, settings);
   const double machine_bytes =
-      wish_.machine_bytes > 0 ? wish_.machine_bytes : kMachineShare * machineMemoryBytes();
-  // Expected is up to kExpectedOverKept times what is kept: a wish is refused only where no map can meet it.
-  // Without a tolerance larger voxels may.
+      options_.machine_bytes > 0 ? options_.machine_bytes : kMachineShare * machineMemoryBytes();
+  // The estimate is up to kExpectedOverKept times the memory of the map, so a wish is refused only where no
+  // map can meet it. Without a tolerance, larger voxels may meet it.
   const bool fits_wish =
       !wish_.memory_bytes || !wish_.tolerance_m || bytes <= kExpectedOverKept * *wish_.memory_bytes;
   const bool fits_machine = machine_bytes == 0 || 2 * bytes <= machine_bytes;  // in the parts, and cooked
@@ -129,12 +131,12 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
   char words[250];
   std::snprintf(
       words, sizeof words,
-      "voxels of %.3g um were next, whose maps would take some %.3g MB, and %s %.3g MB are %s; ask for "
+      "the maps for the next voxel size, %.3g um, would need about %.3g MB, and %s %.3g MB are %s; allow "
       "more tolerance, or %s",
       1e6 * voxel_m, 1e-6 * bytes, fits_wish ? "twice that must fit:" : "only",
       1e-6 * (fits_wish ? machine_bytes : *wish_.memory_bytes),
       fits_wish ? "half of this machine's memory" : "allowed",
-      fits_wish ? "use a larger machine" : "for more memory");
+      fits_wish ? "use a machine with more memory" : "more memory");
   choice_.failure_reason = words;
   return false;
 }
@@ -143,7 +145,7 @@ bool Chooser::findVoxel() {
   for (const ScenePart& part : scene_.parts)
     checks_.push_back(makeCheck(part.part.mesh, std::min(*wish_.tolerance_m, 50e-6)));
   for (double voxel_m = kCoarsest_m; voxel_m >= kFinest_m; voxel_m *= kStep) {
-    if (progress_) progress_("looking for a voxel size", 0.5);
+    if (options_.progress) options_.progress("looking for a voxel size", 0.5);
     if (!hasRoomForMaps(voxel_m)) return false;
     choice_.error_m = worstError(voxel_m, kMargin * *wish_.tolerance_m);
     if (choice_.error_m > kMargin * *wish_.tolerance_m) continue;
@@ -151,7 +153,7 @@ bool Chooser::findVoxel() {
     choice_.fidelity.spacing_m = 2 * voxel_m;  // as in the presets
     return true;
   }
-  choice_.failure_reason = "no voxel down to 15 um reads depth to the tolerance; ask for less";
+  choice_.failure_reason = "no voxel size down to 15 um keeps the tolerance of depth; allow more";
   return false;
 }
 
@@ -171,7 +173,7 @@ void Chooser::count() {
   std::size_t most = 0;
   for (const ScenePart& part : scene_.parts)
     if (!part.is_fixed) most = std::max(most, part.model->shell->size());
-  // The others can touch it with no more surface than it has.
+  // The other parts can touch it with no more surface than its own.
   choice_.points_near = choice_.fidelity.sides == Sides::Both ? 2 * most : most;
   choice_.step_us = kStepBase_us + kStepPoint_us * static_cast<double>(choice_.points_near);
   if (first_spacing_m_ == 0) first_spacing_m_ = choice_.fidelity.spacing_m;
@@ -179,11 +181,11 @@ void Chooser::count() {
 
 bool Chooser::coarsen() {
   Fidelity& f = choice_.fidelity;
-  if (f.spacing_m / kStep <= 1.001 * kFewestPoints * first_spacing_m_) {
+  if (f.spacing_m / kStep <= 1.001 * kMostSpacing * first_spacing_m_) {
     f.spacing_m /= kStep;
     return true;
   }
-  // One side's points do not see the other's edges: no tolerance can be kept by them.
+  // The points of one side miss the sharp edges of the other, so they keep no tolerance.
   if (!isQuickEnough() && f.sides == Sides::Both && !wish_.tolerance_m) {
     f.sides = Sides::One;
     return true;
@@ -202,31 +204,57 @@ void Chooser::finish() {
   if (!isQuickEnough())
     std::snprintf(
         words, sizeof words,
-        "a step takes %.0f us by the cost model at the fewest points, and %.0f Hz leave %.0f us; ask "
-        "for a lower rate, or more tolerance",
+        "a step takes %.0f us by the cost model with the fewest points, and %.0f Hz leave %.0f us; allow "
+        "a lower rate, or more tolerance",
         choice_.step_us, *wish_.budget_hz, 1e6 / *wish_.budget_hz);
   else
     std::snprintf(
         words, sizeof words,
-        "the models take %.3g MB at the fewest points, and %.3g MB are allowed; ask for more memory%s",
+        "the models take %.3g MB with the fewest points, and %.3g MB are allowed; allow more memory%s",
         1e-6 * static_cast<double>(choice_.bytes), 1e-6 * *wish_.memory_bytes,
         wish_.tolerance_m ? ", or more tolerance" : "");
   choice_.failure_reason = words;
 }
 
-}  // namespace
-
-FidelityChoice chooseFidelity(Scene& scene, const FidelityWish& wish, const Progress& progress) {
-  return Chooser(scene, wish, progress).run();
+std::string tomlValue(double value, const FieldTraits& traits) {
+  char text[64];
+  if (traits.quantity == Quantity::Length)
+    std::snprintf(text, sizeof text, "\"%.6gum\"", 1e6 * value);
+  else
+    std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+std::string tomlValue(int value, const FieldTraits&) {
+  return std::to_string(value);
+}
+template <class Enum>
+requires std::is_enum_v<Enum> std::string tomlValue(Enum value, const FieldTraits&) {
+  return std::string("\"") + toText(value) + "\"";
 }
 
-std::string toToml(const Fidelity& f) {
-  char text[400];
-  std::snprintf(text, sizeof text,
-                "[fidelity]\nvoxel = \"%.6gum\"\nspacing = \"%.6gum\"\nsides = \"%s\"\ngradient = \"%s\"\n"
-                "contact_limit = %d\nhaptic_rate_hz = %.6g\nphysics_rate_hz = %.6g\nsolver_iterations = %d\n",
-                1e6 * f.voxel_m, 1e6 * f.spacing_m, toText(f.sides), toText(f.gradient), f.contact_limit,
-                f.haptic_rate_hz, f.physics_rate_hz, f.solver_iterations);
+}  // namespace
+
+FidelityChoice chooseFidelity(Scene& scene, FidelityWish wish, const ChoiceOptions& options) {
+  scene.fidelity_wish.reset();  // buildModels() refuses a scene that still has one
+  return Chooser(scene, wish, options).run();
+}
+
+void resolveFidelity(Scene& scene, const ChoiceOptions& options) {
+  if (!scene.fidelity_wish) return;
+  const FidelityWish wish = *scene.fidelity_wish;
+  const FidelityChoice choice = chooseFidelity(scene, wish, options);
+  if (!choice.is_met)
+    throw LoadError(wish.place.empty() ? scene.file : wish.place, "",
+                    "key 'fidelity' is auto and cannot be met: " + choice.failure_reason);
+  scene.fidelity = choice.fidelity;
+  scene.fidelity_choice = describe(choice);
+}
+
+std::string toToml(const Fidelity& fidelity) {
+  std::string text = "[fidelity]\n";
+  forEachRow(kFidelityFields, [&](const auto& row) {
+    text += std::string(row.key) + " = " + tomlValue(std::invoke(row.get, fidelity), row.traits) + "\n";
+  });
   return text;
 }
 

@@ -7,11 +7,11 @@ namespace vps::scenes {
 
 namespace {
 
-bool isJudged(const TradeRow& row) {
+bool isComplete(const TradeRow& row) {
   return row.has_run && row.has_probe && row.run.completed;
 }
 
-bool beats(const TradeRow& a, const TradeRow& b) {
+bool dominates(const TradeRow& a, const TradeRow& b) {
   const double t_a = a.run.physics.cpu_p99_us, t_b = b.run.physics.cpu_p99_us;
   const bool is_no_worse = t_a <= t_b && errorOf(a) <= errorOf(b) && a.bytes <= b.bytes;
   return is_no_worse && (t_a < t_b || errorOf(a) < errorOf(b) || a.bytes < b.bytes);
@@ -29,8 +29,8 @@ double rateOf(const TradeRow& row) {
 
 void markFront(std::vector<TradeRow>& rows) {
   for (TradeRow& row : rows)
-    row.is_on_front = isJudged(row) && std::none_of(rows.begin(), rows.end(), [&](const TradeRow& other) {
-                        return isJudged(other) && beats(other, row);
+    row.is_on_front = isComplete(row) && std::none_of(rows.begin(), rows.end(), [&](const TradeRow& other) {
+                        return isComplete(other) && dominates(other, row);
                       });
 }
 

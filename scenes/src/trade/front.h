@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which rows of a trade no other row beats.
+// The Pareto front of a trade's rows.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace vps::scenes {
 
-/// Marks the rows that were run to the end and that no other such row beats in time a step (99th percentile
-/// of processor time), error and memory at once. The reference is a row like any other.
+/// Marks the completed rows that no other completed row dominates in time of a step (99th percentile of
+/// processor time), error and memory. The reference is a row like any other.
 void markFront(std::vector<TradeRow>& rows);
 
 }  // namespace vps::scenes

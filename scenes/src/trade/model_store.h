@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Models that a trade's rows share.
+// Models that the rows of a trade share.
 #pragma once
 
 #include <map>
@@ -12,10 +12,11 @@
 
 namespace vps::scenes {
 
-/// A part's map by voxel size, its shell by spacing. Of one scene: parts go by their index.
+/// Keeps the maps of one scene's parts by voxel size, and their shells by spacing.
 class ModelStore {
  public:
-  /// Gives the scene's parts their models. Returns the seconds that building took. Throws as buildModels().
+  /// Gives the scene's parts their models, building those that are missing. Returns the time of building [s].
+  /// Throws as buildModels().
   double fill(Scene& scene, const ModelOptions& options);
 
  private:

@@ -5,16 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "trade/exact_touch.h"
-#include "trade/model_reading.h"
+#include "trade/exact_contact.h"
+#include "trade/model_query.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr double kFiner = 0.35;              ///< spacing of the truth's samples by that of the scene's points
-constexpr std::size_t kMostSamples = 40000;  ///< a side; more spacing where it would be more
-constexpr double kReach_m = 0.3e-3;          ///< samples farther than this from all poses are left out
+constexpr double kFiner = 0.35;  ///< ratio of the exact samples' spacing to that of the scene's points
+constexpr std::size_t kMaxSamples = 40000;  ///< of a part; the spacing grows where there would be more
+constexpr double kReach_m = 0.3e-3;         ///< samples farther than this from all poses are left out
 
 Box boxAt(const Mesh& mesh, const std::vector<Pose>& X_BPs) {
   Box box;
@@ -31,7 +31,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// |v - truth| by |truth|.
+/// |v - truth| / |truth|.
 double relative(const Vec3& v, const Vec3& truth) {
   return truth.norm() > 0 ? (v - truth).norm() / truth.norm() : 0;
 }
@@ -41,31 +41,31 @@ double relative(const Vec3& v, const Vec3& truth) {
 Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progress)
     : moving_(scene.steps.front().part), poses_(std::move(poses)) {
   const auto bodyOf = [](const ScenePart& part) { return makeJudgedBody(part.model); };
-  held_.body = bodyOf(scene.parts[moving_]);
+  moving_body_.body = bodyOf(scene.parts[moving_]);
   std::vector<Pose> X_PWs;
   for (const Pose& X_WP : poses_) X_PWs.push_back(X_WP.inverse());
-  Box near_held;
+  Box near_moving;
   for (const ScenePart& part : scene.parts) {
     if (!part.is_fixed) continue;
     mounted_.push_back({bodyOf(part), part.X_WP, {}});
-    fit_.mount(mounted_.back().body, part.X_WP);
+    judge_.mount(mounted_.back().body, part.X_WP);
     std::vector<Pose> X_PBs;
     for (const Pose& X_PW : X_PWs) X_PBs.push_back(X_PW * part.X_WP);
     const Box box = boxAt(part.part.mesh, X_PBs);
-    near_held.add(box.min);
-    near_held.add(box.max);
+    near_moving.add(box.min);
+    near_moving.add(box.max);
   }
   for (spacing_m_ = kFiner * scene.fidelity.spacing_m;; spacing_m_ *= 1.4) {
-    held_.samples = sampleSurface(held_.body.model->surface->mesh(), spacing_m_, near_held);
-    std::size_t most = held_.samples.size();
-    for (Side& side : mounted_) {
+    moving_body_.samples = sampleSurface(moving_body_.body.model->surface->mesh(), spacing_m_, near_moving);
+    std::size_t most = moving_body_.samples.size();
+    for (SampledBody& fixed : mounted_) {
       std::vector<Pose> X_BPs;
-      for (const Pose& X_WP : poses_) X_BPs.push_back(side.X_WB.inverse() * X_WP);
-      side.samples = sampleSurface(side.body.model->surface->mesh(), spacing_m_,
-                                   boxAt(held_.body.model->surface->mesh(), X_BPs));
-      most = std::max(most, side.samples.size());
+      for (const Pose& X_WP : poses_) X_BPs.push_back(fixed.X_WB.inverse() * X_WP);
+      fixed.samples = sampleSurface(fixed.body.model->surface->mesh(), spacing_m_,
+                                    boxAt(moving_body_.body.model->surface->mesh(), X_BPs));
+      most = std::max(most, fixed.samples.size());
     }
-    if (most <= kMostSamples) break;
+    if (most <= kMaxSamples) break;
   }
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (progress) progress("exact surfaces", static_cast<double>(i) / static_cast<double>(poses_.size()));
@@ -76,16 +76,17 @@ Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progre
 Probe::Truth Probe::truthAt(const Pose& X_WP) const {
   Truth truth;
   truth.distance_m = std::numeric_limits<double>::infinity();
-  for (const Side& side : mounted_) {
-    const Pose X_SP = side.X_WB.inverse() * X_WP;
-    const Touch on_held = exactTouch(side.body, held_.samples, X_SP, X_SP.p);
-    const Touch on_fixed = exactTouch(held_.body, side.samples, X_SP.inverse(), Vec3::Zero());
-    truth.distance_m = std::min({truth.distance_m, on_held.least_m, on_fixed.least_m});
-    // Half of each way, as queryBothSides(): both converge to the same force.
-    truth.F_W.f += 0.5 * (side.X_WB.R * on_held.F_S.f - X_WP.R * on_fixed.F_S.f);
-    truth.F_W.tau += 0.5 * (side.X_WB.R * on_held.F_S.tau - X_WP.R * on_fixed.F_S.tau);
+  for (const SampledBody& fixed : mounted_) {
+    const Pose X_SP = fixed.X_WB.inverse() * X_WP;
+    const ExactContact on_moving = exactContact(fixed.body, moving_body_.samples, X_SP, X_SP.p);
+    const ExactContact on_fixed =
+        exactContact(moving_body_.body, fixed.samples, X_SP.inverse(), Vec3::Zero());
+    truth.distance_m = std::min({truth.distance_m, on_moving.least_m, on_fixed.least_m});
+    // Half of each direction, as in queryBothSides(): both converge to the same force.
+    truth.F_W.f += 0.5 * (fixed.X_WB.R * on_moving.F_S.f - X_WP.R * on_fixed.F_S.f);
+    truth.F_W.tau += 0.5 * (fixed.X_WB.R * on_moving.F_S.tau - X_WP.R * on_fixed.F_S.tau);
   }
-  const double depth_m = fit_.deepest(held_.body, X_WP).depth_m;
+  const double depth_m = judge_.deepest(moving_body_.body, X_WP).depth_m;
   if (depth_m > 0) truth.distance_m = std::min(truth.distance_m, -depth_m);
   return truth;
 }
@@ -100,14 +101,14 @@ void Probe::measure(const Scene& scene, TradeRow& row) const {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Truth& truth = truths_[i];
     const double least_m = leastDistance(scene, moving_, poses_[i]);
-    const Reading reading = readAll(scene, moving_, poses_[i], false);
-    row.points_read += static_cast<double>(reading.points) / static_cast<double>(poses_.size());
+    const ModelResponse response = queryModels(scene, moving_, poses_[i], false);
+    row.points_read += static_cast<double>(response.points) / static_cast<double>(poses_.size());
     row.probe.distance_m = std::max(row.probe.distance_m, std::abs(least_m - truth.distance_m));
     if (truth.distance_m >= 0) continue;
     const double depth_m = std::max(0.0, -least_m);
     row.probe.penetration_m = std::max(row.probe.penetration_m, std::abs(depth_m + truth.distance_m));
-    forces.push_back(relative(reading.F_W.f, truth.F_W.f));
-    torques.push_back(relative(reading.F_W.tau, truth.F_W.tau));
+    forces.push_back(relative(response.F_W.f, truth.F_W.f));
+    torques.push_back(relative(response.F_W.tau, truth.F_W.tau));
   }
   row.probe.force = median(std::move(forces));
   row.probe.torque = median(std::move(torques));

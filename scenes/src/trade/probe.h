@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What models say at fixed poses, beside what the exact surfaces say there.
+// Compares the models at given poses with the exact surfaces.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@
 
 namespace vps::scenes {
 
-/// The part that a scene's first step moves, at poses near contact, against all fixed parts. The truth comes
-/// from the meshes alone: depth by OverlapJudge (certain to half a micrometre), distance and penalty wrench
-/// by samples of the surfaces that no pointshell has a hand in, each at its exact distance.
+/// The part that a scene's first step moves, at poses near contact, against all fixed parts. The exact values
+/// come from the meshes alone: depth from OverlapJudge (to half a micrometre), distance and penalty wrench
+/// from samples of the surfaces that are independent of any pointshell, each at its exact distance.
 class Probe {
  public:
-  /// Works out the truth at every pose. `scene` has its models: they say what is surely far away. Takes
-  /// seconds.
+  /// Computes the exact values at every pose, which takes seconds. The models of `scene` sort out what is far
+  /// away.
   Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progress);
 
-  /// Compares the models of `scene`, which is the same scene at another fidelity, and times the wrench query.
+  /// Compares the models of `scene`, the same scene at another fidelity, and times their wrench query.
   void measure(const Scene& scene, TradeRow& row) const;
 
   [[nodiscard]] std::size_t poses() const { return poses_.size(); }
@@ -33,8 +33,8 @@ class Probe {
     double distance_m = 0;
     Wrench F_W;
   };
-  /// One part as the truth sees it.
-  struct Side {
+  /// One part with its surface samples.
+  struct SampledBody {
     JudgedBody body;
     Pose X_WB;  ///< of a fixed part
     std::vector<SurfaceSample> samples;
@@ -45,13 +45,13 @@ class Probe {
   std::vector<Pose> poses_;
   std::vector<Truth> truths_;
   double spacing_m_ = 0;
-  Side held_;
-  std::vector<Side> mounted_;
-  OverlapJudge fit_;
+  SampledBody moving_body_;
+  std::vector<SampledBody> mounted_;
+  OverlapJudge judge_;
 };
 
-/// Up to `count` poses of the run's first step at which it touched, evenly in time, every second one pushed
-/// aside by up to its clearance and 20 um, so that it is inside. Seeded: the same run gives the same poses.
+/// Up to `count` contact poses of the run's first step, evenly in time; every second one is displaced by up
+/// to the clearance and 20 um, so that it penetrates. Seeded: the same run gives the same poses.
 std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count);
 
 }  // namespace vps::scenes

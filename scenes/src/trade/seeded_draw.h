@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers that look like chance and are the same everywhere.
+// Pseudo-random numbers that are the same on every platform.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,7 @@
 
 namespace vps::scenes {
 
-/// Draws from 0 (included) to 1. Not std::uniform_real_distribution: its numbers are the library's own
-/// affair.
+/// Draws from [0, 1). Not std::uniform_real_distribution, whose numbers depend on the standard library.
 class SeededDraw {
  public:
   explicit SeededDraw(std::uint64_t seed) : random_(seed) {}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// trade(): measures one setting after another, as far as the time goes.
 #include "vps_scenes/trade.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 #include "trade/excerpt.h"
 #include "trade/front.h"
 #include "trade/model_store.h"
-#include "trade/plan.h"
 #include "trade/probe.h"
+#include "trade/trade_plan.h"
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 
@@ -23,11 +24,13 @@ namespace {
 
 constexpr std::size_t kPoses = 16;
 constexpr std::size_t kThoroughPoses = 96;
-constexpr std::size_t kJudgeStride = 200;  ///< the fifty suspects of a step are judged all the same
+constexpr std::size_t kJudgeStride =
+    200;  ///< the fifty poses of a step with the deepest contacts are judged in any case
 
-std::vector<std::string> whatAScenesCannotChoose() {
+std::vector<std::string> fixedChoices() {
   return {
-      "tree or exhaustive query: a run always takes the tree, whose answer is the exhaustive one to the bit; "
+      "tree or exhaustive query: a run always uses the tree, whose result equals the exhaustive one to the "
+      "bit; "
       "both are timed here",
 #ifdef VPS_BULLET_DOUBLE
       "float or double: chosen when Bullet and this program are built (cmake -DVPS_BULLET_DOUBLE=OFF); this "
@@ -39,8 +42,8 @@ std::vector<std::string> whatAScenesCannotChoose() {
   };
 }
 
-/// What a run came to, into its row.
-void note(const AssembleResult& result, TradeRow& row) {
+/// Copies the result of a run to its row.
+void addRun(const AssembleResult& result, TradeRow& row) {
   row.has_run = true;
   row.run.completed = result.completed;
   row.run.to_hand_J = result.energy.to_hand_J;
@@ -58,10 +61,10 @@ void note(const AssembleResult& result, TradeRow& row) {
   row.run.bytes = result.modelled.bytes;
 }
 
-/// Leaves a row as far as it came.
+/// Ends a row early; what was measured is kept.
 struct TradeStopped {};
 
-/// One measurement of a scene's trade.
+/// One run of trade().
 class Trade {
  public:
   Trade(const Scene& scene, const TradeOptions& options)
@@ -73,7 +76,7 @@ class Trade {
     result_.excerpt = options.is_thorough ? "all " + std::to_string(scene.steps.size()) + " steps"
                                           : "step 1 of " + std::to_string(scene.steps.size()) + ": " +
                                                 scene.parts[first.part].part.name;
-    result_.fixed = whatAScenesCannotChoose();
+    result_.fixed = fixedChoices();
   }
 
   TradeResult run();
@@ -82,30 +85,30 @@ class Trade {
   using Clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && options_.stop->load(); }
-  void tell(const std::string& doing) const {
+  void report(const std::string& doing) const {
     if (options_.progress)
       options_.progress(doing, options_.is_thorough
                                    ? static_cast<double>(done_) / static_cast<double>(planned_)
                                    : plan_.spent_s() / options_.seconds);
   }
 
-  void measure(const TradeTry& what);
-  /// The finest that there is time for.
+  void measure(const TradeSetting& setting);
+  /// Measures the finest reference that there is time for.
   void measureReference();
-  /// All but the scene's own may fail: the trade goes on without what the row still lacks.
+  /// A failure ends the trade only for the scene's own setting; otherwise the rest of the row stays empty.
   void fillOrLeaveOut(TradeRow& row);
   void fill(TradeRow& row);
-  /// For work that asks for progress: ends it when the trade is stopped.
+  /// Progress that throws TradeStopped when the trade is stopped.
   [[nodiscard]] Progress untilStopped() const {
     return [this](std::string_view, double) {
       if (isStopped()) throw TradeStopped();
     };
   }
   void probe(const Scene& scene, TradeRow& row);
-  /// Takes over what a row of the same models was measured to be. False: there is none.
+  /// Copies the probe of an earlier row with the same models; false if there is none.
   bool copyProbe(TradeRow& row) const;
   void runProcedure(const Scene& scene, TradeRow& row);
-  /// Works out the truth where the scene's own run touched, and asks its models there.
+  /// Computes the exact reference at contact poses of the scene's own run, and probes its models there.
   void beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row);
   void compareWithReference();
 
@@ -119,53 +122,54 @@ class Trade {
 };
 
 TradeResult Trade::run() {
-  const std::vector<TradeTry> design = tradeDesign(scene_);
+  const std::vector<TradeSetting> design = tradeDesign(scene_);
   planned_ = design.size() + 2;
   measure(design.front());
   for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) {
     measure(design[i]);
-    // Early, while there is time for it: all else is compared with it.
+    // Early, while there is time for it, since all other runs are compared with it.
     if (i == 1) measureReference();
   }
-  const TradeTry suggestion = tradeSuggestion(scene_, result_.rows);
-  plan_.goLast();
+  const TradeSetting suggestion = tradeSuggestion(scene_, result_.rows);
+  plan_.releaseReserve();
   if (!suggestion.name.empty() && !isStopped()) measure(suggestion);
-  if (isStopped()) result_.left_out.emplace_back("stopped: what is not listed was not measured");
+  if (isStopped())
+    result_.left_out.emplace_back("stopped: the settings that are not listed were not measured");
   compareWithReference();
   markFront(result_.rows);
   return std::move(result_);
 }
 
-void Trade::measure(const TradeTry& what) {
+void Trade::measure(const TradeSetting& setting) {
   ++done_;
-  const bool is_own = what.knob == TradeKnob::Own;
-  if (!is_own && !plan_.hasTimeForModels(what)) {
-    result_.left_out.push_back(what.name + ": not measured");
+  const bool is_own = setting.knob == TradeKnob::Own;
+  if (!is_own && !plan_.hasTimeForModels(setting)) {
+    result_.left_out.push_back(setting.name + ": not measured");
     return;
   }
-  tell(what.name);
+  report(setting.name);
   TradeRow row;
-  row.what = what;
+  row.setting = setting;
   fillOrLeaveOut(row);
   if (row.bytes > 0) result_.rows.push_back(std::move(row));
 }
 
 void Trade::measureReference() {
-  for (const TradeTry& reference : tradeReferences(scene_)) {
+  for (const TradeSetting& reference : tradeReferences(scene_)) {
     if (isStopped()) return;
     if (!plan_.hasTimeForModels(reference)) continue;
     measure(reference);
-    if (result_.rows.back().what.name == reference.name && result_.rows.back().has_run) return;
+    if (result_.rows.back().setting.name == reference.name && result_.rows.back().has_run) return;
   }
   if (!isStopped())
     result_.left_out.emplace_back(
-        "reference: not even the coarsest fits in the time, so runs are compared with none");
+        "reference: there was no time for even the coarsest, so runs are not compared");
 }
 
 void Trade::fillOrLeaveOut(TradeRow& row) {
-  const bool is_own = row.what.knob == TradeKnob::Own;
+  const bool is_own = row.setting.knob == TradeKnob::Own;
   const auto leaveOut = [&](const std::string& why) {
-    result_.left_out.push_back(row.what.name + ": " + why);
+    result_.left_out.push_back(row.setting.name + ": " + why);
   };
   try {
     fill(row);
@@ -173,7 +177,7 @@ void Trade::fillOrLeaveOut(TradeRow& row) {
     leaveOut("stopped");
   } catch (const std::bad_alloc&) {
     if (is_own) throw;
-    leaveOut("took more memory than there is");
+    leaveOut("needed more memory than is available");
   } catch (const std::exception& error) {
     if (is_own) throw;
     leaveOut(error.what());
@@ -181,30 +185,29 @@ void Trade::fillOrLeaveOut(TradeRow& row) {
 }
 
 void Trade::fill(TradeRow& row) {
-  const TradeTry& what = row.what;
-  const bool is_own = what.knob == TradeKnob::Own;
+  const TradeSetting& setting = row.setting;
+  const bool is_own = setting.knob == TradeKnob::Own;
   Scene scene = scene_;
-  scene.fidelity = what.fidelity;
-  scene.contact = what.contact;
+  scene.fidelity = setting.fidelity;
   ModelOptions quiet = options_;
   quiet.progress = untilStopped();
-  if (!is_own) quiet.warn = nullptr;  // a mesh that is not closed is told once
+  if (!is_own) quiet.warn = nullptr;  // each warning is given once
   row.models_wall_s = store_.fill(scene, quiet);
   const ModelledCost cost = modelledCost(scene);
   row.points = cost.points;
   row.bytes = cost.bytes;
   if (is_own) plan_.ownModelsTook(row.models_wall_s);
   if (!is_own && !copyProbe(row)) probe(scene, row);
-  if (is_own || plan_.hasTimeForRun(what))
+  if (is_own || plan_.hasTimeForRun(setting))
     runProcedure(scene, row);
   else
-    result_.left_out.push_back(what.name + ": its models were measured, the procedure was not run");
+    result_.left_out.push_back(setting.name + ": its models were measured, but the procedure was not run");
 }
 
 bool Trade::copyProbe(TradeRow& row) const {
-  const Fidelity& f = row.what.fidelity;
+  const Fidelity& f = row.setting.fidelity;
   for (const TradeRow& other : result_.rows) {
-    const Fidelity& g = other.what.fidelity;
+    const Fidelity& g = other.setting.fidelity;
     if (!other.has_probe || f.voxel_m != g.voxel_m || f.spacing_m != g.spacing_m || f.sides != g.sides ||
         f.gradient != g.gradient)
       continue;
@@ -222,41 +225,41 @@ void Trade::probe(const Scene& scene, TradeRow& row) {
   if (!probe_) return;
   const auto begun = Clock::now();
   probe_->measure(scene, row);
-  if (row.what.knob == TradeKnob::Own)
+  if (row.setting.knob == TradeKnob::Own)
     plan_.ownProbeTook(std::chrono::duration<double>(Clock::now() - begun).count());
 }
 
 void Trade::runProcedure(const Scene& scene, TradeRow& row) {
   const auto begun = Clock::now();
-  const bool is_own = row.what.knob == TradeKnob::Own;
+  const bool is_own = row.setting.knob == TradeKnob::Own;
   std::atomic<bool> is_late = false;
   AssembleOptions options;
   options.warn = is_own ? options_.warn : nullptr;
   if (!options_.is_thorough) options.judge_stride = kJudgeStride;
   options.stop = &is_late;
   options.progress = [&](std::string_view, double) {
-    tell(row.what.name);
+    report(row.setting.name);
     if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
   };
-  Scene used = scene;  // a run keeps only what its paths need of the models; the rows ask whole ones
+  Scene used = scene;  // a copy, since a run crops the models and the later rows need them whole
   const AssembleResult result = assemble(used, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
   if (is_late) {
-    result_.left_out.push_back(
-        row.what.name + (isStopped() ? ": its run was stopped" : ": its run was cut, for want of time"));
+    result_.left_out.push_back(row.setting.name + (isStopped() ? ": its run was stopped"
+                                                               : ": its run was cut, since the time was up"));
     return;
   }
-  plan_.runTook(row.what, row.run.wall_s);
-  note(result, row);
+  plan_.runTook(row.setting, row.run.wall_s);
+  addRun(result, row);
   if (is_own) beginProbe(scene, result, row);
 }
 
 void Trade::beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row) {
-  tell("exact surfaces");
+  report("exact surfaces");
   const auto poses = probePoses(scene, result, options_.is_thorough ? kThoroughPoses : kPoses);
   if (poses.empty()) {
     result_.left_out.emplace_back(
-        "errors of the models: nothing touched in the run, so there is no pose to ask at");
+        "errors of the models: the run had no contact, so there is no pose to probe");
     return;
   }
   probe_.emplace(scene, poses, untilStopped());
@@ -268,7 +271,7 @@ void Trade::beginProbe(const Scene& scene, const AssembleResult& result, TradeRo
 
 void Trade::compareWithReference() {
   const auto reference = std::find_if(result_.rows.begin(), result_.rows.end(), [](const TradeRow& row) {
-    return row.what.knob == TradeKnob::Reference && row.has_run;
+    return row.setting.knob == TradeKnob::Reference && row.has_run;
   });
   if (reference == result_.rows.end()) return;
   for (TradeRow& row : result_.rows) {

@@ -95,7 +95,7 @@ std::string stepFacts(const scenes::StepResult& s) {
        {"Peak force, torque on the hand",
         format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
        {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-       {"Times the device was clutched and recentred", std::to_string(s.index_points)},
+       {"Times the device was clutched and recentred", std::to_string(s.index_count)},
        {"Final error",
         micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
        {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "trade/model_reading.h"
+#include "trade/model_query.h"
 
 #include <algorithm>
 #include <limits>
 
 #include "core/tick_times.h"
-#include "trade/exact_touch.h"
+#include "trade/exact_contact.h"
 #include "vps/pair_query.h"
 
 namespace vps::scenes {
@@ -14,9 +14,9 @@ namespace {
 
 constexpr int kRepeats = 5;
 
-/// The penalty wrench of one pair, as a haptic loop would ask for it; on P about its origin, in W.
-Reading ask(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
-            const Fidelity& fidelity, bool is_exhaustive) {
+/// The penalty wrench of one pair, as in a haptic loop; on P about its origin, in W.
+ModelResponse queryPair(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
+                        const Fidelity& fidelity, bool is_exhaustive) {
   QueryOptions options;
   options.gradient = fidelity.gradient;
   options.is_exhaustive = is_exhaustive;
@@ -27,11 +27,11 @@ Reading ask(const PartModel& fixed, const Pose& X_WM, const PartModel& held, con
           ? queryBothSides({fixed.map.get(), fixed.shell.get()}, {held.map.get(), held.shell.get()}, X_MP,
                            options, kProbeStiffness_N_per_m3, X_MP.p, sum)
           : queryWrench(*fixed.map, *held.shell, X_MP, options, kProbeStiffness_N_per_m3, X_MP.p, sum);
-  Reading reading;
-  reading.points = result.points_tested;
-  reading.F_W.f = X_WM.R * sum.F_O_M.f;
-  reading.F_W.tau = X_WM.R * sum.F_O_M.tau;
-  return reading;
+  ModelResponse response;
+  response.points = result.points_tested;
+  response.F_W.f = X_WM.R * sum.F_O_M.f;
+  response.F_W.tau = X_WM.R * sum.F_O_M.tau;
+  return response;
 }
 
 double leastOfPair(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
@@ -45,12 +45,12 @@ double leastOfPair(const PartModel& fixed, const Pose& X_WM, const PartModel& he
 
 }  // namespace
 
-Reading readAll(const Scene& scene, std::size_t moving, const Pose& X_WP, bool is_exhaustive) {
-  Reading all;
+ModelResponse queryModels(const Scene& scene, std::size_t moving, const Pose& X_WP, bool is_exhaustive) {
+  ModelResponse all;
   for (const ScenePart& part : scene.parts) {
     if (!part.is_fixed) continue;
-    const Reading one =
-        ask(*part.model, part.X_WP, *scene.parts[moving].model, X_WP, scene.fidelity, is_exhaustive);
+    const ModelResponse one =
+        queryPair(*part.model, part.X_WP, *scene.parts[moving].model, X_WP, scene.fidelity, is_exhaustive);
     all.points += one.points;
     all.F_W.f += one.F_W.f;
     all.F_W.tau += one.F_W.tau;
@@ -73,7 +73,7 @@ TickTimes timeQueries(const Scene& scene, std::size_t moving, const std::vector<
   for (int repeat = 0; repeat < kRepeats; ++repeat)
     for (const Pose& X_WP : poses) {
       clock.start();
-      (void)readAll(scene, moving, X_WP, is_exhaustive);
+      (void)queryModels(scene, moving, X_WP, is_exhaustive);
       clock.stop();
     }
   return clock.summary();

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The keys of a scene file: one table for each of its tables, in the order of scenes/README.md, which is made
+// from them. Rows of `field()` are read, archived and written by the table alone.
+#pragma once
+
+#include "vps_scenes/fields.h"
+#include "vps_scenes/scene.h"
+
+namespace vps::scenes {
+
+template <>
+inline constexpr int kValueCount<Sides> = 2;
+template <>
+inline constexpr int kValueCount<Gradient> = 2;
+template <>
+inline constexpr int kValueCount<ContactMethod> = 2;
+
+inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
+inline constexpr Range kCount{.min = 1, .max = 1e6};
+
+/// At the top of the file.
+inline constexpr auto kSceneKeys = std::make_tuple(
+    Key{"name", "text", "the folder's name", "name of the scene in reports"},
+    Key{"unit", "`\"um\"`, `\"mm\"`, `\"cm\"`, `\"m\"`, `\"inch\"`", "none",
+        "unit of plain lengths, and of meshes that do not state theirs"},
+    Key{"gravity", "3 numbers [m/s^2]", "`[0, 0, -9.81]`", "acceleration of gravity in the world"},
+    Key{"cad", "file", "none",
+        "an assembly: each of its parts is a part of the scene, with its name and designed pose"},
+    Key{"cad_fallback", "file", "none",
+        "read instead of `cad` where this build lacks Open CASCADE; it has the same part names"},
+    Key{"deflection", "length", "`\"1um\"`",
+        "greatest distance between a curved face and its triangles (STEP, IGES)"},
+    field("release_s", &Scene::release_s,
+          "how long a mounted part stays dynamic before it joins the fixed field",
+          {.range = kNotNegative, .type = "seconds"}),
+    Key{"material", "table", "steel",
+        "`density`, `friction`, `restitution`, `stiffness` of all parts that do not state their own"},
+    Key{"part"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
+    Key{"record"});
+
+inline constexpr auto kMaterialFields = std::make_tuple(
+    field("density", &Material::density_kg_m3, "density of the material",
+          {.range = kPositive, .type = "kg/m^3"}),
+    field("friction", &Material::friction,
+          "Coulomb coefficient of the material on itself; two materials have the geometric mean of theirs",
+          {.range = kNotNegative}),
+    field("restitution", &Material::restitution, "0 inelastic to 1 elastic",
+          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
+    field("stiffness", &Material::stiffness_N_per_m3, "penalty stiffness per area",
+          {.range = kPositive, .type = "N/m^3"}));
+static_assert(coversAllMembers<Material>(kMaterialFields));
+
+/// `[[part]]`
+inline constexpr auto kPartKeys = std::make_tuple(
+    Key{"file", "file", "", "mesh or CAD file, in any format that `vps import` reads"},
+    Key{"node", "text", "", "the part's name within the file, where the file has several"},
+    Key{"name", "text", "`node`, or the file's stem", "unique in the scene"},
+    Key{"pose", "pose", "as in the file", "designed pose in the world"},
+    field("fixed", &ScenePart::is_fixed, "the part never moves and is in place from the start"),
+    group("", path(&ScenePart::part, &Part::material), kMaterialFields),
+    Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "sRGB"},
+    field("allow_overlap", &ScenePart::allow_overlap,
+          "the part may start inside another one (interference fits)"));
+
+/// `[[step]]`
+inline constexpr auto kStepKeys = std::make_tuple(
+    Key{"part", "text", "required", "name of the part to mount"},
+    Key{"target", "pose", "the designed pose", "where the part belongs"},
+    Key{"start", "pose", "see below", "where the hand takes the part; what is left out is the target's"},
+    Key{"approach", "3 lengths", "see below", "the start as an offset from the target, in the world"},
+    Key{"way_points", "list of poses", "none",
+        "poses of the part that the hand passes, from start to target"},
+    field("tolerance", &SceneStep::tolerance_m, "greatest distance of the part's origin from its target",
+          {.quantity = Quantity::Length, .range = kPositive}),
+    field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
+          {.quantity = Quantity::Angle, .range = kPositive}),
+    field("clearance", &SceneStep::clearance_m,
+          "diametral clearance of the tightest fit that the part enters; the part may penetrate another by a "
+          "quarter of it, and by 10 um at most",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "not stated"}),
+    field("timeout_s", &SceneStep::timeout_s, "simulated time after which the step has failed",
+          {.range = kPositive, .type = "seconds"}));
+static_assert(coversAllMembers<SceneStep, 4>(kStepKeys));
+
+/// `[device]`
+inline constexpr auto kDeviceKeys = std::make_tuple(
+    field("kind", &DeviceSettings::kind, "`dual_arm`, or a name that `vps device --list` shows"),
+    // Read by hand, since its file is checked; the member is a path.
+    Key{"parameters", "file", "none",
+        "what differs from [the built-in dual arm](../device/data/dual_arm.toml)"},
+    field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
+    field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
+          "encoders have their finite resolution"),
+    field("indexing", &DeviceSettings::has_indexing,
+          "a path longer than the workspace is split, see below; false: such a path is an error",
+          {.since = 3}));
+static_assert(coversAllMembers<DeviceSettings, 1>(kDeviceKeys));
+
+/// `[operator]`
+inline constexpr auto kOperatorFields = std::make_tuple(
+    field("seed", &OperatorSettings::seed, "seed of the operator's aim", {.range = kNotNegative}),
+    field("aim_error", &OperatorSettings::aim_error_m, "standard deviation of the aim across the path",
+          {.quantity = Quantity::Length, .range = kNotNegative}),
+    field("aim_error_deg", &OperatorSettings::aim_error_rad, "standard deviation of the aimed orientation",
+          {.quantity = Quantity::Angle, .range = kNotNegative}),
+    field("speed_m_s", &OperatorSettings::speed_m_s, "average speed along the path", {.range = kPositive}),
+    field("press_N", &OperatorSettings::press_N, "force with which the operator presses a part home",
+          {.range = kNotNegative}),
+    field("force_limit_N", &OperatorSettings::force_limit_N, "the operator backs off above this force",
+          {.range = kPositive}));
+static_assert(coversAllMembers<OperatorSettings>(kOperatorFields));
+
+/// `[coupling]`
+inline constexpr auto kCouplingFields = std::make_tuple(
+    field("k_N_per_m", &CouplingWishes::k_N_per_m, "stiffness", {.range = kNotNegative}),
+    field("b_Ns_per_m", &CouplingWishes::b_Ns_per_m, "damping", {.range = kNotNegative}),
+    field("k_Nm_per_rad", &CouplingWishes::k_Nm_per_rad, "rotational stiffness", {.range = kNotNegative}),
+    field("b_Nms_per_rad", &CouplingWishes::b_Nms_per_rad, "rotational damping", {.range = kNotNegative}),
+    field("max_force_N", &CouplingWishes::max_force_N, "greatest force", {.range = kPositive}),
+    field("max_torque_Nm", &CouplingWishes::max_torque_Nm, "greatest torque", {.range = kPositive}));
+static_assert(coversAllMembers<CouplingWishes>(kCouplingFields));
+
+/// `[fidelity]`: the knobs.
+inline constexpr auto kFidelityFields = std::make_tuple(
+    field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
+          {.quantity = Quantity::Length, .range = kPositive}),
+    field("spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
+          {.quantity = Quantity::Length, .range = kPositive}),
+    field("sides", &Fidelity::sides,
+          "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
+    field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
+    field("contact_limit", &Fidelity::contact_limit, "contacts given to the solver for each pair of parts",
+          {.range = kCount}),
+    field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
+    field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
+    field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",
+          {.range = kCount}),
+    field(
+        "contact", &Fidelity::contact_method,
+        "constraint: rigid contacts with a friction cone; penalty: each touching point pushes with stiffness "
+        "times area times depth",
+        {.since = 2}));
+static_assert(coversAllMembers<Fidelity>(kFidelityFields));
+
+/// `[fidelity]`: what `auto = true` chooses by. Not archived: a recording holds what was chosen.
+inline constexpr auto kFidelityWishFields = std::make_tuple(
+    field(
+        "tolerance", &FidelityWish::tolerance_m,
+        "greatest error of depth at 95 of 100 points of every surface",
+        {.quantity = Quantity::Length, .range = kPositive, .default_text = "`\"10um\"` if no bound is set"}),
+    field("budget_hz", &FidelityWish::budget_hz, "physics steps a second",
+          {.range = kRate_Hz, .default_text = "no limit"}),
+    field("memory_MB", &FidelityWish::memory_bytes, "memory of all models",
+          {.quantity = Quantity::Megabytes, .range = kPositive, .default_text = "no limit"}));
+static_assert(coversAllMembers<FidelityWish, 1>(kFidelityWishFields));
+
+/// `[fidelity]`: where its values come from.
+inline constexpr auto kFidelityChoiceKeys = std::make_tuple(
+    Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
+        "gives the values of the keys that are not set"},
+    Key{"auto", "bool", "false", "`voxel` and `spacing` are chosen, see [FIDELITY.md](FIDELITY.md)"});
+
+/// `[fidelity]`, whole.
+inline constexpr auto kFidelityKeys =
+    std::tuple_cat(kFidelityChoiceKeys, kFidelityWishFields, kFidelityFields);
+
+/// `[record]`
+inline constexpr auto kRecordFields = std::make_tuple(
+    field("csv_rate_hz", &RecordSettings::csv_rate_hz,
+          "rows of trace.csv, and of the trace in a recording, a second; above the physics rate: each step",
+          {.range = kPositive}));
+static_assert(coversAllMembers<RecordSettings>(kRecordFields));
+
+}  // namespace vps::scenes

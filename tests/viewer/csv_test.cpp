@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CSV of field tables: columns, and cells of what was not measured.
+#include "vps_viewer/csv.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "vps_scenes/trade_fields.h"
+
+namespace vps::viewer {
+namespace {
+
+TEST(Csv, CellsAreQuotedWhereTheyMust) {
+  EXPECT_EQ(csvLine({"a", "b,c", "d\"e", ""}), "a,\"b,c\",\"d\"\"e\",\n");
+}
+
+TEST(Csv, NumbersReadBackAsTheSameValue) {
+  EXPECT_EQ(csvNumber(0.1), "0.1");
+  EXPECT_EQ(std::stod(csvNumber(1.0 / 3)), 1.0 / 3);
+  EXPECT_EQ(csvNumber(std::numeric_limits<double>::infinity()), "NaN");
+}
+
+TEST(Csv, VectorsAndPosesHaveAColumnForEachNumber) {
+  const auto columns = csvColumns<scenes::TraceRow>(scenes::kTraceFields);
+  const std::string header = csvLine(columns);
+  // The columns that other programs read since the first version.
+  EXPECT_EQ(header,
+            "time_s,step,phase,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
+            "part_x_m,part_y_m,part_z_m,part_qx,part_qy,part_qz,part_qw,"
+            "proxy_x_m,proxy_y_m,proxy_z_m,proxy_qx,proxy_qy,proxy_qz,proxy_qw,contacts,depth_m\n");
+}
+
+TEST(Csv, WhatWasNotMeasuredHasEmptyCells) {
+  scenes::TradeRow probed, run;
+  probed.setting.name = "probed";
+  probed.has_probe = true;
+  probed.probe.force = 0.25;
+  run.has_run = true;
+  const std::string text = toCsv(std::vector{probed, run}, scenes::kTradeRowFields);
+  std::istringstream lines(text);
+  std::string header, line;
+  std::getline(lines, header);
+  EXPECT_NE(header.find(",fidelity_voxel_m,"), std::string::npos) << header;
+  EXPECT_NE(header.find(",probe_force_error,"), std::string::npos) << header;
+  const auto commas = std::count(header.begin(), header.end(), ',');
+  int rows = 0;
+  for (; std::getline(lines, line); ++rows)
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+  EXPECT_EQ(rows, 2);
+  EXPECT_NE(text.find(",0.25,"), std::string::npos) << text;
+}
+
+TEST(Csv, NoColumnOccursTwice) {
+  for (const auto& columns :
+       {csvColumns<scenes::StepResult>(scenes::kStepFields),
+        csvColumns<scenes::TradeRow>(std::tuple_cat(scenes::kTradeRowFields, scenes::kTradeRowWallFields))})
+    EXPECT_EQ(std::set<std::string>(columns.begin(), columns.end()).size(), columns.size());
+}
+
+}  // namespace
+}  // namespace vps::viewer
