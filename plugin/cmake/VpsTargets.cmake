@@ -58,15 +58,20 @@ endfunction()
 
 # Standard headers and Eigen take half of the time that one of our files takes to compile. The first library compiles
 # them, the others use its result; a target with other options or slow headers of its own names these, and compiles
-# its own.
+# its own. Symbols are hidden in the former, for whom the headers are compiled so, and not in the latter: OpenVDB's
+# templates crash where a program hides those that the library shares with it.
 function(vps_precompile target)
-  get_property(owner GLOBAL PROPERTY VPS_PRECOMPILED)
-  if(owner AND NOT ARGN)
-    target_precompile_headers(${target} REUSE_FROM ${owner})
+  set(headers "${PROJECT_SOURCE_DIR}/plugin/cmake/precompiled.h")
+  if(ARGN)
+    target_precompile_headers(${target} PRIVATE ${headers} ${ARGN})
     return()
   endif()
-  target_precompile_headers(${target} PRIVATE "${PROJECT_SOURCE_DIR}/plugin/cmake/precompiled.h" ${ARGN})
-  if(NOT owner)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  get_property(owner GLOBAL PROPERTY VPS_PRECOMPILED)
+  if(owner)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  else()
+    target_precompile_headers(${target} PRIVATE ${headers})
     set_property(GLOBAL PROPERTY VPS_PRECOMPILED ${target})
   endif()
 endfunction()
@@ -88,7 +93,6 @@ function(vps_unite_rooms target sources)
 endfunction()
 
 function(vps_compile_options target)
-  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   if(PROJECT_IS_TOP_LEVEL)
     # GCC 12 sees overlaps and overflows in "text" + std::string that are not there (its bugs 105651 and 105329).
     # -Wsubobject-linkage forbids file-local types as members only where a source is included by another.
