@@ -201,7 +201,8 @@ int runDevice(const DeviceArguments& given) {
 void addDevice(CommandLine& line) {
   const auto given = std::make_shared<DeviceArguments>();
   CLI::App& command = addCommand(
-      line, "device", "lists device kinds, or prints the dual arm's figures and the paper's; the device node is planned",
+      line, "device",
+      "lists device kinds, or prints the dual arm's figures and the paper's; the device node is planned",
       "vps device --characterise --json dual_arm.json --plot figure5", [given] { return runDevice(*given); });
   CLI::Option* characterise = command.add_flag("--characterise", given->is_characterise,
                                                "compute Table 1 and figure 5 of the paper for the dual arm");

@@ -216,7 +216,7 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
   QueryMemory* memory = query.state ? &query.state->query : nullptr;
   const RepresentativePoints::Request leaders{options, aboutMap(query.step_W, X_MW), query.always,
-                                   smallQueryLimit(settings)};
+                                              smallQueryLimit(settings)};
   const QueryResult result = query.state && query.state->leading
                                  ? query.state->leading->find(*theirs.map, X_MP, leaders, near, memory)
                                  : queryContacts(*theirs.map, shell, X_MP, options, near, memory);
