@@ -84,9 +84,14 @@ class Groups {
       const std::string target = fs::relative(entry.path(), include).generic_string();
       const std::string below = groupBelow(include / *fs::path(target).begin(), entry.path());
       const auto noun = group_of_noun.find(entry.path().stem().string());
-      const std::string group = names_.contains(below)        ? below
-                                : noun != group_of_noun.end() ? noun->second
-                                                              : target;
+      const auto named = groupOfHeader().find(target);
+      std::string group = target;
+      if (names_.contains(below))
+        group = below;
+      else if (noun != group_of_noun.end())
+        group = noun->second;
+      else if (named != groupOfHeader().end())
+        group = named->second;
       of_target_[target] = group;
       of_file_[fs::relative(entry.path(), root).generic_string()] = group;
     }

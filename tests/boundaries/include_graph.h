@@ -27,7 +27,7 @@ std::vector<std::string> folderViolations(const std::filesystem::path& root);
 ///
 /// A group is a folder in `folder`/src. A public header belongs to the group that holds the source file of
 /// the same name, or, in a sub-folder of include/<namespace>/, to the group of that name. A public header
-/// without a source is a group of its own.
+/// without a source is a group of its own, unless the table in include_graph.cpp names its group.
 std::vector<std::string> groupCircles(const std::filesystem::path& root, const std::string& folder);
 
 }  // namespace vps::boundaries
