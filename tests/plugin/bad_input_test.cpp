@@ -112,10 +112,10 @@ TEST(BadInput, APoseThatIsNotFiniteIsRefused) {
   };
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    expect(Pose::translation({0, bad, 0}), "is not a number");
+    expect(Pose::translation({0, bad, 0}), "is not finite");
     Pose X_MP;
     X_MP.R(1, 2) = bad;
-    expect(X_MP, "is not a number");
+    expect(X_MP, "is not finite");
   }
   expect(Pose::translation({1e9, 0, 0}), "too far");
 }
