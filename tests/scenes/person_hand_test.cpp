@@ -18,9 +18,9 @@ Scene setDown() {
   Scene scene;
   scene.file = "scene.toml";
   scene.parts.resize(2);
-  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[0].part = {"plate", makeBox({10e-3, 10e-3, 2e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
-  scene.parts[1].part = {"box", makeBox({2e-3, 2e-3, 2e-3}), {}, {}, nullptr, nullptr};
+  scene.parts[1].part = {"box", makeBox({2e-3, 2e-3, 2e-3}), {}, {}};
   scene.steps.resize(1);
   scene.steps[0].part = 1;
   scene.steps[0].X_WP_start = Pose::translation({0, 0, 2.2e-3});
