@@ -120,7 +120,7 @@ std::string cubeObj(double scale, const std::string& name, int first = 1, double
                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& q : quads) {
     text += "f";
-    for (const int i : q) text += " " + std::to_string(i + first);
+    for (const int i : q) text.append(" ").append(std::to_string(i + first));
     text += "\n";
   }
   return text;
