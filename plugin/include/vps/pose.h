@@ -21,8 +21,7 @@ struct VPS_API Pose {
 
   Pose() = default;
   Pose(const Mat3& rotation, const Vec3& position) : R(rotation), p(position) {}
-  Pose(const Quat& rotation, const Vec3& position)
-      : R(rotation.normalized().toRotationMatrix()), p(position) {}
+  Pose(const Quat& rotation, const Vec3& position);
   static Pose translation(const Vec3& position) { return {Mat3(Mat3::Identity()), position}; }
 
   Pose operator*(const Pose& X_BC) const { return {Mat3(R * X_BC.R), R * X_BC.p + p}; }
@@ -30,33 +29,23 @@ struct VPS_API Pose {
   [[nodiscard]] Pose inverse() const { return {Mat3(R.transpose()), -(R.transpose() * p)}; }
   [[nodiscard]] bool isFinite() const { return R.allFinite() && p.allFinite(); }
   /// The rotation as a unit quaternion with w >= 0, so that equal rotations print equal numbers.
-  [[nodiscard]] Quat quaternion() const {
-    Quat q(R);
-    q.normalize();
-    if (q.w() < 0) q.coeffs() = -q.coeffs();
-    return q;
-  }
+  [[nodiscard]] Quat quaternion() const;
 };
 
 /// The matrix [r] for which [r] x is the cross product of r and x.
 inline Mat3 crossMatrix(const Vec3& r) {
   Mat3 m;
-  m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+  m(0, 0) = 0, m(0, 1) = -r.z(), m(0, 2) = r.y();
+  m(1, 0) = r.z(), m(1, 1) = 0, m(1, 2) = -r.x();
+  m(2, 0) = -r.y(), m(2, 1) = r.x(), m(2, 2) = 0;
   return m;
 }
 
 /// The rotation vector (axis times angle, |.| <= pi) of R. O(1).
-inline Vec3 rotationVector(const Mat3& R) {
-  const Eigen::AngleAxisd a(R);
-  return a.axis() * a.angle();
-}
+VPS_API Vec3 rotationVector(const Mat3& R);
 
 /// The rotation that the rotation vector r [rad] describes.
-inline Mat3 rotationFromVector(const Vec3& r) {
-  const double angle_rad = r.norm();
-  if (angle_rad < 1e-300) return Mat3::Identity();
-  return Eigen::AngleAxisd(angle_rad, r / angle_rad).toRotationMatrix();
-}
+VPS_API Mat3 rotationFromVector(const Vec3& r);
 
 /// Spatial velocity of a frame: angular w [rad/s] and linear v [m/s] of its origin, both in one stated frame.
 struct Twist {
