@@ -67,6 +67,8 @@ function(vps_precompile target)
     return()
   endif()
   set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  # TBB's target defines it, which standard headers look at; targets without TBB have to agree.
+  target_compile_definitions(${target} PRIVATE $<$<CONFIG:Debug>:TBB_USE_DEBUG>)
   get_property(owner GLOBAL PROPERTY VPS_PRECOMPILED)
   if(owner)
     target_precompile_headers(${target} REUSE_FROM ${owner})
