@@ -15,7 +15,7 @@
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -119,4 +119,4 @@ void addAssemble(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

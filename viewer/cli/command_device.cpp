@@ -15,7 +15,7 @@
 #include "vps_device/dual_arm/character.h"
 #include "vps_viewer/device_plot.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -219,4 +219,4 @@ void addDevice(CommandLine& line) {
   command.get_option("--json")->needs(characterise);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

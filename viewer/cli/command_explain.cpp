@@ -11,7 +11,7 @@
 #include "table.h"
 #include "terminal.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -131,4 +131,4 @@ void addExplain(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

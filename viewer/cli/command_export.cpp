@@ -19,7 +19,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -173,4 +173,4 @@ void addExport(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

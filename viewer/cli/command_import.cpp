@@ -20,7 +20,7 @@
 #include "vps/mesh_repair.h"
 #include "vps_scenes/import.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -190,4 +190,4 @@ void addImport(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -3,7 +3,7 @@
 #include "command.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -24,4 +24,4 @@ void addPlannedCommands(CommandLine& line) {
   addPlanned(line, "watch", "the viewer node", "vps watch");
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

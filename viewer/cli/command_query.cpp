@@ -23,7 +23,7 @@
 #include "vps/pair_query.h"
 #include "vps/query.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -336,4 +336,4 @@ void addQuery(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -15,7 +15,7 @@
 #include "vps_scenes/simulate.h"
 #include "vps_viewer/csv.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -104,4 +104,4 @@ void addSimulate(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -14,7 +14,7 @@
 #include "vps_viewer/image.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -155,4 +155,4 @@ void addSnapshot(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -12,7 +12,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 // Keys keep the order in which they are added.
 using Json = nlohmann::ordered_json;
@@ -86,4 +86,4 @@ void addFields(Json& out, const Struct& of, const Rows& rows) {
   scenes::forEachRow(rows, [&](const auto& row) { addRow(out, of, row); });
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -8,7 +8,7 @@
 #include "vps_scenes/result_fields.h"
 #include "vps_scenes/trade_fields.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -302,4 +302,4 @@ std::string toJson(const device::DualArmCharacter& c, const device::DualArmFile&
   return text(json);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

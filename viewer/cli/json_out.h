@@ -15,17 +15,17 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 struct FidelityChoice;
 struct TradeResult;
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 struct DualArmCharacter;
 struct DualArmFile;
-}  // namespace vps::device
+}  // namespace vps::device::inline v0
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// What `vps query` found at one pose.
 struct PoseAnswer {
@@ -102,4 +102,4 @@ std::string toJson(const scenes::TradeResult& result);
 std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice);
 std::string toJson(const device::DualArmCharacter& character, const device::DualArmFile& file);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

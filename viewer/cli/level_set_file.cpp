@@ -6,7 +6,7 @@
 #include "vps/vdb.h"
 #endif
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 #ifdef VPS_HAS_VDB
 
@@ -39,4 +39,4 @@ void saveLevelSet(const VoxMap&, const std::string& file) {
 
 #endif
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -6,7 +6,7 @@
 
 #include "vps/voxmap.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// Throws LoadError that names the file in a build without OpenVDB.
 void requireOpenVdb(const std::string& file);
@@ -15,4 +15,4 @@ void requireOpenVdb(const std::string& file);
 VoxMap loadLevelSet(const std::string& file);
 void saveLevelSet(const VoxMap& map, const std::string& file);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

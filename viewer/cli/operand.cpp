@@ -10,7 +10,7 @@
 #include "vps/mesh_repair.h"
 #include "vps_scenes/import.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -62,4 +62,4 @@ double spacingFor(const Mesh& mesh, std::size_t point_count) {
   return std::sqrt(area(mesh) / static_cast<double>(point_count));
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

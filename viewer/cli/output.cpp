@@ -10,7 +10,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -133,4 +133,4 @@ void OutputFolder::commit() {
   }
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -7,7 +7,7 @@
 
 #include "terminal.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 ProgressBar::ProgressBar() : is_on_(isTerminal()), begun_(Clock::now()), drawn_(begun_) {}
 
@@ -36,4 +36,4 @@ void ProgressBar::clear() {
   is_drawn_ = false;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

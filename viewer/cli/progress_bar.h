@@ -7,7 +7,7 @@
 
 #include "vps/progress.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 class ProgressBar {
  public:
@@ -32,4 +32,4 @@ class ProgressBar {
   Clock::time_point begun_, drawn_;
 };
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

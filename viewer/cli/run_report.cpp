@@ -10,7 +10,7 @@
 #include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -61,4 +61,4 @@ bool printSteps(const scenes::AssembleResult& result) {
   return is_good;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 struct RunFiles {
   std::string command;  ///< that repeats the run
@@ -24,4 +24,4 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
 /// Prints the table of steps, and a line for each problem of a step. Returns true if all steps are good.
 bool printSteps(const scenes::AssembleResult& result);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

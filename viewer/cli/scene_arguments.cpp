@@ -11,7 +11,7 @@
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 namespace {
 
@@ -114,4 +114,4 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   return scene;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -15,7 +15,7 @@ namespace CLI {
 class App;
 }
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 class ProgressBar;
 
@@ -65,4 +65,4 @@ std::optional<VoxMapCache> cacheFrom(const std::string& folder);
 void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
                      bool models_everything);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

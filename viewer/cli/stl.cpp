@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 std::string stlBytes(const Mesh& mesh) {
   static_assert(std::endian::native == std::endian::little, "STL is little endian");
@@ -23,4 +23,4 @@ std::string stlBytes(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -6,10 +6,10 @@
 
 #include "vps/mesh.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// The bytes of the file, in metres. Coordinates are floats, which resolve 0.06 um at 1 m; vertices that are
 /// equal stay equal to the bit, so that readers can weld them.
 std::string stlBytes(const Mesh& mesh);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

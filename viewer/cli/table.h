@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// A text table whose columns are as wide as their widest cell.
 class Table {
@@ -23,4 +23,4 @@ class Table {
 /// A number with this many digits after the decimal point; "-" if it is not finite.
 std::string fixed(double value, int digits);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

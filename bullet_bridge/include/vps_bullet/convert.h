@@ -6,7 +6,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 // A program that mixes Bullet's precisions crashes without a message; this makes it a compile error. The
 // define comes with the imported target vps_external::bullet (plugin/cmake/VpsFindBullet.cmake).
@@ -52,4 +52,4 @@ inline Pose fromBt(const btTransform& X) {
   return {fromBt(X.getBasis()), fromBt(X.getOrigin())};
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

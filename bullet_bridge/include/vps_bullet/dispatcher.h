@@ -8,7 +8,7 @@
 
 #include "vps_bullet/export.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Drop-in for btCollisionDispatcher: several threads find the contacts of all pairs with VPS contact before
 /// Bullet visits the pairs one by one. Results have the same bits as with the stock dispatcher, for any
@@ -29,4 +29,4 @@ class VPS_BULLET_API Dispatcher : public btCollisionDispatcher {
   std::unique_ptr<Arena> arena_;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -8,7 +8,7 @@
 
 class btCollisionDispatcher;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Makes every bullet::Shape collide in worlds that use this dispatcher: with each other and with Bullet's
 /// own shapes, in contact and closest-point queries, in both orders, for every shape type (README.md lists
@@ -27,4 +27,4 @@ VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);
 /// All zero without an installation.
 [[nodiscard]] VPS_BULLET_API Stats stats(const btCollisionDispatcher& dispatcher);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -6,7 +6,7 @@
 
 #include "vps/fidelity.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct Settings {
   /// Penalty needs bullet::Solver. Any other solver takes the contacts as rigid, as with Constraint; a
@@ -42,4 +42,4 @@ struct Stats {
   double deepest_start_m = 0;  ///< the deepest of these overlaps
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -14,7 +14,7 @@
 #include "vps/part_model.h"
 #include "vps_bullet/export.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// A body's mass, and the frame that Bullet requires: origin at the centre of mass, principal axes.
 struct BodyFrame {
@@ -144,4 +144,4 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::unique_ptr<const TriangleTree> triangles_;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps_bullet/export.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct SolverSettings {
   double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more
@@ -49,4 +49,4 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   bool is_converged_ = true;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

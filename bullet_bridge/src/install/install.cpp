@@ -28,7 +28,7 @@
 #include "solver/dispatch_table.h"
 #include "solver/penalty_contacts.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -231,4 +231,4 @@ Stats stats(const btCollisionDispatcher& dispatcher) {
   return stats;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

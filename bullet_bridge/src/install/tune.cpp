@@ -12,7 +12,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -115,4 +115,4 @@ void tuneBody(btRigidBody& body) {
   body.setSleepingThresholds(toBt(kSleepSpeed_m_s), toBt(kSleepSpin_rad_s));
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -13,7 +13,7 @@
 #include "narrowphase/contact_selection.h"
 #include "solver/penalty_contacts.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 // Elements of Bullet's pool are as large as its own largest algorithm, whatever size is requested.
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
@@ -143,4 +143,4 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   passToSolver(*state_);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

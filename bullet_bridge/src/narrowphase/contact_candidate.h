@@ -14,7 +14,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct QueryState;
 
@@ -138,4 +138,4 @@ void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const
 /// the points of `side` that do not face the other's surface. Cost: a few products each.
 void useOwnNormals(std::vector<Candidate>& candidates, const SideView& side);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

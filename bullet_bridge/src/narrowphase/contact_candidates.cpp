@@ -9,7 +9,7 @@
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -270,4 +270,4 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
   return findByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

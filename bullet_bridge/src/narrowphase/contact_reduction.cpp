@@ -6,7 +6,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -186,4 +186,4 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
             [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

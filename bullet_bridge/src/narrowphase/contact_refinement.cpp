@@ -10,7 +10,7 @@
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -278,4 +278,4 @@ void useOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
   });
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -6,7 +6,7 @@
 
 #include "native_shapes/primitive.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -172,4 +172,4 @@ CandidateMotion motionSince(const Selection& selection, const PairView& pair) {
   return {body0_W, body1_W};
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -8,7 +8,7 @@
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 // Both contact methods use these.
 
@@ -53,4 +53,4 @@ CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 void selectRigid(const PairView& pair, PairState& state);
 void selectPenalty(const PairView& pair, PairState& state);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

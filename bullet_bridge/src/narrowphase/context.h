@@ -8,7 +8,7 @@
 
 #include "vps_bullet/settings.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 class NativeShapeCache;
 class PenaltyContacts;
@@ -23,4 +23,4 @@ struct Context {
   std::atomic<double> deepest_start_m{0};
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -5,7 +5,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "vps/edge_crossing.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -58,4 +58,4 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
   return crossings.size() - room;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -96,4 +96,4 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   return true;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Faces whose normals are within 20 degrees of opposite touch flush.
 inline constexpr double kCosFlush = 0.94;
@@ -37,4 +37,4 @@ struct FacePoint {
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& their,
                    double max_gain_m);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -12,7 +12,7 @@
 
 #include "narrowphase/pair_algorithm.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct Dispatcher::Arena {
   tbb::task_arena arena;
@@ -53,4 +53,4 @@ void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const 
   btCollisionDispatcher::dispatchAllCollisionPairs(pairs, info, dispatcher);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -193,4 +193,4 @@ void reportContacts(std::span<const Candidate> contacts, const btCollisionObject
   result.setPersistentManifold(before);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -15,7 +15,7 @@ class btCollisionObject;
 class btManifoldResult;
 struct btCollisionObjectWrapper;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 class ManifoldWriter {
  public:
@@ -52,4 +52,4 @@ class ManifoldWriter {
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
                     btManifoldResult& result);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

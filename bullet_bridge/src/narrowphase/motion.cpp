@@ -6,7 +6,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings) {
   Twist V;
@@ -32,4 +32,4 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
   return V;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

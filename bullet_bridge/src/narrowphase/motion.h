@@ -6,11 +6,11 @@
 
 class btCollisionObject;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Velocity about the world's origin, in W, that the object would reach by the end of the step without
 /// contact: its own, plus external forces, plus (with_couplings) the pull of its CouplingConstraints. Zero
 /// for static objects.
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -11,7 +11,7 @@
 #include "narrowphase/context.h"
 #include "native_shapes/native_shape_adapter.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 static_assert(sizeof(NativeShapeAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
@@ -97,4 +97,4 @@ void NativeShapeAlgorithm::processCollision(const btCollisionObjectWrapper* body
   state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -4,7 +4,7 @@
 
 #include <BulletCollision/CollisionDispatch/btActivatingCollisionAlgorithm.h>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 class PairAlgorithm : public btActivatingCollisionAlgorithm {
  public:
@@ -23,4 +23,4 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
   using btActivatingCollisionAlgorithm::btActivatingCollisionAlgorithm;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -14,7 +14,7 @@
 #include "native_shapes/shape_key.h"
 #include "solver/penalty_pair.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// The contacts selected by a full query, and where the bodies were.
 struct Selection {
@@ -43,4 +43,4 @@ struct PairState {
   unsigned revision[2] = {0, 0};             ///< of the shapes that the ids in writer and selection belong to
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

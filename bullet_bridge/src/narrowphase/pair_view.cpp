@@ -3,7 +3,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m) {
   RelativeMotion motion;
@@ -60,4 +60,4 @@ void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -12,7 +12,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Both bodies of a pair at one instant.
 struct PairView {
@@ -73,4 +73,4 @@ void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 /// Displacement of both bodies in the step at constant velocity, in W.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

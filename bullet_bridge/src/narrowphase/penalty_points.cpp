@@ -7,7 +7,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
                          const RelativeMotion& motion, const CandidateMotion& moved) {
@@ -52,4 +52,4 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

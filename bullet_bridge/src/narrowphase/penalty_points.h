@@ -7,7 +7,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "solver/penalty_pair.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Updates a pair's points from candidates (ascending by key), carried from where they were found to where
 /// the bodies are now; points that stay keep bend, force and tolerated overlap.
@@ -15,4 +15,4 @@ namespace vps::bullet {
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
                          const RelativeMotion& motion, const CandidateMotion& moved);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -5,7 +5,7 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/penalty_points.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -71,4 +71,4 @@ void selectPenalty(const PairView& pair, PairState& state) {
   updatePenaltyPoints(state.penalty, state.selection.penalty_points, stiffness, state.motion, moved);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

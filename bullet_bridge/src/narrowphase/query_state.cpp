@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -35,4 +35,4 @@ std::size_t smallQueryLimit(const Settings& settings) {
   return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

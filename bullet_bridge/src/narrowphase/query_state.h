@@ -7,7 +7,7 @@
 #include "vps/representative_points.h"
 #include "vps_bullet/settings.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct QueryState {
   /// O(points). The shell must outlive it.
@@ -22,4 +22,4 @@ struct QueryState {
 /// Up to this number of near points of one side, all of them are examined.
 std::size_t smallQueryLimit(const Settings& settings);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

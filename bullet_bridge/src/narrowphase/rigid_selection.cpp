@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_selection.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -48,4 +48,4 @@ void selectRigid(const PairView& pair, PairState& state) {
                      pair.wrapper[1]->getCollisionObject());
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

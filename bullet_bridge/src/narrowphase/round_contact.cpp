@@ -15,7 +15,7 @@
 #include "native_shapes/primitive.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -182,4 +182,4 @@ bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
   return true;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

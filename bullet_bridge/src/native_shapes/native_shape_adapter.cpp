@@ -10,7 +10,7 @@
 #include "shape/sheet_border.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -146,4 +146,4 @@ std::shared_ptr<const NativeShapeAdapter> NativeShapeCache::get(const btCollisio
   return adapter;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -4,7 +4,7 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <LinearMath/btTransform.h>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 ShapeKey keyOf(const btCollisionShape& shape) {
   ShapeKey key;
@@ -20,4 +20,4 @@ ShapeKey keyOf(const btCollisionShape& shape) {
   return key;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -4,7 +4,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// A few numbers that change when a shape is scaled, resized or refitted.
 struct ShapeKey {
@@ -14,4 +14,4 @@ struct ShapeKey {
 };
 ShapeKey keyOf(const btCollisionShape& shape);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -77,4 +77,4 @@ ShapeModels scaledModels(const ShapeModels& models, double factor) {
   return larger;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -17,7 +17,7 @@
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 namespace {
 
@@ -312,4 +312,4 @@ int Shape::calculateSerializeBufferSize() const {
       "map (saveVdb) and shell (savePly) instead");
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

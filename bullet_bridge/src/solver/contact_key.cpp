@@ -3,7 +3,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 std::uint64_t keyOf(const btManifoldPoint& point) {
   const std::uint8_t side = point.m_index0 >= 0 ? 0 : 1;
@@ -12,4 +12,4 @@ std::uint64_t keyOf(const btManifoldPoint& point) {
   return contactKey(side, crossed, static_cast<std::uint32_t>(side == 0 ? point.m_index0 : point.m_index1));
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

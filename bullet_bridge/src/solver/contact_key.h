@@ -6,7 +6,7 @@
 
 class btManifoldPoint;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// @param side     0 or 1: whose shell the point belongs to
 /// @param crossed  at a crossing of edges 1 + body 1's edge; 0: a shell point
@@ -19,4 +19,4 @@ constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std
 /// other -1; at a crossing each index is that body's edge.
 std::uint64_t keyOf(const btManifoldPoint& point);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -11,7 +11,7 @@
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 double ContactSweeps::velocity(const ContactRow& row) const {
   double v = row.fixed_velocity;
@@ -260,4 +260,4 @@ void ContactSweeps::finish(double dt_s) {
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -18,7 +18,7 @@ class btManifoldPoint;
 class btPersistentManifold;
 struct btContactSolverInfo;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// One direction of a contact: a row of its Jacobian.
 struct ContactRow {
@@ -92,4 +92,4 @@ class ContactSweeps {
   std::vector<Vec6> push_;  // velocities that change positions only, in one step
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -10,7 +10,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 // As initSolverBody and convertBodies of the stock solver: forces, torques, gyroscopic terms.
@@ -91,4 +91,4 @@ void Island::writeVelocities() const {
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

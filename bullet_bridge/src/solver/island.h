@@ -12,7 +12,7 @@
 class btCollisionObject;
 class btRigidBody;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; in W
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -61,4 +61,4 @@ class Island {
   std::unordered_map<const btCollisionObject*, int> index_;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 std::uint64_t blockKey(int row, int column) {
@@ -87,4 +87,4 @@ bool IslandMatrix::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& answer) {
   return true;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -10,7 +10,7 @@
 
 #include "solver/island.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Dense for a few bodies, sparse for many. The sparse pattern is kept as long as the same bodies touch:
 /// finding it and ordering its columns takes several times as long as the factorisation.
@@ -38,4 +38,4 @@ class IslandMatrix {
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> sparse_factor_;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

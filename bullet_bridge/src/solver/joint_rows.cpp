@@ -10,7 +10,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 /// A row as getInfo2() fills it.
@@ -103,4 +103,4 @@ void JointRows::finish(double dt_s) {
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

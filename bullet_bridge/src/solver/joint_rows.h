@@ -9,7 +9,7 @@
 class btTypedConstraint;
 struct btContactSolverInfo;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// One degree of freedom that a joint constrains or drives: J u = target - cfm times impulse, within the
 /// limits of the impulse.
@@ -49,4 +49,4 @@ class JointRows {
   std::vector<JointRow> rows;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

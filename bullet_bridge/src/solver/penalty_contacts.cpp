@@ -3,7 +3,7 @@
 
 #include "solver/dispatch_table.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 void PenaltyContacts::add(const btPersistentManifold* manifold, PenaltyPair* pair) {
   const std::lock_guard lock(mutex_);
@@ -27,4 +27,4 @@ PenaltyContacts* penaltyContactsOf(const btDispatcher* dispatcher) {
   return create ? create->penalty_contacts.get() : nullptr;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

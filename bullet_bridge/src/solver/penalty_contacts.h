@@ -16,7 +16,7 @@
 class btDispatcher;
 class btPersistentManifold;
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 struct PenaltyPair;
 
@@ -49,4 +49,4 @@ struct ContactCreateFunction : btCollisionAlgorithmCreateFunc {
 /// The store of the installation on this dispatcher; null without one.
 PenaltyContacts* penaltyContactsOf(const btDispatcher* dispatcher);
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

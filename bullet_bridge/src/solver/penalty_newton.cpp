@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 /// Transforms a twist about `from` into one about `to`.
@@ -228,4 +228,4 @@ void PenaltyNewton::finish() {
   for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 inline Vec6 wrenchOf(const Vec3& r, const Vec3& f) {
@@ -173,4 +173,4 @@ void PenaltyPatch::finish(const Vec6& twist) const {
   }
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

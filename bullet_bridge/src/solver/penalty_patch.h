@@ -10,7 +10,7 @@
 #include "solver/penalty_pair.h"
 #include "vps/friction.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Twists are of body 0 relative to body 1, about center, in W. Most points of a pair are near but do not
 /// press. The data that decides this is stored in columns, so that these points cost little.
@@ -67,4 +67,4 @@ class PenaltyPatch {
   mutable Columns bent_m_;
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

@@ -9,7 +9,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 namespace {
 
 // Compliance of a contact relative to that of a free body: initial and least value. A stiff contact leaves
@@ -114,4 +114,4 @@ SolveOutcome RigidNewton::solve(std::span<RigidContact> contacts, double dt_s, d
   return outcome;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

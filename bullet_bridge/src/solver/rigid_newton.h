@@ -15,7 +15,7 @@
 #include "solver/contact_sweeps.h"
 #include "solver/penalty_newton.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 class RigidNewton {
  public:
@@ -46,4 +46,4 @@ class RigidNewton {
   std::vector<Vec6> before_, change_;  // velocities of the previous round, and their change
 };
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

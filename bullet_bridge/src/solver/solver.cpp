@@ -27,7 +27,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps::bullet {
+namespace vps::bullet::inline v0 {
 
 /// Working data of one island; kept between calls to reuse its memory.
 struct Solver::Work {
@@ -251,4 +251,4 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   return 0;
 }
 
-}  // namespace vps::bullet
+}  // namespace vps::bullet::inline v0

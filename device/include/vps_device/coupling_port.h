@@ -13,7 +13,7 @@
 #include "vps/triple_buffer.h"
 #include "vps_device/safety.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 /// What one tick of the haptic loop did.
 struct TickReport {
@@ -81,4 +81,4 @@ struct CouplingPort {
   TripleBuffer<PhysicsState> physics;  ///< written by the physics thread
 };
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

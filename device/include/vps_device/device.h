@@ -9,7 +9,7 @@
 #include "vps/wrench.h"
 #include "vps_device/export.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 /// The handle H in the device's base frame D at one instant. V_DH: velocity of H's origin, in D.
 struct DeviceSample {
@@ -74,4 +74,4 @@ class VPS_DEVICE_API Device {
   Device& operator=(const Device&) = default;
 };
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -14,7 +14,7 @@
 #include "vps_device/export.h"
 #include "vps_device/simulated_device.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 /// What a device is opened with. A kind ignores what it has no use for.
 struct DeviceOptions {
@@ -49,4 +49,4 @@ VPS_DEVICE_API const DeviceKind* findDeviceKind(std::string_view name);
 /// "dual_arm, ideal_dual_arm, space_mouse, game_controller"
 VPS_DEVICE_API std::string deviceKindNames();
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -6,7 +6,7 @@
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 struct CouplingTiming {
   double haptic_rate_hz = 1000;
@@ -32,4 +32,4 @@ VPS_DEVICE_API CouplingGains deriveGains(const DeviceLimits& limits, const Coupl
 /// s/rad, springs limited to 1 kN and 1 kN m. Stability on a device is a separate matter: see deriveGains().
 VPS_DEVICE_API bool areUsable(const CouplingGains& gains) noexcept;
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

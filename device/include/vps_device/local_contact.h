@@ -10,7 +10,7 @@
 #include "vps/query.h"
 #include "vps_device/export.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 struct LocalContactSettings {
   /// Without a new physics state for longer, the part stands still. assumed: five steps of 100 Hz physics
@@ -78,4 +78,4 @@ class VPS_DEVICE_API LocalContact {
   Report report_;
 };
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

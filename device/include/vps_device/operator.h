@@ -12,7 +12,7 @@
 #include "vps_device/hand_force.h"
 #include "vps_device/random.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 /// Parameters of the hand. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
 /// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values assumed within
@@ -182,4 +182,4 @@ class VPS_DEVICE_API VirtualOperator {
   Picture seen_;  // the newest picture that is older than the delay
 };
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

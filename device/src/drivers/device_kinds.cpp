@@ -5,7 +5,7 @@
 
 #include "drivers/kinds.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 // Built explicitly: a linker drops self-registering objects of a static library.
 std::span<const DeviceKind> deviceKinds() {
@@ -25,4 +25,4 @@ std::string deviceKindNames() {
   return names;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

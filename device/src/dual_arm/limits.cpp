@@ -5,7 +5,7 @@
 
 #include "vps_device/dual_arm/controller.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -59,4 +59,4 @@ DeviceLimits dualArmLimits(const DualArmParameters& p, double rate_hz, bool has_
   return limits;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

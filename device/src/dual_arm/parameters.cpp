@@ -20,7 +20,7 @@
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 namespace {
 
 using P = DualArmParameters;
@@ -307,4 +307,4 @@ DualArmFile loadDualArm(const std::string& file) {
   return parseDualArm(slurp(file), file);
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 namespace {
 
 constexpr int kRounds = 6;           // of the active-set iteration; two or three suffice
@@ -142,4 +142,4 @@ bool LocalContact::step(const CouplingGains& gains, const CouplingState& proxy, 
   return true;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 namespace {
 
 constexpr double kLeastSegment_s = 0.3;  // assumed: no aimed movement is shorter
@@ -379,4 +379,4 @@ HandForce VirtualOperator::impedance() const noexcept {
   return hand;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

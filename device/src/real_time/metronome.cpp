@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/metronome.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 void Metronome::start() noexcept {
   due_ns_ = seen_ns_ = clock_->now_ns();
@@ -31,4 +31,4 @@ Beat Metronome::wait() noexcept {
   return beat;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -13,7 +13,7 @@
 #include "vps_device/device_events.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -72,4 +72,4 @@ RealTimeReport requestRealTime(int priority, bool locks_memory) {
   return report;
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

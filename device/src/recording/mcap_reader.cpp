@@ -4,7 +4,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_device/detail/mcap.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 using namespace mcap;
 
@@ -233,4 +233,4 @@ McapContent readMcap(std::string_view bytes) {
   return Parser(bytes).parse();
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -6,7 +6,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_device/detail/mcap.h"
 
-namespace vps::device {
+namespace vps::device::inline v0 {
 
 using namespace mcap;
 
@@ -265,4 +265,4 @@ std::string McapWriter::metadataBytes(const Indexed& entry) {
   });
 }
 
-}  // namespace vps::device
+}  // namespace vps::device::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps_device/device.h"
 
-namespace vps::device::recording {
+namespace vps::device::inline v0::recording {
 
 inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as ours
 inline constexpr const char* kProfile = "ros2";
@@ -43,4 +43,4 @@ void eachLimit(Limits& limits, Visit&& visit) {
   visit("resolution_rad", turn_resolution);
 }
 
-}  // namespace vps::device::recording
+}  // namespace vps::device::inline v0::recording

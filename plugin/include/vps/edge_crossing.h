@@ -12,7 +12,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// A straight piece of an edge between two faces of a part, in the frame of its set.
 struct EdgeSegment {
@@ -84,4 +84,4 @@ struct EdgeCrossing {
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
                            double depth_m, std::vector<EdgeCrossing>& out);
 
-}  // namespace vps
+}  // namespace vps::inline v0

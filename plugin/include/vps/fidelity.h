@@ -7,7 +7,7 @@
 #include "vps/export.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Whether one part's points are tested against the other's field, or both ways.
 enum class Sides { One, Both };
@@ -48,4 +48,4 @@ struct Fidelity {
 /// Presets "fast", "normal", "fine"; throws LoadError for another name.
 VPS_API Fidelity fidelityPreset(std::string_view name);
 
-}  // namespace vps
+}  // namespace vps::inline v0

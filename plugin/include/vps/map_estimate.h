@@ -6,7 +6,7 @@
 #include "vps/mesh.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Estimates the bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area,
 /// as thick as the band, and the directory of its box. buildVoxMap() uses this estimate to refuse maps that
@@ -14,4 +14,4 @@ namespace vps {
 /// O(triangles).
 VPS_API double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings);
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -9,7 +9,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Closest point q on triangle abc to p, and the feature it lies on.
 /// Source: Ericson, Real-Time Collision Detection, section 5.1.5.
@@ -88,4 +88,4 @@ class VPS_API MeshDistance {
   std::vector<std::uint8_t> is_corner_of_thin_;                 // by vertex
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

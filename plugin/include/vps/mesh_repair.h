@@ -7,7 +7,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// What repairMesh() makes of a mesh.
 struct RepairedMesh {
@@ -42,4 +42,4 @@ VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown
 /// certain for 99.8 %".
 VPS_API std::string describe(const MeshReport& report);
 
-}  // namespace vps
+}  // namespace vps::inline v0

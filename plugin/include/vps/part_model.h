@@ -12,7 +12,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 struct Material {
   double density_kg_m3 = 7850;       ///< steel
@@ -47,4 +47,4 @@ VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name,
 VPS_API std::shared_ptr<const PartModel> withShell(const PartModel& model,
                                                    std::shared_ptr<const PointShell> shell);
 
-}  // namespace vps
+}  // namespace vps::inline v0

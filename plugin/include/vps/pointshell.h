@@ -11,7 +11,7 @@
 #include "vps/progress.h"
 #include "vps/shell_block.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 struct PointShellSettings {
   double spacing_m = 0.5e-3;     ///< wanted distance between neighbouring points
@@ -67,4 +67,4 @@ VPS_API void savePly(const PointShell& shell, const std::string& file);
 /// Throws LoadError.
 VPS_API PointShell loadPly(const std::string& file);
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps/export.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
@@ -54,4 +54,4 @@ struct Twist {
   [[nodiscard]] bool isFinite() const { return w.allFinite() && v.allFinite(); }
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

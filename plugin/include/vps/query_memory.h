@@ -9,7 +9,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Temporal coherence of one map and one shell. When a leaf of points is read or bounded, its readings say
 /// how far the leaf may move before any of its points can come within the cutoff. Every group of leaves has
@@ -54,4 +54,4 @@ class VPS_API QueryMemory {
   double cutoff_ = 0;
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

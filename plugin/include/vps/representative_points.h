@@ -9,7 +9,7 @@
 #include "vps/export.h"
 #include "vps/query.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Divides a shell into tiles: runs of its leaves up to a given size whose normals agree within 20 degrees.
 /// find() reports for each tile the point that is nearest to the map now and the point that will be nearest
@@ -72,4 +72,4 @@ class VPS_API RepresentativePoints {
   bool reduces_contacts_ = false;
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -4,7 +4,7 @@
 
 #include "vps/export.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// `Best` is the widest set that the processor has. The others are for tests and measurements; a set that the
 /// processor lacks falls back to the next narrower one.
@@ -14,4 +14,4 @@ enum class Simd { Best, Scalar, Avx2, Avx512 };
 VPS_API Simd availableSimd(Simd wanted = Simd::Best) noexcept;
 VPS_API const char* toText(Simd simd) noexcept;
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -9,7 +9,7 @@
 #include "vps/export.h"
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// A folder of voxmaps. Each file is named by a 128-bit hash (XXH3) of everything that determines the map:
 /// every vertex and triangle to the bit, the settings, and the version of the file. A map from the folder has
@@ -40,4 +40,4 @@ class VPS_API VoxMapCache {
   Warn warn_;
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/box.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 bool overlap(const Box& a, const Box& b) noexcept {
   return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
@@ -30,4 +30,4 @@ Box moved(const Box& box, const Pose& X) noexcept {
   return out;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

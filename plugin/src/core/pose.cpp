@@ -2,7 +2,7 @@
 // What is not needed in inner loops: Eigen's rotations take long to compile in every file that includes them.
 #include "vps/pose.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 Pose::Pose(const Quat& rotation, const Vec3& position)
     : R(rotation.normalized().toRotationMatrix()), p(position) {}
@@ -25,4 +25,4 @@ Mat3 rotationFromVector(const Vec3& r) {
   return Eigen::AngleAxisd(angle_rad, r / angle_rad).toRotationMatrix();
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

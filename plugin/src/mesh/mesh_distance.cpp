@@ -12,7 +12,7 @@
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// Twice the area over the square of the longest edge, below which corners are collinear up to rounding.
@@ -370,4 +370,4 @@ Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
   return along * (0.5 * (S + S.transpose())) * along;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

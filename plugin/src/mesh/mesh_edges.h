@@ -12,7 +12,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// One side of a triangle: vertices low < high, which triangle, which of its sides (0 ab, 1 bc, 2 ca).
 struct HalfEdge {
@@ -127,4 +127,4 @@ void forEachEdge(const std::vector<HalfEdge>& edges, Visit visit) {
   }
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -16,7 +16,7 @@
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// Number of facets sampled to classify a whole patch. Assumed: enough for a mean, and fast.
@@ -447,4 +447,4 @@ std::string describe(const MeshReport& report) {
   return text + certain;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps {
+namespace vps::inline v0 {
 
 void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
   // Of each set of duplicates the first of the majority is kept, or, if they are back to back, a pair that is
@@ -76,4 +76,4 @@ void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshR
   for (const std::uint32_t v : corners) report.holes += groups.find(v) == v;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -6,7 +6,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Keeps one of each set of triangles with the same corners, the first of the majority. Of back-to-back pairs
 /// none is kept if other facets end at them or at pairs connected to them: that is a wall between two solids.
@@ -16,4 +16,4 @@ void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges);
 /// Counts holes (connected open edges) and T-junctions (corners within an open edge).
 void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report);
 
-}  // namespace vps
+}  // namespace vps::inline v0

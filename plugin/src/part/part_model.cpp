@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace vps {
+namespace vps::inline v0 {
 
 std::shared_ptr<const MeshDistance> buildSurface(const Mesh& mesh) {
   return mesh.triangles.empty() ? nullptr : std::make_shared<const MeshDistance>(welded(mesh));
@@ -28,4 +28,4 @@ std::shared_ptr<const PartModel> withShell(const PartModel& model, std::shared_p
   return other;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -10,7 +10,7 @@
 #include "vps/assert.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// Spacing of points on edges over the spacing on faces (assumed): tight fits touch at edges, and their cost
@@ -144,4 +144,4 @@ PointShell mergedShells(const std::vector<const PointShell*>& shells, const std:
   return merged;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

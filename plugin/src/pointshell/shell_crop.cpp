@@ -6,7 +6,7 @@
 #include "pointshell/shell_hierarchy.h"
 #include "vps/shell_crop.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// The number of kept entries before each index, and the total.
@@ -73,4 +73,4 @@ PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P
   return out;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

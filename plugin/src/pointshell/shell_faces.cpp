@@ -11,7 +11,7 @@
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// Least gap over spacing (assumed): leaves a quarter of the spacing to the fill pass.
@@ -259,4 +259,4 @@ void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spac
   sampler.dealOutArea();
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

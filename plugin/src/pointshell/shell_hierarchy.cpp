@@ -7,7 +7,7 @@
 
 #include "pointshell/shell_grid.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 constexpr std::size_t kLeafPoints = kLanes;
@@ -224,4 +224,4 @@ std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   return order;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

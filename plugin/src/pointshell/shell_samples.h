@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// A point on the surface, before sorting.
 struct ShellSample {
@@ -36,4 +36,4 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -13,7 +13,7 @@
 #include "vps/query.h"
 #include "vps/query_memory.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// The walk with temporal coherence; see QueryMemory. Lengths are in voxels.
 template <typename Consume>
@@ -222,4 +222,4 @@ inline void setDistance(const VoxMap& map, const Reading& reading, float least_r
   result.is_beyond_band = skipped_m < read_m || !(read_m < map.band_m());
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

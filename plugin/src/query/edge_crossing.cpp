@@ -8,7 +8,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 namespace {
 
@@ -229,4 +229,4 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   });
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

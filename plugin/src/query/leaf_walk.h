@@ -8,7 +8,7 @@
 #include "voxmap/read_kernel.h"
 #include "vps/pointshell.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// A map, a shell and a pose, prepared for reading.
 struct Reading {
@@ -135,4 +135,4 @@ float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take ta
   return least_skipped;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

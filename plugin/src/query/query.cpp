@@ -14,7 +14,7 @@
 #include "voxmap/voxmap_layout.h"
 #include "voxmap/voxmap_sampler.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose
   return result;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -6,7 +6,7 @@
 
 #include "query/coherent_walk.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
     : map_(map), shell_(&shell), blocks_(shell.blocks.data()) {
@@ -42,4 +42,4 @@ bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexce
          row_next_.size() == (shell.leaf_blocks + kLanes - 1) / kLanes;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -9,7 +9,7 @@
 #include "query/coherent_walk.h"
 #include "query/contact_collector.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
@@ -258,4 +258,4 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   return result;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -4,7 +4,7 @@
 #include "voxmap/voxmap_merge.h"
 #include "vps/load_error.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
                   const Progress& progress) {
@@ -26,4 +26,4 @@ VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part) {
   return mergedVoxMap(cooked, buildVoxMap(transformed(*part.mesh, part.X_MP), settings));
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -6,10 +6,10 @@
 
 #include "vps/map_estimate.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Throws LoadError for settings that no map can have and for a mesh whose map would not fit in memory; the
 /// message names a voxel size that would fit.
 void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part);
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// A triangle lower than this share of a voxel is replaced by its edges, which are as near.
@@ -150,4 +150,4 @@ Vec3 SurfaceFeatures::pseudonormalThrough(const Vec3& q, std::span<const Triangl
   return sum;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

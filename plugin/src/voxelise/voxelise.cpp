@@ -25,7 +25,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 namespace {
 
@@ -336,4 +336,4 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
   return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

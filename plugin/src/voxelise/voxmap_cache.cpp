@@ -16,7 +16,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/write_file.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 namespace fs = std::filesystem;
@@ -272,4 +272,4 @@ VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, cons
   return map;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

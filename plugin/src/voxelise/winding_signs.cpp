@@ -13,7 +13,7 @@
 #include "voxelise/brick_assembly.h"
 #include "voxmap/node_steps.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -363,4 +363,4 @@ bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m) {
   return agree;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -8,7 +8,7 @@
 #include "voxmap/voxmap_layout.h"
 #include "vps/winding_number.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// A bound of the gradient of the winding number away from triangles. The gradient is the field of a current
 /// along the mesh's border (Biot and Savart), so it is at most the sum of length / distance^2 over border
@@ -72,4 +72,4 @@ class WindingSigner {
 /// False means that pseudonormals were wrong, most likely because the mesh crosses itself.
 bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m);
 
-}  // namespace vps
+}  // namespace vps::inline v0

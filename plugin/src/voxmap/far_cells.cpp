@@ -2,7 +2,7 @@
 // Cells whose neighbours are all empty: the sixteen points of a leaf in such a cell need not be read.
 #include "voxmap/voxmap_layout.h"
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 /// Spreads set entries to their neighbours along one axis. `stride`: from neighbour to neighbour; `length`:
@@ -34,4 +34,4 @@ void markFarCells(VoxLayout& layout) {
   layout.is_far = std::move(is_used);
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -4,7 +4,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Sets the bounds that queries rely on from the nodes alone: steepest, node_error, centers_m and parts.
 /// Returns the box of the surface, empty if no sign changes. Deterministic. O(nodes).
@@ -18,6 +18,6 @@ namespace vps {
 /// is at most c = 1.1281 times as long as |i - j|, so the difference is at most min(2 band, c s |i - j|). The
 /// deepest points are bounded likewise from the other side. f is also at least the distance to a box if e is
 /// raised by what the nodes are below that distance. [Extension by cones: McShane 1934.]
-Box proveField(VoxLayout& layout, double voxel_m, double quantum_m);
+VPS_API Box proveField(VoxLayout& layout, double voxel_m, double quantum_m);
 
-}  // namespace vps
+}  // namespace vps::inline v0

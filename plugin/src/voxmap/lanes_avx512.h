@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace vps {
+namespace vps::inline v0 {
 namespace {
 
 constexpr int kWide = 16;
@@ -91,4 +91,4 @@ inline void fetchPairs(At at, Ints* pairs) {
 }
 
 }  // namespace
-}  // namespace vps
+}  // namespace vps::inline v0

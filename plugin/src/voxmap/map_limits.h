@@ -7,7 +7,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Refuses voxel sizes and bands that no map can have, including NaN.
 void requireSettings(const VoxMapSettings& settings, const std::string& part = "");
@@ -24,12 +24,12 @@ double directoryBytes(const Vec3& cells);
 
 /// Refuses a directory that would not fit in memory; one that fits has indices of 31 bits, as queries need.
 /// @param cells  along each axis; as doubles, since the count may exceed the range of an index
-void requireDirectory(const Vec3& cells, const std::string& file = "", const std::string& part = "");
+VPS_API void requireDirectory(const Vec3& cells, const std::string& file = "", const std::string& part = "");
 
 /// Refuses what would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4;
 /// REMEDY".
 /// @param what_for  " for its bricks"
-void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
-                   const std::string& file = "", const std::string& part = "");
+VPS_API void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
+                           const std::string& file = "", const std::string& part = "");
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -3,7 +3,7 @@
 
 #include "voxmap/read_kernel.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 extern const ReadKernels kScalarKernels;
 #ifdef VPS_HAS_X86_KERNELS
@@ -61,4 +61,4 @@ const ReadKernels& readKernels(Simd simd) noexcept {
   return kScalarKernels;
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -4,10 +4,10 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 /// Takes maps apart and puts them together. The only friend of VoxMap.
-class VoxMapAccess {
+class VPS_API VoxMapAccess {
  public:
   [[nodiscard]] static const std::shared_ptr<const VoxLayout>& layout(const VoxMap& map) noexcept {
     return map.layout_;
@@ -21,4 +21,4 @@ class VoxMapAccess {
   static VoxMap empty(const VoxMapSettings& settings);
 };
 
-}  // namespace vps
+}  // namespace vps::inline v0

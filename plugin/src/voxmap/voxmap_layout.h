@@ -24,7 +24,7 @@
 
 #include "vps/voxmap.h"
 
-namespace vps {
+namespace vps::inline v0 {
 
 using Index3 = Eigen::Vector3i;
 
@@ -67,7 +67,7 @@ using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 /// the front, and a brick does not change while a map uses it: maps that were mounted on one another share a
 /// pool, so that mounting costs only the new part. Reserved memory that is not filled yet costs nothing on
 /// systems that allocate pages at the first access.
-class VoxPool {
+class VPS_API VoxPool {
  public:
   /// The most bricks that can have a name, besides the two constant ones.
   static constexpr std::size_t kMost = UINT32_MAX / kBrickStride - 2;
@@ -211,7 +211,7 @@ std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
 void moveToNewPool(VoxLayout& layout, std::size_t room);
 
 /// Computes VoxLayout::is_far from the final bricks. Cells beyond the directory count as outer constant.
-void markFarCells(VoxLayout& layout);
+VPS_API void markFarCells(VoxLayout& layout);
 
 /// The unit of nodes [m]. A float, so that its product with any node is exact in double, and the full band is
 /// exactly VoxMap::band_m().
@@ -229,4 +229,4 @@ inline NodeValue nodeOf(Real quanta) {
   return static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(Real{0.5}, quanta)));
 }
 
-}  // namespace vps
+}  // namespace vps::inline v0

@@ -11,7 +11,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< after a failed step, place its part at its target and go on with the next step
@@ -43,4 +43,4 @@ struct AssembleOptions : ModelOptions {
 /// a mesh that cannot be modelled). A step that does not reach its target is a result, not an error.
 VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -17,7 +17,7 @@
 
 #include "vps_scenes/export.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// How a scene file spells a number. Members and JSON are always SI.
 enum class Quantity {
@@ -228,4 +228,4 @@ consteval bool coversAllMembers(const Tables&... tables) {
   return counter.count + by_hand == memberCount<Struct>();
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -11,7 +11,7 @@
 #include "vps/progress.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 struct ImportSettings {
   /// Metres per file unit, for formats without a unit (STL, OBJ, PLY, ...); empty: such a file is refused.
@@ -54,4 +54,4 @@ VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
 VPS_SCENES_API double lengthFromText(const std::string& text, const std::string& what);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -8,7 +8,7 @@
 #include "vps/progress.h"
 #include "vps/voxmap_cache.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 struct ModelOptions {
   Progress progress;
@@ -19,4 +19,4 @@ struct ModelOptions {
   std::function<void(const std::string&)> warn;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 struct ReplayOptions : ModelOptions {
   const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
@@ -33,4 +33,4 @@ VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 /// recordedScene() and assemble().
 VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

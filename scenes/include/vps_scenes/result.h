@@ -11,7 +11,7 @@
 #include "vps/wrench.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Wall-clock statistics of a repeated task [microseconds].
 struct TickTimes {
@@ -144,4 +144,4 @@ struct AssembleResult {
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

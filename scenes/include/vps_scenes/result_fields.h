@@ -9,7 +9,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 // --- TickTimes: the figures that each place shows
 
@@ -173,4 +173,4 @@ inline constexpr auto kTraceFields = std::make_tuple(
     field("contacts", &TraceRow::contacts, "number of contacts"),
     field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"));
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -14,7 +14,7 @@
 #include "vps/part_model.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// What a scene says of a part itself, in the part's own frame P.
 struct Part {
@@ -108,4 +108,4 @@ struct Scene {
 /// key and remedy.
 VPS_SCENES_API Scene loadScene(const std::string& file);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

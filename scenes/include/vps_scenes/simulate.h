@@ -13,7 +13,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 struct BodyState {
   std::string name;
@@ -48,4 +48,4 @@ struct SimulateResult {
 /// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.
 VPS_SCENES_API SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -8,7 +8,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 enum class BodyRole {
   Waiting,   ///< its step is still to come: drawn only in the overview of the finished assembly
@@ -43,4 +43,4 @@ struct Snapshot {
   std::vector<ContactMark> contacts;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -47,4 +47,4 @@ TickTimes TickClock::summary() const {
   return times;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

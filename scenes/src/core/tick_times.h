@@ -7,7 +7,7 @@
 
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Collects durations and summarises them at the end. Not part of any result that must repeat.
 class TickClock {
@@ -34,4 +34,4 @@ class TickClock {
   std::vector<double> us_, cpu_us_;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

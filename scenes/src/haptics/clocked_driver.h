@@ -6,7 +6,7 @@
 #include "haptics/haptic_driver.h"
 #include "vps_device/run_log.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// The physics thread reads the loop's state once per step, in advance(), and gives one command at a time. So
 /// the whole interaction of the two threads is a list of SyncEvents, and a replay can repeat it.
@@ -66,4 +66,4 @@ class ClockedDriver : public HapticDriver {
   std::uint64_t reported_faults_ = 0;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

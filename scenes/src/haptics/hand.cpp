@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -294,4 +294,4 @@ std::unique_ptr<Hand> recordedHand(device::Recording& recording) {
   return std::make_unique<RecordedHand>(recording);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -14,7 +14,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Commands and state exchange of a procedure, called from the physics thread. In lockstep the haptic loop
 /// runs inside advance(); in real time it runs from resume() to pause(), also while commands are given.
@@ -93,4 +93,4 @@ std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device:
 /// In real time: how old a physics state may be.
 double physicsLimit_s(double physics_s);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -3,7 +3,7 @@
 #include "core/tick_times.h"
 #include "haptics/haptic_driver.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 namespace {
 
 class LockstepDriver final : public HapticDriver {
@@ -86,4 +86,4 @@ std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& dev
   return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, report);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -7,7 +7,7 @@
 #include "vps/load_error.h"
 #include "vps/mesh.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -122,4 +122,4 @@ PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& wo
   return one;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// The segments of a step's path.
 ///
@@ -26,4 +26,4 @@ struct PathSegments {
 /// path that does not fit if the scene's device has no indexing.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

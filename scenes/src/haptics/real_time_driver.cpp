@@ -11,7 +11,7 @@
 #include "simulation/physics_clock.h"
 #include "vps_device/real_time_loop.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 namespace {
 
 // Missed periods that a simulated device makes up for; beyond that its time stands still.
@@ -194,4 +194,4 @@ std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPor
   return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, report, log);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

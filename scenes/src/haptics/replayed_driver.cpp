@@ -8,7 +8,7 @@
 #include "core/tick_times.h"
 #include "haptics/clocked_driver.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 namespace {
 
 class ReplayedDriver final : public ClockedDriver {
@@ -119,4 +119,4 @@ std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device:
   return std::make_unique<ReplayedDriver>(hand, std::move(sync_events), device, port, settings, report, log);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

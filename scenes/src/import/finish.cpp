@@ -10,7 +10,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 namespace {
 
 void flip(Mesh& mesh) {
@@ -197,4 +197,4 @@ void finish(RawCad raw, ImportedCad& cad) {
   }
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import

@@ -4,7 +4,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 namespace {
 
 struct Reader {
@@ -40,4 +40,4 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   return cad;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

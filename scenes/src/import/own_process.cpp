@@ -3,12 +3,12 @@
 
 #if !defined(__unix__)
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 RawCad inOwnProcess(const std::string&, const std::string&, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read) {
   return read(progress);
 }
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import
 
 #else
 
@@ -35,7 +35,7 @@ RawCad inOwnProcess(const std::string&, const std::string&, const Progress& prog
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 namespace {
 
 // Messages of the child: Progressed (share, text) any number of times, then once Done (a RawCad) or Failed
@@ -256,6 +256,6 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const P
   }
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import
 
 #endif

@@ -13,7 +13,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 namespace {
 
 /// Metres per unit of assimp's result. It applies Collada's unit itself, in the root's transform. It drops
@@ -167,4 +167,4 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   return cad;
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import

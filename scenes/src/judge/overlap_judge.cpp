@@ -9,7 +9,7 @@
 #include "vps/query.h"
 #include "vps/sharp_edges.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -144,4 +144,4 @@ double OverlapJudge::fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) co
   return -least_m;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps/part_model.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// A sharp edge of a part, in its frame.
 struct SharpEdge {
@@ -62,4 +62,4 @@ class OverlapJudge {
   std::vector<Mounted> mounted_;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

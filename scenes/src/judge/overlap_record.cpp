@@ -7,7 +7,7 @@
 
 #include "judge/box_motion.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -50,4 +50,4 @@ OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
   return verdict;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

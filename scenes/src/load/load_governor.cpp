@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -76,4 +76,4 @@ void LoadGovernor::moveTo(int level) noexcept {
   calm_ = 0;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

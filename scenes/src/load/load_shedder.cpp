@@ -9,7 +9,7 @@
 #include "core/wall_clock.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -211,4 +211,4 @@ void LoadShedder::reportLastLevel(double time_s) {
   changes_.push_back(std::move(change));
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

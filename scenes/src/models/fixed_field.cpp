@@ -9,7 +9,7 @@
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -94,4 +94,4 @@ CookedField cookField(const FieldOrder& order) {
   return field;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -12,7 +12,7 @@
 #include "vps/part_model.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// A part in place.
 struct FixedPart {
@@ -55,4 +55,4 @@ struct CookedField {
 /// as cookVoxMap(). When stopped, the result may have no shape.
 CookedField cookField(const FieldOrder& order);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -8,7 +8,7 @@
 #include "models/scene_models.h"
 #include "vps/box.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -203,4 +203,4 @@ ModelPlan makeModelPlan(const Scene& scene, ModelPurpose purpose, bool models_ev
   return models_everything ? planner.everything() : planner.reduced();
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -11,7 +11,7 @@
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity) {
   VoxMapSettings settings;
@@ -151,4 +151,4 @@ ModelledCost modelledCost(const Scene& scene) {
   return cost;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

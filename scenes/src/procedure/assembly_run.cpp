@@ -10,7 +10,7 @@
 #include "procedure/step_run.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -61,4 +61,4 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   return result;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -7,7 +7,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Throws LoadError for a scene without a step.
 void requireSteps(const Scene& scene);
@@ -20,4 +20,4 @@ void requireSteps(const Scene& scene);
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -7,7 +7,7 @@
 #include "procedure/loop_settings.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -259,4 +259,4 @@ void AssemblyWorld::summarise(AssembleResult& result) const {
   result.simulated_s = state_.time_s;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

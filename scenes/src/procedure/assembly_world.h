@@ -15,7 +15,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// The part that the current step moves.
 struct StepPart {
@@ -126,4 +126,4 @@ class AssemblyWorld {
   TickClock physics_clock_;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

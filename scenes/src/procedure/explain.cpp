@@ -8,7 +8,7 @@
 #include "models/scene_models.h"
 #include "simulation/simulation.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -94,4 +94,4 @@ PartUse useOf(const ModelPlan& plan, std::size_t part, std::size_t step) {
   return PartUse::Absent;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -6,7 +6,7 @@
 #include "vps/load_error.h"
 #include "vps_device/gains.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 device::LoopSettings loopSettings(const Scene& scene, const device::Device& device) {
   const device::DeviceLimits limits = device.limits();
@@ -47,4 +47,4 @@ int ticksPerStep(const Scene& scene) {
   return ticks;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -6,7 +6,7 @@
 #include "vps_device/loop.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Gains from deriveGains(), except those that the scene states. Safety limits are the device's peaks.
 device::LoopSettings loopSettings(const Scene& scene, const device::Device& device);
@@ -18,4 +18,4 @@ CouplingGains passiveGains(const Scene& scene, const device::DeviceLimits& limit
 /// physics rate.
 int ticksPerStep(const Scene& scene);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -6,7 +6,7 @@
 #include "models/scene_models.h"
 #include "vps/box.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 PlacedParts::PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options)
     : scene_(scene),
@@ -74,4 +74,4 @@ void PlacedParts::widen(std::size_t step) {
   setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

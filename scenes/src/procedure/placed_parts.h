@@ -10,7 +10,7 @@
 #include "simulation/simulation.h"
 #include "vps_scenes/model_options.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Not thread-safe, except that another thread may read judge() and a judgedBody() while add() is called.
 class PlacedParts {
@@ -56,4 +56,4 @@ class PlacedParts {
   int widened_ = 0;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

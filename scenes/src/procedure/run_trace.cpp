@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -118,4 +118,4 @@ Snapshot snapshotOf(const AssemblyWorld& world) {
   return shot;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -12,7 +12,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 class RunTrace {
  public:
@@ -54,4 +54,4 @@ class RunTrace {
 /// What a viewer needs of this instant.
 Snapshot snapshotOf(const AssemblyWorld& world);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -11,7 +11,7 @@
 #include "core/wall_clock.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -96,4 +96,4 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   if (cooked.shape) swapIn(world.placed(), std::move(cooked), result);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -10,7 +10,7 @@
 #include "procedure/step_verdict.h"
 #include "vps_scenes/contact_episodes.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -127,4 +127,4 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
   return result;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

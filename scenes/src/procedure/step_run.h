@@ -6,9 +6,9 @@
 #include "procedure/run_trace.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Runs scene.steps[index]. Throws LoadError as AssemblyWorld::take(). A step that fails is a result.
 StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

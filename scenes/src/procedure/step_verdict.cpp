@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -34,4 +34,4 @@ void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Po
   if (!result.completed) result.failure_reason = failureReason(world, step, result.start_s, is_done);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -5,7 +5,7 @@
 #include "procedure/assembly_world.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// The greatest penetration that a step may have: min(10 um, clearance / 4).
 double penetrationLimit_m(const SceneStep& step);
@@ -15,4 +15,4 @@ double penetrationLimit_m(const SceneStep& step);
 /// @param X_WP  of the part, after its rest
 void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

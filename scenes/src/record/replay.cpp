@@ -6,7 +6,7 @@
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -51,4 +51,4 @@ ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options
   return replayed;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

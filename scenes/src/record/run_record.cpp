@@ -7,7 +7,7 @@
 #include "vps/version.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::string programVersion() {
   return std::string(VPS_VERSION_STRING) + ", compiler " + __VERSION__ + ", Bullet " + precision;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -20,7 +20,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -306,4 +306,4 @@ std::string contentHash(const Mesh& mesh) {
   return contentHash(bytes);
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

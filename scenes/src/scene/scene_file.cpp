@@ -15,7 +15,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -371,4 +371,4 @@ Scene loadScene(const std::string& file) {
   return SceneReader(root, file).read();
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

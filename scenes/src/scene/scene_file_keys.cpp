@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -312,4 +312,4 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
   return from;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -44,4 +44,4 @@ void PhysicsClock::stop() noexcept {
   device::leaveRealTime();
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

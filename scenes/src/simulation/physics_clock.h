@@ -6,7 +6,7 @@
 #include "vps_device/periodic_thread.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Used by the thread that steps physics, whose priority it raises.
 class PhysicsClock {
@@ -40,4 +40,4 @@ class PhysicsClock {
   std::int64_t woke_ns_ = 0;  ///< end of the last wait; 0: none yet
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -11,7 +11,7 @@
 #include "simulation/simulation.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -109,4 +109,4 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   return result;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

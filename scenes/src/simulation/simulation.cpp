@@ -17,7 +17,7 @@
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -360,4 +360,4 @@ void Simulation::addField(ModelledCost& cost) const {
   cost.field_points = shell != nullptr ? shell->size() : 0;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -13,7 +13,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// The contacts of the last step.
 struct TouchState {
@@ -96,4 +96,4 @@ class Simulation {
   std::unique_ptr<World> world_;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -16,7 +16,7 @@
 #include "vps/mesh_distance.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 namespace {
 
@@ -274,4 +274,4 @@ std::string describe(const FidelityChoice& choice) {
   return words;
 }
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-namespace vps::scenes {
+namespace vps::scenes::inline v0 {
 
 /// Draws from [0, 1). Not std::uniform_real_distribution, whose numbers depend on the standard library.
 class SeededDraw {
@@ -17,4 +17,4 @@ class SeededDraw {
   std::mt19937_64 random_;
 };
 
-}  // namespace vps::scenes
+}  // namespace vps::scenes::inline v0

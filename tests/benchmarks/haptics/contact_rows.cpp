@@ -16,23 +16,23 @@ using dynamics::Mode;
 using dynamics::PartMesh;
 using dynamics::Placed;
 
-struct device::Device {
+struct RigDevice {
   const char* name;
   device::SimulatedDualArmSettings settings;
   bool is_judged;
 };
 
-std::vector<device::Device> devices() {
+std::vector<RigDevice> devices() {
   return {{"ideal", device::idealDualArm(), true}, {"real", realDualArm(), false}};
 }
 
 // Results with real encoders and structure are reported, but not judged.
-Figure judged(const device::Device& device, const std::string& what, double value, double bar, double scale,
+Figure judged(const RigDevice& device, const std::string& what, double value, double bar, double scale,
               const std::string& unit) {
   return device.is_judged ? atMost(what, value, bar, scale, unit) : reported(what, value, scale, unit);
 }
 
-RigSettings rigFor(const device::Device& device, Mode mode, double stiffness_N_per_m3 = 1e12,
+RigSettings rigFor(const RigDevice& device, Mode mode, double stiffness_N_per_m3 = 1e12,
                    double spacing_m = 0.5e-3) {
   bullet::Settings bullet;
   bullet.stiffness_N_per_m3 = stiffness_N_per_m3;
@@ -89,7 +89,7 @@ Press pressBlock(const RigSettings& settings, double stiffness_N_per_m3, double 
 
 void pressRow(const HapticOptions& options, Table& table) {
   const double speed_m_s = options.is_short ? 5e-3 : 2e-3;
-  for (const device::Device& device : devices())
+  for (const RigDevice& device : devices())
     for (const auto& [mode, k, name] :
          {std::tuple{Mode::Constraint, 1e12, "rigid"}, std::tuple{Mode::Penalty, 1e12, "penalty, 1e12 N/m3"},
           std::tuple{Mode::Penalty, 1e8, "penalty, 1e8 N/m3"}}) {
@@ -175,7 +175,7 @@ Slide slideOver(const RigSettings& settings, const Surface& surface, double leng
 
 void slideRow(const HapticOptions& options, Table& table) {
   const double length_m = options.is_short ? 10e-3 : 20e-3;
-  for (const device::Device& device : devices())
+  for (const RigDevice& device : devices())
     for (const Surface& surface : surfaces())
       for (const auto& [mode, spacing_m] :
            {std::pair{Mode::Constraint, 0.5e-3}, std::pair{Mode::Penalty, 0.5e-3},
@@ -219,7 +219,7 @@ double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
 }  // namespace
 
 void freeMotionRow(const HapticOptions&, Table& table) {
-  for (const device::Device& device : devices()) {
+  for (const RigDevice& device : devices()) {
     RigSettings settings = rigFor(device, Mode::Constraint);
     settings.has_gravity = true;
     double speed_m_s = 0;

@@ -20,7 +20,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/image.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// One thing that can be drawn; BodySnapshot::part counts these.
 struct DrawnMesh {
@@ -94,4 +94,4 @@ class VPS_VIEWER_API Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

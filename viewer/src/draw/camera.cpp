@@ -6,7 +6,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 Pose Camera::pose() const {
   const Vec3 z = (eye_W - target_W).normalized();
@@ -48,4 +48,4 @@ Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad, doubl
   return camera;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -4,7 +4,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Eigen::Vector2f;
@@ -121,4 +121,4 @@ Image resolvePicture(const GpuResources& gl) {
   return image;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -4,7 +4,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Eigen::Vector2f;
@@ -63,4 +63,4 @@ void drawEdges(const Picture& picture) {
   glDisable(GL_BLEND);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

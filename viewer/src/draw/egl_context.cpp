@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) {
@@ -74,4 +74,4 @@ EglContext::Current::~Current() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

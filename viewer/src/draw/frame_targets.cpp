@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 gl::Framebuffer targetOf(const gl::Texture& texture, const char* what,
@@ -67,4 +67,4 @@ ShadowTargets::ShadowTargets() {
   floor_b_target = targetOf(floor_b, "the blurred floor");
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

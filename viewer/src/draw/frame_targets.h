@@ -4,7 +4,7 @@
 
 #include "draw/gl_objects.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 struct FrameTargets {
   int width, height;  ///< of the finished picture
@@ -39,4 +39,4 @@ struct ShadowTargets {
   ShadowTargets();
 };
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

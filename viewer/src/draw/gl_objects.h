@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace vps::viewer::gl {
+namespace vps::viewer::inline v0::gl {
 
 /// An object's name and the function that deletes it; movable.
 template <void (*Delete)(GLuint)>
@@ -91,4 +91,4 @@ class Program {
   Object<deleteProgram> program_;
 };
 
-}  // namespace vps::viewer::gl
+}  // namespace vps::viewer::inline v0::gl

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 GpuResources::GpuResources() {
   const std::array<float, 8> corners = {-1, -1, 1, -1, -1, 1, 1, 1};
@@ -29,4 +29,4 @@ void GpuResources::drawSquare(const gl::Program& program) const {
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

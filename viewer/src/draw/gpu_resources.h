@@ -12,7 +12,7 @@
 #include "draw/scene_buffers.h"
 #include "draw/shaders.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 struct ShaderPrograms {
   gl::Program mesh{"mesh", glsl::kMeshVertex, std::string(glsl::kStudio) + glsl::kMeshFragment};
@@ -50,4 +50,4 @@ struct GpuResources {
   void drawSquare(const gl::Program& program) const;
 };
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

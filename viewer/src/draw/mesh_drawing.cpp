@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
                 const Eigen::Matrix4f& projection, bool is_shaded) {
@@ -17,4 +17,4 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
   glDisable(GL_CLIP_DISTANCE0);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -2,7 +2,7 @@
 // Ambient occlusion in screen space, from the normal and depth of what is seen.
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 void renderGeometry(const Picture& picture) {
   const FrameTargets& frame = *picture.gl.frame;
@@ -41,4 +41,4 @@ void renderOcclusion(const Picture& picture) {
   glEnable(GL_DEPTH_TEST);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

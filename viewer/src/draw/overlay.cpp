@@ -8,7 +8,7 @@
 
 #include "draw/marks.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 std::uint8_t toSrgb(float linear) {
@@ -128,4 +128,4 @@ void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptio
   if (has_contacts) legend.depthScale(options.contact_full_scale_m);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

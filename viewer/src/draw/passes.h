@@ -9,7 +9,7 @@
 #include "draw/gpu_resources.h"
 #include "draw/view.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 /// What the passes of one picture read.
 struct Picture {
@@ -54,4 +54,4 @@ void drawEdges(const Picture& picture);
 void drawLines(const GpuLines& lines, const DrawnBody& body, const Picture& picture, float width_px,
                const Eigen::Vector4f& color);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

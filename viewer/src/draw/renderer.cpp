@@ -8,7 +8,7 @@
 #include "draw/passes.h"
 #include "draw/visible_parts.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Eigen::Vector3f;
@@ -111,4 +111,4 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
   return image;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 GpuLines::GpuLines(std::span<const ShadingEdge> segments)
     : buffer(gl::makeBuffer(segments)),
@@ -50,4 +50,4 @@ std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye) {
   return edges;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

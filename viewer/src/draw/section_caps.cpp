@@ -6,7 +6,7 @@
 #include "draw/box_corners.h"
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Eigen::Vector2f;
@@ -104,4 +104,4 @@ void drawCaps(const gl::Program& program, const Picture& picture) {
   glDisable(GL_STENCIL_TEST);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

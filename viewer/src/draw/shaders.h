@@ -3,7 +3,7 @@
 // viewer), so that floats are precise far from the world's origin. Colours are linear.
 #pragma once
 
-namespace vps::viewer::glsl {
+namespace vps::viewer::inline v0::glsl {
 
 // --- solid surfaces ---
 
@@ -350,4 +350,4 @@ void main() {
 }
 )";
 
-}  // namespace vps::viewer::glsl
+}  // namespace vps::viewer::inline v0::glsl

@@ -6,7 +6,7 @@
 
 #include "draw/float_vectors.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -141,4 +141,4 @@ std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n,
   return segments;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -8,7 +8,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 struct ShadingVertex {
   std::array<float, 3> p;  ///< relative to ShadingMesh::center
@@ -47,4 +47,4 @@ ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_
 /// relative to center.
 std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n, double offset);
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -5,7 +5,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using Eigen::Vector2f;
@@ -88,4 +88,4 @@ void drawFloorShadow(const Picture& picture) {
   glDisable(GL_BLEND);
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -13,7 +13,7 @@
 #include "vps/write_file.h"
 #include "vps_viewer/image.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 // libpng's simplified interface returns errors as text and needs no setjmp.
@@ -72,4 +72,4 @@ Image loadPng(const std::string& file) {
   return image;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

@@ -21,7 +21,7 @@
 
 extern char** environ;
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install gnuplot-nox)";
@@ -148,4 +148,4 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
 }
 
 }  // namespace gnuplot
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

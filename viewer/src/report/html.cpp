@@ -5,7 +5,7 @@
 
 #include "vps_viewer/report.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 
 std::string escapeHtml(const std::string& text) {
   std::string out;
@@ -109,4 +109,4 @@ std::string page(const std::string& title, const std::string& body) {
 }
 
 }  // namespace html
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

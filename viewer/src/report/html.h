@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::viewer::html {
+namespace vps::viewer::inline v0::html {
 
 /// printf with one double: format(1e6 * depth_m, "%.2f").
 std::string format(double value, const char* form);
@@ -30,4 +30,4 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 /// The page around a body.
 std::string page(const std::string& title, const std::string& body);
 
-}  // namespace vps::viewer::html
+}  // namespace vps::viewer::inline v0::html

@@ -7,7 +7,7 @@
 #include "report/html.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using html::format;
@@ -141,4 +141,4 @@ ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleRe
   }
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

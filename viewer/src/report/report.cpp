@@ -11,7 +11,7 @@
 #include "vps/write_file.h"
 #include "vps_scenes/load_level.h"
 
-namespace vps::viewer {
+namespace vps::viewer::inline v0 {
 namespace {
 
 using html::Cell;
@@ -310,4 +310,4 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   return outcome;
 }
 
-}  // namespace vps::viewer
+}  // namespace vps::viewer::inline v0

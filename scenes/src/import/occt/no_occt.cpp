@@ -3,7 +3,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
@@ -12,4 +12,4 @@ RawCad readOcct(const std::string& file, const std::string& format, const Import
                       "libocct-data-exchange-dev and build again");
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import

@@ -31,7 +31,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 namespace {
 
 using Color = std::array<float, 3>;
@@ -314,4 +314,4 @@ RawCad readOcct(const std::string& file, const std::string& format, const Import
   }
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import

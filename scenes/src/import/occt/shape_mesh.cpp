@@ -16,7 +16,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 namespace {
 
 void appendFace(const TopoDS_Face& face, Mesh& mesh) {
@@ -73,4 +73,4 @@ Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double un
   return mesh;
 }
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import

@@ -9,7 +9,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::import {
+namespace vps::scenes::inline v0::import {
 
 /// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
@@ -18,4 +18,4 @@ std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
 /// Faces of one shape share the points of their common edges, so welding closes it.
 Mesh meshOf(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
 
-}  // namespace vps::scenes::import
+}  // namespace vps::scenes::inline v0::import
