@@ -14,7 +14,8 @@ int main() {
   btSequentialImpulseConstraintSolver solver;
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
   world.setGravity(btVector3(0, 0, vps::bullet::toBt(-9.81)));
-  vps::bullet::install(dispatcher);  // from here on, VpsShapes collide: with each other and with Bullet's own
+  vps::bullet::install(
+      dispatcher);  // from here on, VPS shapes collide: with each other and with Bullet's own
 
   // Of steel, with a hole of 10.1 mm; any closed mesh will do.
   const auto ring = vps::buildPartModel("ring", vps::makeTube(0.010, 0.00505, 0.005, 128));

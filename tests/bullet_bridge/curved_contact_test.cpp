@@ -18,7 +18,7 @@ namespace {
 
 using test::Built;
 
-constexpr double kMostGain_m = 20e-6;  // as Settings::contact_margin_m
+constexpr double kMaxGain_m = 20e-6;  // as Settings::contact_margin_m
 constexpr double kSpacing_m = 0.5e-3, kBall_m = 5e-3, kBelow_m = 20e-3;
 
 const Built& ball() {
@@ -35,7 +35,7 @@ struct FlushPoint {
   FacePoint foot;
 
   bool move(const SideView (&sides)[2]) {
-    return moveToNearest(point, sides[point.side], sides[1 - point.side], foot, kMostGain_m);
+    return moveToNearest(point, sides[point.side], sides[1 - point.side], foot, kMaxGain_m);
   }
 };
 

@@ -20,8 +20,8 @@ extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*call
 
 namespace {
 
-constexpr std::size_t kMostCuts = 3000;  // of one seed; a longer one is cut at every second byte, third, ...
-constexpr unsigned kSlow_s = 30;         // an input that takes longer is a failure too
+constexpr std::size_t kMaxCuts = 3000;  // of one seed; a longer one is cut at every second byte, third, ...
+constexpr unsigned kSlow_s = 30;        // an input that takes longer is a failure too
 std::string current;
 
 void keepInput() {
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   std::size_t runs = 0, cuts = 0;
   for (const std::string& seed : seeds) {
     runOne(seed);
-    const std::size_t step = 1 + seed.size() / kMostCuts;
+    const std::size_t step = 1 + seed.size() / kMaxCuts;
     for (std::size_t length = 0; length < seed.size(); length += step, ++cuts) runOne(seed.substr(0, length));
   }
   std::mt19937 random(1);

@@ -5,6 +5,7 @@
 
 #include "blocks.h"
 #include "rows.h"
+#include "vps/coupling_law.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 #include "vps_device/dual_arm/simulated_dual_arm.h"
@@ -15,13 +16,6 @@
 namespace vps::stability {
 
 namespace {
-
-// Energy stored in the coupling's springs, within their limits.
-double springEnergy_J(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& part) {
-  const Vec3 turn_rad = rotationVector(proxy.X_W.R * part.X_W.R.transpose());
-  return gains.k_N_per_m * (proxy.X_W.p - part.X_W.p).squaredNorm() / 2 +
-         gains.k_Nm_per_rad * turn_rad.squaredNorm() / 2;
-}
 
 // A hand shakes the handle by 10 mm, a sine with this jerk, and hits a block against a plate in each period.
 Judgement shake(const Run& run) {
@@ -62,7 +56,7 @@ Judgement shake(const Run& run) {
     part.is_coupled = true;
     port.physics.write({part, 0, {}, {}});
     loop.observeStoredEnergy(
-        energy_J(world, {block}) + springEnergy_J(settings.gains, port.haptic.read().proxy, part), 0);
+        energy_J(world, {block}) + couplingEnergy_J(settings.gains, port.haptic.read().proxy, part), 0);
   };
   const Watched watched = watch(world, {floor, block}, watching);
   Judgement judgement;

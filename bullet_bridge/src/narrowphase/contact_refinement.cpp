@@ -227,10 +227,10 @@ namespace {
 // the field's error is a small part of a voxel.
 Exact nearFieldDistance(const Refiner& refiner, const Vec3& p_W, const Vec3& inward, double field_m,
                         double voxel_m) {
-  const OwnPoint own{p_W, inward, true};         // penalty contact has no crossings, only the points of edges
-  constexpr double kMostly = 0.05, kAlways = 1;  // of a voxel
-  Exact exact = refiner.at(own, std::abs(field_m) + kMostly * voxel_m);
-  if (!exact.found) exact = refiner.at(own, std::abs(field_m) + kAlways * voxel_m);
+  const OwnPoint own{p_W, inward, true};  // penalty contact has no crossings, only the points of edges
+  constexpr double kUsualMargin = 0.05, kFullMargin = 1;  // of a voxel
+  Exact exact = refiner.at(own, std::abs(field_m) + kUsualMargin * voxel_m);
+  if (!exact.found) exact = refiner.at(own, std::abs(field_m) + kFullMargin * voxel_m);
   return exact;
 }
 

@@ -87,8 +87,8 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
     return;
   }
   const double stride_m = std::max(0.5 * (range_m - motion.contact_margin_m), 0.25 * range_m);
-  constexpr double kMostStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
-  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStrides)));
+  constexpr double kMaxStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
+  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMaxStrides)));
   PairView later = pair;
   for (int k = 0; k < strides && out.empty(); ++k) {
     const double t_s = motion.dt_s * k / strides;

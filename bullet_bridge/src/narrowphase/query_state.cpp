@@ -13,12 +13,12 @@ namespace {
 // tiles than contacts. Tiles are larger where a shell would have more than sixteen of them for each contact.
 constexpr std::size_t kTilePoints = 64;
 constexpr double kTileSpacings = 12;  // the diagonal and a margin
-constexpr double kMostTiles = 16;
+constexpr double kMaxTiles = 16;
 
 double tileSize_m(const PointShell& shell, const Settings& settings) {
   const double area_m2 = std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0);
   return std::max(kTileSpacings * shell.spacing_m,
-                  std::sqrt(2 * area_m2 / (kMostTiles * settings.contact_limit)));
+                  std::sqrt(2 * area_m2 / (kMaxTiles * settings.contact_limit)));
 }
 
 }  // namespace

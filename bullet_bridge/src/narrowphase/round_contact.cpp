@@ -24,10 +24,10 @@ using Point = std::optional<Vec3>;
 // The farthest point in a direction on the circle of radius r about the axis at height h. None for a
 // direction along the axis.
 Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction) {
-  constexpr double kLeast = 0.2;
+  constexpr double kMinRadial = 0.2;
   Vec3 radial = direction;
   radial[axis] = 0;
-  if (!(radial.norm() > kLeast)) return {};
+  if (!(radial.norm() > kMinRadial)) return {};
   return Vec3(radius_m * radial.normalized() + height_m * Vec3(Vec3::Unit(axis)));
 }
 

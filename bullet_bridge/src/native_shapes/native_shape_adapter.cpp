@@ -138,8 +138,8 @@ std::shared_ptr<const NativeShapeAdapter> NativeShapeCache::get(const btCollisio
   const std::uint64_t hash = hashOf(nativeShapeMesh(shape).mesh);
   if (is_known && it->second.hash == hash) return it->second.adapter;
   // Bullet does not report deleted shapes, so adapters without pairs are dropped when there are many.
-  constexpr std::size_t kMostKept = 64;
-  if (entries_.size() >= kMostKept)
+  constexpr std::size_t kMaxKept = 64;
+  if (entries_.size() >= kMaxKept)
     std::erase_if(entries_, [](const auto& entry) { return entry.second.adapter.use_count() == 1; });
   const auto adapter = std::make_shared<const NativeShapeAdapter>(shape);
   entries_[&shape] = {key, hash, adapter};

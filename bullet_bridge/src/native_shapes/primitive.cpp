@@ -108,7 +108,7 @@ SurfaceDistance coneDistance(int axis, double radius_m, double height_m, const V
   return nearest;
 }
 
-constexpr int kMostSpheres = 12;
+constexpr int kMaxSpheres = 12;
 
 struct Sphere {
   Vec3 center;
@@ -177,7 +177,7 @@ bool isEven(const btVector3& scale) {
 }
 
 SurfaceDistance multiSphereDistance(const btMultiSphereShape& shape, const Vec3& p) {
-  Sphere spheres[kMostSpheres];
+  Sphere spheres[kMaxSpheres];
   const double scale = shape.getLocalScaling().x();
   for (int i = 0; i < shape.getSphereCount(); ++i)
     spheres[i] = {scale * fromBt(shape.getSpherePosition(i)), scale * shape.getSphereRadius(i)};
@@ -203,7 +203,7 @@ bool isPrimitive(const btCollisionShape& shape) {
     case CONE_SHAPE_PROXYTYPE:
       return true;
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
-      return static_cast<const btMultiSphereShape&>(shape).getSphereCount() <= kMostSpheres &&
+      return static_cast<const btMultiSphereShape&>(shape).getSphereCount() <= kMaxSpheres &&
              isEven(shape.getLocalScaling());
     case UNIFORM_SCALING_SHAPE_PROXYTYPE: {
       const auto& scaled = static_cast<const btUniformScalingShape&>(shape);

@@ -202,14 +202,14 @@ void ContactSweeps::pushJoint(const JointState& joint) {
 }
 
 void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
-  constexpr double kMostPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
+  constexpr double kMaxPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
   constexpr double kNothing_m = 1e-9;
   const double dt = info.m_timeStep;
   bool is_needed = false;
   for (RigidContact& c : contacts_) {
     const double left_m = c.gap_m + velocity(c.normal) * dt;
     is_needed |= left_m < -kNothing_m;
-    c.target_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMostPush_m_s) : -left_m / dt;
+    c.target_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMaxPush_m_s) : -left_m / dt;
     c.p_push = 0;
   }
   push_.clear();
@@ -239,7 +239,7 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
     std::swap(b.u, push);
     // Each row's push is limited, but contradictory rows add up.
     const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
-    if (fastest_m_s > kMostPush_m_s) push *= kMostPush_m_s / fastest_m_s;
+    if (fastest_m_s > kMaxPush_m_s) push *= kMaxPush_m_s / fastest_m_s;
   }
 }
 

@@ -10,8 +10,8 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr std::size_t kLeastReadings = 12;  // two for each unknown
-constexpr int kMostIterations = 50;
+constexpr std::size_t kMinReadings = 12;  // two for each unknown
+constexpr int kMaxIterations = 50;
 constexpr double kSettled = 1e-13;  // m and rad: a few roundings of lengths of 1 m
 constexpr double kBlur_m = 1e-3;    // readings that determine the base less precisely are too similar
 
@@ -53,7 +53,7 @@ BaseCalibration calibrateBases(const DualArmParameters& parameters,
   BaseCalibration result;
   result.parameters = parameters;
   result.status = Status::Truncated;
-  if (readings.size() < kLeastReadings) return result;
+  if (readings.size() < kMinReadings) return result;
   result.status = Status::BadPose;
   if (!areFinite(readings)) return result;
 
@@ -61,7 +61,7 @@ BaseCalibration calibrateBases(const DualArmParameters& parameters,
   Sums sums = sumsOf(parameters, X_DR, readings);
   bool is_settled = false;
   double damping = 0;  // Levenberg damping, only where a full step increases the residual
-  while (!is_settled && result.iterations < kMostIterations) {
+  while (!is_settled && result.iterations < kMaxIterations) {
     ++result.iterations;
     const Mat6 A = sums.JJ + damping * sums.JJ.trace() * Mat6::Identity();
     const Vec6 step = -A.ldlt().solve(sums.Jr);

@@ -112,7 +112,7 @@ void DualArmPlant::drive(const JointVector& efforts) noexcept {
   for (int i = 0; i < 7; ++i)
     commands_[0][i] = std::isfinite(efforts[i]) ? std::clamp(efforts[i], -peak[i], peak[i]) : 0;
   command_s_ = time_s_;
-  efforts_ = commands_[std::min(static_cast<std::size_t>(settings_.arms.delay_ticks), kMostDelay - 1)];
+  efforts_ = commands_[std::min(static_cast<std::size_t>(settings_.arms.delay_ticks), kMaxDelay - 1)];
 }
 
 DualArmPlant::Mat6 DualArmPlant::handleInertia() const noexcept {

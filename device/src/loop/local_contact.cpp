@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/local_contact.h"
+#include "vps/friction.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "vps/friction.h"
 
 namespace vps::device::inline v0 {
 namespace {
@@ -58,8 +61,9 @@ std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size
     Eigen::Matrix<double, 3, 6> slide;
     slide << -crossMatrix(r_W), Mat3::Identity();
     slide -= n_W * (n_W.transpose() * slide);
-    const double speed_m_s = std::max((slide * V).norm(), kCreep_m_s);
-    system.A.noalias() += (dt_s * part.friction * k_N_per_m * -gap_m / speed_m_s) * slide.transpose() * slide;
+    const double limit_Ns = dt_s * part.friction * k_N_per_m * -gap_m;
+    system.A.noalias() +=
+        frictionDamping(limit_Ns, (slide * V).norm(), kCreep_m_s) * slide.transpose() * slide;
   }
   return touching;
 }

@@ -7,9 +7,9 @@
 namespace vps::device::inline v0 {
 namespace {
 
-constexpr double kLeastSegment_s = 0.3;  // assumed: no aimed movement is shorter
-constexpr double kArrived_m = 2e-3;      // distance from a way point that counts as reached
-constexpr double kArrivalWait_s = 0.5;   // longest wait for that
+constexpr double kMinSegment_s = 0.3;   // assumed: no aimed movement is shorter
+constexpr double kArrived_m = 2e-3;     // distance from a way point that counts as reached
+constexpr double kArrivalWait_s = 0.5;  // longest wait for that
 constexpr double kRetreat_s = 0.25;
 constexpr double kRamp_s = 0.2;            // of the press, up and down
 constexpr double kPressRate_N_per_s = 10;  // growth of the push against resistance
@@ -125,7 +125,7 @@ void VirtualOperator::startSegment(const Pose& X_from, const Pose& X_to, double 
   const double length_m = (X_to.p - X_from.p).norm();
   const double turn_rad = rotationVector(X_to.R * X_from.R.transpose()).norm();
   segment_ = {X_from, X_to, now_s,
-              std::max({kLeastSegment_s, length_m / (speed_share * habits_.speed_m_s),
+              std::max({kMinSegment_s, length_m / (speed_share * habits_.speed_m_s),
                         turn_rad / (speed_share * habits_.turn_rad_s)})};
 }
 

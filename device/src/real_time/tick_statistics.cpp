@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kSplitBits = 6;
 static_assert(TickHistogram::kSplit == 1 << kSplitBits);
-constexpr std::int64_t kMost_ns = (std::int64_t{1} << (kSplitBits + TickHistogram::kOctaves)) - 1;
+constexpr std::int64_t kMax_ns = (std::int64_t{1} << (kSplitBits + TickHistogram::kOctaves)) - 1;
 
 // Below 64 one bucket per nanosecond; above, the octave and the six bits that follow the highest.
 std::size_t bucketOf(std::int64_t ns) {
-  const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMost_ns));
+  const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMax_ns));
   const int octave = std::max(0, static_cast<int>(std::bit_width(value)) - kSplitBits);
   if (octave == 0) return value;
   const std::uint64_t part = (value >> (octave - 1)) - TickHistogram::kSplit;

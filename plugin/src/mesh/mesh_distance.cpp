@@ -16,13 +16,13 @@ namespace vps::inline v0 {
 namespace {
 
 /// Twice the area over the square of the longest edge, below which corners are collinear up to rounding.
-constexpr double kLeastSlimness = 1e-10;
+constexpr double kMinSlimness = 1e-10;
 /// Faces whose normals differ by less are facets of one curved surface: 20 degrees, as
 /// PointShellSettings::edge_angle_rad.
 constexpr double kCosSmooth = 0.94;
 /// Corners with more faces than this are the hubs of nearly flat fans; comparing all pairs of faces would
 /// take quadratic time.
-constexpr std::size_t kMostFaces = 64;
+constexpr std::size_t kMaxFaces = 64;
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
@@ -38,7 +38,7 @@ Vec3 unitOrZero(const Vec3& v) {
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
-  return n.norm() > kLeastSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
+  return n.norm() > kMinSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
 }
 
 /// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
@@ -116,9 +116,9 @@ void MeshDistance::computeSmoothCorners() {
     const std::span around(corners.data() + first[v], first[v + 1] - first[v]);
     for (const Corner& own : around) {
       const Vec3& face = face_normals_[own.triangle];
-      Vec3 sum = around.size() > kMostFaces ? face : own.weighted;
+      Vec3 sum = around.size() > kMaxFaces ? face : own.weighted;
       for (const Corner& other : around)
-        if (around.size() <= kMostFaces && &other != &own &&
+        if (around.size() <= kMaxFaces && &other != &own &&
             face.dot(face_normals_[other.triangle]) > kCosSmooth)
           sum += other.weighted;
       smooth_corners_[own.triangle][own.k] = unitOrZero(sum).cast<float>();

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kSamples = 48;
 /// Number of rays that classify the sides of open patches, over the whole mesh. Assumed: seconds, in a soup
 /// of 100,000 facets.
-constexpr std::size_t kMostRays = 20000;
+constexpr std::size_t kMaxRays = 20000;
 /// How far a patch's mean winding number must be from 0.5 to be classified as not being surface.
 constexpr double kClearly = 0.35;
 /// Winding number in a facet's plane above which both sides are clearly inside: it is 0.5 more behind the
@@ -307,8 +307,8 @@ class Repairer {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < patches_.size(); ++i)
       if (!patches_[i].is_closed) open.push_back(i);
-    if (patches_.size() < 2 || 2 * open.size() > kMostRays) return;
-    const std::size_t most = std::clamp<std::size_t>(kMostRays / 2 / open.size(), 1, 16);
+    if (patches_.size() < 2 || 2 * open.size() > kMaxRays) return;
+    const std::size_t most = std::clamp<std::size_t>(kMaxRays / 2 / open.size(), 1, 16);
     const double size_m = bounds(mesh()).size().norm();
     for (int sweep = 0; sweep < 3; ++sweep) {
       const MeshDistance all(mesh());

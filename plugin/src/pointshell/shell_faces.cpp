@@ -15,7 +15,7 @@ namespace vps::inline v0 {
 namespace {
 
 /// Least gap over spacing (assumed): leaves a quarter of the spacing to the fill pass.
-constexpr double kLeastGap = 0.75;
+constexpr double kMinGap = 0.75;
 /// Candidates per square of spacing (assumed): about five for each point kept; more change little.
 constexpr double kCandidates = 6;
 /// Greatest extent over spacing of a piece of surface that is assigned to a point (assumed): some 15 pieces a
@@ -126,7 +126,7 @@ class FaceSampler {
       for (owed += darts_per_m2 * block.area(); owed >= 1; --owed) {
         const Vec3 p = block.pointAt(randomAt(index), randomAt(index + 1));
         index += 2;
-        if (nearest(p).distance_m > kLeastGap * spacing_m_) add(p, n);
+        if (nearest(p).distance_m > kMinGap * spacing_m_) add(p, n);
       }
     });
   }
@@ -210,14 +210,14 @@ class FaceSampler {
   }
 
   /// A piece of extent e whose centre is d from a sample lies within d + e of it. When that is too far,
-  /// either the centre is free for a new sample or the piece is halved; it ends at e <= (1 - kLeastGap)
+  /// either the centre is free for a new sample or the piece is halved; it ends at e <= (1 - kMinGap)
   /// spacing at the latest.
   void cover(const Piece& piece, const Vec3& n) {
     const double extent_m = piece.extent();
     const Vec3 center = piece.center();
     const double distance_m = nearest(center).distance_m;
     if (distance_m + extent_m <= spacing_m_) return;
-    if (distance_m > kLeastGap * spacing_m_) return add(center, n);
+    if (distance_m > kMinGap * spacing_m_) return add(center, n);
     for (const Piece& half : piece.halves()) cover(half, n);
   }
 

@@ -21,7 +21,7 @@ class ContactNormals {
       : reading_(reading), gradient_(gradient) {}
 
   void add(const ReadLeaf& leaf, int lane) noexcept;
-  [[nodiscard]] bool isFull() const noexcept { return count_ == kMost; }
+  [[nodiscard]] bool isFull() const noexcept { return count_ == kMaxCount; }
   /// Computes the normals and returns their number; normal(i) is valid after this.
   int compute() noexcept;
   /// Zero where the field has no direction.
@@ -35,7 +35,7 @@ class ContactNormals {
 
  private:
   static constexpr int kReads = 6;  // two along each axis
-  static constexpr int kMost = kBatchLanes / kReads;
+  static constexpr int kMaxCount = kBatchLanes / kReads;
 
   const Reading& reading_;
   const Gradient gradient_;
@@ -43,7 +43,7 @@ class ContactNormals {
   std::int32_t whole_[3][kBatchLanes];
   float t_[3][kBatchLanes];
   float value_[kBatchLanes];
-  float n_[3][kMost];  // gradients, of any length [quanta]
+  float n_[3][kMaxCount];  // gradients, of any length [quanta]
 };
 
 }  // namespace vps::inline v0

@@ -12,9 +12,9 @@ namespace vps::inline v0 {
 
 namespace {
 
-constexpr double kCosSharp = 0.94;        // 20 degrees, as PointShellSettings::edge_angle_rad
-constexpr double kLeastSine = 0.087;      // 5 degrees: below it the crossing of lines is mostly rounding
-constexpr double kLeastSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
+constexpr double kCosSharp = 0.94;      // 20 degrees, as PointShellSettings::edge_angle_rad
+constexpr double kMinSine = 0.087;      // 5 degrees: below it the crossing of lines is mostly rounding
+constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
 /// How far the plane may lean into a face, as a sine: so an edge that passes from one edge of a fine polygon
 /// to the next stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
@@ -35,7 +35,7 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
   const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
   double longest2 = 0;
   for (int k = 0; k < 3; ++k) longest2 = std::max(longest2, (corner[(k + 1) % 3] - corner[k]).squaredNorm());
-  return {n.normalized(), corner[(e.side + 2) % 3], n.norm() > kLeastSlimness * longest2};
+  return {n.normalized(), corner[(e.side + 2) % 3], n.norm() > kMinSlimness * longest2};
 }
 
 /// An end of a segment at a vertex.
@@ -190,7 +190,7 @@ class CrossingSearch {
     EdgeCrossing c;
     c.n = d0.cross(d1);
     const double sine = c.n.norm();
-    if (!(sine > kLeastSine)) return;
+    if (!(sine > kMinSine)) return;
     c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
     const Vec3 r = s0.from - from1;
     c.gap_m = c.n.dot(r);

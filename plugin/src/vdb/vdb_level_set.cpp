@@ -121,7 +121,7 @@ void findLattice(const std::string& file, LevelSet& out) {
 // Its values
 // -------------------------------------------------------------------------------------------------------------
 
-constexpr double kLeastBand = 3, kMostBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
+constexpr double kMinBand = 3, kMaxBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
 
 [[noreturn]] void refuseNan(const std::string& file) {
   refuseVdb(file, "holds values that are not numbers; export it again");
@@ -169,13 +169,13 @@ void widenBand(const std::string& file, LevelSet& level_set) {
     refuseVdb(file, "has a band of " + digits(band) +
                         " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
                         "Renormalize or VDB Rebuild)");
-  const int missing = static_cast<int>(std::ceil(kLeastBand - band + 1e-3));
+  const int missing = static_cast<int>(std::ceil(kMinBand - band + 1e-3));
   // Steps along edges too: the new band is as wide in every direction.
   const auto wider = openvdb::tools::dilateSdf(*level_set.grid, missing, openvdb::tools::NN_FACE_EDGE);
-  const auto background = static_cast<float>(kLeastBand * level_set.voxel_m);
+  const auto background = static_cast<float>(kMinBand * level_set.voxel_m);
   openvdb::tools::changeLevelSetBackground(wider->tree(), background);
   level_set.grid = wider;
-  level_set.band_m = kLeastBand * level_set.voxel_m;
+  level_set.band_m = kMinBand * level_set.voxel_m;
 }
 
 }  // namespace
@@ -187,8 +187,8 @@ LevelSet asLevelSet(const FloatGrid::Ptr& grid, const std::string& file) {
   requireValues(file, *grid);
   signInside(*out.grid);
   const double band = static_cast<double>(grid->background()) / out.voxel_m;
-  out.band_m = std::min(band, kMostBand) * out.voxel_m;
-  if (band < kLeastBand - 1e-3) widenBand(file, out);
+  out.band_m = std::min(band, kMaxBand) * out.voxel_m;
+  if (band < kMinBand - 1e-3) widenBand(file, out);
   return out;
 }
 

@@ -153,8 +153,8 @@ void layOut(const openvdb::FloatTree& tree, double quantum_m, const std::string&
     tile.getBoundingBox(of_tile);
     box.expand(of_tile);
   }
-  constexpr int kMost = std::numeric_limits<int>::max() / 4;
-  if (fromVdb(box.min()).minCoeff() < -kMost || fromVdb(box.max()).maxCoeff() > kMost)
+  constexpr int kMaxIndex = std::numeric_limits<int>::max() / 4;
+  if (fromVdb(box.min()).minCoeff() < -kMaxIndex || fromVdb(box.max()).maxCoeff() > kMaxIndex)
     throw LoadError(file, "", "lies too many voxels from its own origin; resample it");
   const auto cellOf = [](int node) { return node >= 0 ? node / kBrick : -((kBrick - 1 - node) / kBrick); };
   const Index3 low = fromVdb(box.min()).unaryExpr(cellOf), high = fromVdb(box.max()).unaryExpr(cellOf);

@@ -194,8 +194,8 @@ struct Splatter::Corner {
   }
 
   void planes(SplatRegion& region) const {
-    constexpr std::size_t kMost = 6;
-    const std::size_t count = std::min(spokes.size(), kMost);
+    constexpr std::size_t kMaxSpokes = 6;
+    const std::size_t count = std::min(spokes.size(), kMaxSpokes);
     for (std::size_t k = 0; k < count; ++k) {
       const Vec3& s = spokes[k * spokes.size() / count];
       region.add(-s.x(), -s.y(), -s.z(), s.dot(v), taxicab(s));

@@ -10,9 +10,9 @@ namespace vps::inline v0 {
 namespace {
 
 /// A triangle lower than this share of a voxel is replaced by its edges, which are as near.
-constexpr double kLeastHeight = 1e-7;
+constexpr double kMinHeight = 1e-7;
 /// So is one lower than this share of its longest side: its normal is rounding noise.
-constexpr double kLeastSlimness = 1e-12;
+constexpr double kMinSlimness = 1e-12;
 
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
@@ -48,7 +48,7 @@ void SurfaceFeatures::computeNormals() {
     const Vec3 n = ab.cross(ac);
     const double twice_area = n.norm();
     const double longest = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
-    const bool is_thin = !(twice_area > longest * std::max(kLeastHeight, kLeastSlimness * longest));
+    const bool is_thin = !(twice_area > longest * std::max(kMinHeight, kMinSlimness * longest));
     has_thin_ = has_thin_ || is_thin;
     normals_.emplace_back(is_thin ? Vec3(Vec3::Zero()) : Vec3(n / twice_area));
   }

@@ -139,7 +139,7 @@ class Writer {
 /// Size of a file with this header; nothing if the numbers are impossible. Checked before memory is
 /// allocated.
 std::optional<std::uint64_t> bytesOf(const Header& header) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 40;
+  constexpr std::uint64_t kMaxCells = std::uint64_t{1} << 40;
   constexpr std::int64_t kFarthest =
       std::numeric_limits<std::int32_t>::max() / VoxMap::kBrick;  // in voxels, an int
   std::uint64_t cells = 1;
@@ -147,9 +147,9 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
     const std::int64_t n = header.size[k], low = header.low[k];
     if (n < 1 || low < -kFarthest || low + n > kFarthest) return std::nullopt;
     cells *= static_cast<std::uint64_t>(n);
-    if (cells > kMost) return std::nullopt;
+    if (cells > kMaxCells) return std::nullopt;
   }
-  if (header.bricks > VoxPool::kMost) return std::nullopt;
+  if (header.bricks > VoxPool::kMaxBricks) return std::nullopt;
   return sizeof(Header) + kReportBytes + cells * (sizeof(std::uint32_t) + sizeof(float)) +
          header.bricks * kBrickStride * sizeof(NodeValue) + sizeof(Digest);
 }

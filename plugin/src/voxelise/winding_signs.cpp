@@ -23,7 +23,7 @@ constexpr double kCertainMargin = 0.25;
 constexpr double kDoubt = 0.02;
 /// Values are limited to this distance from 0.5: crossing a facet inside the solid, which distances do not
 /// show, changes the winding number from 2 to 1.
-constexpr double kMostMargin = 0.5;
+constexpr double kMaxMargin = 0.5;
 
 double boxGap2(const Box& a, const Box& b) {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
@@ -154,7 +154,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
     if (margin[seed] >= 0) continue;
     const double w = winding_.at(voxel_m * (low + nodeAt(seed)).cast<double>()).w;
     const int sign = w > 0.5 ? -1 : 1;
-    margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMostMargin));
+    margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMaxMargin));
     int end = 0;
     queue[end++] = static_cast<std::int16_t>(seed);
     for (int next = 0; next < end; ++next) {
@@ -265,7 +265,7 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
     if (!isConstant(layout.bricks[seed]) || margin[seed] >= 0) continue;
     const double w = winding_.at(boxOf(seed).center()).w;
     const std::uint32_t brick = w > 0.5 ? kInside : kOutside;
-    margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMostMargin));
+    margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMaxMargin));
     queue.assign(1, seed);
     for (std::size_t next = 0; next < queue.size(); ++next) {
       const std::size_t i = queue[next];

@@ -14,7 +14,7 @@
 namespace vps::inline v0 {
 
 VoxPool::VoxPool(std::size_t capacity)
-    : capacity_(std::min<std::size_t>(2 * capacity, kMost) + 2),
+    : capacity_(std::min<std::size_t>(2 * capacity, kMaxBricks) + 2),
       nodes_(static_cast<NodeValue*>(
           ::operator new (capacity_* kBrickStride * sizeof(NodeValue), std::align_val_t{kPage}))),
       owner_(new std::uint16_t[capacity_]),
@@ -112,10 +112,10 @@ void copyBrick(const VoxPool& from, std::uint32_t old, VoxPool& to, std::uint32_
 
 void moveToNewPool(VoxLayout& layout, std::size_t room) {
   const Named named = namedBy(layout);
-  if (named.count + room > VoxPool::kMost)
+  if (named.count + room > VoxPool::kMaxBricks)
     throw LoadError("", "",
                     "needs " + std::to_string(named.count + room) + " bricks of 8 voxels, and a voxmap has " +
-                        std::to_string(VoxPool::kMost) + " at most; larger voxels would do");
+                        std::to_string(VoxPool::kMaxBricks) + " at most; larger voxels would do");
   const std::shared_ptr<const VoxPool> from = layout.pool;
   auto to = std::make_shared<VoxPool>(named.count + room);
   auto owners = std::make_shared<std::vector<NodeOwners>>();

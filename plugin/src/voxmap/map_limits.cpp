@@ -10,7 +10,7 @@ namespace vps::inline v0 {
 namespace {
 
 static_assert(kMemoryLimit_bytes / VoxLayout::kCellBytes < 2147483648.0, "kernels count cells in int");
-static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMost, "all bricks that fit have a name");
+static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMaxBricks, "all bricks that fit have a name");
 
 }  // namespace
 

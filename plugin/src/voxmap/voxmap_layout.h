@@ -70,7 +70,7 @@ using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 class VPS_API VoxPool {
  public:
   /// The most bricks that can have a name, besides the two constant ones.
-  static constexpr std::size_t kMost = UINT32_MAX / kBrickStride - 2;
+  static constexpr std::size_t kMaxBricks = UINT32_MAX / kBrickStride - 2;
 
   /// Reserves memory for `capacity` bricks, for as many again to be mounted, and for the two constant bricks,
   /// which it creates.

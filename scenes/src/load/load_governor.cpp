@@ -9,11 +9,11 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kMostPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
+constexpr double kMaxPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
 
 /// Periods from the beginning of a step to that of the next.
 double periodsOf(double busy_s, double period_s) {
-  return std::clamp(std::ceil(busy_s / period_s), 1.0, kMostPeriods);
+  return std::clamp(std::ceil(busy_s / period_s), 1.0, kMaxPeriods);
 }
 
 }  // namespace

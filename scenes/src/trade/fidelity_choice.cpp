@@ -26,7 +26,7 @@ constexpr std::size_t kSamples = 2000;         ///< of each part
 constexpr double kShare = 0.95;
 constexpr double kMargin =
     0.8;  ///< share of the tolerance, so that points other than the samples keep it too
-constexpr double kMostSpacing = 4;     ///< greatest ratio of the spacing to the first one
+constexpr double kMaxSpacing = 4;      ///< greatest ratio of the spacing to the first one
 constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points and for other programs
 constexpr double kExpectedOverKept =
     2.5;  ///< greatest ratio of expectedMapBytes() to a map's memory; tests check it
@@ -181,7 +181,7 @@ void Chooser::count() {
 
 bool Chooser::coarsen() {
   Fidelity& f = choice_.fidelity;
-  if (f.spacing_m / kStep <= 1.001 * kMostSpacing * first_spacing_m_) {
+  if (f.spacing_m / kStep <= 1.001 * kMaxSpacing * first_spacing_m_) {
     f.spacing_m /= kStep;
     return true;
   }

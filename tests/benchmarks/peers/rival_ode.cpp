@@ -50,14 +50,14 @@ PairQuery odeQuery(const Mesh& a, const Mesh& b) {
       [](int, const char*, va_list) {});  // suppresses a message for each full table of contacts
   const auto mesh_a = std::make_shared<OdeMesh>(a), mesh_b = std::make_shared<OdeMesh>(b);
   return {"ODE", [mesh_a, mesh_b](const Pose& X_AB) {
-            constexpr int kMost = 0xffff;  // limit of dCollide's flags
-            static std::vector<dContactGeom> contacts(kMost);
+            constexpr int kMaxContacts = 0xffff;  // limit of dCollide's flags
+            static std::vector<dContactGeom> contacts(kMaxContacts);
             // In the order of ODE's own loop: a trimesh keeps its last pose for its normals.
             mesh_a->moveTo(Pose());
             mesh_b->moveTo(X_AB);
             PairQuery::Answer answer;
             answer.contacts =
-                dCollide(mesh_a->geom, mesh_b->geom, kMost, contacts.data(), sizeof(dContactGeom));
+                dCollide(mesh_a->geom, mesh_b->geom, kMaxContacts, contacts.data(), sizeof(dContactGeom));
             for (int i = 0; i < answer.contacts; ++i)
               answer.deepest_m = std::max(answer.deepest_m, contacts[static_cast<std::size_t>(i)].depth);
             return answer;

@@ -70,7 +70,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
                            double& stops_J) const noexcept;
   void move(double dt_s, const Vec6& V_next, const Motors& motors, const JointVector& damper) noexcept;
 
-  static constexpr std::size_t kMostDelay = 9;
+  static constexpr std::size_t kMaxDelay = 9;
 
   DualArmPlantSettings settings_;
   MotorHeat heat_;
@@ -82,7 +82,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   JointVector link_rate_ = JointVector::Zero();  ///< joint rates on the handle's side, at the last step
   JointVector motor_ = JointVector::Zero();      ///< joints on the motors' side
   JointVector motor_rate_ = JointVector::Zero();
-  std::array<JointVector, kMostDelay> commands_;  ///< newest first
+  std::array<JointVector, kMaxDelay> commands_;  ///< newest first
   JointVector efforts_ = JointVector::Zero();
   double time_s_ = 0, command_s_ = 0;
   Wrench F_hand_;
