@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The installed package: for each component its library, headers, exported targets and pkg-config file, and one
-# vpsConfig.cmake that looks for what the asked-for components need and nothing else.
+# vpsConfig.cmake that looks for the packages of the requested components only.
 
 # The install rules of one component; arguments as for vps_add_library().
 function(vps_install_library name public)
@@ -45,7 +45,7 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   endif()
 endfunction()
 
-# vps-NAME.pc. Static libraries need what they use on the link line, so that nobody has to know of --static.
+# vps-NAME.pc. For static libraries it lists the private dependencies as well, so that users do not need --static.
 function(vps_write_pkg_config name requires modules cflags private_modules private_libs)
   list(TRANSFORM requires PREPEND "vps-")
   list(TRANSFORM requires APPEND " = ${PROJECT_VERSION}")

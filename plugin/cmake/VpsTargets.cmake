@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What every target of ours has in common. Kept in one place so that a folder's CMakeLists.txt says only what
-# is its own. VpsInstall.cmake has the installed package.
+# Settings that all targets of the project share. A folder's CMakeLists.txt contains only its own.
+# VpsInstall.cmake makes the installed package.
 
 # vps_add_library(NAME SOURCES ... [PUBLIC target...] [PRIVATE target...] [PRECOMPILE header...]
 #                 [PACKAGES name...] [PRIVATE_PACKAGES name...] [HEADERS file... | EXCLUDE_HEADERS file...]
@@ -28,7 +28,7 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   vps_export_header(${name})
   vps_compile_options(vps_${name})
   vps_precompile(vps_${name} ${ARG_PRECOMPILE})
-  vps_unite_rooms(vps_${name} "${ARG_SOURCES}")
+  vps_unite_folders(vps_${name} "${ARG_SOURCES}")
   vps_install_library(${name} "${ARG_PUBLIC}" ${ARGN})
 endfunction()
 
@@ -80,17 +80,17 @@ endfunction()
 
 # Compiles the sources of one folder of src/ together, eight at a time: what headers instantiate is compiled once for
 # all of them. A source with compile options of its own stays alone. File-local names of one folder must differ.
-function(vps_unite_rooms target sources)
+function(vps_unite_folders target sources)
   if(NOT VPS_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS sources)
-    get_filename_component(room "${source}" DIRECTORY)
-    get_filename_component(room "${room}" NAME)
-    math(EXPR batch "0${count_${room}} / 8")
-    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${room}_${batch}")
-    math(EXPR count_${room} "0${count_${room}} + 1")
+    get_filename_component(folder "${source}" DIRECTORY)
+    get_filename_component(folder "${folder}" NAME)
+    math(EXPR batch "0${count_${folder}} / 8")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}_${batch}")
+    math(EXPR count_${folder} "0${count_${folder}} + 1")
   endforeach()
 endfunction()
 
@@ -111,7 +111,7 @@ function(vps_compile_options target)
     target_compile_options(${target} PRIVATE -fsanitize=${VPS_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${VPS_SANITIZE})
   endif()
-  # Our own mistakes are loud in Debug and in sanitized builds (see vps/assert.h).
+  # VPS_ASSERT checks in Debug and in sanitized builds (see vps/assert.h).
   if(VPS_SANITIZE)
     target_compile_definitions(${target} PRIVATE VPS_ASSERT_ON)
   else()

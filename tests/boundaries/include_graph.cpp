@@ -121,10 +121,11 @@ class Groups {
   std::map<std::string, std::string> of_target_, of_file_;
 };
 
-/// Arrows from group to group, each with one include that makes it.
+/// Dependencies from group to group, each with one include that causes it.
 using Arrows = std::map<std::string, std::map<std::string, Include>>;
 
-/// Depth-first search for circles; each is told once, by the first group of it that the search meets.
+/// Depth-first search for circles; each is reported once, from the first of its groups that the search
+/// visits.
 class CircleSearch {
  public:
   explicit CircleSearch(const Arrows& arrows) : arrows_(arrows) {}

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # run.sh static|shared BUILD_DIR WORK_DIR CMAKE [SANITIZE]
 # static: installs BUILD_DIR; shared: builds and installs plugin and bullet as shared libraries. Then builds and runs
-# programs outside of the tree that know the installed package alone: by find_package(vps) where the packages of
-# components that nobody asks for cannot be found, and by pkg-config.
+# programs outside of the tree against the installed package alone: by find_package(vps), where the packages of
+# components that were not requested cannot be found, and by pkg-config.
 set -euo pipefail
 kind=$1 build=$2 work=$3/$1 cmake=$4 sanitize=${5:-}
 source=$(cd "$(dirname "$0")" && pwd)
@@ -41,7 +41,7 @@ refused() {  # refused WORDS CONFIGURE-ARGUMENT...: must fail, and say these wor
   fi
   tr -s ' \n' ' ' <<<"$said" | grep -qF "$words" || { echo "does not say '$words': $said"; exit 1; }
 }
-others=(VpsOpenVDB assimp PNG Freetype VpsEpoxy OpenCASCADE Coin)  # packages of components nobody asks for here
+others=(VpsOpenVDB assimp PNG Freetype VpsEpoxy OpenCASCADE Coin)  # packages of components that are not requested here
 
 echo "== find_package(vps COMPONENTS bullet)"
 configure app app $(missing "${others[@]}" tomlplusplus) >/dev/null

@@ -68,7 +68,7 @@ TEST(DualArmParameters, ErrorsNameFileLineKeyAndRemedy) {
   EXPECT_EQ(complaint("[handle]\nmass_kg = nan\n"),
             "my.toml:2: [handle] mass_kg is nan; expected more than 0 and at most 100");
   EXPECT_EQ(complaint("[handle]\nmass_kg = \"heavy\"\n"),
-            "my.toml:2: [handle] mass_kg is no number; expected more than 0 and at most 100");
+            "my.toml:2: [handle] mass_kg is not a number; expected more than 0 and at most 100");
   EXPECT_EQ(
       complaint("[stops]\ndamp = 1\n"),
       "my.toml:2: [stops] has no 'damp'; it may have plate_Nm_per_rad, link_N_per_m, gimbal_Nm_per_rad, "
@@ -77,7 +77,7 @@ TEST(DualArmParameters, ErrorsNameFileLineKeyAndRemedy) {
                 .find("my.toml:1: section [motor] is unknown; there are workspace, handle, bases"),
             std::string::npos);
   EXPECT_EQ(complaint("handle = 3\n"),
-            "my.toml:1: 'handle' is no section; write [handle] on a line of its own");
+            "my.toml:1: 'handle' is not a section; write [handle] on a line of its own");
   EXPECT_EQ(complaint("[workspace]\nsize_m = [1, 2]\n"),
             "my.toml:2: [workspace] size_m must be three numbers, [x, y, z]");
   EXPECT_EQ(complaint("[handle]\nmass_kg = {assumed = \"?\"}\n"),

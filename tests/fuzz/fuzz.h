@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a fuzzed reader offers: one entry for bytes, in libFuzzer's form, and inputs to start from.
+// The interface of a fuzz program: an entry point for bytes, in libFuzzer's form, and inputs to start from.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-/// Reads the bytes and asks of the result what it promises; aborts where it breaks a promise. Returns 0.
+/// Reads the bytes and checks the properties that the reader promises of its result; aborts if one does not
+/// hold. Returns 0.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace vps::fuzz {

@@ -130,7 +130,7 @@ TEST_F(Program, AFileThatIsNotARecordingIsNotOverwritten) {
   write("steps.toml", kScene + step);
   write("letter.txt", "dear reader");
   expectRefused("assemble steps.toml --record letter.txt --out out",
-                "letter.txt: is there and is no recording");
+                "letter.txt: exists and is not a recording");
   expectRefused("assemble steps.toml --record steps.toml --out out", "steps.toml: is read by this command");
   expectRefused("assemble steps.toml --record no/run.mcap --out out", "no/run.mcap: cannot be written");
   expectRefused("assemble steps.toml --record run.mcap --out out --local-contact",
@@ -141,7 +141,7 @@ TEST_F(Program, AFileThatIsNotARecordingIsNotOverwritten) {
 
 TEST_F(Program, ReplayRefusesFilesThatAreNotRecordings) {
   expectRefused("replay missing.mcap", "missing.mcap: no such file");
-  expectRefused("replay plate.stl", "plate.stl: is no recording (MCAP)");
+  expectRefused("replay plate.stl", "plate.stl: is not a recording (MCAP)");
   expectRefused("replay plate.stl --no-run", "--no-run leaves nothing to do without --csv");
 }
 

@@ -130,8 +130,8 @@ TEST(ModelPlan, IfNothingMovesNothingIsModelled) {
   EXPECT_TRUE(plan.steps[0].cooked.empty());
 }
 
-// Within its region a part reads the same nodes and the same points in the same order (crop.h): the same
-// bits, so no tolerance.
+// Within its region a part reads the same nodes and the same points in the same order (shell_crop.h,
+// voxmap_crop.h): the same bits, so no tolerance.
 TEST(ModelPlan, AReducedAssemblyEqualsTheWholeOneToTheBitWithLessMemory) {
   const AssembleResult reduced = assembled(pinsOnPlate(), false), all = assembled(pinsOnPlate(), true);
   ASSERT_TRUE(reduced.completed) << reduced.steps[0].failure_reason;

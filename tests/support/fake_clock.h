@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A clock that goes as the test says: asleep it jumps to the time asked for, and as far beyond as wished.
+// A clock that the test controls: sleepUntil() sets it to the requested time plus `oversleep`.
 #pragma once
 
 #include "vps_device/metronome.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A dual arm whose hardware lies, falls silent and breaks, told by bytes; and what must hold all the same.
-// Used by a test with a fixed seed and by a fuzz program.
+// A dual arm whose hardware gives wrong readings, stops answering and fails, in a sequence given by bytes;
+// and the properties that must hold throughout. Used by a test with a fixed seed and by a fuzz program.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ inline vps::device::HandForce firmHand(double k, double b) {
   return hand;
 }
 
-/// The plant, with a trouble between it and the controller.
+/// The plant, with a fault between it and the controller.
 class HostileArm final : public vps::device::DualArmHardware {
  public:
   enum Trouble {

@@ -20,7 +20,8 @@ struct SampledWall {
   double K_N_per_m = 1000, B_Ns_per_m = 0, period_s = 1e-3, delay_s = 0;
 };
 
-/// K (T/2 + t_d) + |B| [N s/m]: the damping below which DESIGN section 7 calls the wall active.
+/// K (T/2 + t_d) + |B| [N s/m]: a device with less damping makes the wall active
+/// (device/README.md, "Stability of the coupling").
 inline double passiveDampingFormula(const SampledWall& w) {
   return w.K_N_per_m * (w.period_s / 2 + w.delay_s) + std::abs(w.B_Ns_per_m);
 }

@@ -64,9 +64,9 @@ inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const 
 }
 
 /// The stiffest coupling [N/m] below the first with a limit cycle, to 2%. A cycle is motion of more than half
-/// the encoders' greatest error, about one step of theirs in the middle of the workspace; less is what their
-/// jitter moves. `from_N_per_m` must not cycle. Upwards from `from_N_per_m` in steps of 10%, then by
-/// bisection: whether it cycles is not monotonous.
+/// the encoders' greatest error, about one step of theirs in the middle of the workspace; the encoders'
+/// jitter causes less. There must be no cycle at `from_N_per_m`. Whether there is one is not monotonic in the
+/// stiffness, so the search goes upwards from there in steps of 10%, and bisects only the last step.
 inline double stiffestWall(const device::SimulatedDualArmSettings& device, CouplingGains gains,
                            double from_N_per_m, const WallPress& press = {}) {
   const double still_m = device.arms.resolution_m / 2;

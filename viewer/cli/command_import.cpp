@@ -32,7 +32,7 @@ struct ImportArguments {
   bool is_forced = false;  ///< replaces an existing scene.toml
 };
 
-/// A file name made from a part's name, different from those in `taken`.  Binary PLY would be smaller than
+/// A file name made from a part's name, different from those in `taken`. Binary PLY would be smaller than
 /// STL, but the assimp of Debian 12 reads a first data byte of 0x0A as a line end.
 std::string fileNameOf(const std::string& name, std::set<std::string>& taken) {
   std::string stem;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps simulate: the bodies of a scene move under gravity and joints, without a hand.
+// vps simulate: the bodies of a scene move under gravity, without a hand.
 #include <cmath>
 #include <cstdio>
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON. The only source file that includes nlohmann/json.
+// Results as JSON. The only source of the program that includes nlohmann/json, by json_fields.h.
 #include "json_out.h"
 
 #include "json_fields.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results as JSON, with the keys that other programs rely on: viewer/cli/README.md lists them. Wall-clock
-// figures stand in one object `wall`, so that all else repeats byte for byte. Numbers that are not finite
+// figures are in one object, `wall`, so that all else repeats byte for byte. Numbers that are not finite
 // become null.
 #pragma once
 
@@ -84,7 +84,7 @@ struct SnapshotAnswer {
   int greatest_difference = 0, tolerance = 0;
 };
 
-/// What `vps explain` found, beside what everything would cost if that was asked.
+/// What `vps explain` found, and the cost of modelling everything if that was requested.
 struct ExplainAnswer {
   scenes::Scene scene;
   scenes::ExplainedModels chosen;

@@ -32,11 +32,11 @@ int run(int argc, char** argv) {
   CommandLine line;
   line.app.name("vps");
   line.app.description(
-      "Voxmap-PointShell contact on CAD parts: assemble, replay, simulate, query, import, show.");
+      "Voxmap-PointShell contact on CAD parts: import, assemble, simulate, query, measure, draw.");
   line.app.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
   line.app.require_subcommand(1);
   line.app.footer(
-      "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 could not.\n"
+      "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 not done.\n"
       "Lengths carry a unit: 0.2mm, 20um, 0.01m. Example:\n"
       "  vps assemble scenes/peg_in_hole/scene.toml --out out");
 #define COMMAND(add) add(line);

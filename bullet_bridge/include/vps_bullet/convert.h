@@ -9,7 +9,7 @@
 namespace vps::bullet::inline v0 {
 
 // A program that mixes Bullet's precisions crashes without a message; this makes it a compile error. The
-// define comes with the imported target vps_external::bullet (plugin/cmake/VpsFindBullet.cmake).
+// define comes with the imported target vps_external::bullet (plugin/cmake/FindVpsBullet.cmake).
 #ifdef VPS_BULLET_DOUBLE
 static_assert(sizeof(btScalar) == 8,
               "vps was configured for double-precision Bullet; these headers are float");

@@ -2,8 +2,7 @@
 // The kinds of device that this build knows, by the name that a scene's [device] kind and `vps device --list`
 // use.
 //
-// To add one: write device/src/drivers/<name>.cpp with a function that returns its DeviceKind, and add that
-// function to the table in device/src/drivers/device_kinds.cpp.
+// To add one: device/README.md, "A device of your own".
 #pragma once
 
 #include <memory>
@@ -16,7 +15,7 @@
 
 namespace vps::device::inline v0 {
 
-/// What a device is opened with. A kind ignores what it has no use for.
+/// The options with which a device is opened. A kind ignores those that do not apply to it.
 struct DeviceOptions {
   std::string parameter_file;          ///< of the dual arm; empty: the built-in parameters
   double rate_hz = 1000;               ///< of read-write cycles
@@ -46,7 +45,7 @@ struct DeviceKind {
 VPS_DEVICE_API std::span<const DeviceKind> deviceKinds();
 /// Null: no such kind.
 VPS_DEVICE_API const DeviceKind* findDeviceKind(std::string_view name);
-/// "dual_arm, ideal_dual_arm, space_mouse, game_controller"
+/// The names of all kinds for a message: "dual_arm, ideal_dual_arm, ..."
 VPS_DEVICE_API std::string deviceKindNames();
 
 }  // namespace vps::device::inline v0

@@ -9,8 +9,8 @@
 
 namespace vps::device::inline v0 {
 
-/// Wrench of the hand on the handle about the handle's origin, in frame A (W from an operator, D for a
-/// device):
+/// Wrench of the hand on the handle about the handle's origin, in frame A: W from an operator, D for a
+/// device.
 ///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same with rotation vectors + F.tau,
 /// and the hand's own inertia moves with the handle. k and b symmetric, not negative. Default: no hand.
 struct HandForce {

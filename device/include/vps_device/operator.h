@@ -69,8 +69,7 @@ struct OperatorTask {
   double tolerance_m = 0.1e-3;  ///< part's origin against the target
   double tolerance_rad = 0.01;
   double timeout_s = 20;
-  Vec3 weight_W =
-      Vec3::Zero();  ///< mass times gravity of the part, which the hand carries by feed-forward [N]
+  Vec3 weight_W = Vec3::Zero();  ///< of the part [N], which the hand carries by feed-forward
 };
 
 /// What the hand senses at one instant.
@@ -84,7 +83,7 @@ struct OperatorView {
   Wrench F_hand_W;  ///< felt: wrench of the device on the hand
 };
 
-/// Regrasp: at a way point of OperatorTask::index_points, holding still until goOn().
+/// Regrasp: indexing. The hand stopped at a way point of OperatorTask::index_points and waits for goOn().
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 

@@ -168,7 +168,7 @@ struct DualArmFileReader {
       if (known(section.str()).empty())
         fail(node, "section [" + std::string(section.str()) + "] is unknown; there are " + known(""));
       if (!node.is_table())
-        fail(node, "'" + std::string(section.str()) + "' is no section; write [" +
+        fail(node, "'" + std::string(section.str()) + "' is not a section; write [" +
                        std::string(section.str()) + "] on a line of its own");
       for (const auto& [key, value] : *node.as_table()) requireKnown(section.str(), key.str(), value);
     }
@@ -247,7 +247,7 @@ struct DualArmFileReader {
   }
 
   [[nodiscard]] double number(const Field& field, const toml::node& node) const {
-    if (!node.is_number()) fail(field, node, "is no number; expected " + expected(field.span));
+    if (!node.is_number()) fail(field, node, "is not a number; expected " + expected(field.span));
     const double value = *node.value<double>();
     const Span span = field.span;
     if (!(value >= span.min && value <= span.max) || (span.is_open && value == span.min))

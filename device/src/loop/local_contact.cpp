@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/local_contact.h"
-#include "vps/friction.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

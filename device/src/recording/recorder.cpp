@@ -49,7 +49,7 @@ void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
   std::error_code error;
   if (!fs::exists(path, error)) return;
   if (!fs::is_regular_file(path, error))
-    throw LoadError(file, "", "is no plain file; name another for the recording");
+    throw LoadError(file, "", "is not a regular file; name another file for the recording");
   // The head is short: magic, and the record with profile and library.
   std::array<char, 256> bytes{};
   std::ifstream in(path, std::ios::binary);
@@ -57,7 +57,7 @@ void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
   const std::string_view head(bytes.data(), static_cast<std::size_t>(in.gcount()));
   if (in.gcount() > 0 && !readMcap(head).library.starts_with(recording::kLibrary))
     throw LoadError(file, "",
-                    "is there and is no recording of this program; name another file for the recording");
+                    "exists and is not a recording of this program; name another file for the recording");
 }
 
 /// Unbuffered, so that written bytes survive a crash of this program.
@@ -266,13 +266,13 @@ void Recorder::finish() {
   w.writer.finish();
   if (w.error.empty() && !w.out->close()) w.error = std::string("cannot be written: ") + std::strerror(errno);
   if (!w.error.empty())
-    throw std::runtime_error(w.final_path.string() + ": " + w.error + "; what there is stands in " +
+    throw std::runtime_error(w.final_path.string() + ": " + w.error + "; the unfinished recording is in " +
                              w.partial);
   std::error_code error;
   fs::rename(w.partial, w.final_path, error);
   if (error)
     throw std::runtime_error(w.final_path.string() + ": cannot be written: " + error.message() +
-                             "; the recording stands in " + w.partial);
+                             "; the recording is in " + w.partial);
   w.is_finished = true;
 }
 

@@ -116,7 +116,7 @@ std::size_t RecordedRun::reads() const {
 
 RecordedRun recordingFrom(std::string_view bytes, const std::string& file) {
   if (!isMcap(bytes))
-    throw LoadError(file, "", "is no recording (MCAP); make one with vps assemble --record");
+    throw LoadError(file, "", "is not a recording (MCAP); make one with vps assemble --record");
   const McapContent content = readMcap(bytes);
   if (!content.library.starts_with(recording::kLibrary) && !content.damage)
     throw LoadError(

@@ -26,12 +26,10 @@ enum class Crossing { Unknown, Seen };
 
 /// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
 /// - Of triangles with the same corners one is kept. Of a back-to-back pair none is kept if it is a wall
-/// between two
-///   solids, and one if it is the only surface there (a surface exported for both sides).
+///   between two solids, and one if it is the only surface there (a surface exported for both sides).
 /// - Facets are turned to agree across edges of two facets; the minority is turned.
 /// - Closed shells that face in are turned, unless they are a cavity, which lies within a shell that faces
-/// out. Shells
-///   within a turned shell are turned with it.
+///   out. Shells within a turned shell are turned with it.
 /// - Open patches are turned where the rest of the mesh shows clearly on which side the solid is.
 /// - Facets with a winding number above 0.5 on both sides are removed from the surface.
 /// A sound mesh is returned unchanged: O(n). Others need about two winding numbers a triangle.

@@ -2,8 +2,7 @@
 // The memory layout of a VoxMap.
 //
 //   directory: dense 3-D array of cells over the part's box, its band and one empty cell more on each side
-//     cell --> brick: 9^3 nodes at spacing h, cells of 8h; the last layer of nodes repeats the next brick's
-//     first
+//     cell --> brick: 9^3 nodes at spacing h, cells of 8h; the last layer repeats the next brick's first
 //         `---> or one of two constant bricks: all +band (far outside) or all -band (far inside)
 //
 // Why 9^3 and not 8^3: each of a brick's 8^3 cells then finds its eight nodes in one brick, without a branch

@@ -81,7 +81,7 @@ struct FidelityWish {
   std::optional<double> budget_hz;    ///< physics steps a second
   std::optional<double> tolerance_m;  ///< greatest error of depth at 95 of 100 points of every surface
   std::optional<double> memory_bytes;
-  std::string place;  ///< "scene.toml:4", where the wish stands, for messages
+  std::string place;  ///< "scene.toml:4", the line of the wish, for messages
 };
 
 /// What a scene file says. settings_fields.h has a row for each of its keys.

@@ -46,7 +46,8 @@ inline constexpr auto kMaterialFields = std::make_tuple(
           {.range = kNotNegative}),
     field("restitution", &Material::restitution, "0 inelastic to 1 elastic",
           {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
-    field("stiffness", &Material::stiffness_N_per_m3, "penalty stiffness per area",
+    field("stiffness", &Material::stiffness_N_per_m3,
+          "penalty stiffness per area; the least of all parts applies to all contacts",
           {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
@@ -120,7 +121,7 @@ inline constexpr auto kCouplingFields = std::make_tuple(
     field("max_torque_Nm", &CouplingWishes::max_torque_Nm, "greatest torque", {.range = kPositive}));
 static_assert(coversAllMembers<CouplingWishes>(kCouplingFields));
 
-/// `[fidelity]`: the knobs.
+/// `[fidelity]`: the settings themselves.
 inline constexpr auto kFidelityFields = std::make_tuple(
     field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
           {.quantity = Quantity::Length, .range = kPositive}),

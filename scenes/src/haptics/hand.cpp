@@ -211,7 +211,7 @@ class PersonHand final : public Hand {
 constexpr std::chrono::seconds kConnect{3};  // assumed: SDL and spacenavd answer within one
 constexpr std::chrono::milliseconds kConnectPoll{10};
 
-/// A handle under rate control has a free range. It gets room for all paths, four times over.
+/// The range of a handle under rate control can be chosen: four times the length of all paths.
 device::DeviceOptions personOptions(const Scene& scene) {
   double path_m = 0;
   for (const SceneStep& step : scene.steps) {

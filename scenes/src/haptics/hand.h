@@ -28,7 +28,7 @@ class Hand {
   /// of the workspace. Never allocates.
   virtual void goBack(std::size_t next) = 0;
   /// In OperatorPhase::Regrasp, with the clutch open: moves to where the next segment starts, in
-  /// kHandReturn_s, and stays until goOn(). Neither allocates.
+  /// kHandReturn_s, and stays there until goOn(). Neither function allocates.
   virtual void recentre() = 0;
   /// The clutch is closed again: continues the step.
   virtual void goOn() = 0;

@@ -102,9 +102,9 @@ std::string detectFormat(const std::string& file) {
   const std::string head = bytes(in, 0, 1024);
   const std::string format = formatOf(head, upperExtension(file), file);
   if (!isWhole(format, in, size, head)) {
-    throw LoadError(
-        file, "",
-        "is cut or is no " + format + " file (" + std::to_string(size) + " bytes); copy or export it again");
+    throw LoadError(file, "",
+                    "is cut or is not a " + format + " file (" + std::to_string(size) +
+                        " bytes); copy or export it again");
   }
   return format;
 }

@@ -171,7 +171,7 @@ void finish(RawCad raw, ImportedCad& cad) {
   for (const RawPart& part : raw.parts) {
     if (!part.mesh.triangles.empty()) cad.parts.push_back(inMetres(part, raw.unit_m));
   }
-  // A shape without area is nothing; a file of nothing else is an error, said below.
+  // A shape without area is nothing; a file with no other shapes is an error, reported below.
   const auto isNothing = [](const ImportedPart& part) { return area(part.mesh) == 0; };
   if (!std::all_of(cad.parts.begin(), cad.parts.end(), isNothing)) {
     const std::size_t count = std::erase_if(cad.parts, isNothing);

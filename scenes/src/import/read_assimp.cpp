@@ -147,12 +147,12 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw;
   } catch (const std::exception& e) {
     throw LoadError(file, "",
-                    std::string("is no readable ") + format + " file (" + e.what() + "); export it again");
+                    std::string("is not a readable ") + format + " file (" + e.what() + "); export it again");
   }
   if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
     std::string reason = importer.GetErrorString();
     for (char& c : reason) c = c == '\n' ? ' ' : c;
-    throw LoadError(file, "", "is no readable " + format + " file (" + reason + "); export it again");
+    throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
   }
   const bool is_gltf = format == "glTF";
   Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());

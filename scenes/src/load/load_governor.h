@@ -20,17 +20,15 @@ struct GovernorSettings {
 ///
 /// A step that takes longer than its period loses the periods that begin meanwhile.
 /// - Down one level: after a window in which more than lost_limit was lost by at least late_limit late steps.
-/// - Up one level: after the required number of calm windows in a row. A window is calm when, with every step
-/// as
-///   much longer as the level above may make it, no more than half of lost_limit would have been lost, stalls
-///   not counted.
+/// - Up one level: after the required number of calm windows in a row. A window is calm when no more than
+///   half of lost_limit would have been lost, stalls not counted, had every step taken as much longer as it
+///   may on the level above.
 /// The gap between the two conditions is the hysteresis: neither a single late step nor a load near the limit
 /// changes the level, and a load that comes and goes changes it less and less often.
 class LoadGovernor {
  public:
-  /// @param cost_ratios  for each level but 0: the share of its period that a step takes one level up,
-  /// divided
-  ///                     by that at this level, at most; >= 1
+  /// @param cost_ratios  for each level but 0, >= 1: the greatest ratio of the share of its period that a
+  ///                     step takes one level up to the share at this level
   explicit LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings = {});
 
   /// Adds one step.

@@ -40,7 +40,7 @@ std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings&
                                           ? options.cache->build(part.part.mesh, settings, name, {}, &report)
                                           : buildVoxMap(part.part.mesh, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
-    options.warn(part.file + ": part '" + name + "' is no closed surface: " + describe(report));
+    options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
 }
 

@@ -14,9 +14,8 @@ void requireSteps(const Scene& scene);
 
 /// Builds the models that the scene lacks and runs every step. A hand that cannot go on (the end of a
 /// recording) ends the run. Throws as assemble().
-/// @param log  may be null; gets what the device reads and is given, the operator's phases, and a trace at
-/// the
-///             scene's csv_rate_hz
+/// @param log  may be null; receives the device's samples and wrenches, the operator's phases, and a trace at
+///             the scene's csv_rate_hz
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options);
 

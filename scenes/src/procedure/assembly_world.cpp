@@ -135,8 +135,7 @@ void AssemblyWorld::pauseLocalContact() {
 }
 
 void AssemblyWorld::release() {
-  // The energy account goes on without what the coupling's springs hold: releasing gives their energy to
-  // nobody.
+  // On release the energy in the coupling's springs is dropped: it does not enter the energy balance.
   stored_before_J_ += simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J;
   simulation_.release();
   driver_->letGo();
@@ -209,7 +208,7 @@ void AssemblyWorld::keepCovered() {
   if (options_.warn)
     options_.warn(
         "'" + scene_.parts[part].part.name +
-        "' came to the border of where it was expected; all that is fixed is modelled from there on");
+        "' reached the border of the region of its path; from here on all fixed parts are modelled");
   // Physics stands still for as long as modelling takes. By the clock that would be a safety fault, so the
   // loop is paused.
   const bool pauses = options_.has_local_contact || driver_->isByClock();

@@ -81,7 +81,7 @@ std::size_t partNamed(const SceneKeys& keys, std::string_view key, const std::st
   for (const auto& part : parts) names.push_back(nameOf(part));
   const auto match = std::find(names.begin(), names.end(), name);
   if (match == names.end())
-    keys.fail(key, "names '" + name + "', which is no part" + didYouMean(name, names));
+    keys.fail(key, "names '" + name + "', which is not the name of a part" + didYouMean(name, names));
   return static_cast<std::size_t>(match - names.begin());
 }
 
@@ -109,7 +109,7 @@ bool isMissingReader(const LoadError& error) {
   return std::string_view(error.what()).find("Open CASCADE") != std::string_view::npos;
 }
 
-/// Tolerance of `fidelity = "auto"` without a wish: the designers' usual bound.
+/// Tolerance of `fidelity = "auto"` where no bound is set. assumed: a usual bound in mechanical design
 constexpr double kAutoTolerance_m = 10e-6;
 
 class SceneReader {
@@ -312,7 +312,7 @@ class SceneReader {
     scene_.device.data = path(file);
   }
 
-  /// The name of a preset, "auto", or a table of single knobs over a preset.
+  /// The name of a preset, "auto", or a table of single settings over a preset.
   void readFidelity() {
     scene_.fidelity = fidelityPreset("normal");
     if (!top_.has("fidelity")) return;

@@ -35,9 +35,8 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& k
 class SceneKeys {
  public:
   /// @param place  name of the table in messages: "[[part]]", "[device]"; "" at the top
-  /// @param known  every key that the table may have. Another key throws LoadError at once, with the new name
-  /// for a key
-  ///               that was renamed.
+  /// @param known  every key that the table may have. Another key throws LoadError at once,
+  ///               with its new name if it was renamed.
   SceneKeys(const toml::table& table, const SceneFileContext& context, std::string place,
             const std::vector<std::string_view>& known);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program of someone else: one VPS part dropped on another in an ordinary Bullet world, from installed
+// A user's program: one VPS part dropped on another in an ordinary Bullet world, from installed
 // headers alone.
 #include <btBulletDynamicsCommon.h>
 #include <vps_bullet/install.h>

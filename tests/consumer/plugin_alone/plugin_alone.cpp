@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program of someone else with an engine of its own: the depth of a point in a ball, and an error that
+// A user's program without Bullet: the depth of a point in a ball, and an error that
 // crosses the library's border.
 #include <vps/load_error.h>
 #include <vps/version.h>

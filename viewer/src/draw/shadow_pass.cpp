@@ -70,8 +70,8 @@ void drawFloorShadow(const Picture& picture) {
   const View& view = picture.view;
   const Vec3 up = view.up_C.cast<double>();
   if (up.dot(view.floor_C) >= 0) return;  // the eye, at the origin, is under the floor
-  // The axes of renderFloorShadow(): parallelProjection() with back = -up and its up = x spans (x cross -up,
-  // x).
+  // The axes of renderFloorShadow(): with back = -up and its up = x, parallelProjection() spans the axes
+  // x cross -up and x.
   const Vec3 x = floorAxis(up);
   const gl::Program& program = picture.gl.programs.floor_shadow;
   program.set("projection", view.projection);

@@ -153,7 +153,7 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
     is_cut = is_cut || line.find("end of file") != std::string::npos;
   if (!scene || is_cut) {
     const std::string why = messages.lines.empty() ? "no scene in it" : messages.lines.front();
-    throw LoadError(file, "", "is no readable " + format + " file (" + why + "); export it again");
+    throw LoadError(file, "", "is not a readable " + format + " file (" + why + "); export it again");
   }
 
   // Spheres, cones and cylinders are as fine as Coin makes them, unless the file sets it.

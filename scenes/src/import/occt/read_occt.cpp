@@ -220,7 +220,7 @@ class Tree {
 };
 
 LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
-  return {file, "", "is no readable " + format + " file (" + why + "); export it again"};
+  return {file, "", "is not a readable " + format + " file (" + why + "); export it again"};
 }
 
 /// Refuses a file with entities that could not be read: Open CASCADE continues with null pointers in their
