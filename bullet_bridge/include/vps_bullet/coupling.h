@@ -41,7 +41,6 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
   void release();
   void setGains(const CouplingGains& gains);
   [[nodiscard]] const CouplingGains& gains() const { return gains_; }
-  void setGrasp(const Pose& X_BG) { X_BG_ = X_BG; }
 
   /// The part's grasp frame now, in W; time_s is the target's.
   [[nodiscard]] CouplingState partState() const;

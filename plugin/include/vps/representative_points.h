@@ -37,7 +37,6 @@ class VPS_API RepresentativePoints {
 
   /// False if no tile holds two leaves: find() then reports the same contacts as queryContacts().
   [[nodiscard]] bool reducesContacts() const noexcept { return reduces_contacts_; }
-  [[nodiscard]] std::size_t tileCount() const noexcept { return tiles_.size(); }
   /// Tile of a leaf of the shell; kNone if the leaf's normals differ.
   [[nodiscard]] std::uint32_t tileOf(std::size_t leaf) const noexcept { return tile_of_leaf_[leaf]; }
   static constexpr std::uint32_t kNone = UINT32_MAX;
