@@ -246,9 +246,16 @@ std::string impossible(const Scene& scene) {
         if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner does not exist";
     if (!part.X_WP.isFinite()) return "a pose that is not finite";
   }
-  for (const SceneStep& step : scene.steps)
+  std::string key;
+  for (const ScenePart& part : scene.parts)
+    if (key.empty()) key = outOfRange(part.part.material, kMaterialFields);
+  for (const SceneStep& step : scene.steps) {
     if (step.part >= scene.parts.size()) return "a step whose part does not exist";
-  std::string key = outOfRange(scene.fidelity, kFidelityFields);
+    if (key.empty()) key = outOfRange(step, kStepKeys);
+  }
+  if (key.empty()) key = outOfRange(scene.fidelity, kFidelityFields);
+  if (key.empty()) key = outOfRange(scene.coupling, kCouplingFields);
+  if (key.empty()) key = outOfRange(scene.hand, kOperatorFields);
   if (key.empty()) key = outOfRange(scene.device, kDeviceKeys);
   if (key.empty()) key = outOfRange(scene.record, kRecordFields);
   if (!key.empty()) return "a setting '" + key + "' out of its range";
