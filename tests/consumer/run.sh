@@ -91,7 +91,9 @@ if [ "$kind" = shared ]; then
   version=$(pkg-config --modversion vps-plugin)
   readelf -d "$libs/libvps_plugin.so" | grep -q "soname: \[libvps_plugin.so.${version%.*}\]"
   readelf -d "$work/app/app" | grep -q "NEEDED.*libvps_bullet.so.${version%.*}"
-  if nm -DC --defined-only "$libs/libvps_plugin.so" | grep 'vps::\(sampleFeatures\|joinCoarse\|readKernels\)('; then
+  exported=$(nm -DC --defined-only "$libs/libvps_plugin.so")
+  grep -q 'vps::v0::buildPointShell(' <<<"$exported" || { echo "a public function is not exported"; exit 1; }
+  if grep 'vps::v0::\(sampleFeatures\|joinCoarse\|readKernels\)(' <<<"$exported"; then
     echo "these are private, and are exported"
     exit 1
   fi
