@@ -9,6 +9,7 @@
 #include "report/run_plot.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
+#include "vps_device/device_kinds.h"
 #include "vps_scenes/load_level.h"
 
 namespace vps::viewer::inline v0 {
@@ -202,6 +203,22 @@ std::string performance(const scenes::AssembleResult& result) {
          loadChanges(result) + "</div>\n";
 }
 
+bool isHandSimulated(const scenes::Scene& scene) {
+  const device::DeviceKind* kind = device::findDeviceKind(scene.device.kind);
+  return kind == nullptr || kind->isSimulated();
+}
+
+std::string handText(const scenes::Scene& scene) {
+  if (!isHandSimulated(scene)) return "<li>A person moved the parts.</li>\n";
+  return "<li>The hand is simulated (<i>assumed</i> parameters): it aims with a standard deviation of " +
+         micrometres(scene.hand.aim_error_m, "%.0f") + " µm and " +
+         format(1e3 * scene.hand.aim_error_rad, "%.1f") + " mrad, moves at " +
+         format(1e3 * scene.hand.speed_m_s, "%.0f") + " mm/s, presses with " +
+         format(scene.hand.press_N, "%.1f") + " N at the target and retracts above " +
+         format(scene.hand.force_limit_N, "%.1f") + " N. Seed " + std::to_string(scene.hand.seed) +
+         ".</li>\n";
+}
+
 std::string method(const scenes::Scene& scene, const scenes::AssembleResult& result) {
   const double megabytes = static_cast<double>(result.modelled.bytes) / 1e6;
   return "<h2>Energy</h2>\n" +
@@ -225,15 +242,8 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
          "to the deflection of the tessellation.</li>\n"
          "<li>Overlap is measured as the exact distance between those meshes, during the step and the rest "
          "after "
-         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less.</li>\n"
-         "<li>The hand is simulated (<i>assumed</i> parameters): it aims with a standard deviation of " +
-         micrometres(scene.hand.aim_error_m, "%.0f") + " µm and " +
-         format(1e3 * scene.hand.aim_error_rad, "%.1f") + " mrad, moves at " +
-         format(1e3 * scene.hand.speed_m_s, "%.0f") + " mm/s, presses with " +
-         format(scene.hand.press_N, "%.1f") + " N at the target and retracts above " +
-         format(scene.hand.force_limit_N, "%.1f") + " N. Seed " + std::to_string(scene.hand.seed) +
-         ".</li>\n"
-         "<li>The device is " +
+         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less.</li>\n" +
+         handText(scene) + "<li>The device is " +
          escapeHtml(scene.device.kind == "dual_arm" ? "the simulated dual arm" : scene.device.kind) +
          ", at " + format(scene.device.scale, "%g") +
          " scene metres per device metre; its parameters without a source are marked "
@@ -289,11 +299,9 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   if (options.progress) options.progress("report", 1);
 
   const std::string name = !result.scene.empty() ? result.scene : scene.name;
-  std::string body =
-      "<h1>" + escapeHtml(name) +
-      "</h1>\n<p class=\"quiet\">Report of an assembly run: a simulated hand moves each part to "
-      "its target by contact.</p>\n" +
-      summary(result, outcome.notes);
+  std::string body = "<h1>" + escapeHtml(name) + "</h1>\n<p class=\"quiet\">Report of an assembly run: " +
+                     std::string(isHandSimulated(scene) ? "a simulated hand" : "a person") +
+                     " moves each part to its target by contact.</p>\n" + summary(result, outcome.notes);
   if (!pictures.overview.empty())
     body += "<div class=\"pictures two\">\n" + html::figure(pictures.overview, "The assembly.") +
             html::figure(pictures.section, "The same in section.") + "</div>\n";
