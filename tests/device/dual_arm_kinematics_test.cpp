@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// More than 400 lines: the tests of each equation share the helpers of this file.
 #include "vps_device/dual_arm/kinematics.h"
 
 #include <gtest/gtest.h>

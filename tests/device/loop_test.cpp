@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// More than 400 lines: the tests share the rig of this file.
 #include "vps_device/loop.h"
 
 #include <gtest/gtest.h>

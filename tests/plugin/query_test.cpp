@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// More than 400 lines: all tests of the contact query, which share the helpers of this file.
 #include "vps/query.h"
 
 #include <gtest/gtest.h>

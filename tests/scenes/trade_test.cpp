@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trades between speed and accuracy: the measured rows, and the choice of a fidelity.
+// More than 400 lines: the tests share the scenes of this file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
