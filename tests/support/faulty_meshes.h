@@ -286,7 +286,9 @@ inline std::vector<FaultyMesh> faultyMeshes() {
     sliced.triangles.push_back({b, c, v});
     sliced.triangles.push_back({c, a, v});
   }
-  add("slivers", sliced, u, 1e-12);
+  // The weights of a point in a facet of length L and height H are known to 1e-16 (L / H)^2, so the point to
+  // 4e-10 m along the facet: (4e-10)^2 / 2d = 8e-12 m of a distance d of 1e-8 m.
+  add("slivers", sliced, u, 1e-11);
   Mesh twice = ring;
   for (const std::size_t i : every(3, ring)) twice.triangles.push_back(ring.triangles[i]);
   add("duplicate facets", twice, ring);
