@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "exact_overlap.h"
 #include "vps/mesh.h"
+#include "vps/mesh_overlap.h"
 
 namespace vps::search {
 
@@ -20,8 +20,8 @@ struct CaseBody {
   Pose X_WP;   ///< of the part's frame, at the start
   bool is_fixed = false;
   double friction = 0.15;
-  Twist V_WP_W;                                       ///< at the start; linear velocity of the centre of mass
-  std::shared_ptr<const ExactSolid> exact = nullptr;  ///< made of `mesh` by finishCase()
+  Twist V_WP_W;  ///< at the start; linear velocity of the centre of mass
+  std::shared_ptr<const OverlapMesh> exact = nullptr;  ///< made of `mesh` by finishCase()
 };
 
 /// A hand holds one body at the origin of its frame and moves towards one pose after the other.

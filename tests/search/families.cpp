@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "faults.h"
+#include "vps/part_model.h"
 
 namespace vps::search {
 
@@ -36,7 +37,7 @@ void finish(Case& made, Random& random) {
   for (CaseBody& body : made.bodies) {
     body.mesh = welded(body.mesh);
     body.given = made.is_faulty ? withFaults(body.mesh, random) : body.mesh;
-    body.exact = std::make_shared<const ExactSolid>(body.mesh);
+    body.exact = std::make_shared<const OverlapMesh>(buildSurface(body.mesh));
   }
 }
 

@@ -88,8 +88,10 @@ std::string partText(const CaseBody& body) {
   text.append("pose = {position = ").append(list(body.X_WP.p));
   text.append(", rotation_xyzw = ").append(list({q.x(), q.y(), q.z(), q.w()})).append("}\n");
   if (body.is_fixed) return text;
-  text.append("# velocity_m_s = ").append(list(body.V_WP_W.v));
-  text.append("\n# angular_velocity_rad_s = ").append(list(body.V_WP_W.w));
+  // A scene states the velocity of the part's origin.
+  const Vec3 from_com = -(body.X_WP.R * massProperties(body.mesh).com);
+  text.append("velocity_m_s = ").append(list(Vec3(body.V_WP_W.v + body.V_WP_W.w.cross(from_com))));
+  text.append("\nangular_velocity_rad_s = ").append(list(body.V_WP_W.w));
   return text.append("\n");
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exact_overlap.h"
+#include "vps/mesh_overlap.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/box_tree.h"
 #include "vps/sharp_edges.h"
 
-namespace vps::search {
+namespace vps::inline v0 {
 
 namespace {
 
@@ -37,21 +38,21 @@ struct CrossedEdge {
   std::vector<double> crossings;
 };
 
-std::vector<CrossedEdge> edgesNear(const ExactSolid& solid, const ExactSolid& other, const Pose& X_SO) {
+std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   std::vector<CrossedEdge> near;
   const std::vector<Vec3>& vertices = other.mesh().vertices;
   for (const auto& [from, to] : other.edges()) {
     CrossedEdge edge{X_SO * vertices[from], X_SO * vertices[to], {}};
-    if (!meet(boxOf(edge.a, edge.b), solid.box())) continue;
-    solid.appendCrossings(edge.a, edge.b, edge.crossings);
+    if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
+    in.appendCrossings(edge.a, edge.b, edge.crossings);
     near.push_back(std::move(edge));
   }
   return near;
 }
 
-double distanceToTriangle(const ExactSolid& solid, std::uint32_t triangle, const Vec3& p) {
-  const auto& t = solid.mesh().triangles[triangle];
-  const auto& v = solid.mesh().vertices;
+double distanceToTriangle(const OverlapMesh& in, std::uint32_t triangle, const Vec3& p) {
+  const auto& t = in.mesh().triangles[triangle];
+  const auto& v = in.mesh().vertices;
   return (closestOnTriangle(p, v[t[0]], v[t[1]], v[t[2]]).q - p).norm();
 }
 
@@ -63,7 +64,7 @@ struct Deepest {
 /// Deepest point of segment ab, which is wholly inside or wholly outside. The depth is the distance to the
 /// nearest triangle, so it is at most that to any one triangle, which is convex along the segment: at most
 /// that of the farther end. A segment that lies along a face needs one or two triangles, however long it is.
-void searchSegment(const ExactSolid& solid, const Vec3& a, const Vec3& b, Deepest& deepest) {
+void searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest& deepest) {
   struct Piece {
     Vec3 a, b;
   };
@@ -73,11 +74,11 @@ void searchSegment(const ExactSolid& solid, const Vec3& a, const Vec3& b, Deepes
     const Piece piece = stack.back();
     stack.pop_back();
     const Vec3 middle = 0.5 * (piece.a + piece.b);
-    const MeshDistance::Closest nearest = solid.surface().closest(middle);
-    const double farther_end_m = std::max(distanceToTriangle(solid, nearest.triangle, piece.a),
-                                          distanceToTriangle(solid, nearest.triangle, piece.b));
+    const MeshDistance::Closest nearest = in.surface().closest(middle);
+    const double farther_end_m = std::max(distanceToTriangle(in, nearest.triangle, piece.a),
+                                          distanceToTriangle(in, nearest.triangle, piece.b));
     const double half_m = 0.5 * (piece.b - piece.a).norm();
-    if (std::min(farther_end_m, nearest.distance_m + half_m) <= deepest.depth_m + kCertain_m) continue;
+    if (std::min(farther_end_m, nearest.distance_m + half_m) <= deepest.depth_m + kOverlapCertain_m) continue;
     if (is_first && nearest.normal.dot(middle - nearest.q) > 0) return;  // outside
     is_first = false;
     if (nearest.distance_m > deepest.depth_m) deepest = {nearest.distance_m, middle};
@@ -86,13 +87,13 @@ void searchSegment(const ExactSolid& solid, const Vec3& a, const Vec3& b, Deepes
   }
 }
 
-void searchEdges(const ExactSolid& solid, std::vector<CrossedEdge>& edges, Deepest& deepest) {
+void searchEdges(const OverlapMesh& in, std::vector<CrossedEdge>& edges, Deepest& deepest) {
   for (CrossedEdge& edge : edges) {
     std::sort(edge.crossings.begin(), edge.crossings.end());
     edge.crossings.push_back(1);
     double from = 0;
     for (const double to : edge.crossings) {
-      if (to > from) searchSegment(solid, at(edge.a, edge.b, from), at(edge.a, edge.b, to), deepest);
+      if (to > from) searchSegment(in, at(edge.a, edge.b, from), at(edge.a, edge.b, to), deepest);
       from = to;
     }
   }
@@ -102,24 +103,33 @@ bool isAnyCrossed(const std::vector<CrossedEdge>& edges) {
   return std::any_of(edges.begin(), edges.end(), [](const CrossedEdge& e) { return !e.crossings.empty(); });
 }
 
-bool isWithinSolid(const ExactSolid& solid, const ExactSolid& other, const Pose& X_SO) {
+bool isWithinSolid(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
-  return meet(boxOf(p, p), solid.box()) && solid.surface().signedDistance(p) < 0;
+  return meet(boxOf(p, p), in.box()) && in.surface().signedDistance(p) < 0;
 }
 
 }  // namespace
 
-ExactSolid::ExactSolid(const Mesh& mesh)
-    : surface_(mesh),
-      box_(bounds(mesh)),
-      triangle_boxes_(boxesOf(mesh)),
-      tree_(triangle_boxes_),
-      edges_(sharpEdges(mesh, kFlat_rad)) {}
+struct OverlapMesh::Triangles {
+  explicit Triangles(const Mesh& mesh) : boxes(boxesOf(mesh)), tree(boxes) {}
+  std::vector<Box> boxes;
+  BoxTree tree;
+};
 
-void ExactSolid::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
+OverlapMesh::OverlapMesh(std::shared_ptr<const MeshDistance> surface)
+    : surface_(std::move(surface)),
+      box_(bounds(surface_->mesh())),
+      edges_(sharpEdges(surface_->mesh(), kFlat_rad)),
+      triangles_(std::make_unique<const Triangles>(surface_->mesh())) {}
+
+OverlapMesh::~OverlapMesh() = default;
+OverlapMesh::OverlapMesh(OverlapMesh&&) noexcept = default;
+OverlapMesh& OverlapMesh::operator=(OverlapMesh&&) noexcept = default;
+
+void OverlapMesh::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
   // Barycentric coordinates round by about 1e-15; a crossing at a shared border must not fall between both.
   constexpr double kBorder = -1e-12;
-  tree_.forEachOverlap(boxOf(a, b), [&](std::uint32_t i) {
+  triangles_->tree.forEachOverlap(boxOf(a, b), [&](std::uint32_t i) {
     const auto& t = mesh().triangles[i];
     const Vec3& corner = mesh().vertices[t[0]];
     const Vec3 u = mesh().vertices[t[1]] - corner, v = mesh().vertices[t[2]] - corner, n = u.cross(v);
@@ -134,7 +144,7 @@ void ExactSolid::appendCrossings(const Vec3& a, const Vec3& b, std::vector<doubl
   });
 }
 
-Overlap deepestOverlap(const ExactSolid& a, const Pose& X_WA, const ExactSolid& b, const Pose& X_WB) {
+Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB) {
   const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();
   if (!meet(moved(b.box(), X_AB), a.box()) || !meet(moved(a.box(), X_BA), b.box())) return {};
   std::vector<CrossedEdge> of_b = edgesNear(a, b, X_AB), of_a = edgesNear(b, a, X_BA);
@@ -148,22 +158,4 @@ Overlap deepestOverlap(const ExactSolid& a, const Pose& X_WA, const ExactSolid& 
   return {in_a.depth_m, X_WA * in_a.p_S};
 }
 
-bool hasPassedThrough(const ExactSolid& a, const ExactSolid& b, const Pose& X_BA_before,
-                      const Pose& X_BA_after, double margin_m) {
-  std::vector<double> crossings;
-  for (const Vec3& p_A : a.mesh().vertices) {
-    const Vec3 from = X_BA_before * p_A, to = X_BA_after * p_A;
-    if (!meet(boxOf(from, to), b.box()) || (to - from).squaredNorm() < margin_m * margin_m) continue;
-    crossings.clear();
-    b.appendCrossings(from, to, crossings);
-    if (crossings.size() < 2) continue;
-    if (b.surface().signedDistance(from) < 0 || b.surface().signedDistance(to) < 0) continue;
-    std::sort(crossings.begin(), crossings.end());
-    for (std::size_t i = 0; i + 1 < crossings.size(); ++i)
-      if (b.surface().signedDistance(at(from, to, 0.5 * (crossings[i] + crossings[i + 1]))) < -margin_m)
-        return true;
-  }
-  return false;
-}
-
-}  // namespace vps::search
+}  // namespace vps::inline v0
