@@ -48,6 +48,11 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
+// A slow body cannot leave the query range within the step.
+bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
+  return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);
+}
+
 }  // namespace
 
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
@@ -81,7 +86,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   Context& context = *state.context;
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
-  if (motion.contact_margin_m + travel_m <= range_m) {
+  if (isQueriedOnce(pair, motion)) {
     findCandidates(pair, motion.contact_margin_m + travel_m, context, out, &state);
     useOwnNormalsForPenalty(pair, context.settings, out);
     return;
@@ -122,17 +127,26 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 }
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                    ManifoldWriter* writer, std::vector<Candidate>& candidates) {
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
+  double sampling_m = 0;
   dropUnreachable(motion, candidates);
   if (writer) writer->markExistingContacts(candidates);
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
   // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach,
   // and affordable (about 0.5 us each).
-  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
+  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2) {
     reduceByCell(candidates, cell_m);
+    sampling_m = cell_m;
+  }
   refineAll(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
+  if (selection) {
+    selection->refined = candidates;
+    selection->sampling_m = sampling_m;
+    selection->is_of_path = !isQueriedOnce(pair, motion);
+    selection->any_way_m = motion.anyWay_m();
+  }
   reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m);
 }
 
