@@ -84,7 +84,7 @@ struct Foot {
 struct Exact {
   bool found = false;       ///< there is a surface within reach
   bool is_contact = false;  ///< the surface faces the point
-  bool is_inside = false;   ///< the point is behind the nearest surface
+  bool is_inside = false;   ///< the point is behind the nearest surface, or on it
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
   bool is_edge_on_edge = false;
@@ -137,7 +137,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = foot.found;
   if (!foot.found) return exact;
-  exact.is_inside = foot.from_q.dot(foot.normal) < 0 && !foot.is_sheet;
+  exact.is_inside = foot.from_q.dot(foot.normal) < kTouching_m && !foot.is_sheet;
   const double cos_facing = own.inward_W.dot(foot.normal);
   const bool is_edge_on_edge = own.is_edge && foot.is_edge;
   const bool is_facing = cos_facing > kFacing;
@@ -202,7 +202,8 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
       Vec3 n = way.cross(into).normalized();
       if (n.dot(s.outward) < 0) n = -n;
       const double distance_m = n.dot(r);
-      if (distance_m > 0 || r.dot(into) < 0 || (best.found && distance_m <= best.distance_m)) continue;
+      if (distance_m > 0 || r.dot(into) < -kTouching_m || (best.found && distance_m <= best.distance_m))
+        continue;
       if (!own.isFirstAlong(X_WM.R * n)) continue;
       best.found = best.is_contact = best.is_their_face = true;
       best.distance_m = distance_m;

@@ -95,21 +95,32 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   constexpr double kMaxStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
   const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMaxStrides)));
   PairView later = pair;
-  for (int k = 0; k < strides && out.empty(); ++k) {
+  thread_local std::vector<Candidate> met;
+  thread_local std::vector<std::uint64_t> met_before;
+  met_before.clear();
+  for (int k = 0; k < strides; ++k) {
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, motion.dt_s, t_s);
-    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, out);
-    useOwnNormalsForPenalty(later, context.settings, out);
-    // Keep what the body meets in this stride, as planes relative to where the bodies are now.
-    std::erase_if(out, [&](Candidate& c) {
+    met.clear();
+    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
+    useOwnNormalsForPenalty(later, context.settings, met);
+    // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
+    // plane when the stride begins has met another before.
+    std::erase_if(met, [&](Candidate& c) {
       const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
       if (c.distance_m - approach_m > motion.contact_margin_m) return true;
+      if (k > 0 && (c.distance_m < -motion.contact_margin_m ||
+                    std::binary_search(met_before.begin(), met_before.end(), c.key())))
+        return true;
       c.distance_m -= c.n_W.dot(moved);
       const Pose& X_then = later.X_WS[c.side];
       c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
       return false;
     });
+    for (const Candidate& c : met) met_before.push_back(c.key());
+    std::sort(met_before.begin(), met_before.end());
+    out.insert(out.end(), met.begin(), met.end());
   }
 }
 

@@ -85,6 +85,12 @@ bool crossAt(Candidate& c, const SideView& body0, const SideView& body1) {
   return true;
 }
 
+// How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
+double overlapOf(Candidate c, const PairView& pair) {
+  if (c.isCrossing() && !crossAt(c, pair.side(0), pair.side(1))) return 0;
+  return std::min(0.0, c.distance_m);
+}
+
 // True if a point is deeper than tolerated in the other side; where that is no solid, always.
 bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tolerated_m) {
   if (!other.shape || other.shape->models().surfaces.empty()) return true;
@@ -244,8 +250,10 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     entered.clear();
     for (const Candidate& c : missed) {
       Candidate start = back.moved(c);
-      if (start.distance_m < -m.tolerated_m) {
-        if (c.isCrossing()) continue;
+      if (c.isCrossing()) {
+        start.distance_m = overlapOf(start, at_start.pair);
+        if (-c.distance_m > m.travel_m) continue;
+      } else if (start.distance_m < -m.tolerated_m) {
         start.distance_m = -m.travel_m;  // bounds the search
         std::vector<Candidate> one(1, start);
         RelativeMotion still;
@@ -253,7 +261,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
         start = one[0];
         if (!(std::abs(start.distance_m) < m.travel_m)) continue;
       }
-      Candidate end = m.step.moved(start);
+      const Candidate end = m.step.moved(c.isCrossing() ? back.moved(c) : start);
       if (isMissed(start.distance_m, end.distance_m, m.tolerated_m)) entered.push_back(end);
     }
     missed.swap(entered);
@@ -272,7 +280,7 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
     if (!added.point) continue;
     for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
     added.end_gap_m = end.distance_m;
-    added.kept_m = std::min(0.0, start.distance_m);
+    added.kept_m = overlapOf(start, at_start.pair);
     out.push_back(added);
   }
 }
