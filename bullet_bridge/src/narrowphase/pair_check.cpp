@@ -65,6 +65,14 @@ bool isMissed(double start_m, double end_m, double tolerated_m) {
   return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
 }
 
+// True if a place on an edge, as a share of its length, is not beyond its end. Where a curved edge goes on in
+// another segment, a crossing may lie past the joint, as findCrossings() allows.
+bool isOn(const EdgeSegment& s, double at, double gap_m) {
+  constexpr double kPastShare = 0.18;
+  const double past = kPastShare * std::abs(gap_m) / (s.to - s.from).norm();
+  return at >= (s.ends[0] ? 0 : -past) && at <= 1 + (s.ends[1] ? 0 : past);
+}
+
 /// Where two edges cross, when the bodies' models are at X_WM. False: beyond the end of one of them.
 bool crossAt(Candidate& c, const SideView& body0, const SideView& body1) {
   const EdgeSegment &s0 = body0.shape->edges().segments()[c.id],
@@ -76,13 +84,12 @@ bool crossAt(Candidate& c, const SideView& body0, const SideView& body1) {
   if (!(square > 1e-6 * d0.squaredNorm() * d1.squaredNorm())) return false;
   const Vec3 r = from1 - from0;
   const double at0 = r.cross(d1).dot(n) / square, at1 = r.cross(d0).dot(n) / square;
-  if (at0 < 0 || at0 > 1 || at1 < 0 || at1 > 1) return false;
   n /= std::sqrt(square);
   if (n.dot(c.n_W) < 0) n = -n;
   c.p_W = from0 + at0 * d0;
   c.n_W = n;
   c.distance_m = n.dot(c.p_W - (from1 + at1 * d1));
-  return true;
+  return isOn(s0, at0, c.distance_m) && isOn(s1, at1, c.distance_m);
 }
 
 // How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
