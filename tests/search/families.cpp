@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "faults.h"
-#include "vps/part_model.h"
+#include "vps/solid.h"
 
 namespace vps::search {
 
@@ -37,7 +37,7 @@ void finish(Case& made, Random& random) {
   for (CaseBody& body : made.bodies) {
     body.mesh = welded(body.mesh);
     body.given = made.is_faulty ? withFaults(body.mesh, random) : body.mesh;
-    body.exact = std::make_shared<const OverlapMesh>(buildSurface(body.mesh));
+    body.exact = std::make_shared<const OverlapMesh>(std::make_shared<const Solid>(body.mesh));
   }
 }
 

@@ -17,11 +17,11 @@ bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_
     crossings.clear();
     b.appendCrossings(from, to, crossings);
     if (crossings.size() < 2) continue;
-    if (b.surface().signedDistance(from) < 0 || b.surface().signedDistance(to) < 0) continue;
+    if (b.solid().signedDistance(from) < 0 || b.solid().signedDistance(to) < 0) continue;
     std::sort(crossings.begin(), crossings.end());
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
       const Vec3 middle = from + 0.5 * (crossings[i] + crossings[i + 1]) * (to - from);
-      if (b.surface().signedDistance(middle) < -margin_m) return true;
+      if (b.solid().signedDistance(middle) < -margin_m) return true;
     }
   }
   return false;

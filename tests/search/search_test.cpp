@@ -11,13 +11,13 @@
 #include "prism.h"
 #include "scene_writer.h"
 #include "support/temporary_folder.h"
-#include "vps/part_model.h"
+#include "vps/solid.h"
 
 namespace vps::search {
 namespace {
 
 OverlapMesh overlapMesh(const Mesh& mesh) {
-  return OverlapMesh(buildSurface(mesh));
+  return OverlapMesh(std::make_shared<const Solid>(mesh));
 }
 
 double areaOf(const Polygon& polygon) {
@@ -107,7 +107,7 @@ TEST_P(FamilyTest, HasFaultyMeshesOfTheSameSolid) {
   for (const CaseBody& body : made.bodies) {
     is_any_faulty = is_any_faulty || !checkMesh(body.given).isClosed();
     for (const Vec3& p : body.given.vertices)
-      EXPECT_LE(body.exact->surface().closest(p).distance_m, kCrack_m);
+      EXPECT_LE(body.exact->solid().closest(p).distance_m, kCrack_m);
   }
   EXPECT_TRUE(is_any_faulty);
 }
@@ -136,7 +136,7 @@ TEST(Search, FindsABodyThatGoesThroughAnother) {
   made.bodies.push_back(
       {"block", makeBox(Vec3(0.01, 0.01, 0.01)), {}, Pose::translation(Vec3(0, 0, 0.01)), false, 0.15, {}});
   for (CaseBody& body : made.bodies)
-    body.exact = std::make_shared<const OverlapMesh>(buildSurface(body.mesh));
+    body.exact = std::make_shared<const OverlapMesh>(std::make_shared<const Solid>(body.mesh));
   made.bodies[1].given = made.bodies[1].mesh;
   // The engine gets a floor that is 20 mm lower.
   made.bodies[0].given = transformed(made.bodies[0].mesh, Pose::translation(Vec3(0, 0, -0.02)));

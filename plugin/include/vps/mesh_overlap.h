@@ -8,21 +8,21 @@
 
 #include "vps/box.h"
 #include "vps/export.h"
-#include "vps/mesh_distance.h"
+#include "vps/solid.h"
 
 namespace vps::inline v0 {
 
-/// A surface with its edges and a tree of its triangles' boxes.
+/// A solid with the edges of its surface and a tree of its triangles' boxes.
 class VPS_API OverlapMesh {
  public:
-  /// The surface decides what is inside. O(n log n).
-  explicit OverlapMesh(std::shared_ptr<const MeshDistance> surface);
+  /// O(n log n).
+  explicit OverlapMesh(std::shared_ptr<const Solid> solid);
   ~OverlapMesh();
   OverlapMesh(OverlapMesh&&) noexcept;
   OverlapMesh& operator=(OverlapMesh&&) noexcept;
 
-  [[nodiscard]] const MeshDistance& surface() const { return *surface_; }
-  [[nodiscard]] const Mesh& mesh() const { return surface_->mesh(); }
+  [[nodiscard]] const Solid& solid() const { return *solid_; }
+  [[nodiscard]] const Mesh& mesh() const { return solid_->mesh(); }
   [[nodiscard]] const Box& box() const { return box_; }
   /// Vertex pairs of all edges between faces that are not in one plane, and of all that do not have exactly
   /// two faces.
@@ -33,7 +33,7 @@ class VPS_API OverlapMesh {
 
  private:
   struct Triangles;
-  std::shared_ptr<const MeshDistance> surface_;
+  std::shared_ptr<const Solid> solid_;
   Box box_;
   std::vector<std::array<std::uint32_t, 2>> edges_;
   std::unique_ptr<const Triangles> triangles_;

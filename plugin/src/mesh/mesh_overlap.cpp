@@ -74,7 +74,7 @@ void searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest&
     const Piece piece = stack.back();
     stack.pop_back();
     const Vec3 middle = 0.5 * (piece.a + piece.b);
-    const MeshDistance::Closest nearest = in.surface().closest(middle);
+    const Solid::Closest nearest = in.solid().closest(middle);
     const double farther_end_m = std::max(distanceToTriangle(in, nearest.triangle, piece.a),
                                           distanceToTriangle(in, nearest.triangle, piece.b));
     const double half_m = 0.5 * (piece.b - piece.a).norm();
@@ -105,7 +105,7 @@ bool isAnyCrossed(const std::vector<CrossedEdge>& edges) {
 
 bool isWithinSolid(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
-  return meet(boxOf(p, p), in.box()) && in.surface().signedDistance(p) < 0;
+  return meet(boxOf(p, p), in.box()) && in.solid().signedDistance(p) < 0;
 }
 
 }  // namespace
@@ -116,11 +116,11 @@ struct OverlapMesh::Triangles {
   BoxTree tree;
 };
 
-OverlapMesh::OverlapMesh(std::shared_ptr<const MeshDistance> surface)
-    : surface_(std::move(surface)),
-      box_(bounds(surface_->mesh())),
-      edges_(sharpEdges(surface_->mesh(), kFlat_rad)),
-      triangles_(std::make_unique<const Triangles>(surface_->mesh())) {}
+OverlapMesh::OverlapMesh(std::shared_ptr<const Solid> solid)
+    : solid_(std::move(solid)),
+      box_(bounds(solid_->mesh())),
+      edges_(sharpEdges(solid_->mesh(), kFlat_rad)),
+      triangles_(std::make_unique<const Triangles>(solid_->mesh())) {}
 
 OverlapMesh::~OverlapMesh() = default;
 OverlapMesh::OverlapMesh(OverlapMesh&&) noexcept = default;
