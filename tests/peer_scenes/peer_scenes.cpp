@@ -82,22 +82,22 @@ double turned_rad(const Body& body, std::size_t from, std::size_t to, const Vec3
   return sum_rad;
 }
 
-/// Without friction a screw accelerates along its axis by g / (1 + I / (m r^2)) with r = lead / (2 pi). The
-/// lead is the measured one.
+/// Without friction a screw turns faster by g / r / (1 + I / (m r^2)) with r = lead / (2 pi), about its axis.
+/// The lead is the measured one.
 Outcome screwTurns(const Run& run) {
   const Body& screw = run.bodies.front();
   const Vec3 down = run.gravity_W.normalized();
-  const std::size_t to = screw.X_WB.size() - 1, from = to / 4;  // it first falls through its clearance
+  const std::size_t to = screw.X_WB.size() - 1, from = to / 10;  // it first falls through its clearance
   const double advance_m = down.dot(screw.X_WB[to].p - screw.X_WB[from].p);
   const double turn_rad = std::abs(turned_rad(screw, from, to, down));
-  const double speed_m_s = down.dot(screw.V_W[to].v) - down.dot(screw.V_W[from].v);
-  const double measured_m_s2 = speed_m_s / (static_cast<double>(to - from) * run.dt_s);
+  const double spin_rad_s = std::abs(down.dot(screw.V_W[to].w - screw.V_W[from].w));
+  const double measured_rad_s2 = spin_rad_s / (static_cast<double>(to - from) * run.dt_s);
   const Vec3 axis_B = screw.X_WB[from].R.transpose() * down;
   const double inertia_kg_m2 = axis_B.cwiseAbs2().dot(screw.frame.inertia_kg_m2);
   const double radius_m = advance_m / turn_rad;
-  const double theory_m_s2 =
-      run.gravity_W.norm() / (1 + inertia_kg_m2 / (screw.frame.mass_kg * radius_m * radius_m));
-  const double ratio = measured_m_s2 / theory_m_s2;
+  const double theory_rad_s2 =
+      run.gravity_W.norm() / radius_m / (1 + inertia_kg_m2 / (screw.frame.mass_kg * radius_m * radius_m));
+  const double ratio = measured_rad_s2 / theory_rad_s2;
   return {std::abs(ratio - 1) <= 0.02,
           text("%.4f of theory's acceleration, %.2f mm down, %.2f turns, lead %.3f mm", ratio,
                1e3 * advance_m, turn_rad / (2 * std::numbers::pi), 1e3 * 2 * std::numbers::pi * radius_m)};
