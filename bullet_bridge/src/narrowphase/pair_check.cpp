@@ -135,6 +135,16 @@ void findOverlaps(const PairView& pair, Context& context, double tolerated_m, st
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -tolerated_m; });
 }
 
+// The contact that a point has where the bodies are, if its distance is less than max_m.
+bool refineAt(const PairView& pair, double max_m, const Settings& settings, Candidate& c) {
+  thread_local std::vector<Candidate> one;
+  one.assign(1, c);
+  one[0].distance_m = -max_m;
+  refineAll(pair, RelativeMotion(), settings, one);
+  c = one[0];
+  return std::abs(c.distance_m) < max_m;
+}
+
 }  // namespace
 
 /// Both bodies at other poses than Bullet's.
@@ -253,22 +263,19 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     const Placed placed(*this, then);
     findOverlaps(placed.pair, *state_.context, m.tolerated_m, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
-    // A point that was behind the plane before did not enter through it. The plane that it had then decides.
+    const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
     entered.clear();
     for (const Candidate& c : missed) {
-      Candidate start = back.moved(c);
+      Candidate start = back.moved(c), end = onward.moved(c);
       if (c.isCrossing()) {
         start.distance_m = overlapOf(start, at_start.pair);
         if (-c.distance_m > m.travel_m) continue;
       } else if (start.distance_m < -m.tolerated_m) {
-        start.distance_m = -m.travel_m;  // bounds the search
-        std::vector<Candidate> one(1, start);
-        RelativeMotion still;
-        refineAll(at_start.pair, still, state_.context->settings, one);
-        start = one[0];
-        if (!(std::abs(start.distance_m) < m.travel_m)) continue;
+        // It was behind this plane before, so it did not enter through it. The plane that it had then
+        // decides.
+        if (!refineAt(at_start.pair, m.travel_m, state_.context->settings, start)) continue;
+        end = m.step.moved(start);
       }
-      const Candidate end = m.step.moved(c.isCrossing() ? back.moved(c) : start);
       if (isMissed(start.distance_m, end.distance_m, m.tolerated_m)) entered.push_back(end);
     }
     missed.swap(entered);
