@@ -63,6 +63,7 @@ Case startedAt(const Case& made, const std::vector<BodyMotion>& state, double se
 
 struct Start {
   Case made;
+  double time_s = 0;
   bool shows_overlap = false;
 };
 
@@ -71,11 +72,12 @@ Start findStart(const Case& made, const RunSettings& settings, const CaseResult&
   repeated.stops_at_bound = true;
   for (std::size_t back = 1; back <= result.before.size(); back *= 2) {
     const double seconds = 2.5 * static_cast<double>(back) * settings.step_s;
-    Start start{startedAt(made, result.before[result.before.size() - back], seconds), false};
+    Start start{startedAt(made, result.before[result.before.size() - back], seconds),
+                result.before_s - static_cast<double>(back - 1) * settings.step_s, false};
     start.shows_overlap = !runCase(start.made, repeated).before.empty();
     if (start.shows_overlap) return start;
   }
-  return {startedAt(made, result.before.back(), 10 * settings.step_s), false};
+  return {startedAt(made, result.before.back(), 10 * settings.step_s), result.before_s, false};
 }
 
 std::string partText(const CaseBody& body) {
@@ -106,7 +108,7 @@ std::filesystem::path saveCase(const std::filesystem::path& folder, const Case& 
   std::snprintf(head, sizeof head, "# %.1f um deep at %.4f s of the run, %s in %s. The state of %.4f s.\n",
                 1e6 * result.deepest.overlap.depth_m, result.deepest_at_s,
                 made.bodies[result.deepest.a].name.c_str(), made.bodies[result.deepest.b].name.c_str(),
-                result.before_s);
+                start.time_s);
   std::string text = head;
   if (!start.shows_overlap) text.append("# From here the overlap appears only with the hand:\n");
   text.append("# ").append(command).append("\nunit = \"m\"\n\n[fidelity]\nphysics_rate_hz = ");
