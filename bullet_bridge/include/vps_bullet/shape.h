@@ -30,9 +30,10 @@ class SheetBorder;
 
 /// The exact surface of one part in the models' frame M.
 struct Surface {
-  std::shared_ptr<const MeshDistance> distance;
+  std::shared_ptr<const Solid> distance;
   Pose X_MP;
   /// For an open surface without an inside, where a point meets the side that it faces; null for a solid.
+  /// `distance` is then a Solid::sheet().
   std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 

@@ -31,8 +31,11 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 /// Reduces thousands of near points to the few contacts that support the part.
 /// @param writer  knows last step's contacts; may be null
+/// @param selection  gets what a check of the solved step needs, of the candidates left out as well; may be
+/// null
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                    ManifoldWriter* writer, std::vector<Candidate>& candidates);
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates,
+                    Selection* selection = nullptr);
 
 void storeSelection(const std::vector<Candidate>& contacts, const PairView& pair,
                     const RelativeMotion& motion, Selection& selection);

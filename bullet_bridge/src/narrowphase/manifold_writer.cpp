@@ -137,9 +137,12 @@ void ManifoldWriter::markExistingContacts(std::vector<Candidate>& candidates) {
 }
 
 void ManifoldWriter::write(std::span<const Candidate> contacts,
-                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion) {
+                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion,
+                           bool keeps_spare) {
   readManifolds();
-  const std::size_t manifold_count = (contacts.size() + kPerManifold - 1) / kPerManifold;
+  const std::size_t used = (contacts.size() + kPerManifold - 1) / kPerManifold;
+  // assumed: a pair with many contacts lacks some of its many neighbours
+  const std::size_t manifold_count = keeps_spare ? used + 1 + used / 2 : used;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
     if (!manifold) break;  // the pool is full and may not grow
@@ -174,6 +177,26 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       gContactDestroyedCallback(gone.point.m_userPersistentData);
   if (had_contacts && contacts.empty() && gContactEndedCallback && !manifolds_.empty())
     gContactEndedCallback(manifolds_.front());
+}
+
+btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
+                                     const btCollisionObjectWrapper* const (&bodies)[2],
+                                     const RelativeMotion& motion) {
+  btPersistentManifold* free = nullptr;
+  for (btPersistentManifold* manifold : manifolds_) {
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      if (btManifoldPoint& point = manifold->getContactPoint(i); keyOf(point) == contact.key()) {
+        const btManifoldPoint old = point;
+        point = makePoint(contact, bodies, motion);
+        copyImpulses(point, old);
+        return &point;
+      }
+    if (!free && manifold->getNumContacts() < kPerManifold) free = manifold;
+  }
+  if (!free) return nullptr;
+  const int i = free->getNumContacts();
+  free->setNumContacts(i + 1);
+  return &(free->getContactPoint(i) = makePoint(contact, bodies, motion));
 }
 
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],

@@ -107,7 +107,7 @@ ShapeModels makeModels(const PartModel& part) {
   models.map = part.map;
   models.shell = part.shell;
   models.mesh = part.mesh;
-  if (part.surface) models.surfaces = {{part.surface, Pose()}};
+  if (part.solid) models.surfaces = {{part.solid, Pose()}};
   return models;
 }
 

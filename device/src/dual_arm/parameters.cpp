@@ -205,8 +205,10 @@ struct DualArmFileReader {
   void requireKnown(std::string_view section, std::string_view key, const toml::node& node) const {
     for (const Field& field : kFields)
       if (field.section == section && field.key == key) return;
-    fail(node,
-         "[" + std::string(section) + "] has no '" + std::string(key) + "'; it may have " + known(section));
+    // Not "[" + ...: GCC 12 takes that for an overflow.
+    std::string words("[");
+    words.append(section).append("] has no '").append(key).append("'; it may have ").append(known(section));
+    fail(node, words);
   }
 
   /// A plain value, or {value = ..., sourced or assumed = "..."}.

@@ -36,6 +36,9 @@ enum class Crossing { Unknown, Seen };
 /// `surface` is never empty.
 VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);
 
+/// Repairs a sound mesh again as one that was seen to cross itself. The report tells of both repairs.
+VPS_API RepairedMesh repairCrossing(const RepairedMesh& sound);
+
 /// The report as one line of text: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign is
 /// certain for 99.8 %".
 VPS_API std::string describe(const MeshReport& report);

@@ -224,6 +224,36 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
   return kRounding * sum;
 }
 
+[[gnu::always_inline]] inline Eigen::Array<bool, 4, 1> MeshDistance::Node::overlaps(
+    const Eigen::Vector3f& low, const Eigen::Vector3f& high) const {
+  return min[0] <= high[0] && low[0] <= max[0] && min[1] <= high[1] && low[1] <= max[1] &&
+         min[2] <= high[2] && low[2] <= max[2];
+}
+
+bool MeshDistance::overlapping(const Box& box, std::size_t most,
+                               std::vector<std::uint32_t>& triangles) const {
+  triangles.clear();
+  if (nodes_.empty()) return true;
+  // The nodes' boxes have a margin for the rounding of points inside the mesh's box.
+  const Eigen::Vector3f low = (box.min - center_).cast<float>(), high = (box.max - center_).cast<float>();
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t next = stack[--waiting];
+    if ((next & kTriangle) != 0) {
+      if (triangles.size() == most) return false;
+      triangles.push_back(next & ~kTriangle);
+      continue;
+    }
+    const Node& node = nodes_[next];
+    const Eigen::Array<bool, 4, 1> is_near = node.overlaps(low, high);
+    for (int lane = 0; lane < 4; ++lane)
+      if (is_near[lane]) stack[waiting++] = node.child[lane];
+  }
+  return true;
+}
+
 /// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
 /// before and than max_m; returns the least squared distance. Skips boxes whose squared distance times
 /// box_weight is not less.

@@ -421,6 +421,17 @@ RepairedMesh repairMesh(Mesh mesh, Crossing crossing) {
   return Repairer(std::move(mesh), crossing).run();
 }
 
+RepairedMesh repairCrossing(const RepairedMesh& sound) {
+  RepairedMesh again = repairMesh(sound.surface, Crossing::Seen);
+  again.is_sound = false;
+  again.report.triangles = sound.report.triangles;
+  again.report.duplicate_triangles += sound.report.duplicate_triangles;
+  again.report.flipped_edges += sound.report.flipped_edges;
+  again.report.flipped_facets += sound.report.flipped_facets;
+  again.report.turned_shells += sound.report.turned_shells;
+  return again;
+}
+
 std::string describe(const MeshReport& report) {
   std::string text;
   const auto say = [&](std::size_t count, const char* one, const char* many) {

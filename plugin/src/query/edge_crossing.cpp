@@ -19,9 +19,10 @@ constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over 
 /// to the next stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
 /// How far beyond its end a segment still crosses, as a share of the gap: at the joints of a curved edge the
-/// crossing falls between two segments. Assumed. At a true end, separating along the edge must not be shorter
-/// than separating across: the rim of a square peg in a square hole has long passed the hole's rim.
-constexpr double kPast_m = 1e-6, kPastShare = 0.1;
+/// crossing falls between two segments, by the gap times the tangent of half their turn, of at most 20
+/// degrees. At a true end, separating along the edge must not be shorter than separating across: the rim of a
+/// square peg in a square hole has long passed the hole's rim.
+constexpr double kPast_m = 1e-6, kPastShare = 0.18;
 
 struct Face {
   Vec3 normal, apex;
