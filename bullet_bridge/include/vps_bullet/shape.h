@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vps/edge_crossing.h"
+#include "vps/feature_set.h"
 #include "vps/part_model.h"
 #include "vps_bullet/export.h"
 
@@ -97,6 +98,8 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   [[nodiscard]] PointFace faceAt(std::uint32_t id) const { return face_at_[id]; }
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
+  /// Corners, sharp edges and facets of the surfaces, in the models' frame.
+  [[nodiscard]] const FeatureSet& features() const { return features_; }
   /// The sharp edges on which a shell point lies, as indices of edges().segments(): one, several at corners
   /// and ends of segments, none on faces.
   [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t id) const {
@@ -141,6 +144,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;  // by point
   EdgeSet edges_;
+  FeatureSet features_;
   std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]
   std::unique_ptr<const TriangleTree> triangles_;
 };

@@ -31,6 +31,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.selection.is_valid = false;
     state.selection.contacts.clear();
     state.penalty.points.clear();
+    state.features.reset();
     for (auto& query_state : state.query_state) query_state.reset();
     state.writer->invalidateIds();
   }

@@ -142,7 +142,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
   readManifolds();
   const std::size_t used = (contacts.size() + kPerManifold - 1) / kPerManifold;
   // assumed: a pair with many contacts lacks some of its many neighbours
-  const std::size_t manifold_count = keeps_spare ? used + 1 + used / 2 : used;
+  const std::size_t manifold_count = keeps_spare ? used + 4 + used / 2 : used;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
     if (!manifold) break;  // the pool is full and may not grow

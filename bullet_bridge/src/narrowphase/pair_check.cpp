@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
 #include "native_shapes/primitive.h"
 
 namespace vps::bullet::inline v0 {
@@ -202,6 +203,12 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>
   const Vec3 turned = rotationVector(m.step.D[0].R * m.step.D[1].R.transpose());
   m.turn_rad = turned.norm();
   m.travel_m = moved.norm() + m.turn_rad * radius_m;
+  if (m.travel_m <= FeatureMotion::kLeast_m) return;
+  const std::size_t had = out.size();
+  if (hasFeatures(at_start.pair, state_.context->settings)) {
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, state_, out);
+    if (out.size() > had) state_.is_incomplete = true;
+  }
   if (m.travel_m <= m.tolerated_m) return;
   const double dt_s = state_.motion.dt_s;
   const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
@@ -216,10 +223,21 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>
   thread_local std::vector<Candidate> missed;
   missed.clear();
   findAmongRefined(m, missed);
-  if (missed.empty() && mayMissPoints(m)) findAlongPath(m, missed);
+  if (missed.empty() && out.size() == had && mayMissPoints(m)) findAlongPath(m, missed);
   if (missed.empty()) return;
   emit(m, missed, out);
   state_.is_incomplete = true;
+}
+
+double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
+  if (!state_.selection.is_valid || !object_[0]) return 1;
+  const Pose start[2] = {fromBt(object_[0]->getWorldTransform()) * X_BS_[0],
+                         fromBt(object_[1]->getWorldTransform()) * X_BS_[1]};
+  const EndPoses end = {{X_WB_end[0] * X_BS_[0], X_WB_end[1] * X_BS_[1]}};
+  const Placed at_start(*this, start);
+  if (!end.X_WS[0].isFinite() || !end.X_WS[1].isFinite()) return 1;
+  if (!hasFeatures(at_start.pair, state_.context->settings)) return 1;
+  return freeShareOf(at_start.pair, end, state_);
 }
 
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if

@@ -13,7 +13,7 @@
 
 namespace vps::bullet::inline v0 {
 
-/// A pair's check of the solved step, in three stages, each only where the one before cannot exclude an
+/// A pair's check of the solved step, in four stages, each only where the one before cannot exclude an
 /// overlap:
 ///
 ///   1. Bounds of the motion: how far any point moved relative to the other body, and how far from where it
@@ -22,7 +22,8 @@ namespace vps::bullet::inline v0 {
 ///   2. The points that were refined for the step's selection, including those that were left out of it: the
 ///      gaps of their planes at the end of the step, exactly. (The solver's are to first order in the
 ///      motion.)
-///   3. A query of all points at the end of the step, and of a fast body at places on its way.
+///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
+///   4. A query of all points at the end of the step, and of a fast body at places on its way.
 ///
 /// A contact that is missing gets the plane through which the point entered.
 class PairCheck final : public StepCheck {
@@ -33,6 +34,7 @@ class PairCheck final : public StepCheck {
   void setBodies(const PairView& pair);
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
+  double freeShare(const Pose (&X_WB_end)[2]) override;
 
  private:
   struct Placed;

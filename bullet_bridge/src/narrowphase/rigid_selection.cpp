@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -48,6 +49,7 @@ void selectRigid(const PairView& pair, PairState& state) {
                    &state.selection);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
+  applyRestGap(pair, context.settings, state.contacts);
   prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
                      pair.wrapper[1]->getCollisionObject());
 }

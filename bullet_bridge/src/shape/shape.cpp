@@ -86,6 +86,14 @@ EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   return EdgeSet(std::move(segments));
 }
 
+FeatureSet featuresOf(const std::vector<Surface>& surfaces) {
+  FeatureSet features;
+  for (const Surface& surface : surfaces)
+    features.append(surface.distance->mesh(), surface.X_MP, surface.sheet != nullptr);
+  features.build();
+  return features;
+}
+
 }  // namespace
 
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
@@ -220,6 +228,7 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
   smooth_inward_ = std::move(normals.smooth_inward);
   face_at_ = std::move(normals.faces);
   edges_ = edgesOf(models_.surfaces);
+  features_ = featuresOf(models_.surfaces);
   edges_at_.clear();
   first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
   for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {

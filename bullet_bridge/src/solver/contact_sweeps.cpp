@@ -97,6 +97,7 @@ double ContactSweeps::pushVelocity(const ContactRow& row) const {
 void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
   const double dt_s = info.m_timeStep;
   for (const MissedContact& m : missed) {
+    if (!m.point) continue;
     RigidContact c;
     c.point = m.point;
     for (int i = 0; i < 2; ++i) c.object[i] = m.object[i];

@@ -69,6 +69,10 @@ class ContactSweeps {
   void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
   /// Velocities of the push, one for each body; empty: none is needed.
   [[nodiscard]] std::span<const Vec6> push() const { return push_; }
+  /// Shortens the push to a share of it.
+  void scalePush(double share) {
+    for (Vec6& push : push_) push *= share;
+  }
   /// Writes the impulses to the manifolds and moves the bodies by the push.
   void finish(double dt_s);
 

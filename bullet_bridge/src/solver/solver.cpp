@@ -64,6 +64,7 @@ struct Solver::Work {
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
   bool addMissed(const btContactSolverInfo& info);
+  bool shorten(double dt_s);
 };
 
 namespace {
@@ -233,7 +234,29 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info) {
     check->findMissed(X_WB_end, missed);
   }
   rigid.addMissed(missed, info);
-  return !missed.empty();
+  return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
+}
+
+// The bodies stop before sharp features come too near to each other, where no contacts were found that
+// prevent it. This takes energy and is the last resort. Kinematic bodies go on.
+bool Solver::Work::shorten(double dt_s) {
+  constexpr double kShort = 0.9;  // assumed: not quite up to the place
+  constexpr int kMost = 6;        // assumed; then the bodies stand for this step
+  bool is_shortened = false;
+  for (int k = 0; k <= kMost; ++k) {
+    double share = 1;
+    for (StepCheck* check : checks) {
+      const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
+                                island.endPose(check->object(1), rigid.push(), dt_s)};
+      share = std::min(share, check->freeShare(X_WB_end));
+    }
+    if (share >= 1) break;
+    is_shortened = true;
+    share = k < kMost ? kShort * share : 0;
+    for (IslandBody& b : island.bodies) b.u *= share;
+    rigid.scalePush(share);
+  }
+  return is_shortened;
 }
 
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
@@ -257,7 +280,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 
-  constexpr int kMaxChecks = 6;  // assumed; two or three find all
+  constexpr int kMaxChecks = 8;  // assumed; two or three find all
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {
     const SolveOutcome outcome = work.solveWithLaws(settings_, dt_s);
@@ -267,6 +290,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     work.rigid.solvePush(info, settings_.iteration_limit);
     if (checked == kMaxChecks || !work.addMissed(info)) break;
   }
+  if (!work.is_penalty && !work.missed.empty() && work.shorten(dt_s)) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);

@@ -23,10 +23,12 @@ namespace vps::bullet::inline v0 {
 
 /// A contact without which two bodies overlap at the end of the step.
 struct MissedContact {
-  btManifoldPoint* point = nullptr;  ///< new, or one that the solver has, with another plane
+  btManifoldPoint* point = nullptr;  ///< new, or one that the solver has, with another plane; null: no room
   const btCollisionObject* object[2] = {nullptr, nullptr};
   double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked; negative
-  double kept_m = 0;     ///< <= 0: an overlap that existed before the step, and need not be removed in it
+  /// The gap that the end of the step may have. Negative: an overlap that existed before the step, and need
+  /// not be removed in it. Positive: between sharp features.
+  double kept_m = 0;
 };
 
 /// A pair of bodies that checks a solved step.
@@ -37,6 +39,8 @@ class StepCheck {
   /// Appends the contacts that the step lacks.
   /// @param X_WB_end  where the bodies' frames are at the end of the step
   virtual void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
+  /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
+  virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
 };
 
 /// The check behind the first manifold of each pair, for the pairs of one installation.

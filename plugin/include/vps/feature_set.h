@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corners, sharp edges and facets of a part: what two polyhedra first touch with.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vps/export.h"
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+class SphereTree;
+
+/// A sharp edge that is not a groove, or an edge that does not have exactly two facets.
+struct FeatureEdge {
+  std::uint32_t from = 0, to = 0;               ///< vertices
+  Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
+  bool has_faces = false;                       ///< false: `into` is unknown
+};
+
+/// The features of one or several meshes in one frame, with a tree of bounding spheres over each kind.
+class VPS_API FeatureSet {
+ public:
+  FeatureSet();
+  ~FeatureSet();
+  FeatureSet(FeatureSet&&) noexcept;
+  FeatureSet& operator=(FeatureSet&&) noexcept;
+
+  /// Adds a mesh placed by X_MP; call build() afterwards. Facets without area are left out. O(n log n).
+  /// @param is_sheet  its facets are met from both sides
+  void append(const Mesh& mesh, const Pose& X_MP, bool is_sheet);
+  /// O(n log n).
+  void build();
+
+  [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
+  [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return is_two_sided_[facet] != 0; }
+  [[nodiscard]] const std::vector<FeatureEdge>& edges() const { return edges_; }
+  /// Vertices at which edges end.
+  [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
+  [[nodiscard]] bool isEmpty() const { return facets_.empty(); }
+  /// A sphere around all vertices.
+  [[nodiscard]] const Vec3& center() const { return center_; }
+  [[nodiscard]] double radius_m() const { return radius_m_; }
+
+  /// For the library's own use. Over indices of corners(), edges() and facets().
+  [[nodiscard]] const SphereTree& cornerTree() const { return *trees_[0]; }
+  [[nodiscard]] const SphereTree& edgeTree() const { return *trees_[1]; }
+  [[nodiscard]] const SphereTree& facetTree() const { return *trees_[2]; }
+
+ private:
+  std::vector<Vec3> vertices_;
+  std::vector<std::array<std::uint32_t, 3>> facets_;
+  std::vector<std::uint8_t> is_two_sided_;  // by facet
+  std::vector<FeatureEdge> edges_;
+  std::vector<std::uint32_t> corners_;
+  Vec3 center_ = Vec3::Zero();
+  double radius_m_ = 0;
+  std::unique_ptr<const SphereTree> trees_[3];
+};
+
+}  // namespace vps::inline v0

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/feature_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/triangle_distance.h"
+#include "query/sphere_tree.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+using Kind = FeatureContact::Kind;
+
+/// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
+struct Features {
+  Vec3 a[3], way[3], b[3];
+  int a_count = 0, b_count = 0;
+
+  void moveTo(double share, Vec3 (&at)[3]) const {
+    for (int i = 0; i < a_count; ++i) at[i] = a[i] + share * way[i];
+  }
+};
+
+/// The nearest points of two features.
+struct Nearest {
+  Vec3 p, q;            // on part 0, on part 1
+  bool is_end = false;  // of two edges: at an end of one of them
+};
+
+// Ericson, Real-Time Collision Detection, section 5.1.9.
+Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
+  const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
+  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
+  const double square = a * e - b * b;
+  double s = square > 1e-12 * a * e ? std::clamp((b * f - c * e) / square, 0.0, 1.0) : 0.0;
+  double t = (b * s + f) / e;
+  if (t < 0) {
+    t = 0;
+    s = std::clamp(-c / a, 0.0, 1.0);
+  } else if (t > 1) {
+    t = 1;
+    s = std::clamp((b - c) / a, 0.0, 1.0);
+  }
+  return {p1 + s * d1, p2 + t * d2, s <= 0 || s >= 1 || t <= 0 || t >= 1};
+}
+
+Nearest nearestOf(Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+  if (kind == Kind::CornerOnFacet) return {a[0], closestOnTriangleInline(a[0], b[0], b[1], b[2]).q};
+  if (kind == Kind::FacetOnCorner) return {closestOnTriangleInline(b[0], a[0], a[1], a[2]).q, b[0]};
+  return nearestOfSegments(a[0], a[1], b[0], b[1]);
+}
+
+int pointsOf(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]) {
+  const std::vector<Vec3>& v = part.vertices();
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge& edge = part.edges()[feature];
+    out[0] = v[edge.from];
+    out[1] = v[edge.to];
+    return 2;
+  }
+  if ((kind == Kind::CornerOnFacet) == (i == 0)) {
+    out[0] = v[part.corners()[feature]];
+    return 1;
+  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = v[part.facets()[feature][k]];
+  return 3;
+}
+
+/// Where features reach a distance.
+struct Reach {
+  double share = 0;
+  Nearest nearest;
+};
+
+// Up to which share of the step the slab between both features along n stays wider than least_m.
+double slabShare(const Features& f, const Vec3& n, double least_m) {
+  double top = n.dot(f.b[0]);
+  for (int i = 1; i < f.b_count; ++i) top = std::max(top, n.dot(f.b[i]));
+  double share = 2;
+  for (int i = 0; i < f.a_count; ++i) {
+    const double speed = n.dot(f.way[i]);
+    if (speed < 0) share = std::min(share, (top + least_m - n.dot(f.a[i])) / speed);
+  }
+  return share;
+}
+
+/// False: they stay farther apart than least_m.
+bool findReach(Kind kind, const Features& f, double least_m, double start_m, const Nearest& start,
+               Reach& reach) {
+  constexpr int kMost = 60;  // assumed; most need two or three
+  const double near_m = 1.1 * least_m;
+  reach.nearest = start;
+  double distance_m = start_m;
+  double fastest_m = 0;
+  for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
+  for (int k = 0; k < kMost; ++k) {
+    const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
+    // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
+    const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
+    reach.share = std::max(slabShare(f, n, least_m), reach.share + least_step);
+    if (!(reach.share < 1)) return false;
+    Vec3 at[3];
+    f.moveTo(reach.share, at);
+    reach.nearest = nearestOf(kind, at, f.b);
+    distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    if (distance_m <= near_m) return true;
+  }
+  return true;
+}
+
+// A facet is met from outside, an edge from between its facets. Other pairs are nearest through the solid,
+// behind a feature that is met first.
+bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& n) {
+  constexpr double kLean = 0.1;         // assumed; while the features touch, other features may be as near
+  const double sign = i == 1 ? 1 : -1;  // n points out of part 1 and into part 0
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge& edge = part.edges()[feature];
+    return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
+  }
+  if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
+  const auto& t = part.facets()[feature];
+  const std::vector<Vec3>& v = part.vertices();
+  return sign * n.dot((v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]])) > 0;
+}
+
+double angle_rad(const Mat3& R) {
+  // 2 asin(|R - 1| / sqrt(8)): exact for a rotation, and above it by rounding only.
+  return 2 * std::asin(std::min(1.0, (R - Mat3::Identity()).norm() / std::sqrt(8.0)));
+}
+
+}  // namespace
+
+double travel_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01_start,
+                const Pose& X_01_end) {
+  const bool is_first = part0.radius_m() <= part1.radius_m();
+  const FeatureSet& smaller = is_first ? part0 : part1;
+  const Pose start = is_first ? X_01_start.inverse() : X_01_start;
+  const Pose end = is_first ? X_01_end.inverse() : X_01_end;
+  const Vec3 moved = end * smaller.center() - start * smaller.center();
+  return moved.norm() + angle_rad(end.R * start.R.transpose()) * smaller.radius_m();
+}
+
+Vec3 FeatureContact::normal_0(const Pose& X_01) const {
+  const Vec3 fixed = plane_of == 0 ? n : Vec3(X_01.R * n);
+  if (kind != Kind::EdgeOnEdge) return fixed;
+  const Vec3 across = along[0].cross(X_01.R * along[1]);
+  constexpr double kParallel = 1e-3;  // assumed: edges in line have no plane of their own
+  if (!(across.norm() > kParallel)) return fixed;
+  return (across.dot(fixed) < 0 ? -1 : 1) * across.normalized();
+}
+
+double FeatureContact::gap_m(const Pose& X_01) const {
+  return normal_0(X_01).dot(p[0] - X_01 * p[1]);
+}
+
+void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01,
+                           double margin_m) {
+  near_.clear();
+  margin_m_ = margin_m;
+  path_m_ = 0;
+  const Pose X_10 = X_01.inverse();
+  const auto addIfNear = [&](Kind kind, std::uint32_t i, std::uint32_t j) {
+    Vec3 a[3], b[3];
+    const int count = pointsOf(part0, kind, 0, i, a);
+    for (int k = 0; k < count; ++k) a[k] = X_10 * a[k];
+    pointsOf(part1, kind, 1, j, b);
+    const Nearest nearest = nearestOf(kind, a, b);
+    const double distance_m = (nearest.p - nearest.q).norm();
+    if (distance_m <= margin_m) near_.push_back({kind, {i, j}, distance_m, 0});
+  };
+  forEachNearPair(part0.cornerTree(), part1.facetTree(), X_01, margin_m,
+                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::CornerOnFacet, i, j); });
+  forEachNearPair(part0.facetTree(), part1.cornerTree(), X_01, margin_m,
+                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::FacetOnCorner, i, j); });
+  forEachNearPair(part0.edgeTree(), part1.edgeTree(), X_01, margin_m,
+                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::EdgeOnEdge, i, j); });
+}
+
+void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
+                          const Pose& end, std::vector<FeatureContact>& out) {
+  constexpr double kMargin_m = 50e-6;   // assumed: what slow parts move in some ten steps
+  constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
+  const double step_m = travel_m(part0, part1, start, end);
+  if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
+  if (!is_valid_ || path_m_ + step_m + kLeast_m > margin_m_)
+    search(part0, part1, start, 2 * step_m + kMargin_m);
+  is_valid_ = true;
+  last_ = start;
+  const Pose start_10 = start.inverse(), end_10 = end.inverse();
+  for (Near& near : near_) {
+    if (near.distance_m - (path_m_ - near.path_m) > step_m + kLeast_m) continue;
+    Features f;
+    Vec3 own[3];
+    f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], own);
+    f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
+    for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * own[k];
+    const Nearest nearest = nearestOf(near.kind, f.a, f.b);
+    near.distance_m = (nearest.p - nearest.q).norm();
+    near.path_m = path_m_;
+    if (near.distance_m > step_m + kLeast_m || near.distance_m < kTouching_m) continue;
+    for (int k = 0; k < f.a_count; ++k) f.way[k] = end_10 * own[k] - f.a[k];
+    Reach reach;
+    const double least_m = std::min(kLeast_m, 0.5 * near.distance_m);
+    if (!findReach(near.kind, f, least_m, near.distance_m, nearest, reach)) continue;
+    if (near.kind == Kind::EdgeOnEdge && reach.nearest.is_end) continue;  // a corner and a facet
+    const Vec3 n_1 = (reach.nearest.p - reach.nearest.q).normalized();
+    // The path's rotation is not that of a rigid part; between start and end it is near enough for a plane.
+    const Mat3 R_10 =
+        (Eigen::Quaterniond(start_10.R).slerp(reach.share, Eigen::Quaterniond(end_10.R))).toRotationMatrix();
+    const Vec3 n_0 = R_10.transpose() * n_1;
+    if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
+        !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
+      continue;
+    FeatureContact contact;
+    contact.kind = near.kind;
+    for (int i = 0; i < 2; ++i) contact.feature[i] = near.feature[i];
+    contact.share = reach.share;
+    contact.start_m = near.distance_m;
+    contact.p[1] = reach.nearest.q;
+    // The same point of part 0, by its weights among the feature's vertices.
+    Vec3 at[3];
+    f.moveTo(reach.share, at);
+    if (near.kind == Kind::CornerOnFacet) {
+      contact.p[0] = own[0];
+    } else if (near.kind == Kind::EdgeOnEdge) {
+      const Vec3 way = at[1] - at[0];
+      contact.p[0] = own[0] + (reach.nearest.p - at[0]).dot(way) / way.squaredNorm() * (own[1] - own[0]);
+      contact.along[0] = (own[1] - own[0]).normalized();
+      contact.along[1] = (f.b[1] - f.b[0]).normalized();
+    } else {
+      const Vec3 u = at[1] - at[0], v = at[2] - at[0], r = reach.nearest.p - at[0];
+      const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), det = uu * vv - uv * uv;
+      const double s = (vv * r.dot(u) - uv * r.dot(v)) / det, t = (uu * r.dot(v) - uv * r.dot(u)) / det;
+      contact.p[0] = own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
+    }
+    contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
+    contact.n = contact.plane_of == 0 ? n_0 : n_1;
+    out.push_back(contact);
+  }
+}
+
+}  // namespace vps::inline v0

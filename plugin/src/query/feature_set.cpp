@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/feature_set.h"
+
+#include <algorithm>
+#include <span>
+
+#include "mesh/mesh_edges.h"
+#include "query/sphere_tree.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+constexpr double kCosSharp = 0.94;      // 20 degrees, as PointShellSettings::edge_angle_rad
+constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
+
+bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return (b - a).cross(c - a).norm() > kMinSlimness * longest2;
+}
+
+}  // namespace
+
+FeatureSet::FeatureSet() {
+  build();
+}
+FeatureSet::~FeatureSet() = default;
+FeatureSet::FeatureSet(FeatureSet&&) noexcept = default;
+FeatureSet& FeatureSet::operator=(FeatureSet&&) noexcept = default;
+
+void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
+  const auto first = static_cast<std::uint32_t>(vertices_.size());
+  for (const Vec3& p : mesh.vertices) vertices_.push_back(X_MP * p);
+  const auto vertex = [&](std::uint32_t i) -> const Vec3& { return vertices_[first + i]; };
+  for (const auto& t : mesh.triangles) {
+    if (!hasArea(vertex(t[0]), vertex(t[1]), vertex(t[2]))) continue;
+    facets_.push_back({first + t[0], first + t[1], first + t[2]});
+    is_two_sided_.push_back(is_sheet ? 1 : 0);
+  }
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    FeatureEdge edge;
+    edge.from = first + same[0].low;
+    edge.to = first + same[0].high;
+    const Vec3 way = vertices_[edge.to] - vertices_[edge.from];
+    if (!(way.squaredNorm() > 0)) return;
+    const Vec3 along = way.normalized();
+    edge.has_faces = same.size() == 2 && same[0].is_forward != same[1].is_forward && !is_sheet;
+    Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t i = 0; i < 2 && i < same.size(); ++i) {
+      const auto& t = mesh.triangles[same[i].triangle];
+      const Vec3 &a = vertex(t[0]), &b = vertex(t[1]), &c = vertex(t[2]);
+      if (!hasArea(a, b, c)) {
+        edge.has_faces = false;
+        continue;
+      }
+      normal[i] = (b - a).cross(c - a).normalized();
+      const Vec3 into = vertex(t[(same[i].side + 2U) % 3]) - vertices_[edge.from];
+      edge.into[i] = (into - along * along.dot(into)).normalized();
+    }
+    if (edge.has_faces && !(normal[0].dot(normal[1]) < kCosSharp && normal[0].dot(edge.into[1]) < 0)) return;
+    edges_.push_back(edge);
+    corners_.push_back(edge.from);
+    corners_.push_back(edge.to);
+  });
+}
+
+void FeatureSet::build() {
+  std::sort(corners_.begin(), corners_.end());
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  const auto count = [](const auto& items) { return static_cast<std::uint32_t>(items.size()); };
+  trees_[0] = std::make_unique<const SphereTree>(
+      count(corners_), [&](std::uint32_t i, const auto& visit) { visit(vertices_[corners_[i]]); });
+  trees_[1] = std::make_unique<const SphereTree>(count(edges_), [&](std::uint32_t i, const auto& visit) {
+    visit(vertices_[edges_[i].from]);
+    visit(vertices_[edges_[i].to]);
+  });
+  trees_[2] = std::make_unique<const SphereTree>(count(facets_), [&](std::uint32_t i, const auto& visit) {
+    for (const std::uint32_t v : facets_[i]) visit(vertices_[v]);
+  });
+  Box box;
+  for (const Vec3& p : vertices_) box.add(p);
+  center_ = vertices_.empty() ? Vec3(Vec3::Zero()) : box.center();
+  radius_m_ = 0;
+  for (const Vec3& p : vertices_) radius_m_ = std::max(radius_m_, (p - center_).norm());
+}
+
+}  // namespace vps::inline v0
