@@ -20,8 +20,14 @@ Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
 void findContacts(const PairView& start, const EndPoses& end, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
+  const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), poseBetween(start, start.X_WS),
-                       poseBetween(start, end.X_WS), found);
+                       X_01_end, found);
+  // Facets that stand for a curved surface are met along its own normal, so that parts slide smoothly over
+  // them; so they may overlap by what this differs from the facets.
+  const double tolerated_m = kToleratedShare * state.context->settings.contact_margin_m;
+  std::erase_if(found,
+                [&](const FeatureContact& c) { return c.is_curved && c.gap_m(X_01_end) > -tolerated_m; });
 }
 
 std::uint32_t codeOf(const FeatureContact& c, int i) {
@@ -81,7 +87,10 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
     missed.end_gap_m = c->gap_m(X_01_end);
     missed.kept_m = std::min(kRestGap_m, c->start_m);
+    missed.rest_m = kRestGap_m;
     out.push_back(missed);
+    if (getenv("VPSDBG"))
+      fprintf(stderr, "  F pair %p-%p kind %d f %u %u share %.4f start %.3f um gap0 %.3f end %.3f kept %.3f n %.3f %.3f %.3f pt %d\n", (const void*)missed.object[0], (const void*)missed.object[1], int(c->kind), c->feature[0], c->feature[1], c->share, 1e6*c->start_m, 1e6*at.distance_m, 1e6*missed.end_gap_m, 1e6*missed.kept_m, at.n_W.x(), at.n_W.y(), at.n_W.z(), missed.point!=nullptr);
   }
 }
 

@@ -14,6 +14,10 @@ namespace vps::bullet::inline v0 {
 /// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
 constexpr double kRestGap_m = 0.5e-6;
 
+/// Overlaps below this share of the contact margin are left to the solver's push. assumed: 2 um of 20 um, far
+/// above what the solver leaves and below what matters.
+constexpr double kToleratedShare = 0.1;
+
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
 

@@ -14,9 +14,6 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Overlaps below this share of the contact margin are left to the solver's push. assumed: 2 um of 20 um, far
-// above what the solver leaves and below what matters.
-constexpr double kToleratedShare = 0.1;
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
 // Contacts added for a pair in one check. assumed: a body is held by six, and the next check adds more.
@@ -203,7 +200,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>
   const Vec3 turned = rotationVector(m.step.D[0].R * m.step.D[1].R.transpose());
   m.turn_rad = turned.norm();
   m.travel_m = moved.norm() + m.turn_rad * radius_m;
-  if (m.travel_m <= FeatureMotion::kLeast_m) return;
+  if (!(m.travel_m > 0)) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, state_, out);

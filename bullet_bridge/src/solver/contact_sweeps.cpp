@@ -107,8 +107,9 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.tangent[1] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir2));
     if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) continue;
     const double v = velocity(c.normal);
-    c.gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
-    c.target_m_s = -(c.gap_m - m.kept_m) / dt_s;
+    const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
+    c.gap_m = gap_m - m.rest_m;
+    c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     if (-v > info.m_restitutionVelocityThreshold)
       c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
     const auto same = std::find_if(contacts_.begin(), contacts_.end(),
@@ -242,6 +243,7 @@ void ContactSweeps::pushJoint(const JointState& joint) {
 void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
   constexpr double kMaxPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
   constexpr double kNothing_m = 1e-9;
+  constexpr double kSoftness = 0.1;  // assumed: a tenth less is removed in a step
   const double dt = info.m_timeStep;
   bool is_needed = false;
   for (RigidContact& c : contacts_) {
@@ -261,7 +263,11 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       double v = 0;  // the motion of kinematic bodies does not belong to the push
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
-      const double p = std::max(0.0, c.p_push + (c.push_m_s - v) / c.normal.W);
+      // What is to be removed may contradict itself, as for a part that is jammed; what must not be added
+      // cannot.
+      const double softness = c.push_m_s > 0 ? kSoftness : 0;
+      const double p =
+          std::max(0.0, c.p_push + (c.push_m_s - v - softness * c.normal.W * c.p_push) / ((1 + softness) * c.normal.W));
       if (p == c.p_push) continue;
       apply(c.normal, p - c.p_push);
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);

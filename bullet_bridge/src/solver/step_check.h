@@ -26,9 +26,8 @@ struct MissedContact {
   btManifoldPoint* point = nullptr;  ///< new, or one that the solver has, with another plane; null: no room
   const btCollisionObject* object[2] = {nullptr, nullptr};
   double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked; negative
-  /// The gap that the end of the step may have. Negative: an overlap that existed before the step, and need
-  /// not be removed in it. Positive: between sharp features.
-  double kept_m = 0;
+  double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
+  double rest_m = 0;  ///< the gap that the push restores
 };
 
 /// A pair of bodies that checks a solved step.

@@ -22,6 +22,7 @@ struct FeatureContact {
   Vec3 n = Vec3::Zero();      ///< from part 1 to part 0, unit, in the frame of part 1 or 0: see plane_of
   std::uint8_t plane_of = 1;  ///< the part with which the plane moves
   Vec3 along[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of two edges: unit, each in its part's own frame
+  bool is_curved = false;  ///< the facet, or both edges, stand for something curved
   double start_m = 0;  ///< distance of the features at the start, positive
 
   /// Distance of p[0] from p[1] along the plane's normal at a pose of part 1 in part 0.

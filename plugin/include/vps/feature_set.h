@@ -19,6 +19,7 @@ struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
   bool has_faces = false;                       ///< false: `into` is unknown
+  bool is_curved = false;  ///< at an end it goes on in one other edge, which turns by less than 20 degrees
 };
 
 /// The features of one or several meshes in one frame, with a tree of bounding spheres over each kind.
@@ -37,7 +38,9 @@ class VPS_API FeatureSet {
 
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
-  [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return is_two_sided_[facet] != 0; }
+  [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
+  /// True if a neighbour turns by less than 20 degrees: the facet stands for a curved surface.
+  [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
   [[nodiscard]] const std::vector<FeatureEdge>& edges() const { return edges_; }
   /// Vertices at which edges end.
   [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
@@ -52,9 +55,12 @@ class VPS_API FeatureSet {
   [[nodiscard]] const SphereTree& facetTree() const { return *trees_[2]; }
 
  private:
+  void markCurvedEdges(std::size_t first);
+
   std::vector<Vec3> vertices_;
   std::vector<std::array<std::uint32_t, 3>> facets_;
-  std::vector<std::uint8_t> is_two_sided_;  // by facet
+  static constexpr std::uint8_t kTwoSided = 1, kCurved = 2;
+  std::vector<std::uint8_t> facet_flags_;
   std::vector<FeatureEdge> edges_;
   std::vector<std::uint32_t> corners_;
   Vec3 center_ = Vec3::Zero();

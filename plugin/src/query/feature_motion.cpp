@@ -86,6 +86,55 @@ double slabShare(const Features& f, const Vec3& n, double least_m) {
   return share;
 }
 
+/// A vector that changes linearly between two shares.
+struct Linear {
+  Vec3 from, to;
+};
+
+// The vectors whose product C = A x B is across both edges, or across the facet, and r between them.
+void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, Linear& B, Linear& r) {
+  Vec3 at[2][3];
+  f.moveTo(from, at[0]);
+  f.moveTo(to, at[1]);
+  const auto of = [&](Linear& out, const auto& get) { out = {get(at[0]), get(at[1])}; };
+  using Points = Vec3[3];
+  if (kind == Kind::EdgeOnEdge) {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    B = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else if (kind == Kind::CornerOnFacet) {
+    A = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    B = {f.b[2] - f.b[0], f.b[2] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    of(B, [](const Points& a) { return Vec3(a[2] - a[0]); });
+    of(r, [&](const Points& a) { return Vec3(f.b[0] - a[0]); });
+  }
+}
+
+// True if the lines of both edges, or the corner and the facet's plane, stay farther apart than least_m
+// between two shares: C . r is a cubic polynomial, which lies between its Bernstein coefficients.
+bool staysApart(Kind kind, const Features& f, double from, double to, double least_m) {
+  Linear A, B, r;
+  vectorsOf(kind, f, from, to, A, B, r);
+  const Vec3 C[3] = {A.from.cross(B.from), 0.5 * (A.from.cross(B.to) + A.to.cross(B.from)), A.to.cross(B.to)};
+  const double h[4] = {C[0].dot(r.from), (C[0].dot(r.to) + 2 * C[1].dot(r.from)) / 3,
+                       (2 * C[1].dot(r.to) + C[2].dot(r.from)) / 3, C[2].dot(r.to)};
+  const double limit = least_m * std::max({C[0].norm(), C[1].norm(), C[2].norm()});
+  const double sign = h[0] < 0 ? -1 : 1;
+  return sign * h[0] > limit && sign * h[1] > limit && sign * h[2] > limit && sign * h[3] > limit;
+}
+
+// The share up to which they are known to stay apart in that sense; at least `least_share`.
+double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
+  constexpr int kMost = 6;
+  double to = 1;
+  for (int k = 0; k < kMost && to > least_share; ++k, to = 0.5 * (from + to))
+    if (staysApart(kind, f, from, to, least_m)) return to;
+  return least_share;
+}
+
 /// False: they stay farther apart than least_m.
 bool findReach(Kind kind, const Features& f, double least_m, double start_m, const Nearest& start,
                Reach& reach) {
@@ -99,7 +148,10 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, con
     const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
     // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
     const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
-    reach.share = std::max(slabShare(f, n, least_m), reach.share + least_step);
+    const double slab = std::max(slabShare(f, n, least_m), reach.share + least_step);
+    if (!(slab < 1)) return false;
+    // A long edge that turns leaves its slab soon, though the edges stay apart where they are nearest.
+    reach.share = planeShare(kind, f, reach.share, slab, least_m);
     if (!(reach.share < 1)) return false;
     Vec3 at[3];
     f.moveTo(reach.share, at);
@@ -123,6 +175,13 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
   const auto& t = part.facets()[feature];
   const std::vector<Vec3>& v = part.vertices();
   return sign * n.dot((v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]])) > 0;
+}
+
+bool isCurved(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
+              const std::uint32_t (&feature)[2]) {
+  if (kind == Kind::CornerOnFacet) return part1.isCurved(feature[1]);
+  if (kind == Kind::FacetOnCorner) return part0.isCurved(feature[0]);
+  return part0.edges()[feature[0]].is_curved && part1.edges()[feature[1]].is_curved;
 }
 
 double angle_rad(const Mat3& R) {
@@ -216,6 +275,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     FeatureContact contact;
     contact.kind = near.kind;
     for (int i = 0; i < 2; ++i) contact.feature[i] = near.feature[i];
+    contact.is_curved = isCurved(part0, part1, near.kind, near.feature);
     contact.share = reach.share;
     contact.start_m = near.distance_m;
     contact.p[1] = reach.nearest.q;

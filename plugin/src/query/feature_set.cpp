@@ -12,6 +12,7 @@ namespace vps::inline v0 {
 namespace {
 
 constexpr double kCosSharp = 0.94;      // 20 degrees, as PointShellSettings::edge_angle_rad
+constexpr double kFlat = 1e-4;          // sine; assumed: above the rounding of files in single precision
 constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
 
 bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -32,11 +33,16 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
   const auto first = static_cast<std::uint32_t>(vertices_.size());
   for (const Vec3& p : mesh.vertices) vertices_.push_back(X_MP * p);
   const auto vertex = [&](std::uint32_t i) -> const Vec3& { return vertices_[first + i]; };
-  for (const auto& t : mesh.triangles) {
+  constexpr std::uint32_t kNone = ~0U;
+  std::vector<std::uint32_t> facet_of(mesh.triangles.size(), kNone);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
     if (!hasArea(vertex(t[0]), vertex(t[1]), vertex(t[2]))) continue;
     facets_.push_back({first + t[0], first + t[1], first + t[2]});
-    is_two_sided_.push_back(is_sheet ? 1 : 0);
+    facet_of[i] = static_cast<std::uint32_t>(facet_flags_.size());
+    facet_flags_.push_back(is_sheet ? kTwoSided : 0);
   }
+  const std::size_t first_edge = edges_.size();
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     FeatureEdge edge;
     edge.from = first + same[0].low;
@@ -57,11 +63,42 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       const Vec3 into = vertex(t[(same[i].side + 2U) % 3]) - vertices_[edge.from];
       edge.into[i] = (into - along * along.dot(into)).normalized();
     }
-    if (edge.has_faces && !(normal[0].dot(normal[1]) < kCosSharp && normal[0].dot(edge.into[1]) < 0)) return;
+    if (edge.has_faces && normal[0].dot(normal[1]) >= kCosSharp) {
+      if (normal[0].cross(normal[1]).norm() > kFlat)
+        for (const HalfEdge& e : same) facet_flags_[facet_of[e.triangle]] |= kCurved;
+      return;
+    }
+    if (edge.has_faces && !(normal[0].dot(edge.into[1]) < 0)) return;  // a groove
     edges_.push_back(edge);
     corners_.push_back(edge.from);
     corners_.push_back(edge.to);
   });
+  markCurvedEdges(first_edge);
+}
+
+void FeatureSet::markCurvedEdges(std::size_t first) {
+  struct End {
+    std::uint32_t vertex, edge;
+    Vec3 away;
+  };
+  std::vector<End> ends;
+  for (std::size_t i = first; i < edges_.size(); ++i) {
+    const auto edge = static_cast<std::uint32_t>(i);
+    const Vec3 along = (vertices_[edges_[i].to] - vertices_[edges_[i].from]).normalized();
+    ends.push_back({edges_[i].from, edge, along});
+    ends.push_back({edges_[i].to, edge, -along});
+  }
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.edge < b.edge;
+  });
+  for (std::size_t i = 0; i < ends.size();) {
+    std::size_t end = i + 1;
+    while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
+    if (end - i == 2 && ends[i].away.dot(ends[i + 1].away) < -kCosSharp &&
+        ends[i].away.cross(ends[i + 1].away).norm() > kFlat)
+      edges_[ends[i].edge].is_curved = edges_[ends[i + 1].edge].is_curved = true;
+    i = end;
+  }
 }
 
 void FeatureSet::build() {
