@@ -55,10 +55,9 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
          !pair.shape[1]->features().isEmpty();
 }
 
-void applyRestGap(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts) {
+void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;
-  for (Candidate& c : contacts)
-    if (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)) c.distance_m -= kRestGap_m;
+  for (Candidate& c : contacts) c.is_sharp = c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id);
 }
 
 void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
@@ -81,16 +80,22 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     at.distance_m = c->gap_m(X_01);
     at.id = codeOf(*c, 0);
     at.crossed = codeOf(*c, 1) + 1;
+    at.is_sharp = true;
     at.plane_of = c->kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c->plane_of;
     MissedContact missed;
     missed.point = state.writer->put(at, start.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
     missed.end_gap_m = c->gap_m(X_01_end);
-    missed.kept_m = std::min(kRestGap_m, c->start_m);
-    missed.rest_m = kRestGap_m;
+    missed.kept_m = std::min(FeatureMotion::kRest_m, c->start_m);
+    missed.rest_m = FeatureMotion::kRest_m;
     out.push_back(missed);
     if (getenv("VPSDBG"))
-      fprintf(stderr, "  F pair %p-%p kind %d f %u %u share %.4f start %.3f um gap0 %.3f end %.3f kept %.3f n %.3f %.3f %.3f pt %d\n", (const void*)missed.object[0], (const void*)missed.object[1], int(c->kind), c->feature[0], c->feature[1], c->share, 1e6*c->start_m, 1e6*at.distance_m, 1e6*missed.end_gap_m, 1e6*missed.kept_m, at.n_W.x(), at.n_W.y(), at.n_W.z(), missed.point!=nullptr);
+      fprintf(stderr,
+              "  F pair %p-%p kind %d f %u %u share %.4f start %.3f um gap0 %.3f end %.3f kept %.3f n %.3f "
+              "%.3f %.3f pt %d\n",
+              (const void*)missed.object[0], (const void*)missed.object[1], int(c->kind), c->feature[0],
+              c->feature[1], c->share, 1e6 * c->start_m, 1e6 * at.distance_m, 1e6 * missed.end_gap_m,
+              1e6 * missed.kept_m, at.n_W.x(), at.n_W.y(), at.n_W.z(), missed.point != nullptr);
   }
 }
 

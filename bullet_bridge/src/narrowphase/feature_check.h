@@ -10,10 +10,6 @@
 
 namespace vps::bullet::inline v0 {
 
-/// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
-/// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
-constexpr double kRestGap_m = 0.5e-6;
-
 /// Overlaps below this share of the contact margin are left to the solver's push. assumed: 2 um of 20 um, far
 /// above what the solver leaves and below what matters.
 constexpr double kToleratedShare = 0.1;
@@ -21,8 +17,8 @@ constexpr double kToleratedShare = 0.1;
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
 
-/// Lowers the distance of the contacts at sharp features by their rest gap.
-void applyRestGap(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts);
+/// Marks the contacts at sharp features, which bullet::Solver keeps at their rest gap.
+void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts);
 
 /// Both bodies' shapes at the end of a step.
 struct EndPoses {

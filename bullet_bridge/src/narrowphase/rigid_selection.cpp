@@ -49,7 +49,7 @@ void selectRigid(const PairView& pair, PairState& state) {
                    &state.selection);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
-  applyRestGap(pair, context.settings, state.contacts);
+  markSharp(pair, context.settings, state.contacts);
   prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
                      pair.wrapper[1]->getCollisionObject());
 }

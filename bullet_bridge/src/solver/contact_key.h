@@ -15,6 +15,10 @@ constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std
   return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
 }
 
+/// Bit of btManifoldPoint::m_contactPointFlags, far above Bullet's own: bullet::Solver keeps a gap of
+/// FeatureMotion::kRest_m at this contact.
+constexpr int kSharpContactFlag = 1 << 24;
+
 /// Key of a contact that ManifoldWriter wrote: the side with the shell has the point's id as its index, the
 /// other -1; at a crossing each index is that body's edge.
 std::uint64_t keyOf(const btManifoldPoint& point);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact_key.h"
+#include "vps/feature_motion.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
@@ -56,7 +58,8 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.point = &point;
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
-  c.gap_m = point.getDistance() + info.m_linearSlop;
+  const double rest_m = (point.m_contactPointFlags & kSharpContactFlag) != 0 ? FeatureMotion::kRest_m : 0;
+  c.gap_m = point.getDistance() + info.m_linearSlop - rest_m;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
@@ -266,8 +269,8 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       // What is to be removed may contradict itself, as for a part that is jammed; what must not be added
       // cannot.
       const double softness = c.push_m_s > 0 ? kSoftness : 0;
-      const double p =
-          std::max(0.0, c.p_push + (c.push_m_s - v - softness * c.normal.W * c.p_push) / ((1 + softness) * c.normal.W));
+      const double p = std::max(0.0, c.p_push + (c.push_m_s - v - softness * c.normal.W * c.p_push) /
+                                                    ((1 + softness) * c.normal.W));
       if (p == c.p_push) continue;
       apply(c.normal, p - c.p_push);
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);

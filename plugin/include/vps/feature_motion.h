@@ -22,8 +22,8 @@ struct FeatureContact {
   Vec3 n = Vec3::Zero();      ///< from part 1 to part 0, unit, in the frame of part 1 or 0: see plane_of
   std::uint8_t plane_of = 1;  ///< the part with which the plane moves
   Vec3 along[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of two edges: unit, each in its part's own frame
-  bool is_curved = false;  ///< the facet, or both edges, stand for something curved
-  double start_m = 0;  ///< distance of the features at the start, positive
+  bool is_curved = false;                        ///< the facet, or both edges, stand for something curved
+  double start_m = 0;                            ///< distance of the features at the start, positive
 
   /// Distance of p[0] from p[1] along the plane's normal at a pose of part 1 in part 0.
   [[nodiscard]] VPS_API double gap_m(const Pose& X_01) const;
@@ -34,18 +34,20 @@ struct FeatureContact {
 /// The features of two parts that are near each other, kept from step to step.
 class VPS_API FeatureMotion {
  public:
-  /// Features that end nearer than this are reported, unless they began nearer than twice that: then half of
-  /// what they had. Positive, so that the direction between them is always known.
+  /// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
+  /// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
+  static constexpr double kRest_m = 0.5e-6;
+  /// Features that come nearer than this on the way are looked at, or than half of what they had.
   static constexpr double kLeast_m = 0.2e-6;
 
-  /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0),
-  /// each with the place where it does so first. Along the way each vertex moves on a straight line in the
-  /// frame of part 1, so a path without contacts proves that the parts do not intersect at its end, if they
-  /// did not at its start. Features that intersect at the start are not seen.
-  /// Cost: some 50 ns for each pair of near features, and a search for these pairs when the motion since the
-  /// last search has used its margin. Allocates where the lists grow.
-  /// Source: conservative advancement (Mirtich 1996), here along the separating plane of the nearest points,
-  /// which sliding features never reach.
+  /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
+  /// whose gap at the end is less than kRest_m and less than at the start, each with the plane in which they
+  /// touch first. On the way each vertex moves on a straight line in the frame of part 1. Features that
+  /// intersect at the start are not seen.
+  /// Cost: some 50 ns for each pair of near features, and a search for these pairs when the motion
+  /// since the last search has used its margin. Allocates where the lists grow. Source: conservative
+  /// advancement (Mirtich 1996), here along the separating plane of the nearest points, which sliding
+  /// features never reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              std::vector<FeatureContact>& out);
   /// To be called when a part's features change.

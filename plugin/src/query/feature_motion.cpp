@@ -25,8 +25,8 @@ struct Features {
 
 /// The nearest points of two features.
 struct Nearest {
-  Vec3 p, q;            // on part 0, on part 1
-  bool is_end = false;  // of two edges: at an end of one of them
+  Vec3 p = Vec3::Zero(), q = Vec3::Zero();  // on part 0, on part 1
+  bool is_end = false;                      // of two edges: at an end of one of them
 };
 
 // Ericson, Real-Time Collision Detection, section 5.1.9.
@@ -136,11 +136,10 @@ double planeShare(Kind kind, const Features& f, double from, double least_share,
 }
 
 /// False: they stay farther apart than least_m.
-bool findReach(Kind kind, const Features& f, double least_m, double start_m, const Nearest& start,
-               Reach& reach) {
+/// @param reach  holds their nearest points at the start
+bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
   constexpr int kMost = 60;  // assumed; most need two or three
   const double near_m = 1.1 * least_m;
-  reach.nearest = start;
   double distance_m = start_m;
   double fastest_m = 0;
   for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
@@ -237,9 +236,47 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
                   [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::EdgeOnEdge, i, j); });
 }
 
+namespace {
+
+// The same point of part 0 in its own frame, by its weights among the feature's vertices.
+Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3& p) {
+  if (kind == Kind::CornerOnFacet) return own[0];
+  if (kind == Kind::EdgeOnEdge) {
+    const Vec3 way = at[1] - at[0];
+    return own[0] + (p - at[0]).dot(way) / way.squaredNorm() * (own[1] - own[0]);
+  }
+  const Vec3 u = at[1] - at[0], v = at[2] - at[0], r = p - at[0];
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), det = uu * vv - uv * uv;
+  const double s = (vv * r.dot(u) - uv * r.dot(v)) / det, t = (uu * r.dot(v) - uv * r.dot(u)) / det;
+  return own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
+}
+
+// The plane in which features touch that were carried a share of their way.
+FeatureContact contactAt(Kind kind, const FeatureSet& part0, const FeatureSet& part1,
+                         const std::uint32_t (&feature)[2], const Features& f, const Reach& reach) {
+  FeatureContact contact;
+  contact.kind = kind;
+  for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
+  contact.is_curved = isCurved(part0, part1, kind, feature);
+  contact.share = reach.share;
+  Vec3 own[3], at[3];
+  pointsOf(part0, kind, 0, feature[0], own);
+  f.moveTo(reach.share, at);
+  contact.p[0] = inOwnFrame(kind, own, at, reach.nearest.p);
+  contact.p[1] = reach.nearest.q;
+  if (kind == Kind::EdgeOnEdge) {
+    contact.along[0] = (own[1] - own[0]).normalized();
+    contact.along[1] = (f.b[1] - f.b[0]).normalized();
+  }
+  return contact;
+}
+
+}  // namespace
+
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, std::vector<FeatureContact>& out) {
   constexpr double kMargin_m = 50e-6;   // assumed: what slow parts move in some ten steps
+  constexpr double kRounding_m = 1e-9;  // assumed: far below kLeast_m
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
@@ -248,6 +285,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   is_valid_ = true;
   last_ = start;
   const Pose start_10 = start.inverse(), end_10 = end.inverse();
+  const Vec3 turn = rotationVector(end_10.R * start_10.R.transpose());
   for (Near& near : near_) {
     if (near.distance_m - (path_m_ - near.path_m) > step_m + kLeast_m) continue;
     Features f;
@@ -255,49 +293,25 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], own);
     f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
     for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * own[k];
-    const Nearest nearest = nearestOf(near.kind, f.a, f.b);
-    near.distance_m = (nearest.p - nearest.q).norm();
+    Reach reach;
+    reach.nearest = nearestOf(near.kind, f.a, f.b);
+    near.distance_m = (reach.nearest.p - reach.nearest.q).norm();
     near.path_m = path_m_;
     if (near.distance_m > step_m + kLeast_m || near.distance_m < kTouching_m) continue;
     for (int k = 0; k < f.a_count; ++k) f.way[k] = end_10 * own[k] - f.a[k];
-    Reach reach;
-    const double least_m = std::min(kLeast_m, 0.5 * near.distance_m);
-    if (!findReach(near.kind, f, least_m, near.distance_m, nearest, reach)) continue;
+    if (!findReach(near.kind, f, std::min(kLeast_m, 0.5 * near.distance_m), near.distance_m, reach)) continue;
     if (near.kind == Kind::EdgeOnEdge && reach.nearest.is_end) continue;  // a corner and a facet
     const Vec3 n_1 = (reach.nearest.p - reach.nearest.q).normalized();
-    // The path's rotation is not that of a rigid part; between start and end it is near enough for a plane.
-    const Mat3 R_10 =
-        (Eigen::Quaterniond(start_10.R).slerp(reach.share, Eigen::Quaterniond(end_10.R))).toRotationMatrix();
+    const Mat3 R_10 = rotationFromVector(reach.share * turn) * start_10.R;
     const Vec3 n_0 = R_10.transpose() * n_1;
     if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
         !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
       continue;
-    FeatureContact contact;
-    contact.kind = near.kind;
-    for (int i = 0; i < 2; ++i) contact.feature[i] = near.feature[i];
-    contact.is_curved = isCurved(part0, part1, near.kind, near.feature);
-    contact.share = reach.share;
+    FeatureContact contact = contactAt(near.kind, part0, part1, near.feature, f, reach);
     contact.start_m = near.distance_m;
-    contact.p[1] = reach.nearest.q;
-    // The same point of part 0, by its weights among the feature's vertices.
-    Vec3 at[3];
-    f.moveTo(reach.share, at);
-    if (near.kind == Kind::CornerOnFacet) {
-      contact.p[0] = own[0];
-    } else if (near.kind == Kind::EdgeOnEdge) {
-      const Vec3 way = at[1] - at[0];
-      contact.p[0] = own[0] + (reach.nearest.p - at[0]).dot(way) / way.squaredNorm() * (own[1] - own[0]);
-      contact.along[0] = (own[1] - own[0]).normalized();
-      contact.along[1] = (f.b[1] - f.b[0]).normalized();
-    } else {
-      const Vec3 u = at[1] - at[0], v = at[2] - at[0], r = reach.nearest.p - at[0];
-      const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), det = uu * vv - uv * uv;
-      const double s = (vv * r.dot(u) - uv * r.dot(v)) / det, t = (uu * r.dot(v) - uv * r.dot(u)) / det;
-      contact.p[0] = own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
-    }
     contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
     contact.n = contact.plane_of == 0 ? n_0 : n_1;
-    out.push_back(contact);
+    if (contact.gap_m(end) < std::min(kRest_m, near.distance_m) - kRounding_m) out.push_back(contact);
   }
 }
 

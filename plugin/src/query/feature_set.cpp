@@ -43,6 +43,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     facet_flags_.push_back(is_sheet ? kTwoSided : 0);
   }
   const std::size_t first_edge = edges_.size();
+  Groups planes(mesh.triangles.size());
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     FeatureEdge edge;
     edge.from = first + same[0].low;
@@ -66,6 +67,8 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (edge.has_faces && normal[0].dot(normal[1]) >= kCosSharp) {
       if (normal[0].cross(normal[1]).norm() > kFlat)
         for (const HalfEdge& e : same) facet_flags_[facet_of[e.triangle]] |= kCurved;
+      else
+        planes.join(same[0].triangle, same[1].triangle);
       return;
     }
     if (edge.has_faces && !(normal[0].dot(edge.into[1]) < 0)) return;  // a groove
@@ -74,6 +77,12 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     corners_.push_back(edge.to);
   });
   markCurvedEdges(first_edge);
+  // Triangles of one plane are one facet.
+  std::vector<std::uint8_t> is_curved(mesh.triangles.size(), 0);
+  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
+    if (facet_of[i] != kNone && isCurved(facet_of[i])) is_curved[planes.find(i)] = 1;
+  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
+    if (facet_of[i] != kNone && is_curved[planes.find(i)] != 0) facet_flags_[facet_of[i]] |= kCurved;
 }
 
 void FeatureSet::markCurvedEdges(std::size_t first) {
