@@ -89,8 +89,6 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     missed.kept_m = std::min(FeatureMotion::kRest_m, c->start_m);
     missed.rest_m = FeatureMotion::kRest_m;
     out.push_back(missed);
-    if (getenv("VPSDBG"))
-      fprintf(stderr,
               "  F pair %p-%p kind %d f %u %u share %.4f start %.3f um gap0 %.3f end %.3f kept %.3f n %.3f "
               "%.3f %.3f pt %d\n",
               (const void*)missed.object[0], (const void*)missed.object[1], int(c->kind), c->feature[0],

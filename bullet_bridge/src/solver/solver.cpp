@@ -234,7 +234,6 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info) {
     check->findMissed(X_WB_end, missed);
   }
   rigid.addMissed(missed, info);
-  if (getenv("VPSDBG")) fprintf(stderr, "  -- round: %zu missed\n", missed.size());
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
@@ -292,15 +291,6 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     if (checked == kMaxChecks || !work.addMissed(info)) break;
   }
   if (!work.is_penalty && !work.missed.empty() && work.shorten(dt_s)) ++shortened_steps_;
-  if (getenv("VPSDBG") && !work.is_penalty) {
-    static int calls = 0; ++calls;
-    double share = 1; 
-    for (StepCheck* check : work.checks) {
-      const Pose X[2] = {work.island.endPose(check->object(0), work.rigid.push(), dt_s), work.island.endPose(check->object(1), work.rigid.push(), dt_s)};
-      share = std::min(share, check->freeShare(X));
-    }
-    fprintf(stderr, "DBG call %d bodies %zu checks %zu missed %zu shortened %zu share %g conv %d it %d\n", calls, work.island.bodies.size(), work.checks.size(), work.missed.size(), shortened_steps_, share, is_converged_, iterations_used_);
-  }
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
