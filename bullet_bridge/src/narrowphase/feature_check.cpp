@@ -89,11 +89,6 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     missed.kept_m = std::min(FeatureMotion::kRest_m, c->start_m);
     missed.rest_m = FeatureMotion::kRest_m;
     out.push_back(missed);
-              "  F pair %p-%p kind %d f %u %u share %.4f start %.3f um gap0 %.3f end %.3f kept %.3f n %.3f "
-              "%.3f %.3f pt %d\n",
-              (const void*)missed.object[0], (const void*)missed.object[1], int(c->kind), c->feature[0],
-              c->feature[1], c->share, 1e6 * c->start_m, 1e6 * at.distance_m, 1e6 * missed.end_gap_m,
-              1e6 * missed.kept_m, at.n_W.x(), at.n_W.y(), at.n_W.z(), missed.point != nullptr);
   }
 }
 
