@@ -13,9 +13,9 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Overlaps below this share of the contact margin are left to the solver's push. assumed: 2 um of 20 um, far
+// Overlaps below this share of the contact margin are left to the solver's push. assumed: 1 um of 20 um, far
 // above what the solver leaves and below what matters.
-constexpr double kToleratedShare = 0.1;
+constexpr double kToleratedShare = 0.05;
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
 // Contacts added for a pair in one check. assumed: a body is held by six, and the next check adds more.
