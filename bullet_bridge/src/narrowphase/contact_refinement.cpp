@@ -91,6 +91,7 @@ struct Exact {
   bool is_smooth = false;                           ///< two faces touch flush
   bool is_own_face = false, is_their_face = false;  ///< whose the plane is
   FacePoint face;                                   ///< if is_smooth: the other's
+  Vec3 from_q = Vec3::Zero();                       ///< the point minus its foot
 };
 
 Foot footOn(const Surface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
@@ -136,6 +137,7 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
 Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = foot.found;
+  exact.from_q = foot.from_q;
   if (!foot.found) return exact;
   exact.is_inside = foot.from_q.dot(foot.normal) < kTouching_m && !foot.is_sheet;
   const double cos_facing = own.inward_W.dot(foot.normal);
@@ -258,6 +260,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     c.plane_of = exact.is_own_face     ? side.side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
                                        : Candidate::kBetween;
+    if (exact.is_contact && exact.is_own_face && !is_primitive) moveToFoot(c, side, exact.from_q);
     if (exact.is_contact && exact.is_smooth && !is_primitive)
       moveToNearest(c, side, other, exact.face, motion.contact_margin_m);
   }

@@ -48,12 +48,11 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// A slow body cannot leave the query range within the step.
+}  // namespace
+
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
   return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);
 }
-
-}  // namespace
 
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state) {
@@ -151,6 +150,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
     sampling_m = cell_m;
   }
   refineAll(pair, motion, settings, candidates);
+  if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
   if (selection) {
     selection->refined = candidates;

@@ -23,9 +23,17 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out);
 
+/// True if a body is so slow that it cannot leave the query range within the step.
+bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
+
 /// Refines the candidates by the exact surfaces, if the settings say so.
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates);
+
+/// Replaces the distances of refined contacts that slide along a face by those that give the right gap at the
+/// end of the step in free motion.
+void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                  std::vector<Candidate>& candidates);
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates);
 

@@ -302,10 +302,22 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
   const Placed at_start(*this, m.start);
   reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m);
   const Displacement back = m.step.inverse();
+  // The contact acts where it is at the end of the step: with its lever and normal there. With the point
+  // moved back and the plane of the other body as it is, the lever would be turned against the normal by the
+  // step's rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the
+  // slope of its thread.
+  Displacement with_body;
+  for (int i = 0; i < 2; ++i) {
+    const Pose X_BS_inverse = X_BS_[i].inverse();
+    with_body.D[i] =
+        Pose(Mat3(Mat3::Identity()), (m.start[i] * X_BS_inverse).p - (m.end[i] * X_BS_inverse).p);
+  }
   for (const Candidate& end : missed) {
     const Candidate start = back.moved(end);
+    Candidate acting = with_body.moved(end);
+    acting.distance_m = start.distance_m;
     MissedContact added;
-    added.point = state_.writer->put(start, at_start.pair.wrapper, state_.motion);
+    added.point = state_.writer->put(acting, at_start.pair.wrapper, state_.motion);
     if (!added.point) continue;
     for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
     added.end_gap_m = end.distance_m;

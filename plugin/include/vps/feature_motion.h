@@ -43,11 +43,11 @@ class VPS_API FeatureMotion {
   /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
   /// whose gap at the end is less than kRest_m and less than at the start, each with the plane in which they
   /// touch first. On the way each vertex moves on a straight line in the frame of part 1. Features that
-  /// intersect at the start are not seen.
-  /// Cost: some 50 ns for each pair of near features, and a search for these pairs when the motion
-  /// since the last search has used its margin. Allocates where the lists grow. Source: conservative
-  /// advancement (Mirtich 1996), here along the separating plane of the nearest points, which sliding
-  /// features never reach.
+  /// intersect at the start are not seen, and neither are pairs of which both stand for something curved:
+  /// round rims on round faces, threads in threads. Points of pointshells represent these. Cost: some 50 ns
+  /// for each pair of near features, and a search for these pairs when the motion since the last search has
+  /// used its margin. Allocates where the lists grow. Source: conservative advancement (Mirtich 1996), here
+  /// along the separating plane of the nearest points, which sliding features never reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              std::vector<FeatureContact>& out);
   /// To be called when a part's features change.

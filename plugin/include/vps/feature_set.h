@@ -49,10 +49,12 @@ class VPS_API FeatureSet {
   [[nodiscard]] const Vec3& center() const { return center_; }
   [[nodiscard]] double radius_m() const { return radius_m_; }
 
-  /// For the library's own use. Over indices of corners(), edges() and facets().
-  [[nodiscard]] const SphereTree& cornerTree() const { return *trees_[0]; }
-  [[nodiscard]] const SphereTree& edgeTree() const { return *trees_[1]; }
-  [[nodiscard]] const SphereTree& facetTree() const { return *trees_[2]; }
+  /// For the library's own use: trees over indices of corners(), edges() and facets(), apart for those that
+  /// are curved. A corner is curved if one of its edges is.
+  enum Kind { kCorners, kEdges, kFacets };
+  [[nodiscard]] const SphereTree& tree(Kind kind, bool is_curved) const {
+    return *trees_[kind][is_curved ? 1 : 0];
+  }
 
  private:
   void markCurvedEdges(std::size_t first);
@@ -65,7 +67,7 @@ class VPS_API FeatureSet {
   std::vector<std::uint32_t> corners_;
   Vec3 center_ = Vec3::Zero();
   double radius_m_ = 0;
-  std::unique_ptr<const SphereTree> trees_[3];
+  std::unique_ptr<const SphereTree> trees_[3][2];
 };
 
 }  // namespace vps::inline v0

@@ -180,7 +180,7 @@ bool isCurved(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
               const std::uint32_t (&feature)[2]) {
   if (kind == Kind::CornerOnFacet) return part1.isCurved(feature[1]);
   if (kind == Kind::FacetOnCorner) return part0.isCurved(feature[0]);
-  return part0.edges()[feature[0]].is_curved && part1.edges()[feature[1]].is_curved;
+  return false;
 }
 
 double angle_rad(const Mat3& R) {
@@ -228,12 +228,16 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
     const double distance_m = (nearest.p - nearest.q).norm();
     if (distance_m <= margin_m) near_.push_back({kind, {i, j}, distance_m, 0});
   };
-  forEachNearPair(part0.cornerTree(), part1.facetTree(), X_01, margin_m,
-                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::CornerOnFacet, i, j); });
-  forEachNearPair(part0.facetTree(), part1.cornerTree(), X_01, margin_m,
-                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::FacetOnCorner, i, j); });
-  forEachNearPair(part0.edgeTree(), part1.edgeTree(), X_01, margin_m,
-                  [&](std::uint32_t i, std::uint32_t j) { addIfNear(Kind::EdgeOnEdge, i, j); });
+  const auto searchPairs = [&](Kind kind, FeatureSet::Kind kind0, FeatureSet::Kind kind1) {
+    for (const bool is_curved0 : {false, true})
+      for (const bool is_curved1 : {false, true})
+        if (!is_curved0 || !is_curved1)
+          forEachNearPair(part0.tree(kind0, is_curved0), part1.tree(kind1, is_curved1), X_01, margin_m,
+                          [&](std::uint32_t i, std::uint32_t j) { addIfNear(kind, i, j); });
+  };
+  searchPairs(Kind::CornerOnFacet, FeatureSet::kCorners, FeatureSet::kFacets);
+  searchPairs(Kind::FacetOnCorner, FeatureSet::kFacets, FeatureSet::kCorners);
+  searchPairs(Kind::EdgeOnEdge, FeatureSet::kEdges, FeatureSet::kEdges);
 }
 
 namespace {
@@ -275,13 +279,13 @@ FeatureContact contactAt(Kind kind, const FeatureSet& part0, const FeatureSet& p
 
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, std::vector<FeatureContact>& out) {
-  constexpr double kMargin_m = 50e-6;   // assumed: what slow parts move in some ten steps
+  constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
   constexpr double kRounding_m = 1e-9;  // assumed: far below kLeast_m
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
   if (!is_valid_ || path_m_ + step_m + kLeast_m > margin_m_)
-    search(part0, part1, start, 2 * step_m + kMargin_m);
+    search(part0, part1, start, 4 * step_m + kMargin_m);
   is_valid_ = true;
   last_ = start;
   const Pose start_10 = start.inverse(), end_10 = end.inverse();

@@ -113,16 +113,29 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
 void FeatureSet::build() {
   std::sort(corners_.begin(), corners_.end());
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-  const auto count = [](const auto& items) { return static_cast<std::uint32_t>(items.size()); };
-  trees_[0] = std::make_unique<const SphereTree>(
-      count(corners_), [&](std::uint32_t i, const auto& visit) { visit(vertices_[corners_[i]]); });
-  trees_[1] = std::make_unique<const SphereTree>(count(edges_), [&](std::uint32_t i, const auto& visit) {
-    visit(vertices_[edges_[i].from]);
-    visit(vertices_[edges_[i].to]);
-  });
-  trees_[2] = std::make_unique<const SphereTree>(count(facets_), [&](std::uint32_t i, const auto& visit) {
-    for (const std::uint32_t v : facets_[i]) visit(vertices_[v]);
-  });
+  std::vector<std::uint8_t> is_curved(vertices_.size(), 0);
+  for (const FeatureEdge& edge : edges_)
+    if (edge.is_curved) is_curved[edge.from] = is_curved[edge.to] = 1;
+  std::vector<std::uint32_t> items[3][2];
+  const auto sort = [&](Kind kind, std::size_t count, const auto& isOneCurved) {
+    for (std::uint32_t i = 0; i < count; ++i) items[kind][isOneCurved(i) ? 1 : 0].push_back(i);
+  };
+  sort(kCorners, corners_.size(), [&](std::uint32_t i) { return is_curved[corners_[i]] != 0; });
+  sort(kEdges, edges_.size(), [&](std::uint32_t i) { return edges_[i].is_curved; });
+  sort(kFacets, facets_.size(), [&](std::uint32_t i) { return isCurved(i); });
+  for (int k = 0; k < 2; ++k) {
+    trees_[kCorners][k] = std::make_unique<const SphereTree>(
+        items[kCorners][k], [&](std::uint32_t i, const auto& visit) { visit(vertices_[corners_[i]]); });
+    trees_[kEdges][k] =
+        std::make_unique<const SphereTree>(items[kEdges][k], [&](std::uint32_t i, const auto& visit) {
+          visit(vertices_[edges_[i].from]);
+          visit(vertices_[edges_[i].to]);
+        });
+    trees_[kFacets][k] =
+        std::make_unique<const SphereTree>(items[kFacets][k], [&](std::uint32_t i, const auto& visit) {
+          for (const std::uint32_t v : facets_[i]) visit(vertices_[v]);
+        });
+  }
   Box box;
   for (const Vec3& p : vertices_) box.add(p);
   center_ = vertices_.empty() ? Vec3(Vec3::Zero()) : box.center();

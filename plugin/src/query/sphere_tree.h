@@ -25,13 +25,14 @@ class SphereTree {
   /// @param points  calls a function with each point of an item: points(item, visit); a sphere around these
   /// holds the item. O(n log n).
   template <typename Points>
-  SphereTree(std::uint32_t count, const Points& points) {
-    if (count == 0) return;
+  SphereTree(std::span<const std::uint32_t> items, const Points& points) {
+    if (items.empty()) return;
+    const auto count = static_cast<std::uint32_t>(items.size());
     struct Range {
       std::uint32_t node, first, count;
     };
     std::vector<Box> boxes(count);
-    for (std::uint32_t i = 0; i < count; ++i) points(i, [&](const Vec3& p) { boxes[i].add(p); });
+    for (std::uint32_t i = 0; i < count; ++i) points(items[i], [&](const Vec3& p) { boxes[i].add(p); });
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     nodes_.reserve(2 * std::size_t{count});
@@ -49,9 +50,10 @@ class SphereTree {
       Node node;
       node.center = box.center();
       for (const std::uint32_t i : own)
-        points(i, [&](const Vec3& p) { node.radius_m = std::max(node.radius_m, (p - node.center).norm()); });
+        points(items[i],
+               [&](const Vec3& p) { node.radius_m = std::max(node.radius_m, (p - node.center).norm()); });
       node.is_leaf = range.count == 1 ? 1 : 0;
-      node.first = node.is_leaf != 0 ? own[0] : static_cast<std::uint32_t>(nodes_.size());
+      node.first = node.is_leaf != 0 ? items[own[0]] : static_cast<std::uint32_t>(nodes_.size());
       nodes_[range.node] = node;
       if (node.is_leaf != 0) continue;
       int axis = 0;
