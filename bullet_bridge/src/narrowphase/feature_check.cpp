@@ -23,11 +23,6 @@ void findContacts(const PairView& start, const EndPoses& end, PairState& state,
   const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), poseBetween(start, start.X_WS),
                        X_01_end, found);
-  // Facets that stand for a curved surface are met along its own normal, so that parts slide smoothly over
-  // them; so they may overlap by what this differs from the facets.
-  const double tolerated_m = kToleratedShare * state.context->settings.contact_margin_m;
-  std::erase_if(found,
-                [&](const FeatureContact& c) { return c.is_curved && c.gap_m(X_01_end) > -tolerated_m; });
 }
 
 std::uint32_t codeOf(const FeatureContact& c, int i) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "vps/export.h"
@@ -12,17 +13,19 @@
 
 namespace vps::inline v0 {
 
-class SphereTree;
+enum class FeatureKind : std::uint8_t { Corner, Edge, Facet };
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
   bool has_faces = false;                       ///< false: `into` is unknown
-  bool is_curved = false;  ///< at an end it goes on in one other edge, which turns by less than 20 degrees
+  /// At an end it goes on in one other edge, which turns by less than 20 degrees.
+  bool is_curved = false;
+  Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
 };
 
-/// The features of one or several meshes in one frame, with a tree of bounding spheres over each kind.
+/// The features of one or several meshes in one frame, with a tree of boxes over each kind.
 class VPS_API FeatureSet {
  public:
   FeatureSet();
@@ -45,16 +48,15 @@ class VPS_API FeatureSet {
   /// Vertices at which edges end.
   [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
   [[nodiscard]] bool isEmpty() const { return facets_.empty(); }
-  /// A sphere around all vertices.
-  [[nodiscard]] const Vec3& center() const { return center_; }
-  [[nodiscard]] double radius_m() const { return radius_m_; }
-
-  /// For the library's own use: trees over indices of corners(), edges() and facets(), apart for those that
-  /// are curved. A corner is curved if one of its edges is.
-  enum Kind { kCorners, kEdges, kFacets };
-  [[nodiscard]] const SphereTree& tree(Kind kind, bool is_curved) const {
-    return *trees_[kind][is_curved ? 1 : 0];
+  /// The edges that end at a corner, as indices of edges().
+  [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t corner) const {
+    return std::span(edges_at_).subspan(first_edge_[corner], first_edge_[corner + 1] - first_edge_[corner]);
   }
+  [[nodiscard]] const Box& box() const { return box_; }
+  [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
+
+  /// The features whose own boxes overlap `box`, in a fixed order; what `found` held is lost.
+  void find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const;
 
  private:
   void markCurvedEdges(std::size_t first);
@@ -65,9 +67,10 @@ class VPS_API FeatureSet {
   std::vector<std::uint8_t> facet_flags_;
   std::vector<FeatureEdge> edges_;
   std::vector<std::uint32_t> corners_;
-  Vec3 center_ = Vec3::Zero();
-  double radius_m_ = 0;
-  std::unique_ptr<const SphereTree> trees_[3][2];
+  std::vector<std::uint32_t> edges_at_, first_edge_;
+  Box box_;
+  struct Tree;
+  std::unique_ptr<const Tree> trees_[3];
 };
 
 }  // namespace vps::inline v0

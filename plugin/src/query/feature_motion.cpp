@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "mesh/triangle_distance.h"
-#include "query/sphere_tree.h"
 
 namespace vps::inline v0 {
 
@@ -176,10 +175,32 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
   return sign * n.dot((v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]])) > 0;
 }
 
-bool isCurved(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
-              const std::uint32_t (&feature)[2]) {
-  if (kind == Kind::CornerOnFacet) return part1.isCurved(feature[1]);
-  if (kind == Kind::FacetOnCorner) return part0.isCurved(feature[0]);
+// True if curved surfaces lie flush in each other where the features are.
+bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i, std::uint32_t j,
+             const Mat3& R_10) {
+  constexpr double kCosFlush = 0.94;  // 20 degrees
+  const auto isOpposite = [&](const Vec3& n0, const Vec3& n1) { return (R_10 * n0).dot(n1) < -kCosFlush; };
+  const auto edgeAgainst = [&](const FeatureEdge& edge, const auto& test) {
+    return test(edge.normal[0]) || test(edge.normal[1]);
+  };
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge &edge0 = part0.edges()[i], &edge1 = part1.edges()[j];
+    if (!edge0.is_curved || !edge1.is_curved) return false;
+    return edgeAgainst(edge0, [&](const Vec3& n0) {
+      return edgeAgainst(edge1, [&](const Vec3& n1) { return isOpposite(n0, n1); });
+    });
+  }
+  const bool is_corner0 = kind == Kind::CornerOnFacet;
+  const FeatureSet &with_corner = is_corner0 ? part0 : part1, &with_facet = is_corner0 ? part1 : part0;
+  const std::uint32_t corner = is_corner0 ? i : j, facet = is_corner0 ? j : i;
+  if (!with_facet.isCurved(facet)) return false;
+  const auto& t = with_facet.facets()[facet];
+  const std::vector<Vec3>& v = with_facet.vertices();
+  const Vec3 n = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]).normalized();
+  for (const std::uint32_t edge : with_corner.edgesAt(corner))
+    if (edgeAgainst(with_corner.edges()[edge],
+                    [&](const Vec3& m) { return is_corner0 ? isOpposite(m, n) : isOpposite(n, m); }))
+      return true;
   return false;
 }
 
@@ -196,7 +217,7 @@ double travel_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_
   const FeatureSet& smaller = is_first ? part0 : part1;
   const Pose start = is_first ? X_01_start.inverse() : X_01_start;
   const Pose end = is_first ? X_01_end.inverse() : X_01_end;
-  const Vec3 moved = end * smaller.center() - start * smaller.center();
+  const Vec3 moved = end * smaller.box().center() - start * smaller.box().center();
   return moved.norm() + angle_rad(end.R * start.R.transpose()) * smaller.radius_m();
 }
 
@@ -226,18 +247,29 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
     pointsOf(part1, kind, 1, j, b);
     const Nearest nearest = nearestOf(kind, a, b);
     const double distance_m = (nearest.p - nearest.q).norm();
-    if (distance_m <= margin_m) near_.push_back({kind, {i, j}, distance_m, 0});
+    if (distance_m <= margin_m && !isFlush(part0, part1, kind, i, j, X_10.R))
+      near_.push_back({kind, {i, j}, distance_m, 0});
   };
-  const auto searchPairs = [&](Kind kind, FeatureSet::Kind kind0, FeatureSet::Kind kind1) {
-    for (const bool is_curved0 : {false, true})
-      for (const bool is_curved1 : {false, true})
-        if (!is_curved0 || !is_curved1)
-          forEachNearPair(part0.tree(kind0, is_curved0), part1.tree(kind1, is_curved1), X_01, margin_m,
-                          [&](std::uint32_t i, std::uint32_t j) { addIfNear(kind, i, j); });
+  // The items of part 0 that are near part 1's box, then what is near each.
+  thread_local std::vector<std::uint32_t> items, others;
+  const auto searchPairs = [&](Kind kind, const FeatureSet& own, const FeatureSet& other, FeatureKind of_own,
+                               FeatureKind of_other, const Pose& X_other_own) {
+    own.find(grown(moved(other.box(), X_other_own.inverse()), margin_m), of_own, items);
+    for (const std::uint32_t i : items) {
+      Box box;
+      if (of_own == FeatureKind::Corner) {
+        box.add(X_other_own * own.vertices()[own.corners()[i]]);
+      } else {
+        box.add(X_other_own * own.vertices()[own.edges()[i].from]);
+        box.add(X_other_own * own.vertices()[own.edges()[i].to]);
+      }
+      other.find(grown(box, margin_m), of_other, others);
+      for (const std::uint32_t j : others) &own == &part0 ? addIfNear(kind, i, j) : addIfNear(kind, j, i);
+    }
   };
-  searchPairs(Kind::CornerOnFacet, FeatureSet::kCorners, FeatureSet::kFacets);
-  searchPairs(Kind::FacetOnCorner, FeatureSet::kFacets, FeatureSet::kCorners);
-  searchPairs(Kind::EdgeOnEdge, FeatureSet::kEdges, FeatureSet::kEdges);
+  searchPairs(Kind::CornerOnFacet, part0, part1, FeatureKind::Corner, FeatureKind::Facet, X_10);
+  searchPairs(Kind::FacetOnCorner, part1, part0, FeatureKind::Corner, FeatureKind::Facet, X_01);
+  searchPairs(Kind::EdgeOnEdge, part0, part1, FeatureKind::Edge, FeatureKind::Edge, X_10);
 }
 
 namespace {
@@ -261,7 +293,6 @@ FeatureContact contactAt(Kind kind, const FeatureSet& part0, const FeatureSet& p
   FeatureContact contact;
   contact.kind = kind;
   for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
-  contact.is_curved = isCurved(part0, part1, kind, feature);
   contact.share = reach.share;
   Vec3 own[3], at[3];
   pointsOf(part0, kind, 0, feature[0], own);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
-#include "query/sphere_tree.h"
 
 namespace vps::inline v0 {
 
@@ -21,6 +21,12 @@ bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 }  // namespace
+
+struct FeatureSet::Tree {
+  explicit Tree(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {}
+  std::vector<Box> boxes;
+  BoxTree tree;
+};
 
 FeatureSet::FeatureSet() {
   build();
@@ -52,7 +58,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (!(way.squaredNorm() > 0)) return;
     const Vec3 along = way.normalized();
     edge.has_faces = same.size() == 2 && same[0].is_forward != same[1].is_forward && !is_sheet;
-    Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};
+    Vec3(&normal)[2] = edge.normal;
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i) {
       const auto& t = mesh.triangles[same[i].triangle];
       const Vec3 &a = vertex(t[0]), &b = vertex(t[1]), &c = vertex(t[2]);
@@ -113,34 +119,43 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
 void FeatureSet::build() {
   std::sort(corners_.begin(), corners_.end());
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-  std::vector<std::uint8_t> is_curved(vertices_.size(), 0);
-  for (const FeatureEdge& edge : edges_)
-    if (edge.is_curved) is_curved[edge.from] = is_curved[edge.to] = 1;
-  std::vector<std::uint32_t> items[3][2];
-  const auto sort = [&](Kind kind, std::size_t count, const auto& isOneCurved) {
-    for (std::uint32_t i = 0; i < count; ++i) items[kind][isOneCurved(i) ? 1 : 0].push_back(i);
+  std::vector<std::uint32_t> corner_of(vertices_.size(), 0);
+  for (std::uint32_t i = 0; i < corners_.size(); ++i) corner_of[corners_[i]] = i;
+  first_edge_.assign(corners_.size() + 1, 0);
+  const auto forEachEnd = [&](const auto& visit) {
+    for (std::uint32_t i = 0; i < edges_.size(); ++i)
+      for (const std::uint32_t v : {edges_[i].from, edges_[i].to}) visit(i, corner_of[v]);
   };
-  sort(kCorners, corners_.size(), [&](std::uint32_t i) { return is_curved[corners_[i]] != 0; });
-  sort(kEdges, edges_.size(), [&](std::uint32_t i) { return edges_[i].is_curved; });
-  sort(kFacets, facets_.size(), [&](std::uint32_t i) { return isCurved(i); });
-  for (int k = 0; k < 2; ++k) {
-    trees_[kCorners][k] = std::make_unique<const SphereTree>(
-        items[kCorners][k], [&](std::uint32_t i, const auto& visit) { visit(vertices_[corners_[i]]); });
-    trees_[kEdges][k] =
-        std::make_unique<const SphereTree>(items[kEdges][k], [&](std::uint32_t i, const auto& visit) {
-          visit(vertices_[edges_[i].from]);
-          visit(vertices_[edges_[i].to]);
-        });
-    trees_[kFacets][k] =
-        std::make_unique<const SphereTree>(items[kFacets][k], [&](std::uint32_t i, const auto& visit) {
-          for (const std::uint32_t v : facets_[i]) visit(vertices_[v]);
-        });
-  }
-  Box box;
-  for (const Vec3& p : vertices_) box.add(p);
-  center_ = vertices_.empty() ? Vec3(Vec3::Zero()) : box.center();
-  radius_m_ = 0;
-  for (const Vec3& p : vertices_) radius_m_ = std::max(radius_m_, (p - center_).norm());
+  forEachEnd([&](std::uint32_t, std::uint32_t corner) { ++first_edge_[corner + 1]; });
+  for (std::size_t i = 1; i < first_edge_.size(); ++i) first_edge_[i] += first_edge_[i - 1];
+  edges_at_.resize(first_edge_.back());
+  std::vector<std::uint32_t> next(first_edge_.begin(), first_edge_.end() - 1);
+  forEachEnd([&](std::uint32_t edge, std::uint32_t corner) { edges_at_[next[corner]++] = edge; });
+
+  box_ = Box();
+  for (const Vec3& p : vertices_) box_.add(p);
+  const auto plant = [&](FeatureKind kind, std::size_t count, const auto& addPoints) {
+    std::vector<Box> boxes(count);
+    for (std::size_t i = 0; i < count; ++i) addPoints(i, boxes[i]);
+    trees_[static_cast<std::size_t>(kind)] = std::make_unique<const Tree>(std::move(boxes));
+  };
+  plant(FeatureKind::Corner, corners_.size(),
+        [&](std::size_t i, Box& box) { box.add(vertices_[corners_[i]]); });
+  plant(FeatureKind::Edge, edges_.size(), [&](std::size_t i, Box& box) {
+    box.add(vertices_[edges_[i].from]);
+    box.add(vertices_[edges_[i].to]);
+  });
+  plant(FeatureKind::Facet, facets_.size(), [&](std::size_t i, Box& box) {
+    for (const std::uint32_t v : facets_[i]) box.add(vertices_[v]);
+  });
+}
+
+void FeatureSet::find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  trees_[static_cast<std::size_t>(kind)]->tree.forEachOverlap(box, [&](std::uint32_t i) {
+    found.push_back(i);
+    return true;
+  });
 }
 
 }  // namespace vps::inline v0
