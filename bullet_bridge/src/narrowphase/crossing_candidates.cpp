@@ -39,7 +39,10 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   constexpr double kSame_m = 1e-9;
   const Vec3& joint = end == 0 ? s.from : s.to;
   Vec3 direction = way;
-  double most_cos = 0;
+  // A coarser polygon, of fewer than 45 corners, is met as it is: chain links of 10 corners gained energy
+  // along the curves' normals, since their gap is that of the segments. assumed, as FeatureEdge::is_curved
+  constexpr double kCosCurved = 0.9903;  // 8 degrees
+  double most_cos = kCosCurved;
   edges.forEachNear(joint, kSame_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;

@@ -20,7 +20,7 @@ struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
   bool has_faces = false;                       ///< false: `into` is unknown
-  /// At an end it goes on in one other edge, which turns by less than 20 degrees.
+  /// At an end it goes on in one other edge, which turns by less than 8 degrees.
   bool is_curved = false;
   Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
 };
@@ -42,7 +42,7 @@ class VPS_API FeatureSet {
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
-  /// True if a neighbour turns by less than 20 degrees: the facet stands for a curved surface.
+  /// True if a neighbour turns by less than 8 degrees: the facet stands for a curved surface.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
   [[nodiscard]] const std::vector<FeatureEdge>& edges() const { return edges_; }
   /// Vertices at which edges end.

@@ -11,7 +11,10 @@ namespace vps::inline v0 {
 
 namespace {
 
-constexpr double kCosSharp = 0.94;      // 20 degrees, as PointShellSettings::edge_angle_rad
+constexpr double kCosSharp = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
+// Facets and segments that turn by less stand for something curved, if they turn at all. assumed: 8 degrees,
+// a polygon of 45 corners. A coarser one is met as it is.
+constexpr double kCosCurved = 0.9903;
 constexpr double kFlat = 1e-4;          // sine; assumed: above the rounding of files in single precision
 constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
 
@@ -71,9 +74,10 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       edge.into[i] = (into - along * along.dot(into)).normalized();
     }
     if (edge.has_faces && normal[0].dot(normal[1]) >= kCosSharp) {
-      if (normal[0].cross(normal[1]).norm() > kFlat)
+      const double sine = normal[0].cross(normal[1]).norm();
+      if (sine > kFlat && normal[0].dot(normal[1]) > kCosCurved)
         for (const HalfEdge& e : same) facet_flags_[facet_of[e.triangle]] |= kCurved;
-      else
+      else if (sine <= kFlat)
         planes.join(same[0].triangle, same[1].triangle);
       return;
     }
@@ -109,7 +113,7 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
   for (std::size_t i = 0; i < ends.size();) {
     std::size_t end = i + 1;
     while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
-    if (end - i == 2 && ends[i].away.dot(ends[i + 1].away) < -kCosSharp &&
+    if (end - i == 2 && ends[i].away.dot(ends[i + 1].away) < -kCosCurved &&
         ends[i].away.cross(ends[i + 1].away).norm() > kFlat)
       edges_[ends[i].edge].is_curved = edges_[ends[i + 1].edge].is_curved = true;
     i = end;
