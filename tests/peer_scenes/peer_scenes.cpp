@@ -138,6 +138,10 @@ const Peer& peerOf(const std::string& scene) {
   throw std::invalid_argument(scene + " is none of the peer's scenes");
 }
 
+// The tetrahedron of `vertex-face` stands in balance on its corner, to the last bit; what happens then says
+// nothing. A millionth of a radian is 10 nm at its upper face.
+constexpr double kOffBalance_rad = 1e-6;
+
 Run prepare(const scenes::Scene& scene) {
   Run run;
   run.dt_s = 1 / scene.fidelity.physics_rate_hz;
@@ -186,6 +190,9 @@ PeerResult runPeer(const std::filesystem::path& folder, const std::string& name,
   const Peer& peer = peerOf(name);
   scenes::Scene scene = scenes::loadScene((folder / name / "scene.toml").string());
   scenes::resolveFidelity(scene);
+  if (name == "vertex-face")
+    for (scenes::ScenePart& part : scene.parts)
+      if (!part.is_fixed) part.X_WP.R = rotationFromVector(kOffBalance_rad * Vec3::UnitX()) * part.X_WP.R;
   Run run = prepare(scene);
   scenes::SimulateOptions options;
   options.judge_every = 1;

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "shape/scaled_models.h"
+#include "vps/feature_motion.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
@@ -262,7 +263,10 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
 void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
   const Pose X = fromBt(X_WS);
   const Vec3 center = X * bounds_S_.center();
-  const Vec3 half = X.R.cwiseAbs() * (0.5 * bounds_S_.size());
+  // btCompoundShape's algorithm tests only children whose boxes overlap; parts that rest on each other have a
+  // gap.
+  const Vec3 half =
+      X.R.cwiseAbs() * (0.5 * bounds_S_.size()) + Vec3(Vec3::Constant(2 * FeatureMotion::kRest_m));
   min = toBt(Vec3(center - half));
   max = toBt(Vec3(center + half));
 }

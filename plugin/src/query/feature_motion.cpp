@@ -316,7 +316,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const double step_m = travel_m(part0, part1, start, end);
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
   if (!is_valid_ || path_m_ + step_m + kLeast_m > margin_m_)
-    search(part0, part1, start, 4 * step_m + kMargin_m);
+    search(part0, part1, start, 1.25 * step_m + kMargin_m);
   is_valid_ = true;
   last_ = start;
   const Pose start_10 = start.inverse(), end_10 = end.inverse();
