@@ -264,7 +264,8 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
         box.add(X_other_own * own.vertices()[own.edges()[i].to]);
       }
       other.find(grown(box, margin_m), of_other, others);
-      for (const std::uint32_t j : others) &own == &part0 ? addIfNear(kind, i, j) : addIfNear(kind, j, i);
+      for (const std::uint32_t j : others)
+        kind == Kind::FacetOnCorner ? addIfNear(kind, j, i) : addIfNear(kind, i, j);
     }
   };
   searchPairs(Kind::CornerOnFacet, part0, part1, FeatureKind::Corner, FeatureKind::Facet, X_10);
