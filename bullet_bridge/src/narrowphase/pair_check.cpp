@@ -240,6 +240,10 @@ double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
 // the deviation is less. Or they were out of reach of this motion in any direction.
 bool PairCheck::mayMissPoints(const Motion& m) const {
+  // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
+  // assumed: 100 rad/s in steps of 1 ms. Sharp features are looked at however fast they turn.
+  constexpr double kMaxTurn_rad = 0.1;
+  if (m.turn_rad > kMaxTurn_rad) return false;
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);

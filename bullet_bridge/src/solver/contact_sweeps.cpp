@@ -113,7 +113,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
     c.gap_m = gap_m - m.rest_m;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
-    if (-v > info.m_restitutionVelocityThreshold)
+    if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
       c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
     const auto same = std::find_if(contacts_.begin(), contacts_.end(),
                                    [&](const RigidContact& had) { return had.point == m.point; });

@@ -309,6 +309,63 @@ FeatureContact contactAt(Kind kind, const FeatureSet& part0, const FeatureSet& p
 
 }  // namespace
 
+namespace {
+
+// Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
+// evenly.
+void findWay(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
+             std::vector<Pose>& way_10) {
+  constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of kLeast_m
+  constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
+  const bool is_first = part0.radius_m() <= part1.radius_m();
+  const FeatureSet& smaller = is_first ? part0 : part1;
+  const Pose from = is_first ? start.inverse() : start, to = is_first ? end.inverse() : end;
+  const Vec3 turn = rotationVector(to.R * from.R.transpose()), center = smaller.box().center();
+  const double sagitta_m = turn.squaredNorm() * smaller.radius_m() / 8;
+  const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
+  const Vec3 c_from = from * center, c_to = to * center;
+  way_10.clear();
+  for (int k = 0; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    Pose X = k == pieces ? to : from;
+    if (k > 0 && k < pieces) {
+      X.R = rotationFromVector(share * turn) * from.R;
+      X.p = c_from + share * (c_to - c_from) - X.R * center;
+    }
+    way_10.push_back(is_first ? X : X.inverse());
+  }
+}
+
+/// The piece of the way in which features reach a distance first.
+struct Met {
+  std::size_t piece = 0;
+  Features features;
+  Reach reach;
+};
+
+bool findFirst(Kind kind, const FeatureSet& part0, const std::uint32_t (&feature)[2],
+               const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
+  Features& f = met.features;
+  Vec3 own[3];
+  pointsOf(part0, kind, 0, feature[0], own);
+  for (std::size_t k = 0; k + 1 < way_10.size(); ++k) {
+    for (int v = 0; v < f.a_count; ++v) {
+      f.a[v] = way_10[k] * own[v];
+      f.way[v] = way_10[k + 1] * own[v] - f.a[v];
+    }
+    if (k > 0) {
+      met.reach.nearest = nearestOf(kind, f.a, f.b);
+      distance_m = (met.reach.nearest.p - met.reach.nearest.q).norm();
+    }
+    met.piece = k;
+    met.reach.share = 0;
+    if (findReach(kind, f, least_m, distance_m, met.reach)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, std::vector<FeatureContact>& out) {
   constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
@@ -320,30 +377,35 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     search(part0, part1, start, 1.25 * step_m + kMargin_m);
   is_valid_ = true;
   last_ = start;
-  const Pose start_10 = start.inverse(), end_10 = end.inverse();
-  const Vec3 turn = rotationVector(end_10.R * start_10.R.transpose());
+  way_10_.clear();
+  const Pose start_10 = start.inverse();
   for (Near& near : near_) {
     if (near.distance_m - (path_m_ - near.path_m) > step_m + kLeast_m) continue;
-    Features f;
+    Met met;
+    Features& f = met.features;
     Vec3 own[3];
     f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], own);
     f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
     for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * own[k];
-    Reach reach;
-    reach.nearest = nearestOf(near.kind, f.a, f.b);
-    near.distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    Nearest& nearest = met.reach.nearest;
+    nearest = nearestOf(near.kind, f.a, f.b);
+    near.distance_m = (nearest.p - nearest.q).norm();
     near.path_m = path_m_;
     if (near.distance_m > step_m + kLeast_m || near.distance_m < kTouching_m) continue;
-    for (int k = 0; k < f.a_count; ++k) f.way[k] = end_10 * own[k] - f.a[k];
-    if (!findReach(near.kind, f, std::min(kLeast_m, 0.5 * near.distance_m), near.distance_m, reach)) continue;
-    if (near.kind == Kind::EdgeOnEdge && reach.nearest.is_end) continue;  // a corner and a facet
-    const Vec3 n_1 = (reach.nearest.p - reach.nearest.q).normalized();
-    const Mat3 R_10 = rotationFromVector(reach.share * turn) * start_10.R;
-    const Vec3 n_0 = R_10.transpose() * n_1;
+    if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
+    const double least_m = std::min(kLeast_m, 0.5 * near.distance_m);
+    if (!findFirst(near.kind, part0, near.feature, way_10_, least_m, near.distance_m, met)) continue;
+    if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
+    if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
+    const Vec3 n_1 = (nearest.p - nearest.q).normalized();
+    // Within a piece the rotation changes little; the plane is that of its start.
+    const Vec3 n_0 = way_10_[met.piece].R.transpose() * n_1;
     if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
         !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
       continue;
-    FeatureContact contact = contactAt(near.kind, part0, part1, near.feature, f, reach);
+    FeatureContact contact = contactAt(near.kind, part0, part1, near.feature, f, met.reach);
+    contact.share =
+        (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = near.distance_m;
     contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
     contact.n = contact.plane_of == 0 ? n_0 : n_1;
