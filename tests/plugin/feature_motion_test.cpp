@@ -13,6 +13,8 @@
 namespace vps {
 namespace {
 
+constexpr double kLeast_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
+
 /// A solid as features and for exact overlap.
 struct Body {
   FeatureSet features;
@@ -83,7 +85,7 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   const FeatureContact& c = found[0];
   EXPECT_EQ(c.kind, FeatureContact::Kind::CornerOnFacet);
   // It may stop a tenth of the least distance early.
-  EXPECT_NEAR(c.share, (height_m - FeatureMotion::kLeast_m) / fall_m, 0.1 * FeatureMotion::kLeast_m / fall_m);
+  EXPECT_NEAR(c.share, (height_m - kLeast_m) / fall_m, 0.1 * kLeast_m / fall_m);
   EXPECT_NEAR(c.start_m, height_m, 1e-15);
   EXPECT_LE((c.n - Vec3::UnitZ()).norm(), 1e-9);
   EXPECT_LE(c.p[0].norm(), 1e-12);

@@ -52,7 +52,9 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
 
 void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;
-  for (Candidate& c : contacts) c.is_sharp = c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id);
+  const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
+  for (Candidate& c : contacts)
+    if (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)) c.rest_m = rest_m;
 }
 
 void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
@@ -68,6 +70,7 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     if (chosen.size() < kMostAdded && !isRepeated(c, chosen)) chosen.push_back(&c);
   const Pose X_01 = poseBetween(start, start.X_WS), X_01_end = poseBetween(start, end.X_WS);
   const Pose X_WM0 = start.X_WS[0] * start.shape[0]->X_SM();
+  const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
   for (const FeatureContact* c : chosen) {
     Candidate at;
     at.n_W = X_WM0.R * c->normal_0(X_01);
@@ -75,14 +78,14 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
     at.distance_m = c->gap_m(X_01);
     at.id = codeOf(*c, 0);
     at.crossed = codeOf(*c, 1) + 1;
-    at.is_sharp = true;
+    at.rest_m = rest_m;
     at.plane_of = c->kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c->plane_of;
     MissedContact missed;
     missed.point = state.writer->put(at, start.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
     missed.end_gap_m = c->gap_m(X_01_end);
-    missed.kept_m = std::min(FeatureMotion::kRest_m, c->start_m);
-    missed.rest_m = FeatureMotion::kRest_m;
+    missed.kept_m = std::min(rest_m, c->start_m);
+    missed.rest_m = rest_m;
     out.push_back(missed);
   }
 }

@@ -75,8 +75,8 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   point.m_index1 = indexOn(c, 1);
   point.m_partId0 = c.side == 1 ? c.owner : 0;
   point.m_partId1 = c.side == 0 ? c.owner : 0;
-  if (c.is_sharp) point.m_contactPointFlags |= kSharpContactFlag;
   setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
+  if (c.rest_m > 0) setRestGap(point, c.rest_m);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
   return point;
 }

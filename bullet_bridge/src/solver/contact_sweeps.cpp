@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "solver/contact_key.h"
-#include "vps/feature_motion.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
@@ -58,8 +57,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.point = &point;
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
-  const double rest_m = (point.m_contactPointFlags & kSharpContactFlag) != 0 ? FeatureMotion::kRest_m : 0;
-  c.gap_m = point.getDistance() + info.m_linearSlop - rest_m;
+  c.gap_m = point.getDistance() + info.m_linearSlop - restGap_m(point);
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {

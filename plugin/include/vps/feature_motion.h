@@ -37,13 +37,16 @@ class VPS_API FeatureMotion {
   /// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
   /// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
   static constexpr double kRest_m = 0.5e-6;
-  /// Features that come nearer than this on the way are looked at, or than half of what they had.
-  static constexpr double kLeast_m = 0.2e-6;
+  /// The same for two parts: less for parts smaller than a millimetre, a thousandth of the smaller one's
+  /// radius.
+  [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
+  /// Features that come nearer than this share of it on the way are looked at, or than half of what they had.
+  static constexpr double kLeastShare = 0.4;
 
   /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
-  /// whose gap at the end is less than kRest_m and less than at the start, each with the plane in which they
-  /// touch first. On the way the smaller part's centre moves on a straight line in the frame of
-  /// the other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
+  /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which
+  /// they touch first. On the way the smaller part's centre moves on a straight line in the frame of the
+  /// other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
   /// arcs by at most 0.05 um. Features that
   /// intersect at the start are not seen, and neither are pairs of which both stand for something curved:
   /// round rims on round faces, threads in threads. Points of pointshells represent these. Cost: some 50 ns

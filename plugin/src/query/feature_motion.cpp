@@ -234,6 +234,11 @@ double FeatureContact::gap_m(const Pose& X_01) const {
   return normal_0(X_01).dot(p[0] - X_01 * p[1]);
 }
 
+double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
+  constexpr double kShareOfRadius = 1e-3;  // assumed
+  return std::min(kRest_m, kShareOfRadius * std::min(part0.radius_m(), part1.radius_m()));
+}
+
 void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01,
                            double margin_m) {
   near_.clear();
@@ -315,7 +320,7 @@ namespace {
 // evenly.
 void findWay(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              std::vector<Pose>& way_10) {
-  constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of kLeast_m
+  constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
   constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
   const bool is_first = part0.radius_m() <= part1.radius_m();
   const FeatureSet& smaller = is_first ? part0 : part1;
@@ -369,18 +374,19 @@ bool findFirst(Kind kind, const FeatureSet& part0, const std::uint32_t (&feature
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, std::vector<FeatureContact>& out) {
   constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
-  constexpr double kRounding_m = 1e-9;  // assumed: far below kLeast_m
+  constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
+  const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
-  if (!is_valid_ || path_m_ + step_m + kLeast_m > margin_m_)
+  if (!is_valid_ || path_m_ + step_m + looked_at_m > margin_m_)
     search(part0, part1, start, 1.25 * step_m + kMargin_m);
   is_valid_ = true;
   last_ = start;
   way_10_.clear();
   const Pose start_10 = start.inverse();
   for (Near& near : near_) {
-    if (near.distance_m - (path_m_ - near.path_m) > step_m + kLeast_m) continue;
+    if (near.distance_m - (path_m_ - near.path_m) > step_m + looked_at_m) continue;
     Met met;
     Features& f = met.features;
     Vec3 own[3];
@@ -391,9 +397,9 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     nearest = nearestOf(near.kind, f.a, f.b);
     near.distance_m = (nearest.p - nearest.q).norm();
     near.path_m = path_m_;
-    if (near.distance_m > step_m + kLeast_m || near.distance_m < kTouching_m) continue;
+    if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
     if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
-    const double least_m = std::min(kLeast_m, 0.5 * near.distance_m);
+    const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     if (!findFirst(near.kind, part0, near.feature, way_10_, least_m, near.distance_m, met)) continue;
     if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
     if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
@@ -409,7 +415,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     contact.start_m = near.distance_m;
     contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
     contact.n = contact.plane_of == 0 ? n_0 : n_1;
-    if (contact.gap_m(end) < std::min(kRest_m, near.distance_m) - kRounding_m) out.push_back(contact);
+    if (contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m) out.push_back(contact);
   }
 }
 
