@@ -22,7 +22,6 @@ struct FeatureContact {
   Vec3 n = Vec3::Zero();      ///< from part 1 to part 0, unit, in the frame of part 1 or 0: see plane_of
   std::uint8_t plane_of = 1;  ///< the part with which the plane moves
   Vec3 along[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of two edges: unit, each in its part's own frame
-  bool is_curved = false;                        ///< the facet, or both edges, stand for something curved
   double start_m = 0;                            ///< distance of the features at the start, positive
 
   /// Distance of p[0] from p[1] along the plane's normal at a pose of part 1 in part 0.
@@ -47,17 +46,20 @@ class VPS_API FeatureMotion {
   /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which
   /// they touch first. On the way the smaller part's centre moves on a straight line in the frame of the
   /// other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
-  /// arcs by at most 0.05 um. Features that
-  /// intersect at the start are not seen, and neither are pairs of which both stand for something curved:
-  /// round rims on round faces, threads in threads. Points of pointshells represent these. Cost: some 50 ns
-  /// for each pair of near features, and a search for these pairs when the motion since the last search has
-  /// used its margin. Allocates where the lists grow. Source: conservative advancement (Mirtich 1996), here
-  /// along the separating plane of the nearest points, which sliding features never reach.
+  /// arcs by at most 0.05 um.
+  ///
+  /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
+  /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
+  /// surfaces, so that they slide smoothly.
+  ///
+  /// Cost: some 50 ns for each pair of near features, and a search for these pairs when the motion since the
+  /// last search has used its margin. Allocates where the lists grow. Source: conservative advancement
+  /// (Mirtich 1996), here along the separating plane of the nearest points, which sliding features never
+  /// reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              std::vector<FeatureContact>& out);
   /// To be called when a part's features change.
   void reset() { is_valid_ = false; }
-  [[nodiscard]] std::size_t pairs() const { return near_.size(); }
 
  private:
   struct Near {

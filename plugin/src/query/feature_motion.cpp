@@ -14,6 +14,7 @@ using Kind = FeatureContact::Kind;
 
 /// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
 struct Features {
+  Vec3 own[3];  ///< of part 0, in its own frame
   Vec3 a[3], way[3], b[3];
   int a_count = 0, b_count = 0;
 
@@ -160,6 +161,13 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, Rea
   return true;
 }
 
+// Not of unit length.
+Vec3 facetNormal(const FeatureSet& part, std::uint32_t facet) {
+  const auto& t = part.facets()[facet];
+  const std::vector<Vec3>& v = part.vertices();
+  return (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
+}
+
 // A facet is met from outside, an edge from between its facets. Other pairs are nearest through the solid,
 // behind a feature that is met first.
 bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& n) {
@@ -170,9 +178,7 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
     return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
   }
   if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
-  const auto& t = part.facets()[feature];
-  const std::vector<Vec3>& v = part.vertices();
-  return sign * n.dot((v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]])) > 0;
+  return sign * n.dot(facetNormal(part, feature)) > 0;
 }
 
 // True if curved surfaces lie flush in each other where the features are.
@@ -194,9 +200,7 @@ bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::u
   const FeatureSet &with_corner = is_corner0 ? part0 : part1, &with_facet = is_corner0 ? part1 : part0;
   const std::uint32_t corner = is_corner0 ? i : j, facet = is_corner0 ? j : i;
   if (!with_facet.isCurved(facet)) return false;
-  const auto& t = with_facet.facets()[facet];
-  const std::vector<Vec3>& v = with_facet.vertices();
-  const Vec3 n = (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]).normalized();
+  const Vec3 n = facetNormal(with_facet, facet).normalized();
   for (const std::uint32_t edge : with_corner.edgesAt(corner))
     if (edgeAgainst(with_corner.edges()[edge],
                     [&](const Vec3& m) { return is_corner0 ? isOpposite(m, n) : isOpposite(n, m); }))
@@ -294,27 +298,21 @@ Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3
 }
 
 // The plane in which features touch that were carried a share of their way.
-FeatureContact contactAt(Kind kind, const FeatureSet& part0, const FeatureSet& part1,
-                         const std::uint32_t (&feature)[2], const Features& f, const Reach& reach) {
+FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
+                         const Reach& reach) {
   FeatureContact contact;
   contact.kind = kind;
   for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
-  contact.share = reach.share;
-  Vec3 own[3], at[3];
-  pointsOf(part0, kind, 0, feature[0], own);
+  Vec3 at[3];
   f.moveTo(reach.share, at);
-  contact.p[0] = inOwnFrame(kind, own, at, reach.nearest.p);
+  contact.p[0] = inOwnFrame(kind, f.own, at, reach.nearest.p);
   contact.p[1] = reach.nearest.q;
   if (kind == Kind::EdgeOnEdge) {
-    contact.along[0] = (own[1] - own[0]).normalized();
+    contact.along[0] = (f.own[1] - f.own[0]).normalized();
     contact.along[1] = (f.b[1] - f.b[0]).normalized();
   }
   return contact;
 }
-
-}  // namespace
-
-namespace {
 
 // Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
 // evenly.
@@ -348,15 +346,12 @@ struct Met {
   Reach reach;
 };
 
-bool findFirst(Kind kind, const FeatureSet& part0, const std::uint32_t (&feature)[2],
-               const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
+bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
   Features& f = met.features;
-  Vec3 own[3];
-  pointsOf(part0, kind, 0, feature[0], own);
   for (std::size_t k = 0; k + 1 < way_10.size(); ++k) {
     for (int v = 0; v < f.a_count; ++v) {
-      f.a[v] = way_10[k] * own[v];
-      f.way[v] = way_10[k + 1] * own[v] - f.a[v];
+      f.a[v] = way_10[k] * f.own[v];
+      f.way[v] = way_10[k + 1] * f.own[v] - f.a[v];
     }
     if (k > 0) {
       met.reach.nearest = nearestOf(kind, f.a, f.b);
@@ -389,10 +384,9 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     if (near.distance_m - (path_m_ - near.path_m) > step_m + looked_at_m) continue;
     Met met;
     Features& f = met.features;
-    Vec3 own[3];
-    f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], own);
+    f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], f.own);
     f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
-    for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * own[k];
+    for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * f.own[k];
     Nearest& nearest = met.reach.nearest;
     nearest = nearestOf(near.kind, f.a, f.b);
     near.distance_m = (nearest.p - nearest.q).norm();
@@ -400,7 +394,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
     if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
-    if (!findFirst(near.kind, part0, near.feature, way_10_, least_m, near.distance_m, met)) continue;
+    if (!findFirst(near.kind, way_10_, least_m, near.distance_m, met)) continue;
     if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
     if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
     const Vec3 n_1 = (nearest.p - nearest.q).normalized();
@@ -409,7 +403,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
         !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
       continue;
-    FeatureContact contact = contactAt(near.kind, part0, part1, near.feature, f, met.reach);
+    FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = near.distance_m;
