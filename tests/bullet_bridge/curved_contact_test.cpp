@@ -43,7 +43,7 @@ struct FlushPoint {
 std::optional<FlushPoint> corrected(const SideView& side, const SideView& other, std::uint32_t id) {
   const ShapeModels& models = side.shape->models();
   const Surface& surface = other.shape->models().surfaces[0];
-  const MeshDistance& theirs = *surface.distance;
+  const Solid& theirs = *surface.distance;
   const Vec3 p_W = side.X_WM * models.shell->points[id];
   const MeshDistance::Closest closest = theirs.closest(other.X_WM.inverse() * p_W, 0.1e-3);
   if (!closest.found) return {};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bullet_bridge/world.h"
+#include "vps/feature_motion.h"
 #include "vps_bullet/coupling.h"
 
 namespace vps::bullet {
@@ -100,8 +101,10 @@ TEST_P(JointsWithSolver, AHingedPartLeansOnItsStopWithItsTorque) {
   const Pose before = test::partPose(body, box);
   world.step(500);
   const Pose after = test::partPose(body, box);
-  EXPECT_LE((after.p - before.p).norm(), 1e-8);
-  EXPECT_NEAR(after.p.z(), 0.005, 1e-6);
+  // The hinge holds the lower edge where the plate is, and contact of sharp edges rests at 0.5 um: the push
+  // raises the other edge instead, by a few times that.
+  EXPECT_LE((after.p - before.p).norm(), 1e-7);
+  EXPECT_NEAR(after.p.z(), 0.005, 4 * FeatureMotion::kRest_m);
   world.world->removeConstraint(&hinge);
 }
 

@@ -55,6 +55,40 @@ TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPlaced) {
   EXPECT_LE(rest.spin_rad_s, kRest_m_s / 0.01);
 }
 
+TEST_P(RestWithSolver, ABoxOfAMeshThatFacesInFallsOntoAPlateAndRests) {
+  Mesh inside_out = makeBox(Vec3(0.02, 0.015, 0.01));
+  for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
+  World world(GetParam());
+  const Built box = test::build(inside_out, 7850, 0.5e-3, 1e-3), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(1e-3, 2e-3, 0.006)));  // 1 mm above it
+  const Rest rest = watch(world, body, Pose::translation(Vec3(1e-3, 2e-3, 0.005)) * box.frame.X_PB);
+  EXPECT_LE(rest.sink_m, 1e-6);
+  EXPECT_LE(rest.drift_m, 1e-6);
+  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+}
+
+TEST_P(RestWithSolver, APlateWithCracksThatFacesInSupportsABox) {
+  // Every second facet of the plate is cut at a side where its neighbour is not, and all face in.
+  Mesh cracked = makeBox(Vec3(0.06, 0.06, 0.01));
+  for (std::size_t i = 0; i < 12; i += 2) {
+    const auto [a, b, c] = cracked.triangles[i];
+    const auto middle = static_cast<std::uint32_t>(cracked.vertices.size());
+    cracked.vertices.push_back(0.4 * cracked.vertices[a] + 0.6 * cracked.vertices[b]);
+    cracked.triangles[i] = {a, middle, c};
+    cracked.triangles.push_back({middle, b, c});
+  }
+  for (auto& t : cracked.triangles) std::swap(t[1], t[2]);
+  World world(GetParam());
+  const Built box = steelBox(), ground = test::build(cracked, 7850, 0.5e-3, 1e-3);
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(1e-3, 2e-3, 0.006)));
+  const Rest rest = watch(world, body, Pose::translation(Vec3(1e-3, 2e-3, 0.005)) * box.frame.X_PB);
+  EXPECT_LE(rest.sink_m, 1e-6);
+  EXPECT_LE(rest.drift_m, 1e-6);
+  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+}
+
 TEST_P(RestWithSolver, ACylinderStandsOnAPlate) {
   World world(GetParam());
   const Built cylinder = test::build(makeCylinder(0.005, 0.02, 64), 7850, 0.5e-3, 1e-3), ground = plate();

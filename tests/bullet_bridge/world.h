@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "vps/friction.h"
-#include "vps/mesh_distance.h"
+#include "vps/solid.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/dispatcher.h"
 #include "vps_bullet/install.h"
@@ -30,20 +30,21 @@ struct Built {
   std::shared_ptr<bullet::Shape> shape;
   Mesh mesh;
   bullet::BodyFrame frame;
-  std::shared_ptr<const MeshDistance> exact;
+  std::shared_ptr<const Solid> exact;
 };
 
 /// Map, shell and exact surface of a mesh, as a shape whose frame is the principal one.
 inline Built build(const Mesh& mesh, double density_kg_m3, double voxel_m = 0.25e-3,
                    double spacing_m = 0.5e-3) {
   Built built;
-  built.mesh = mesh;
-  built.frame = bullet::makeBodyFrame(massProperties(mesh), density_kg_m3);
   VoxMapSettings voxels;
   voxels.voxel_m = voxel_m;
   PointShellSettings points;
   points.spacing_m = spacing_m;
-  bullet::ShapeModels models = bullet::makeModels(*buildPartModel("", mesh, voxels, points));
+  const std::shared_ptr<const PartModel> part = buildPartModel("", mesh, voxels, points);
+  built.mesh = *part->mesh;
+  built.frame = bullet::makeBodyFrame(massProperties(built.mesh), density_kg_m3);
+  bullet::ShapeModels models = bullet::makeModels(*part);
   built.exact = models.surfaces[0].distance;
   built.shape = std::make_shared<bullet::Shape>(std::move(models), built.frame.X_PB.inverse());
   return built;

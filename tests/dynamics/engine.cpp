@@ -31,7 +31,7 @@ const char* nameOf(Mode mode) {
 
 Engine vpsEngine(const Resolution& resolution, const bullet::Settings& settings) {
   // Parts with the same surface share their exact distance, so its address identifies them.
-  using Shapes = std::map<std::shared_ptr<const MeshDistance>, ShapeHandle>;
+  using Shapes = std::map<std::shared_ptr<const Solid>, ShapeHandle>;
   const auto shapes = std::make_shared<Shapes>();
   Engine engine;
   engine.name = "VPS";

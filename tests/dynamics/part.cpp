@@ -28,7 +28,7 @@ PartMesh makePart(Mesh mesh, double density_kg_m3) {
   PartMesh part;
   part.mesh = welded(mesh);
   part.frame = bullet::makeBodyFrame(massProperties(part.mesh), density_kg_m3);
-  part.exact = std::make_shared<const MeshDistance>(part.mesh);
+  part.exact = std::make_shared<const Solid>(part.mesh);
   return part;
 }
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "vps/mesh_distance.h"
+#include "vps/solid.h"
 #include "vps_bullet/shape.h"
 
 namespace vps::dynamics {
@@ -14,7 +14,7 @@ namespace vps::dynamics {
 struct PartMesh {
   Mesh mesh;                ///< in the part's frame P
   bullet::BodyFrame frame;  ///< a body's frame B in P: centre of mass, principal axes
-  std::shared_ptr<const MeshDistance> exact;
+  std::shared_ptr<const Solid> exact;
 };
 
 /// Throws LoadError for a mesh without a volume.

@@ -224,5 +224,32 @@ TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
   }
 }
 
+TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
+  // Two links of a chain: each one's inner edge is a polygon, and they hang in each other's corner. The lines
+  // of the segments then cross beyond the joint, by the gap times the tangent of half the turn of 17 degrees.
+  const double half_rad = 8.5 * std::numbers::pi / 180;
+  const auto hollow = [&](const Mat3& R) {
+    std::vector<EdgeSegment> segments;
+    for (const double side : {-1.0, 1.0}) {
+      EdgeSegment s;
+      s.to = R * Vec3(side * std::cos(half_rad), 0, std::sin(half_rad));
+      s.outward = R * Vec3(-side * std::sin(half_rad), 0, std::cos(half_rad));
+      const double slope = 0.3;  // of the faces beside the edge
+      for (int i = 0; i < 2; ++i) s.into[i] = R * Vec3(0, i == 0 ? 1 : -1, -slope).normalized();
+      s.ends[0] = false;
+      segments.push_back(s);
+    }
+    return EdgeSet(std::move(segments));
+  };
+  const EdgeSet below = hollow(Mat3::Identity());
+  const Mat3 over = turned(Vec3::UnitZ(), std::numbers::pi / 2) * turned(Vec3::UnitX(), std::numbers::pi);
+  const EdgeSet above = hollow(over);
+  for (const double overlap : {1e-3, 1e-2, 1e-1}) {
+    const auto found = crossings(below, above, Pose::translation({0, 0, -overlap}), 0.5);
+    ASSERT_FALSE(found.empty()) << overlap;
+    EXPECT_LT(found[0].gap_m, -0.9 * overlap);
+  }
+}
+
 }  // namespace
 }  // namespace vps

@@ -402,7 +402,7 @@ TEST(VoxMap, UnusableSettingsAreRefusedWithARemedy) {
   EXPECT_NE(complaint(Mesh{}, kSettings).find("no triangles"), std::string::npos);
   EXPECT_NE(complaint(box, {1e-7, 4}).find("would fit"), std::string::npos);
   EXPECT_NE(complaint(makeBox({1e6, 1e6, 1e6}), {1e-7, 4}).find("would fit"), std::string::npos);
-  EXPECT_THROW(cookVoxMap({}, kSettings), LoadError);
+  EXPECT_THROW(cookVoxMap(std::vector<PlacedMesh>{}, kSettings), LoadError);
 }
 
 TEST(VoxMap, TheVoxelSizeNamedInTheErrorFits) {

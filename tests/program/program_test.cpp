@@ -271,5 +271,39 @@ TEST_F(Program, SimulateWritesTheDocumentedKeys) {
   // Free fall from 0.1 mm: after 10 ms it has fallen g t^2 / 2 = 0.49 mm, so it has landed.
 }
 
+TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
+  const auto scene = [](const char* part) {
+    return std::string("unit = \"mm\"\n[fidelity]\nvoxel = \"0.5mm\"\nspacing = \"1mm\"\n") + part +
+           "[[part]]\nfile = \"plate.stl\"\nfixed = true\nstiffness = 1e8\n"
+           "[[part]]\nfile = \"pin.stl\"\nstiffness = 1e8\n";
+  };
+  write("hard.toml", scene("") + "pose = {position = [0, 0, 9.5]}\n");
+  const Ran hard = run("simulate hard.toml --seconds 0.05 --judge-every 1 --json hard.json");
+  EXPECT_EQ(hard.status, 0) << hard.out << hard.err;
+  EXPECT_NE(hard.out.find("deepest by exact distance"), std::string::npos) << hard.out;
+  const json judged = json::parse(slurp(folder_ / "hard.json"))["overlap"];
+  EXPECT_EQ(judged["poses_judged"], 51);
+  EXPECT_TRUE(judged["is_within_limit"]);
+  EXPECT_LE(judged["max_depth_m"].get<double>(), judged["limit_m"].get<double>());
+
+  // It falls on something soft: 1e8 N/m^3 on 16 mm^2 carry the weight of 10 mN at 6 um, and the fall at more.
+  write("soft.toml", scene("contact = \"penalty\"\n") + "pose = {position = [0, 0, 9.5]}\n");
+  const Ran soft = run("simulate soft.toml --seconds 0.05 --judge-every 1 --json soft.json");
+  EXPECT_EQ(soft.status, 1) << soft.out << soft.err;
+  EXPECT_FALSE(json::parse(slurp(folder_ / "soft.json"))["overlap"]["is_within_limit"]);
+  EXPECT_EQ(run("simulate soft.toml --seconds 0.05").status, 0);
+
+  write("inside.toml", scene("") + "pose = {position = [0, 0, 8.5]}\n");
+  const Ran inside = run("simulate inside.toml --seconds 0.05 --judge-every 1 --json inside.json");
+  EXPECT_EQ(inside.status, 0) << inside.out << inside.err;
+  EXPECT_NE(inside.err.find("'plate' starts "), std::string::npos) << inside.err;
+  const json starts = json::parse(slurp(folder_ / "inside.json"))["overlap"]["at_start"];
+  ASSERT_EQ(starts.size(), 1U);
+  EXPECT_NEAR(starts[0]["depth_m"].get<double>(), 0.5e-3, 1e-6);
+
+  expectRefused("simulate hard.toml --judge-every 1 --real-time", "real time");
+  expectRefused("simulate hard.toml --judge-every 0", "--judge-every");
+}
+
 }  // namespace
 }  // namespace vps

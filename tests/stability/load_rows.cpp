@@ -6,6 +6,7 @@
 #include "blocks.h"
 #include "drop.h"
 #include "rows.h"
+#include "vps/feature_motion.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -96,7 +97,9 @@ Judgement restOnCompliantContact(Mode mode, double k_N_per_m, double sunk_wanted
   // surface press too, with half the depth on average.
   const double border_m = 2 * (kBlock_m.x() + kBlock_m.y()), face_m2 = kBlock_m.x() * kBlock_m.y();
   const double off = border_m * (0.25e-3 + sunk_wanted_m / 2) / face_m2;
-  judgement.atMost("error of weight / k", std::abs(sunk_m - (mode == Mode::Penalty ? sunk_wanted_m : 0)),
+  // With constraints it rests on the gap of sharp edges.
+  const double wanted_m = mode == Mode::Penalty ? sunk_wanted_m : -FeatureMotion::kRest_m;
+  judgement.atMost("error of weight / k", std::abs(sunk_m - wanted_m),
                    (mode == Mode::Penalty ? off * sunk_wanted_m : 0) + 1e-9, "m");
   judgement.atMost("energy gained", watched.gained_J, weight_N * 1e-6, "J");
   return judgement;

@@ -17,6 +17,7 @@
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps/pointshell.h"
+#include "vps/solid.h"
 #include "vps/voxmap.h"
 
 namespace vps::viewer::inline v0 {
@@ -96,7 +97,8 @@ ExportedFileAnswer writeModel(const Source& source, const ExportArguments& given
     const Mesh& mesh = meshOf(source, given, file);
     const double spacing_m =
         given.fidelity.points > 0 ? spacingFor(mesh, given.fidelity.points) : source.fidelity.spacing_m;
-    const PointShell shell = buildPointShell(mesh, {.spacing_m = spacing_m}, given.source, progress);
+    const PointShell shell =
+        buildPointShell(Solid(mesh, given.source), {.spacing_m = spacing_m}, given.source, progress);
     savePly(shell, partial);
     row.model = "pointshell";
     row.points = shell.size();

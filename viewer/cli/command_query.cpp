@@ -22,6 +22,7 @@
 #include "vps/load_error.h"
 #include "vps/pair_query.h"
 #include "vps/query.h"
+#include "vps/solid.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -266,7 +267,7 @@ int runQuery(const QueryArguments& given) {
     return mapOf(mesh, {.voxel_m = fidelity.voxel_m}, file, cache, bar.progress());
   };
   const auto shellFor = [&](const Mesh& mesh, const std::string& file) {
-    return buildPointShell(mesh, {.spacing_m = fidelity.spacing_m}, file, bar.progress());
+    return buildPointShell(Solid(mesh, file), {.spacing_m = fidelity.spacing_m}, file, bar.progress());
   };
   const auto begun = Clock::now();
   const OneWay b_in_a = {

@@ -23,6 +23,7 @@ struct SimulateArguments {
   SceneArguments scene;
   double seconds = 1;
   bool is_real_time = false;
+  int judge_every = 0;
   std::string trace, json;
 };
 
@@ -45,6 +46,22 @@ std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies
   return csvLine(cells);
 }
 
+/// What overlaps, by exact distance. Returns false if more does than the scene's limit.
+bool printOverlap(const scenes::JudgedOverlap& judged) {
+  const auto um = [](double length_m) { return fixed(length_m * 1e6, 2); };
+  for (const auto& [start, apart_s] : judged.at_start)
+    warn("'" + start.a + "' starts " + um(start.depth_m) + " um inside '" + start.b + "'; " +
+         (apart_s ? "they were apart after " + fixed(*apart_s, 3) + " s" : "they did not come apart"));
+  const scenes::PairOverlap& deepest = judged.deepest;
+  std::printf("deepest by exact distance %s um (limit %s um)", um(deepest.depth_m).c_str(),
+              um(judged.limit_m).c_str());
+  if (deepest.depth_m > 0)
+    std::printf(", '%s' in '%s' at %s s", deepest.a.c_str(), deepest.b.c_str(),
+                fixed(deepest.time_s, 4).c_str());
+  std::printf("; judged at %zu instants\n", judged.poses_judged);
+  return judged.isWithinLimit();
+}
+
 int runSimulate(const SimulateArguments& given) {
   if (!std::isfinite(given.seconds) || given.seconds <= 0)
     throw LoadError("", "", "--seconds must be a finite number of more than 0");
@@ -58,6 +75,7 @@ int runSimulate(const SimulateArguments& given) {
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   setModelOptions(options, bar, cache, given.scene.models_everything);
   options.is_real_time = given.is_real_time;
+  options.judge_every = given.judge_every;
   options.stop = &stopRequested();
   if (!given.trace.empty())
     options.trace = [&rows](double time_s, const std::vector<scenes::BodyState>& bodies, double max_depth_m) {
@@ -79,7 +97,8 @@ int runSimulate(const SimulateArguments& given) {
   std::printf("deepest %s um, kinetic energy %.3g J; time per step %s us (median), %s us (longest)\n",
               fixed(result.max_penetration_m * 1e6, 2).c_str(), result.kinetic_energy_J,
               fixed(result.step.p50_us, 0).c_str(), fixed(result.step.max_us, 0).c_str());
-  if (!result.real_time) return kGood;
+  const bool is_good = !result.overlap || printOverlap(*result.overlap);
+  if (!result.real_time) return is_good ? kGood : kBad;
   for (const std::string& words : result.real_time->warnings) warn(words);
   std::printf("real time: %s s of simulated time took %s s; %llu of %llu periods missed\n",
               fixed(given.seconds, 2).c_str(), fixed(result.real_time->run_wall_s, 2).c_str(),
@@ -98,6 +117,13 @@ void addSimulate(CommandLine& line) {
                  [given] { return runSimulate(*given); });
   addSceneOptions(command, given->scene);
   command.add_option("--seconds", given->seconds, "simulated time")->capture_default_str()->type_name("S");
+  command
+      .add_option(
+          "--judge-every", given->judge_every,
+          "measure the overlap of all bodies by exact distance after every so many steps; exit status "
+          "1 if it exceeds the scene's limit")
+      ->type_name("STEPS")
+      ->check(CLI::PositiveNumber);
   command.add_flag("--real-time", given->is_real_time,
                    "start each step by the clock when it is due, and count missed periods");
   command.add_option("--trace", given->trace, "CSV file with a row for each step")->type_name("FILE");

@@ -25,6 +25,29 @@ Json modelled(const scenes::ModelledCost& cost) {
   return toObject(cost, scenes::kModelledFields);
 }
 
+Json pairOverlap(const scenes::PairOverlap& pair) {
+  return {{"a", pair.a},
+          {"b", pair.b},
+          {"depth_m", pair.depth_m},
+          {"at_m", toValue(pair.at_W)},
+          {"time_s", pair.time_s}};
+}
+
+Json overlap(const scenes::JudgedOverlap& judged) {
+  Json starts = Json::array();
+  for (const scenes::OverlappingStart& start : judged.at_start) {
+    starts.push_back(pairOverlap(start.start));
+    starts.back()["apart_s"] = toValue(start.apart_s);
+  }
+  const bool has_any = judged.deepest.depth_m > 0;
+  return {{"max_depth_m", judged.deepest.depth_m},
+          {"limit_m", judged.limit_m},
+          {"is_within_limit", judged.isWithinLimit()},
+          {"poses_judged", judged.poses_judged},
+          {"deepest", has_any ? pairOverlap(judged.deepest) : Json(nullptr)},
+          {"at_start", starts}};
+}
+
 }  // namespace
 
 std::string toJson(const scenes::AssembleResult& result) {
@@ -50,7 +73,7 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                        {"has_priority", kept->has_priority},
                        {"has_locked_memory", kept->has_locked_memory},
                        {"warnings", kept->warnings}};
-  return text({{"wall", wall},
+  Json json = {{"wall", wall},
                {"scene", scene},
                {"seconds", seconds},
                {"steps", result.step.count},
@@ -58,7 +81,9 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                {"bodies", bodies},
                {"max_penetration_m", result.max_penetration_m},
                {"kinetic_energy_J", result.kinetic_energy_J},
-               {"modelled", modelled(result.modelled)}});
+               {"modelled", modelled(result.modelled)}};
+  if (result.overlap) json["overlap"] = overlap(*result.overlap);
+  return text(json);
 }
 
 std::string toJson(const QueryAnswer& answer) {

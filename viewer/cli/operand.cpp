@@ -8,6 +8,7 @@
 #include "file_kind.h"
 #include "terminal.h"
 #include "vps/mesh_repair.h"
+#include "vps/solid.h"
 #include "vps_scenes/import.h"
 
 namespace vps::viewer::inline v0 {
@@ -53,7 +54,7 @@ VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string
              const std::optional<VoxMapCache>& cache, const Progress& progress) {
   MeshReport report;
   VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
-                     : buildVoxMap(mesh, settings, file, progress, &report);
+                     : buildVoxMap(Solid(mesh, file), settings, file, progress, &report);
   if (report.signed_by_winding) warn(file + ": is not a closed surface: " + describe(report));
   return map;
 }

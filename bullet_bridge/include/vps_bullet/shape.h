@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vps/edge_crossing.h"
+#include "vps/feature_set.h"
 #include "vps/part_model.h"
 #include "vps_bullet/export.h"
 
@@ -30,9 +31,10 @@ class SheetBorder;
 
 /// The exact surface of one part in the models' frame M.
 struct Surface {
-  std::shared_ptr<const MeshDistance> distance;
+  std::shared_ptr<const Solid> distance;
   Pose X_MP;
   /// For an open surface without an inside, where a point meets the side that it faces; null for a solid.
+  /// `distance` is then a Solid::sheet().
   std::shared_ptr<const SheetBorder> sheet = nullptr;
 };
 
@@ -96,6 +98,8 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   [[nodiscard]] PointFace faceAt(std::uint32_t id) const { return face_at_[id]; }
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
+  /// Corners, sharp edges and facets of the surfaces, in the models' frame.
+  [[nodiscard]] const FeatureSet& features() const { return features_; }
   /// The sharp edges on which a shell point lies, as indices of edges().segments(): one, several at corners
   /// and ends of segments, none on faces.
   [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t id) const {
@@ -105,6 +109,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// Bounding box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
+  /// Larger than bounds() by 1 um on each side: parts rest on each other with a gap of 0.5 um.
   void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
   /// Diagonal of the inertia of the solid mesh about the shape's origin (exact if X_SM comes from
   /// makeBodyFrame); of the bounding box if there is no closed mesh. Zero for a mass of zero, Bullet's
@@ -140,6 +145,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;  // by point
   EdgeSet edges_;
+  FeatureSet features_;
   std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]
   std::unique_ptr<const TriangleTree> triangles_;
 };

@@ -40,6 +40,9 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
   /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if that is more.
   [[nodiscard]] bool hasConverged() const { return is_converged_; }
+  /// How often an island was stopped within a step, because no contacts were found that keep its bodies'
+  /// sharp edges and corners apart. Each takes energy.
+  [[nodiscard]] std::size_t shortenedSteps() const { return shortened_steps_; }
 
  private:
   struct Work;
@@ -47,6 +50,7 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
   bool is_converged_ = true;
+  std::size_t shortened_steps_ = 0;
 };
 
 }  // namespace vps::bullet::inline v0

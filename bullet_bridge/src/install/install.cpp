@@ -27,6 +27,7 @@
 #include "native_shapes/primitive.h"
 #include "solver/dispatch_table.h"
 #include "solver/penalty_contacts.h"
+#include "solver/step_check.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -129,6 +130,7 @@ struct Installation {
   Installation() {
     context->native_shapes = std::make_shared<NativeShapeCache>();
     context->penalty_contacts = create.penalty_contacts = std::make_shared<PenaltyContacts>();
+    context->step_checks = create.step_checks = std::make_shared<StepChecks>();
     create.context = context;
   }
 };

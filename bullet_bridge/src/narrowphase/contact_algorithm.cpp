@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/pair_check.h"
 #include "solver/penalty_contacts.h"
+#include "solver/step_check.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -29,6 +31,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.selection.is_valid = false;
     state.selection.contacts.clear();
     state.penalty.points.clear();
+    state.features.reset();
     for (auto& query_state : state.query_state) query_state.reset();
     state.writer->invalidateIds();
   }
@@ -86,6 +89,26 @@ void passToSolver(PairState& state) {
       contacts.add(manifold, &state.penalty);
 }
 
+// Contact with others may throw the bodies at each other within the step, so the solver may need contacts
+// where none was predicted. But Bullet wakes a sleeping body for each manifold with a kinematic one.
+bool mayNeedMore(const PairView& pair, const PairState& state) {
+  if (state.context->settings.contact_method != ContactMethod::Constraint) return false;
+  const auto isKinematic = [&](int i) { return pair.wrapper[i]->getCollisionObject()->isKinematicObject(); };
+  return !state.contacts.empty() || !(isKinematic(0) || isKinematic(1));
+}
+
+// The solver finds a pair's check by its first manifold.
+void registerCheck(const PairView& pair, PairState& state) {
+  const bool has_manifold = !state.writer->manifolds().empty();
+  if (state.context->settings.contact_method != ContactMethod::Constraint || !has_manifold) return;
+  if (!state.check) {
+    auto check = std::make_unique<PairCheck>(state);
+    state.context->step_checks->add(state.writer->manifolds().front(), check.get());
+    state.check = std::move(check);
+  }
+  static_cast<PairCheck&>(*state.check).setBodies(pair);
+}
+
 }  // namespace
 
 ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
@@ -99,6 +122,7 @@ ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& i
 
 ContactAlgorithm::~ContactAlgorithm() {
   state_->context->penalty_contacts->remove(&state_->penalty);
+  if (state_->check) state_->context->step_checks->remove(state_->writer->manifolds().front());
 }
 
 void ContactAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
@@ -139,7 +163,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   state_->is_prepared = false;
   countInitialOverlap(pair, *state_);
   context.contacts += state_->contacts.size();
-  state_->writer->write(state_->contacts, pair.wrapper, state_->motion);
+  state_->writer->write(state_->contacts, pair.wrapper, state_->motion, mayNeedMore(pair, *state_));
+  registerCheck(pair, *state_);
   passToSolver(*state_);
 }
 

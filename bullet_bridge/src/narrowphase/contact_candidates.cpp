@@ -199,7 +199,7 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   // So a share of the greatest speed counts in every direction. Half: assumed; it covers a rod struck at one
   // end. The pull of couplings is not included: on a part that is pressed against its seat it is large, and
   // contact balances it.
-  return c.distance_m <= contact_margin_m + std::max(approach_m, 0.5 * own_speed_m_s * dt_s);
+  return c.distance_m <= contact_margin_m + std::max(approach_m, anyWay_m());
 }
 
 std::size_t findMapCandidates(const SideView& side, const SideView& other, double cutoff_m,

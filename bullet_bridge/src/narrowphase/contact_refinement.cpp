@@ -47,9 +47,12 @@ struct OwnPoint {
   /// this part's face.
   [[nodiscard]] bool isFirstAlong(const Vec3& n_W) const {
     const Vec3 n = inModel(n_W);
+    // Around a corner the part lies within the cone of its edges. A face may fall off across one of them, as
+    // on a slanted tetrahedron, and yet the corner is lowest.
+    const bool is_corner = edges.size() >= 3;
     for (const std::uint32_t i : edges) {
       const EdgeSegment& s = segment(i);
-      if (std::min(n.dot(s.into[0]), n.dot(s.into[1])) < -kInto) return false;
+      if (!is_corner && std::min(n.dot(s.into[0]), n.dot(s.into[1])) < -kInto) return false;
       const Vec3 along = (s.to - s.from).normalized();
       if ((p_M - s.from).norm() < kTouching_m && n.dot(along) < -kInto) return false;
       if ((p_M - s.to).norm() < kTouching_m && n.dot(along) > kInto) return false;
@@ -81,11 +84,14 @@ struct Foot {
 struct Exact {
   bool found = false;       ///< there is a surface within reach
   bool is_contact = false;  ///< the surface faces the point
+  bool is_inside = false;   ///< the point is behind the nearest surface, or on it
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
   bool is_edge_on_edge = false;
-  bool is_smooth = false;  ///< two faces touch flush
-  FacePoint face;          ///< if is_smooth: the other's
+  bool is_smooth = false;                           ///< two faces touch flush
+  bool is_own_face = false, is_their_face = false;  ///< whose the plane is
+  FacePoint face;                                   ///< if is_smooth: the other's
+  Vec3 from_q = Vec3::Zero();                       ///< the point minus its foot
 };
 
 Foot footOn(const Surface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
@@ -131,7 +137,9 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
 Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = foot.found;
+  exact.from_q = foot.from_q;
   if (!foot.found) return exact;
+  exact.is_inside = foot.from_q.dot(foot.normal) < kTouching_m && !foot.is_sheet;
   const double cos_facing = own.inward_W.dot(foot.normal);
   const bool is_edge_on_edge = own.is_edge && foot.is_edge;
   const bool is_facing = cos_facing > kFacing;
@@ -141,7 +149,9 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   if (exact.is_contact && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;
     exact.is_smooth = is_flush && !own.is_edge;
-    exact.n = own.is_edge || is_flush ? foot.smooth : own.inward_W;
+    exact.is_their_face = own.is_edge || is_flush;
+    exact.is_own_face = !exact.is_their_face;
+    exact.n = exact.is_their_face ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);
     if (exact.is_smooth)
       exact.face = {own.p_W - foot.from_q, foot.smooth, foot.surface, foot.R_WP, foot.triangle};
@@ -170,11 +180,40 @@ struct Refiner {
     for (const Surface& surface : other.shape->models().surfaces) {
       const Exact exact = contactAt(footOn(surface, other.X_WM, own, max_m), own);
       nearest.found |= exact.found;
+      nearest.is_inside |= exact.is_inside;
       if (exact.is_contact && (!nearest.is_contact || exact.distance_m < nearest.distance_m)) nearest = exact;
     }
     return nearest;
   }
 };
+
+// A point that is inside near an edge of the other side, and is not first along the nearest face there: a
+// corner that slides down a wall, a micrometre inside, to the wall's lower rim. The face that it entered
+// through is one of the others at that edge.
+Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
+  Exact best;
+  if (!refiner.other.shape) return best;
+  const EdgeSet& edges = refiner.other.shape->edges();
+  const Pose& X_WM = refiner.other.X_WM;
+  const Vec3 p = X_WM.inverse() * own.p_W;
+  edges.forEachNear(p, reach_m, [&](std::uint32_t i) {
+    const EdgeSegment& s = edges.segments()[i];
+    const Vec3 r = p - s.from, way = s.to - s.from;
+    if (r.dot(way) < 0 || r.dot(way) > way.squaredNorm()) return;
+    for (const Vec3& into : s.into) {
+      Vec3 n = way.cross(into).normalized();
+      if (n.dot(s.outward) < 0) n = -n;
+      const double distance_m = n.dot(r);
+      if (distance_m > 0 || r.dot(into) < -kTouching_m || (best.found && distance_m <= best.distance_m))
+        continue;
+      if (!own.isFirstAlong(X_WM.R * n)) continue;
+      best.found = best.is_contact = best.is_their_face = true;
+      best.distance_m = distance_m;
+      best.n = X_WM.R * n;
+    }
+  });
+  return best;
+}
 
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
 // without contact. So the surface that the point meets at the end of the step counts, unless that is an
@@ -212,10 +251,16 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = refiner.at(own, max_m);
     if (!exact.found) continue;  // only the field is known
+    if (!exact.is_contact && exact.is_inside && !own.edges.empty())
+      if (const Exact beside = besideEdge(refiner, own, max_m); beside.found) exact = beside;
     if (exact.is_contact && exact.is_edge_on_edge)
       exact = atEndOfStep(exact, refiner, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
+    c.plane_of = exact.is_own_face     ? side.side
+                 : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
+                                       : Candidate::kBetween;
+    if (exact.is_contact && exact.is_own_face && !is_primitive) moveToFoot(c, side, exact.from_q);
     if (exact.is_contact && exact.is_smooth && !is_primitive)
       moveToNearest(c, side, other, exact.face, motion.contact_margin_m);
   }

@@ -50,6 +50,10 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
 
 }  // namespace
 
+bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
+  return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);
+}
+
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state) {
   std::size_t tested = 0, left_out = 0;
@@ -81,7 +85,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   Context& context = *state.context;
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
-  if (motion.contact_margin_m + travel_m <= range_m) {
+  if (isQueriedOnce(pair, motion)) {
     findCandidates(pair, motion.contact_margin_m + travel_m, context, out, &state);
     useOwnNormalsForPenalty(pair, context.settings, out);
     return;
@@ -90,21 +94,32 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   constexpr double kMaxStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
   const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMaxStrides)));
   PairView later = pair;
-  for (int k = 0; k < strides && out.empty(); ++k) {
+  thread_local std::vector<Candidate> met;
+  thread_local std::vector<std::uint64_t> met_before;
+  met_before.clear();
+  for (int k = 0; k < strides; ++k) {
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, motion.dt_s, t_s);
-    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, out);
-    useOwnNormalsForPenalty(later, context.settings, out);
-    // Keep what the body meets in this stride, as planes relative to where the bodies are now.
-    std::erase_if(out, [&](Candidate& c) {
+    met.clear();
+    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
+    useOwnNormalsForPenalty(later, context.settings, met);
+    // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
+    // plane when the stride begins has met another before.
+    std::erase_if(met, [&](Candidate& c) {
       const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
       if (c.distance_m - approach_m > motion.contact_margin_m) return true;
+      if (k > 0 && (c.distance_m < -motion.contact_margin_m ||
+                    std::binary_search(met_before.begin(), met_before.end(), c.key())))
+        return true;
       c.distance_m -= c.n_W.dot(moved);
       const Pose& X_then = later.X_WS[c.side];
       c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
       return false;
     });
+    for (const Candidate& c : met) met_before.push_back(c.key());
+    std::sort(met_before.begin(), met_before.end());
+    out.insert(out.end(), met.begin(), met.end());
   }
 }
 
@@ -122,17 +137,27 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 }
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                    ManifoldWriter* writer, std::vector<Candidate>& candidates) {
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
+  double sampling_m = 0;
   dropUnreachable(motion, candidates);
   if (writer) writer->markExistingContacts(candidates);
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
   // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach,
   // and affordable (about 0.5 us each).
-  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
+  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2) {
     reduceByCell(candidates, cell_m);
+    sampling_m = cell_m;
+  }
   refineAll(pair, motion, settings, candidates);
+  if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
+  if (selection) {
+    selection->refined = candidates;
+    selection->sampling_m = sampling_m;
+    selection->is_of_path = !isQueriedOnce(pair, motion);
+    selection->any_way_m = motion.anyWay_m();
+  }
   reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m);
 }
 

@@ -23,16 +23,27 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out);
 
+/// True if a body is so slow that it cannot leave the query range within the step.
+bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
+
 /// Refines the candidates by the exact surfaces, if the settings say so.
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates);
+
+/// Replaces the distances of refined contacts that slide along a face by those that give the right gap at the
+/// end of the step in free motion.
+void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                  std::vector<Candidate>& candidates);
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates);
 
 /// Reduces thousands of near points to the few contacts that support the part.
 /// @param writer  knows last step's contacts; may be null
+/// @param selection  gets what a check of the solved step needs, of the candidates left out as well; may be
+/// null
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                    ManifoldWriter* writer, std::vector<Candidate>& candidates);
+                    ManifoldWriter* writer, std::vector<Candidate>& candidates,
+                    Selection* selection = nullptr);
 
 void storeSelection(const std::vector<Candidate>& contacts, const PairView& pair,
                     const RelativeMotion& motion, Selection& selection);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "narrowphase/contact_candidate.h"
@@ -30,6 +31,53 @@ bool isCovered(const EdgeCrossing& at, const SideView& body0, const SideView& bo
          isCovered(*body1.shape, ownerOf(body1, 1), X_10 * at.p[1], X_10.R * at.n);
 }
 
+// The direction of a joint of a curved edge, as that of the parabola through it and the far ends of both
+// segments. Where the edge ends, that of the segment.
+Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
+  const Vec3 way = s.to - s.from;
+  if (s.ends[end]) return way;
+  constexpr double kSame_m = 1e-9;
+  const Vec3& joint = end == 0 ? s.from : s.to;
+  Vec3 direction = way;
+  // A coarser polygon, of fewer than 45 corners, is met as it is: chain links of 10 corners gained energy
+  // along the curves' normals, since their gap is that of the segments. assumed, as FeatureEdge::is_curved
+  constexpr double kCosCurved = 0.9903;  // 8 degrees
+  double most_cos = kCosCurved;
+  edges.forEachNear(joint, kSame_m, [&](std::uint32_t i) {
+    const EdgeSegment& other = edges.segments()[i];
+    if (&other == &s) return;
+    // The other segment, in the direction of this one.
+    const bool is_reversed = ((end == 0 ? other.from : other.to) - joint).norm() <= kSame_m;
+    const Vec3 goes_on = is_reversed ? Vec3(other.from - other.to) : Vec3(other.to - other.from);
+    const double cos = way.dot(goes_on) / (way.norm() * goes_on.norm());
+    if (!(cos > most_cos)) return;
+    most_cos = cos;
+    direction = way / way.squaredNorm() + goes_on / goes_on.squaredNorm();
+  });
+  return direction;
+}
+
+// The direction at a point of a segment of the curved edge that the segments stand for.
+Vec3 smoothDirection(const EdgeSet& edges, std::uint32_t i, const Vec3& p) {
+  const EdgeSegment& s = edges.segments()[i];
+  const Vec3 way = s.to - s.from;
+  if (s.ends[0] && s.ends[1]) return way;
+  const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (1 - share) * directionAt(edges, s, 0).normalized() + share * directionAt(edges, s, 1).normalized();
+}
+
+// Where curved edges cross, the normal of the segments leans by up to half the angle between segments, so a
+// screw's crest would seem to approach the rim of its nut's thread at each joint. That of the curved edges
+// does not.
+Vec3 smoothNormal(const EdgeCrossing& at, const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01) {
+  constexpr double kCosNear = 0.94;  // 20 degrees, as between the segments of a curved edge
+  const Vec3 n = smoothDirection(edges0, at.edge[0], at.p[0])
+                     .cross(X_01.R * smoothDirection(edges1, at.edge[1], X_01.inverse() * at.p[1]))
+                     .normalized();
+  const double cos = n.dot(at.n);
+  return std::abs(cos) > kCosNear ? Vec3(cos < 0 ? -n : n) : at.n;
+}
+
 }  // namespace
 
 std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, double cutoff_m,
@@ -48,7 +96,7 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
   for (const EdgeCrossing& at : std::span(crossings).first(room)) {
     Candidate c;
     c.p_W = body0.X_WM * at.p[0];
-    c.n_W = body0.X_WM.R * at.n;
+    c.n_W = body0.X_WM.R * smoothNormal(at, edges0, edges1, X_01);
     c.distance_m = at.gap_m;
     c.id = at.edge[0];
     c.crossed = at.edge[1] + 1;

@@ -96,4 +96,16 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   return true;
 }
 
+bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W) {
+  const Vec3 q_W = c.p_W - from_q_W;
+  const std::optional<FacePoint> own = nearestFace(side, q_W, from_q_W.norm() + kGain_m);
+  if (!own) return false;
+  const Vec3 n_W = (side.side == 0 ? -1 : 1) * own->outward_W;
+  if ((n_W - c.n_W).norm() * from_q_W.norm() < kGain_m) return false;  // flat
+  c.p_W = own->q_W;
+  c.n_W = n_W;
+  c.distance_m = (q_W - own->q_W).dot(own->outward_W);
+  return true;
+}
+
 }  // namespace vps::bullet::inline v0

@@ -37,4 +37,11 @@ struct FacePoint {
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& their,
                    double max_gain_m);
 
+/// Moves a face's point to the place of its part's curved surface nearest to a point q of the other surface,
+/// whose edge is near: p_W, distance and normal become those at that place. The face's plane at the shell's
+/// point, up to a spacing away, would lie outside a round face, and lean.
+/// @param from_q_W  p - q
+/// @return false: unchanged, since the face is flat or no face is nearest
+bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W);
+
 }  // namespace vps::bullet::inline v0

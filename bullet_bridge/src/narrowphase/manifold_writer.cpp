@@ -76,6 +76,7 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   point.m_partId0 = c.side == 1 ? c.owner : 0;
   point.m_partId1 = c.side == 0 ? c.owner : 0;
   setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
+  if (c.rest_m > 0) setRestGap(point, c.rest_m);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
   return point;
 }
@@ -137,9 +138,12 @@ void ManifoldWriter::markExistingContacts(std::vector<Candidate>& candidates) {
 }
 
 void ManifoldWriter::write(std::span<const Candidate> contacts,
-                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion) {
+                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion,
+                           bool keeps_spare) {
   readManifolds();
-  const std::size_t manifold_count = (contacts.size() + kPerManifold - 1) / kPerManifold;
+  const std::size_t used = (contacts.size() + kPerManifold - 1) / kPerManifold;
+  // assumed: a pair with many contacts lacks some of its many neighbours
+  const std::size_t manifold_count = keeps_spare ? used + 4 + used / 2 : used;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
     if (!manifold) break;  // the pool is full and may not grow
@@ -174,6 +178,26 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       gContactDestroyedCallback(gone.point.m_userPersistentData);
   if (had_contacts && contacts.empty() && gContactEndedCallback && !manifolds_.empty())
     gContactEndedCallback(manifolds_.front());
+}
+
+btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
+                                     const btCollisionObjectWrapper* const (&bodies)[2],
+                                     const RelativeMotion& motion) {
+  btPersistentManifold* free = nullptr;
+  for (btPersistentManifold* manifold : manifolds_) {
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      if (btManifoldPoint& point = manifold->getContactPoint(i); keyOf(point) == contact.key()) {
+        const btManifoldPoint old = point;
+        point = makePoint(contact, bodies, motion);
+        copyImpulses(point, old);
+        return &point;
+      }
+    if (!free && manifold->getNumContacts() < kPerManifold) free = manifold;
+  }
+  if (!free) return nullptr;
+  const int i = free->getNumContacts();
+  free->setNumContacts(i + 1);
+  return &(free->getContactPoint(i) = makePoint(contact, bodies, motion));
 }
 
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],

@@ -28,8 +28,13 @@ class ManifoldWriter {
   /// Marks the candidates that are contacts in the manifolds as they are now, with their impulses.
   void markExistingContacts(std::vector<Candidate>& candidates);
   /// Replaces all contacts. Points that stay keep impulses, lifetime and user data.
+  /// @param keeps_spare  more manifolds than needed, so that the solver can add contacts
   void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
-             const RelativeMotion& motion);
+             const RelativeMotion& motion, bool keeps_spare);
+  /// Adds a contact in a free place, or replaces the one with its key. Null if no place is free. The contact
+  /// stays where it is until the next write().
+  btManifoldPoint* put(const Candidate& contact, const btCollisionObjectWrapper* const (&bodies)[2],
+                       const RelativeMotion& motion);
   /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;

@@ -13,6 +13,8 @@
 #include "narrowphase/query_state.h"
 #include "native_shapes/shape_key.h"
 #include "solver/penalty_pair.h"
+#include "solver/step_check.h"
+#include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -26,6 +28,10 @@ struct Selection {
   Twist V;                                ///< RelativeMotion::V
   ShapeKey key[2];                        ///< of sides that are no Shape
   std::vector<Candidate> penalty_points;  ///< with penalty contact: all that can touch
+  std::vector<Candidate> refined;         ///< with rigid contact: all whose exact distance is known
+  bool is_of_path = false;  ///< only what a fast body met first on its predicted path was considered
+  double any_way_m = 0;     ///< otherwise: points that could move so far in any direction were
+  double sampling_m = 0;  ///< greatest size of an area from which only the most urgent points were considered
 };
 
 struct PairState {
@@ -36,6 +42,9 @@ struct PairState {
   RelativeMotion motion;
   bool is_prepared = false;
   bool was_queried = false;                  ///< in an earlier step
+  bool is_incomplete = false;                ///< the solved step needed more contacts than the selection has
+  std::unique_ptr<StepCheck> check;          ///< with rigid contact
+  FeatureMotion features;                    ///< with rigid contact: of the models
   PenaltyPair penalty;                       ///< with penalty contact
   bool is_registered = false;                ///< penalty is in the context's PenaltyContacts
   std::optional<QueryState> query_state[2];  ///< of side 0's points in side 1's map, and the reverse

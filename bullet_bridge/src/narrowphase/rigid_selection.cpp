@@ -2,7 +2,10 @@
 // Constraint contact: few points, each a constraint of the solver.
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include <utility>
+
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -13,6 +16,7 @@ namespace {
 // where an edge lies on an edge and let the part fall for a step, so that a heap would never sleep. False:
 // select again.
 bool reuseSelection(const PairView& pair, PairState& state) {
+  if (std::exchange(state.is_incomplete, false)) return false;
   if (!hasNotMoved(state.selection, pair, state.motion)) return false;
   // Points that were out of reach were farther away than the contact margin.
   if (motionChange_m(state.selection, pair, state.motion) > state.motion.contact_margin_m) return false;
@@ -41,9 +45,11 @@ void selectRigid(const PairView& pair, PairState& state) {
     findStepCandidates(pair, state.motion, state, state.contacts);
     ++context.pair_updates;
     context.candidates += state.contacts.size();
-    selectContacts(pair, state.motion, context.settings, state.writer.get(), state.contacts);
+    selectContacts(pair, state.motion, context.settings, state.writer.get(), state.contacts,
+                   &state.selection);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
+  markSharp(pair, context.settings, state.contacts);
   prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
                      pair.wrapper[1]->getCollisionObject());
 }

@@ -41,7 +41,7 @@ struct Corners {
 };
 
 // Each vertex that a triangle uses; for a sheet once for each side.
-Corners cornersOf(const MeshDistance& surface, bool is_sheet) {
+Corners cornersOf(const Solid& surface, bool is_sheet) {
   const Mesh& mesh = surface.mesh();
   std::vector<std::uint8_t> is_taken(mesh.vertices.size(), 0);
   Corners corners;
@@ -94,7 +94,8 @@ PointShell shellOf(const Corners& corners) {
 
 ShapeModels modelsOf(const NativeShapeMesh& native) {
   ShapeModels models;
-  const auto surface = std::make_shared<const MeshDistance>(native.mesh);
+  const auto surface = std::make_shared<const Solid>(native.is_sheet ? Solid::sheet(native.mesh)
+                                                                     : Solid(native.mesh, "native shape"));
   models.shell = std::make_shared<const PointShell>(shellOf(cornersOf(*surface, native.is_sheet)));
   models.surfaces = {
       {surface, Pose(), native.is_sheet ? std::make_shared<const SheetBorder>(native.mesh) : nullptr}};

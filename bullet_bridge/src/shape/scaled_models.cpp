@@ -43,13 +43,12 @@ std::shared_ptr<const PointShell> scaled(const PointShell& shell, double factor)
 std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor) {
   std::vector<Surface> larger;
   for (const Surface& surface : surfaces)
-    larger.push_back({std::make_shared<const MeshDistance>(*scaled(surface.distance->mesh(), factor)),
+    larger.push_back({std::make_shared<const Solid>(surface.distance->scaled(factor)),
                       Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet});
   return larger;
 }
 
-// `larger` holds the models scaled so far. The sign of a single part is found by buildVoxMap(), also for open
-// meshes.
+// `larger` holds the models scaled so far.
 std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& larger, double factor) {
   VoxMapSettings settings;
   settings.voxel_m = factor * map.voxel_m();
@@ -59,10 +58,10 @@ std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& large
     throw std::invalid_argument(
         "Shape: a map cannot be scaled without the mesh it was built from; give its models a mesh");
   if (parts.size() == 1 && parts[0].X_MP.R.isIdentity(0) && parts[0].X_MP.p.isZero(0))
-    return std::make_shared<const VoxMap>(buildVoxMap(parts[0].distance->mesh(), settings));
+    return std::make_shared<const VoxMap>(buildVoxMap(*parts[0].distance, settings));
   if (parts.empty()) return std::make_shared<const VoxMap>(buildVoxMap(*larger.mesh, settings));
-  std::vector<PlacedMesh> placed;
-  for (const Surface& part : parts) placed.push_back({&part.distance->mesh(), part.X_MP});
+  std::vector<PlacedSolid> placed;
+  for (const Surface& part : parts) placed.push_back({part.distance.get(), part.X_MP});
   return std::make_shared<const VoxMap>(cookVoxMap(placed, settings));
 }
 

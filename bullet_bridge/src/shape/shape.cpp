@@ -14,6 +14,7 @@
 #include <string>
 
 #include "shape/scaled_models.h"
+#include "vps/feature_motion.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
@@ -86,6 +87,14 @@ EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   return EdgeSet(std::move(segments));
 }
 
+FeatureSet featuresOf(const std::vector<Surface>& surfaces) {
+  FeatureSet features;
+  for (const Surface& surface : surfaces)
+    features.append(surface.distance->mesh(), surface.X_MP, surface.sheet != nullptr);
+  features.build();
+  return features;
+}
+
 }  // namespace
 
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
@@ -107,7 +116,7 @@ ShapeModels makeModels(const PartModel& part) {
   models.map = part.map;
   models.shell = part.shell;
   models.mesh = part.mesh;
-  if (part.surface) models.surfaces = {{part.surface, Pose()}};
+  if (part.solid) models.surfaces = {{part.solid, Pose()}};
   return models;
 }
 
@@ -220,6 +229,7 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
   smooth_inward_ = std::move(normals.smooth_inward);
   face_at_ = std::move(normals.faces);
   edges_ = edgesOf(models_.surfaces);
+  features_ = featuresOf(models_.surfaces);
   edges_at_.clear();
   first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
   for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
@@ -253,7 +263,10 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
 void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
   const Pose X = fromBt(X_WS);
   const Vec3 center = X * bounds_S_.center();
-  const Vec3 half = X.R.cwiseAbs() * (0.5 * bounds_S_.size());
+  // btCompoundShape's algorithm tests only children whose boxes overlap; parts that rest on each other have a
+  // gap.
+  const Vec3 half =
+      X.R.cwiseAbs() * (0.5 * bounds_S_.size()) + Vec3(Vec3::Constant(2 * FeatureMotion::kRest_m));
   min = toBt(Vec3(center - half));
   max = toBt(Vec3(center + half));
 }

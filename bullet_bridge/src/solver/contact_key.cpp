@@ -5,6 +5,24 @@
 
 namespace vps::bullet::inline v0 {
 
+namespace {
+
+// A bit of m_contactPointFlags far above Bullet's own.
+constexpr int kHasRestGap = 1 << 24;
+constexpr int kIsSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+
+}  // namespace
+
+void setRestGap(btManifoldPoint& point, double rest_m) {
+  if ((point.m_contactPointFlags & kIsSoft) != 0) return;
+  point.m_contactPointFlags |= kHasRestGap;
+  point.m_contactCFM = static_cast<btScalar>(rest_m);
+}
+
+double restGap_m(const btManifoldPoint& point) {
+  return (point.m_contactPointFlags & kHasRestGap) != 0 ? point.m_contactCFM : 0;
+}
+
 std::uint64_t keyOf(const btManifoldPoint& point) {
   const std::uint8_t side = point.m_index0 >= 0 ? 0 : 1;
   const bool is_crossing = point.m_index0 >= 0 && point.m_index1 >= 0;

@@ -15,6 +15,13 @@ constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std
   return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
 }
 
+/// Sets the gap that bullet::Solver keeps at a contact of sharp features. Bullet has no member for it: it is
+/// kept in that of a softness that the contact does not have. Contacts with a stiffness of their own have
+/// none.
+void setRestGap(btManifoldPoint& point, double rest_m);
+/// 0: it has none.
+double restGap_m(const btManifoldPoint& point);
+
 /// Key of a contact that ManifoldWriter wrote: the side with the shell has the point's id as its index, the
 /// other -1; at a crossing each index is that body's edge.
 std::uint64_t keyOf(const btManifoldPoint& point);

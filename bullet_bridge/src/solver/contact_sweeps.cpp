@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact_key.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
@@ -56,7 +57,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.point = &point;
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
-  c.gap_m = point.getDistance() + info.m_linearSlop;
+  c.gap_m = point.getDistance() + info.m_linearSlop - restGap_m(point);
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
@@ -84,6 +85,45 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
     c.p_t[1] = point.m_appliedImpulseLateral2;
   }
   contacts_.push_back(c);
+}
+
+double ContactSweeps::pushVelocity(const ContactRow& row) const {
+  double v = 0;
+  if (push_.empty()) return v;
+  for (const ContactRow::Side& side : row.side)
+    if (side.body >= 0) v += side.J.dot(push_[static_cast<std::size_t>(side.body)]);
+  return v;
+}
+
+void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
+  const double dt_s = info.m_timeStep;
+  for (const MissedContact& m : missed) {
+    if (!m.point) continue;
+    RigidContact c;
+    c.point = m.point;
+    for (int i = 0; i < 2; ++i) c.object[i] = m.object[i];
+    c.mu = m.point->m_combinedFriction;
+    c.normal = makeRow(m.object, *m.point, fromBt(m.point->m_normalWorldOnB));
+    c.tangent[0] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir1));
+    c.tangent[1] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir2));
+    if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) continue;
+    const double v = velocity(c.normal);
+    const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
+    c.gap_m = gap_m - m.rest_m;
+    c.target_m_s = -(gap_m - m.kept_m) / dt_s;
+    if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
+      c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
+    const auto same = std::find_if(contacts_.begin(), contacts_.end(),
+                                   [&](const RigidContact& had) { return had.point == m.point; });
+    if (same == contacts_.end()) {
+      contacts_.push_back(c);
+      continue;
+    }
+    c.p_n = same->p_n;
+    c.p_t[0] = same->p_t[0];
+    c.p_t[1] = same->p_t[1];
+    *same = c;
+  }
 }
 
 void ContactSweeps::prepare() {
@@ -204,12 +244,13 @@ void ContactSweeps::pushJoint(const JointState& joint) {
 void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
   constexpr double kMaxPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
   constexpr double kNothing_m = 1e-9;
+  constexpr double kSoftness = 0.1;  // assumed: a tenth less is removed in a step
   const double dt = info.m_timeStep;
   bool is_needed = false;
   for (RigidContact& c : contacts_) {
     const double left_m = c.gap_m + velocity(c.normal) * dt;
     is_needed |= left_m < -kNothing_m;
-    c.target_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMaxPush_m_s) : -left_m / dt;
+    c.push_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMaxPush_m_s) : -left_m / dt;
     c.p_push = 0;
   }
   push_.clear();
@@ -223,7 +264,11 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       double v = 0;  // the motion of kinematic bodies does not belong to the push
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
-      const double p = std::max(0.0, c.p_push + (c.target_m_s - v) / c.normal.W);
+      // What is to be removed may contradict itself, as for a part that is jammed; what must not be added
+      // cannot.
+      const double softness = c.push_m_s > 0 ? kSoftness : 0;
+      const double p = std::max(0.0, c.p_push + (c.push_m_s - v - softness * c.normal.W * c.p_push) /
+                                                    ((1 + softness) * c.normal.W));
       if (p == c.p_push) continue;
       apply(c.normal, p - c.p_push);
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);

@@ -7,10 +7,12 @@
 // impulses); Jourdan, Alart and Jean 1998 (Gauss-Seidel for frictional contact).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "solver/island.h"
 #include "solver/joint_rows.h"
+#include "solver/step_check.h"
 #include "vps_bullet/solver.h"
 
 class btCollisionObject;
@@ -38,6 +40,7 @@ struct RigidContact {
   const btCollisionObject* object[2] = {nullptr, nullptr};
   ContactRow normal, tangent[2];
   double target_m_s = 0;  ///< least normal velocity
+  double push_m_s = 0;    ///< least normal velocity of the push
   double gap_m = 0;
   double mu = 0;
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
@@ -60,6 +63,16 @@ class ContactSweeps {
   [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }
   /// Finds the push that removes a share of the overlap left at the end of the step, without adding velocity.
   void solvePush(const btContactSolverInfo& info, int sweep_limit);
+  /// Adds contacts that the solved step lacks, or gives those that it has another plane. Each then keeps its
+  /// bodies apart at the end of the step, to first order about the present velocities and push. A step must
+  /// not end deeper than it began, so a contact may ask for a velocity that separates.
+  void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
+  /// Velocities of the push, one for each body; empty: none is needed.
+  [[nodiscard]] std::span<const Vec6> push() const { return push_; }
+  /// Shortens the push to a share of it.
+  void scalePush(double share) {
+    for (Vec6& push : push_) push *= share;
+  }
   /// Writes the impulses to the manifolds and moves the bodies by the push.
   void finish(double dt_s);
 
@@ -71,6 +84,7 @@ class ContactSweeps {
                                    const Vec3& d) const;
   void prepareRow(ContactRow& row) const;
   void prepare();
+  [[nodiscard]] double pushVelocity(const ContactRow& row) const;
   double sweepOnce();
   double sweepJoints();
   [[nodiscard]] double velocity(const ContactRow& row) const;

@@ -3,6 +3,7 @@
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,25 @@ int Island::indexOf(const btCollisionObject* object) const {
 Vec6 Island::fixedVelocity(const btCollisionObject* object) {
   const btRigidBody* rigid = btRigidBody::upcast(object);
   return rigid ? velocityOf(*rigid) : Vec6(Vec6::Zero());
+}
+
+Pose Island::endPose(const btCollisionObject* object, std::span<const Vec6> push, double dt_s) const {
+  btTransform X_WB = object->getWorldTransform();
+  const auto move = [&](const Vec6& by) {
+    btTransform moved;
+    btTransformUtil::integrateTransform(X_WB, toBt(Vec3(by.tail<3>())), toBt(Vec3(by.head<3>())), toBt(dt_s),
+                                        moved);
+    X_WB = moved;
+  };
+  const int index = indexOf(object);
+  if (index < 0) {
+    if (const Vec6 v = fixedVelocity(object); !v.isZero(0)) move(v);
+    return fromBt(X_WB);
+  }
+  const auto i = static_cast<std::size_t>(index);
+  if (!push.empty() && !push[i].isZero(0)) move(push[i]);
+  move(bodies[i].u);
+  return fromBt(X_WB);
 }
 
 double Island::topSpeed(std::span<const Vec6> twists) const {

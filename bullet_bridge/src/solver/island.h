@@ -50,6 +50,10 @@ class Island {
   [[nodiscard]] int indexOf(const btCollisionObject* object) const;
   /// Velocity of a body that is not in the island but moves (kinematic), about its origin.
   [[nodiscard]] static Vec6 fixedVelocity(const btCollisionObject* object);
+  /// Where a body's frame is at the end of the step: moved by `push`, then by its velocity, as Bullet does. A
+  /// kinematic body goes on at its velocity.
+  /// @param push  velocities that change positions only, one for each body; may be empty
+  [[nodiscard]] Pose endPose(const btCollisionObject* object, std::span<const Vec6> push, double dt_s) const;
   void writeVelocities() const;
   void readVelocities(std::vector<Vec6>& u) const;
   /// Greatest speed of any point at these twists, one for each body [m/s]; infinite if one is not finite.

@@ -20,11 +20,10 @@ PenaltyPair* PenaltyContacts::find(const btPersistentManifold* manifold) const {
   return it == pairs_.end() ? nullptr : it->second;
 }
 
-PenaltyContacts* penaltyContactsOf(const btDispatcher* dispatcher) {
+ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher) {
   const auto* table = dynamic_cast<const btCollisionDispatcher*>(dispatcher);
   if (!table) return nullptr;
-  auto* create = dynamic_cast<ContactCreateFunction*>(DispatchTable::contact(*table)[kShapeType][kShapeType]);
-  return create ? create->penalty_contacts.get() : nullptr;
+  return dynamic_cast<ContactCreateFunction*>(DispatchTable::contact(*table)[kShapeType][kShapeType]);
 }
 
 }  // namespace vps::bullet::inline v0

@@ -19,6 +19,7 @@ class btPersistentManifold;
 namespace vps::bullet::inline v0 {
 
 struct PenaltyPair;
+class StepChecks;
 
 /// The pair of penalty points behind each manifold, for the pairs of one installation.
 class PenaltyContacts {
@@ -44,9 +45,10 @@ class PenaltyContacts {
 /// Base of the create function that install() registers.
 struct ContactCreateFunction : btCollisionAlgorithmCreateFunc {
   std::shared_ptr<PenaltyContacts> penalty_contacts;
+  std::shared_ptr<StepChecks> step_checks;
 };
 
-/// The store of the installation on this dispatcher; null without one.
-PenaltyContacts* penaltyContactsOf(const btDispatcher* dispatcher);
+/// The create function of the installation on this dispatcher, with its stores; null without one.
+ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher);
 
 }  // namespace vps::bullet::inline v0

@@ -24,6 +24,7 @@
 #include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
 #include "solver/rigid_newton.h"
+#include "solver/step_check.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -48,17 +49,22 @@ struct Solver::Work {
   std::vector<ActiveCoupling> active_couplings;
   std::vector<PenaltyManifold> manifolds;  // with penalty contact
   std::deque<PenaltyPair> converted;       // of manifolds without VPS contact
+  std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
+  std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
-  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const PenaltyContacts* contacts,
+  bool gatherContacts(std::span<btPersistentManifold*> manifolds, const ContactCreateFunction* stores,
                       const btContactSolverInfo& info);
   void gatherCouplings(double dt_s);
   void applyLaws();
   bool updateLaws();
   SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
+  SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
+  bool addMissed(const btContactSolverInfo& info);
+  bool shorten(double dt_s);
 };
 
 namespace {
@@ -106,16 +112,18 @@ void Solver::Work::gatherConstraints(std::span<btTypedConstraint*> constraints,
   }
 }
 
-bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const PenaltyContacts* contacts,
+bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const ContactCreateFunction* stores,
                                   const btContactSolverInfo& info) {
   rigid.clear();
   penalty.clear(info.m_timeStep);
   manifolds.clear();
   converted.clear();
+  checks.clear();
   for (btPersistentManifold* manifold : from) {
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (!isPlain(manifold->getContactPoint(i))) return false;
-    manifolds.push_back({manifold, contacts ? contacts->find(manifold) : nullptr});
+    manifolds.push_back({manifold, stores ? stores->penalty_contacts->find(manifold) : nullptr});
+    if (StepCheck* check = stores ? stores->step_checks->find(manifold) : nullptr) checks.push_back(check);
   }
   is_penalty =
       std::any_of(manifolds.begin(), manifolds.end(), [](const auto& m) { return m.pair != nullptr; });
@@ -198,6 +206,59 @@ SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings, double 
                     : solveRigid(settings, dt_s);
 }
 
+// The law of a coupling at its limit depends on the solution, and so do the limits of friction: solves,
+// updates both, and solves again if they changed.
+SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double dt_s) {
+  const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
+  constexpr double kSettled = 1e-6;        // share of the greatest limit of friction
+  SolveOutcome last;
+  int most_steps = 0;
+  for (int round = 0; round < rounds; ++round) {
+    applyLaws();
+    last = solveContacts(settings, dt_s);
+    most_steps = std::max(most_steps, last.steps);
+    if (round == rounds - 1) break;  // not converged: laws and limits stay those of the last solution
+    const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettled;
+    if (updateLaws() && has_settled_friction) break;
+  }
+  return {most_steps, last.is_converged};
+}
+
+// True if contacts were added, so that the step must be solved again.
+bool Solver::Work::addMissed(const btContactSolverInfo& info) {
+  const double dt_s = info.m_timeStep;
+  missed.clear();
+  for (StepCheck* check : checks) {
+    const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
+                              island.endPose(check->object(1), rigid.push(), dt_s)};
+    check->findMissed(X_WB_end, missed);
+  }
+  rigid.addMissed(missed, info);
+  return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
+}
+
+// The bodies stop before sharp features come too near to each other, where no contacts were found that
+// prevent it. This takes energy and is the last resort. Kinematic bodies go on.
+bool Solver::Work::shorten(double dt_s) {
+  constexpr double kShort = 0.9;  // assumed: not quite up to the place
+  constexpr int kMost = 6;        // assumed; then the bodies stand for this step
+  bool is_shortened = false;
+  for (int k = 0; k <= kMost; ++k) {
+    double share = 1;
+    for (StepCheck* check : checks) {
+      const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
+                                island.endPose(check->object(1), rigid.push(), dt_s)};
+      share = std::min(share, check->freeShare(X_WB_end));
+    }
+    if (share >= 1) break;
+    is_shortened = true;
+    share = k < kMost ? kShort * share : 0;
+    for (IslandBody& b : island.bodies) b.u *= share;
+    rigid.scalePush(share);
+  }
+  return is_shortened;
+}
+
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
 Solver::~Solver() = default;
 
@@ -209,30 +270,27 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   };
   const double dt_s = info.m_timeStep;
   Work& work = *work_;
-  PenaltyContacts* contacts = penaltyContactsOf(dispatcher);
-  if (contacts) contacts->setHasSolver();
+  const ContactCreateFunction* stores = contactFunctionOf(dispatcher);
+  if (stores) stores->penalty_contacts->setHasSolver();
   if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
-      !work.gatherContacts(spanOf(manifolds, manifold_count), contacts, info))
+      !work.gatherContacts(spanOf(manifolds, manifold_count), stores, info))
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
   if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call without bodies
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 
-  // The law of a coupling at its limit depends on the solution, and so do the limits of friction: solve,
-  // update both, and solve again if they changed.
-  const int rounds = work.is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
-  constexpr double kSettled = 1e-6;             // share of the greatest limit of friction
+  constexpr int kMaxChecks = 8;  // assumed; two or three find all
   iterations_used_ = 0;
-  for (int round = 0; round < rounds; ++round) {
-    work.applyLaws();
-    const SolveOutcome outcome = work.solveContacts(settings_, dt_s);
+  for (int checked = 0;; ++checked) {
+    const SolveOutcome outcome = work.solveWithLaws(settings_, dt_s);
     iterations_used_ = std::max(iterations_used_, outcome.steps);
     is_converged_ = outcome.is_converged;
-    if (round == rounds - 1) break;  // not converged: laws and limits stay those of the last solution
-    const bool has_settled_friction = !work.is_penalty || work.penalty.updateLimits() < kSettled;
-    if (work.updateLaws() && has_settled_friction) break;
+    if (work.is_penalty) break;
+    work.rigid.solvePush(info, settings_.iteration_limit);
+    if (checked == kMaxChecks || !work.addMissed(info)) break;
   }
+  if (!work.is_penalty && !work.missed.empty() && work.shorten(dt_s)) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
@@ -244,7 +302,6 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     work.island.writeVelocities();
   } else {
     work.joints.finish(dt_s);
-    work.rigid.solvePush(info, settings_.iteration_limit);
     work.island.writeVelocities();
     work.rigid.finish(dt_s);
   }

@@ -25,6 +25,13 @@ namespace {
 
 using P = DualArmParameters;
 
+// Not with +: GCC 12 takes "text" + std::string for an overflow (its bugs 105329 and 105651).
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string text;
+  for (const std::string_view part : parts) text.append(part);
+  return text;
+}
+
 // Range of a value. Upper ends are far beyond any haptic device; they catch wrong units.
 struct Span {
   double min, max;
@@ -165,11 +172,10 @@ struct DualArmFileReader {
   DualArmFile read(const std::string& toml_text, bool must_be_whole) {
     const toml::table root = parse(toml_text);
     for (const auto& [section, node] : root) {
-      if (known(section.str()).empty())
-        fail(node, "section [" + std::string(section.str()) + "] is unknown; there are " + known(""));
+      const std::string name(section.str());
+      if (known(name).empty()) fail(node, joined({"section [", name, "] is unknown; there are ", known("")}));
       if (!node.is_table())
-        fail(node, "'" + std::string(section.str()) + "' is not a section; write [" +
-                       std::string(section.str()) + "] on a line of its own");
+        fail(node, joined({"'", name, "' is not a section; write [", name, "] on a line of its own"}));
       for (const auto& [key, value] : *node.as_table()) requireKnown(section.str(), key.str(), value);
     }
     for (std::size_t i = 0; i < kFields.size(); ++i) {
@@ -205,8 +211,7 @@ struct DualArmFileReader {
   void requireKnown(std::string_view section, std::string_view key, const toml::node& node) const {
     for (const Field& field : kFields)
       if (field.section == section && field.key == key) return;
-    fail(node,
-         "[" + std::string(section) + "] has no '" + std::string(key) + "'; it may have " + known(section));
+    fail(node, joined({"[", section, "] has no '", key, "'; it may have ", known(section)}));
   }
 
   /// A plain value, or {value = ..., sourced or assumed = "..."}.

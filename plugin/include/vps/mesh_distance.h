@@ -54,6 +54,10 @@ class VPS_API MeshDistance {
   /// 1/r in both directions, a hollow the negative; a flat face, and a triangle without an area, zero.
   [[nodiscard]] Mat3 smoothCurvature(std::uint32_t triangle) const noexcept;
 
+  /// Writes up to `most` triangles whose own boxes may overlap `box`, in no particular order; returns false
+  /// if there are more. Boxes are those of floats, rounded outwards.
+  bool overlapping(const Box& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
+
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
 
  private:
@@ -71,6 +75,8 @@ class VPS_API MeshDistance {
     Node();
     void set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to);
     [[nodiscard]] Eigen::Array4f distance2(const Eigen::Vector3f& p) const;
+    [[nodiscard]] Eigen::Array<bool, 4, 1> overlaps(const Eigen::Vector3f& low,
+                                                    const Eigen::Vector3f& high) const;
     Eigen::Array4f min[3], max[3];
     std::uint32_t child[4] = {0, 0, 0, 0};  ///< a node, or a triangle and kTriangle
   };

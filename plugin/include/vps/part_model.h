@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Everything that contact needs of one part, built once and never changed: name, mesh, material, voxmap,
-// pointshell and exact surface.
+// pointshell and solid.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 #include "vps/export.h"
 #include "vps/mesh.h"
-#include "vps/mesh_distance.h"
 #include "vps/pointshell.h"
+#include "vps/solid.h"
 #include "vps/voxmap.h"
 
 namespace vps::inline v0 {
@@ -23,7 +23,7 @@ struct Material {
 
 /// The models of one part, all in the part's own frame P. It is held as `std::shared_ptr<const PartModel>` by
 /// everything that needs the part's models (collision shape, fixed field, overlap judge), on any thread.
-/// Parts of equal geometry share mesh, map, shell and surface and differ in name and material. Each pointer
+/// Parts of equal geometry share mesh, map, shell and solid and differ in name and material. Each pointer
 /// may be null where nothing needs that model.
 struct PartModel {
   std::string name;
@@ -31,13 +31,11 @@ struct PartModel {
   Material material;
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
-  std::shared_ptr<const MeshDistance> surface;  ///< exact distance to the welded mesh
+  std::shared_ptr<const Solid> solid;  ///< what map and shell are built from
 };
 
-/// The exact surface of a mesh, its vertices welded; null for a mesh without triangles. O(n log n).
-VPS_API std::shared_ptr<const MeshDistance> buildSurface(const Mesh& mesh);
-
-/// Builds all models of a part. Throws LoadError as buildVoxMap() and buildPointShell().
+/// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's where facets had to
+/// be turned, so that it has a positive volume. Throws LoadError as buildVoxMap() and buildPointShell().
 VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                         const VoxMapSettings& voxels = {},
                                                         const PointShellSettings& points = {},

@@ -13,6 +13,8 @@
 
 namespace vps::inline v0 {
 
+class Solid;
+
 struct PointShellSettings {
   double spacing_m = 0.5e-3;     ///< wanted distance between neighbouring points
   double edge_angle_rad = 0.35;  ///< edges sharper than this (about 20 degrees) get points of their own
@@ -54,6 +56,10 @@ struct VPS_API PointShell {
 /// a spacing that is not positive, and for one that would give more points than fit in memory; the message
 /// names one that would fit.
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
+                                   const std::string& part = "", const Progress& progress = {});
+
+/// As above, of a solid's repaired surface: the normals point into the solid.
+VPS_API PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
 /// Merges shells at their poses into one, for mounted parts. Point i of shell s gets the id i plus the sizes

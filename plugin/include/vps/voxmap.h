@@ -24,6 +24,7 @@ struct VoxMapSettings {
 /// interpolated distance, and jumps at cell borders. Cost and error: plugin/README.md.
 enum class Gradient { Continuous, Trilinear };
 
+class Solid;
 struct VoxLayout;  // cells and bricks
 
 /// Signed distance [m] to a part's surface in frame M, negative inside. At the grid's nodes within the band
@@ -90,12 +91,26 @@ class VPS_API VoxMap {
 
 /// Builds the map of one mesh, with the exact distance to its triangles at every node within the band. The
 /// sign comes from pseudonormals if the mesh is closed, faces out and does not overlap itself, and otherwise
-/// from the winding number of the mesh as repaired by repairMesh(). `report`, if given, says what was found
-/// and for what share of the nodes the sign is certain. O(surface area / h^2). Throws LoadError for a mesh
+/// from the winding number of the mesh as repaired by repairMesh(). A Solid of the mesh decides alike, except
+/// that it also sees crossings that are smaller than a voxel. `report`, if given, says what was found and for
+/// what share of the nodes the sign is certain. O(surface area / h^2). Throws LoadError for a mesh
 /// that requireUsable() refuses, a voxel size that is not positive, or a grid that would not fit in memory;
 /// the message names a voxel size that would fit.
 VPS_API VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                            const Progress& progress = {}, MeshReport* report = nullptr);
+
+/// A solid at its pose in a map's frame.
+struct PlacedSolid {
+  const Solid* solid = nullptr;
+  Pose X_MP;
+};
+
+/// As above, of a solid that exists already: with its surface and its signs. O(surface area / h^2).
+VPS_API VoxMap buildVoxMap(const Solid& solid, const VoxMapSettings& settings, const std::string& part = "",
+                           const Progress& progress = {}, MeshReport* report = nullptr);
+VPS_API VoxMap buildVoxMap(const PlacedSolid& solid, const VoxMapSettings& settings,
+                           const std::string& part = "", const Progress& progress = {},
+                           MeshReport* report = nullptr);
 
 /// A mesh at its pose in a map's frame.
 struct PlacedMesh {
@@ -110,10 +125,13 @@ struct PlacedMesh {
 /// section 5.
 VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSettings& settings,
                           const Progress& progress = {});
+VPS_API VoxMap cookVoxMap(const std::vector<PlacedSolid>& parts, const VoxMapSettings& settings,
+                          const Progress& progress = {});
 
 /// Adds a part to a cooked map and returns the new map; the old one is unchanged. The cost follows the new
 /// part.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
+VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedSolid& part);
 
 /// A map at its pose in another map's frame.
 struct PlacedMap {

@@ -13,7 +13,7 @@ namespace vps::inline v0 {
 
 /// A folder of voxmaps. Each file is named by a 128-bit hash (XXH3) of everything that determines the map:
 /// every vertex and triangle to the bit, the settings, and the version of the file. A map from the folder has
-/// the same bits as one from buildVoxMap().
+/// the same bits as one from buildVoxMap() for the mesh's Solid.
 ///
 /// A file is used only if it is whole, of this version and this byte order, and its content matches the hash
 /// it ends with; otherwise the map is built again and the file replaced, with a warning. The hash detects
@@ -27,15 +27,22 @@ class VPS_API VoxMapCache {
   /// @param warn    called with one line of text if a file could not be read or written
   explicit VoxMapCache(std::filesystem::path folder, Warn warn = {});
 
-  /// As vps::buildVoxMap(), but reads the map from the folder if it is there: O(bytes) of mesh and map.
-  /// Throws LoadError for the same reasons, never for a fault of the folder.
+  /// As vps::buildVoxMap() for the mesh's Solid, but reads the map from the folder if it is there: O(bytes)
+  /// of mesh and map. Throws LoadError for the same reasons, never for a fault of the folder.
   VoxMap build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                const Progress& progress = {}, MeshReport* report = nullptr) const;
+
+  /// As above, where the mesh's Solid exists already.
+  VoxMap build(const Mesh& mesh, const Solid& solid, const VoxMapSettings& settings,
+               const std::string& part = "", const Progress& progress = {},
+               MeshReport* report = nullptr) const;
 
   /// The path of this mesh's map, whether the file exists or not.
   [[nodiscard]] std::filesystem::path fileOf(const Mesh& mesh, const VoxMapSettings& settings) const;
 
  private:
+  VoxMap readOrBuild(const Mesh& mesh, const VoxMapSettings& settings, MeshReport* report,
+                     const std::function<VoxMap(MeshReport&)>& make) const;
   std::filesystem::path folder_;
   Warn warn_;
 };

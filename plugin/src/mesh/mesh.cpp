@@ -199,7 +199,8 @@ MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
   if (shell_of != nullptr && report.shells > 1) *shell_of = groups.numbered();
   if (shell_of != nullptr && report.shells <= 1) shell_of->assign(mesh.triangles.size(), 0);
   if (has_duplicates)
-    forEachTwin(mesh, [&](std::span<const Twin> same) { report.duplicate_triangles += same.size() - 1; });
+    forEachTwin(mesh.triangles,
+                [&](std::span<const Twin> same) { report.duplicate_triangles += same.size() - 1; });
   return report;
 }
 

@@ -17,12 +17,6 @@ namespace {
 
 /// Twice the area over the square of the longest edge, below which corners are collinear up to rounding.
 constexpr double kMinSlimness = 1e-10;
-/// Faces whose normals differ by less are facets of one curved surface: 20 degrees, as
-/// PointShellSettings::edge_angle_rad.
-constexpr double kCosSmooth = 0.94;
-/// Corners with more faces than this are the hubs of nearly flat fans; comparing all pairs of faces would
-/// take quadratic time.
-constexpr std::size_t kMaxFaces = 64;
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
@@ -89,41 +83,6 @@ void MeshDistance::computeNormals() {
     }
   });
   for (Vec3& n : vertex_normals_) n = unitOrZero(n);
-}
-
-void MeshDistance::computeSmoothCorners() {
-  struct Corner {
-    std::uint32_t triangle, k;
-    Vec3 weighted;  // the face's normal times its angle here
-  };
-  // Corners by vertex: first[v] to first[v + 1].
-  std::vector<std::size_t> first(mesh_.vertices.size() + 1, 0);
-  for (const auto& t : mesh_.triangles)
-    for (const std::uint32_t v : t) ++first[v + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<Corner> corners(3 * mesh_.triangles.size());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i)
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const auto& t = mesh_.triangles[i];
-      const Vec3& at = mesh_.vertices[t[k]];
-      const double angle_rad =
-          angleBetween(mesh_.vertices[t[(k + 1) % 3]] - at, mesh_.vertices[t[(k + 2) % 3]] - at);
-      corners[next[t[k]]++] = {i, k, angle_rad * face_normals_[i]};
-    }
-  smooth_corners_.resize(mesh_.triangles.size());
-  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-    const std::span around(corners.data() + first[v], first[v + 1] - first[v]);
-    for (const Corner& own : around) {
-      const Vec3& face = face_normals_[own.triangle];
-      Vec3 sum = around.size() > kMaxFaces ? face : own.weighted;
-      for (const Corner& other : around)
-        if (around.size() <= kMaxFaces && &other != &own &&
-            face.dot(face_normals_[other.triangle]) > kCosSmooth)
-          sum += other.weighted;
-      smooth_corners_[own.triangle][own.k] = unitOrZero(sum).cast<float>();
-    }
-  }
 }
 
 namespace {
@@ -222,6 +181,36 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int k = 0; k < 3; ++k) sum += (min[k] - p[k]).max(p[k] - max[k]).max(0.0f).square();
   return kRounding * sum;
+}
+
+[[gnu::always_inline]] inline Eigen::Array<bool, 4, 1> MeshDistance::Node::overlaps(
+    const Eigen::Vector3f& low, const Eigen::Vector3f& high) const {
+  return min[0] <= high[0] && low[0] <= max[0] && min[1] <= high[1] && low[1] <= max[1] &&
+         min[2] <= high[2] && low[2] <= max[2];
+}
+
+bool MeshDistance::overlapping(const Box& box, std::size_t most,
+                               std::vector<std::uint32_t>& triangles) const {
+  triangles.clear();
+  if (nodes_.empty()) return true;
+  // The nodes' boxes have a margin for the rounding of points inside the mesh's box.
+  const Eigen::Vector3f low = (box.min - center_).cast<float>(), high = (box.max - center_).cast<float>();
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t next = stack[--waiting];
+    if ((next & kTriangle) != 0) {
+      if (triangles.size() == most) return false;
+      triangles.push_back(next & ~kTriangle);
+      continue;
+    }
+    const Node& node = nodes_[next];
+    const Eigen::Array<bool, 4, 1> is_near = node.overlaps(low, high);
+    for (int lane = 0; lane < 4; ++lane)
+      if (is_near[lane]) stack[waiting++] = node.child[lane];
+  }
+  return true;
 }
 
 /// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
@@ -336,38 +325,6 @@ Vec3 MeshDistance::featureNormal(std::uint32_t triangle, int feature) const noex
   if (feature == 0) return face_normals_[triangle];
   if (feature <= 3) return edge_normals_[triangle][feature - 1];
   return vertex_normals_[mesh_.triangles[triangle][feature - 4]];
-}
-
-Vec3 MeshDistance::smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept {
-  const auto& t = mesh_.triangles[triangle];
-  const Vec3& face = face_normals_[triangle];
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 to_a = mesh_.vertices[t[(k + 1) % 3]] - q, to_b = mesh_.vertices[t[(k + 2) % 3]] - q;
-    // The corner's barycentric coordinate times twice the area; rounding may move q slightly outside.
-    sum += std::max(0.0, face.dot(to_a.cross(to_b))) * smooth_corners_[triangle][k].cast<double>();
-  }
-  const double length = sum.norm();
-  return length > 0 ? Vec3(sum / length) : face;
-}
-
-Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
-  if (is_thin_[triangle] != 0) return Mat3::Zero();
-  const auto& t = mesh_.triangles[triangle];
-  const Vec3& face = face_normals_[triangle];
-  const Vec3 e1 = mesh_.vertices[t[1]] - mesh_.vertices[t[0]],
-             e2 = mesh_.vertices[t[2]] - mesh_.vertices[t[0]];
-  const double twice_area_m2 = face.dot(e1.cross(e2));
-  if (!(twice_area_m2 > 0)) return Mat3::Zero();
-  const auto turn = [&](int corner) -> Vec3 {
-    const auto& corners = smooth_corners_[triangle];
-    return (corners[static_cast<std::size_t>(corner)] - corners[0]).cast<double>();
-  };
-  // The dual vectors of the edges split a displacement in the triangle into its shares of the edges.
-  const Mat3 S =
-      (turn(1) * e2.cross(face).transpose() + turn(2) * face.cross(e1).transpose()) / twice_area_m2;
-  const Mat3 along = Mat3::Identity() - face * face.transpose();
-  return along * (0.5 * (S + S.transpose())) * along;
 }
 
 }  // namespace vps::inline v0

@@ -91,11 +91,11 @@ struct Twin {
 
 /// Calls visit with the triangles of each set of corners that has more than one, by triangle. O(n log n).
 template <typename Visit>
-void forEachTwin(const Mesh& mesh, Visit visit) {
+void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Visit visit) {
   std::vector<Twin> twins;
-  twins.reserve(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    auto corners = mesh.triangles[i];
+  twins.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    auto corners = triangles[i];
     bool is_even = true;
     const auto order = [&](int a, int b) {
       if (corners[a] < corners[b]) return;

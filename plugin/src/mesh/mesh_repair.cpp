@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "mesh/box_tree.h"
+#include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/mesh_survey.h"
 #include "vps/mesh_distance.h"
@@ -26,6 +27,9 @@ constexpr std::size_t kSamples = 48;
 constexpr std::size_t kMaxRays = 20000;
 /// How far a patch's mean winding number must be from 0.5 to be classified as not being surface.
 constexpr double kClearly = 0.35;
+/// Most sheets and walls among which copies of the surface are looked for, at a winding number of the whole
+/// mesh each. Assumed: copies are few.
+constexpr std::size_t kMaxCopies = 32;
 /// Winding number in a facet's plane above which both sides are clearly inside: it is 0.5 more behind the
 /// facet and 0.5 less in front, and a threshold of 0.75 leaves a quarter of margin on both sides.
 constexpr double kInternal = 1.25;
@@ -84,10 +88,10 @@ class Repairer {
     const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
     if (is_whole && report().duplicate_triangles == 0 && areSound(mesh(), shell_of, report().shells))
       return finish(true);
-    if (report().duplicate_triangles > 0) {
-      dropDuplicates(mesh(), edges_);
-      edges_ = sortedHalfEdges(mesh());
-    }
+    joined_ = joinFacets(mesh(), edges_, kWidestBetweenCopies);
+    const bool has_dropped_copies = dropDuplicates();
+    if (has_dropped_copies) edges_ = sortedHalfEdges(mesh());
+    if (has_dropped_copies || joined_.open_m > 0) joined_ = joinFacets(mesh(), edges_, kWidestCrack);
     surveyOpenEdges(mesh(), edges_, report());
     findPatches();
     turnClosed();
@@ -116,6 +120,7 @@ class Repairer {
 
   void flip(std::uint32_t triangle) {
     std::swap(mesh().triangles[triangle][1], mesh().triangles[triangle][2]);
+    is_flipped_[triangle] ^= 1;
   }
   void flip(Patch& patch) {
     for (const std::uint32_t i : patch.triangles) flip(i);
@@ -144,40 +149,80 @@ class Repairer {
     return agrees;
   }
 
-  /// Turns facets to agree within each patch; the minority is turned.
+  bool dropDuplicates() {
+    if (report().duplicate_triangles == 0 && report().open_edges == 0) return false;
+    const std::vector<std::uint8_t> is_dropped = findDuplicates(joined_.triangles, joined_.edges);
+    const auto count = static_cast<std::size_t>(std::count(is_dropped.begin(), is_dropped.end(), 1));
+    if (count == 0) return false;
+    report().duplicate_triangles = std::max(report().duplicate_triangles, count);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < is_dropped.size(); ++i)
+      if (is_dropped[i] == 0) mesh().triangles[next++] = mesh().triangles[i];
+    mesh().triangles.resize(next);
+    return true;
+  }
+
+  /// Turns facets to agree within each patch, and patches that cracks part to agree with each other; the
+  /// minority is turned.
   void findPatches() {
     const std::size_t count = mesh().triangles.size();
+    // Two facets that share an edge need not be neighbours: they may be copies of one, if an odd number of
+    // facets ends there.
+    std::vector<std::array<std::uint8_t, 3>> has_copy(count, {0, 0, 0});
+    forEachEdge(joined_.edges, [&](std::span<const HalfEdge> same) {
+      if (same.size() > 1 && same.size() % 2 == 1)
+        for (const HalfEdge& e : same) has_copy[e.triangle][e.side] = 1;
+    });
     std::vector<std::array<std::uint32_t, 3>> across(
         count, {UINT32_MAX, UINT32_MAX, UINT32_MAX});  // triangle * 2 + disagrees
     forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
-      if (same.size() != 2) return;
+      if (same.size() != 2 || has_copy[same[0].triangle][same[0].side] != 0) return;
       const std::uint32_t disagrees = same[0].is_forward == same[1].is_forward;
       across[same[0].triangle][same[0].side] = 2 * same[1].triangle + disagrees;
       across[same[1].triangle][same[1].side] = 2 * same[0].triangle + disagrees;
     });
-    patches_.clear();
+    std::vector<std::vector<std::uint32_t>> parts;  // triangles that edges connect
     patch_of_.assign(count, UINT32_MAX);
-    std::vector<char> is_turned(count, 0);
+    is_flipped_.assign(count, 0);
+    std::vector<std::uint8_t> is_turned(count, 0);
     for (std::uint32_t seed = 0; seed < count; ++seed) {
       if (patch_of_[seed] != UINT32_MAX) continue;
-      const auto id = static_cast<std::uint32_t>(patches_.size());
-      Patch& patch = patches_.emplace_back();
-      patch.triangles.push_back(seed);
+      const auto id = static_cast<std::uint32_t>(parts.size());
+      std::vector<std::uint32_t>& part = parts.emplace_back(1, seed);
       patch_of_[seed] = id;
-      std::size_t turned = 0;
-      for (std::size_t next = 0; next < patch.triangles.size(); ++next) {
-        const std::uint32_t i = patch.triangles[next];
-        turned += is_turned[i];
+      for (std::size_t next = 0; next < part.size(); ++next) {
+        const std::uint32_t i = part[next];
         for (const std::uint32_t side : across[i]) {
           if (side == UINT32_MAX || patch_of_[side / 2] != UINT32_MAX) continue;
           patch_of_[side / 2] = id;
-          is_turned[side / 2] = is_turned[i] ^ static_cast<char>(side & 1);
-          patch.triangles.push_back(side / 2);
+          is_turned[side / 2] = is_turned[i] ^ static_cast<std::uint8_t>(side & 1);
+          part.push_back(side / 2);
         }
       }
-      const bool is_majority = 2 * turned > patch.triangles.size();
-      for (const std::uint32_t i : patch.triangles)
-        if (is_turned[i] != static_cast<char>(is_majority)) flip(i), ++report().flipped_facets;
+    }
+    const LinkedPatches linked = linkPatches(mesh(), joined_.edges, patch_of_, is_turned);
+    patches_.clear();
+    for (std::size_t id = 0; id < parts.size(); ++id) {
+      const std::uint32_t group = linked.group_of[id];
+      if (group == patches_.size()) patches_.emplace_back();
+      std::vector<std::uint32_t>& all = patches_[group].triangles;
+      all.insert(all.end(), parts[id].begin(), parts[id].end());
+      for (const std::uint32_t i : parts[id]) patch_of_[i] = group, is_turned[i] ^= linked.is_opposed[id];
+    }
+    const auto countTurned = [&](const std::vector<std::uint32_t>& triangles) {
+      return static_cast<std::size_t>(std::count_if(triangles.begin(), triangles.end(),
+                                                    [&](std::uint32_t i) { return is_turned[i] != 0; }));
+    };
+    for (const Patch& patch : patches_)
+      if (2 * countTurned(patch.triangles) > patch.triangles.size())
+        for (const std::uint32_t i : patch.triangles) is_turned[i] ^= 1;
+    for (const std::vector<std::uint32_t>& part : parts) {
+      const std::size_t turned = countTurned(part);
+      const bool is_shell = 2 * turned > part.size();
+      report().turned_shells += is_shell;
+      report().flipped_facets += is_shell ? part.size() - turned : turned;
+      for (const std::uint32_t i : part)
+        if (is_turned[i] != 0) flip(i);
     }
     measurePatches();
   }
@@ -191,7 +236,7 @@ class Repairer {
       for (const std::uint32_t i : patch.triangles) patch.volume_m3 += determinant(mesh(), i, o) / 6;
     }
     std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and in which direction
-    forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+    forEachEdge(joined_.edges, [&](std::span<const HalfEdge> same) {
       uses.clear();
       for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
       std::sort(uses.begin(), uses.end());
@@ -205,11 +250,8 @@ class Repairer {
   }
 
   /// The direction in the triangle as it is now; the half-edge has the direction from before it was turned.
-  [[nodiscard]] bool isForward(const HalfEdge& e) {
-    const auto& t = mesh().triangles[e.triangle];
-    for (int i = 0; i < 3; ++i)
-      if (t[i] == e.low) return t[(i + 1) % 3] == e.high;
-    return true;
+  [[nodiscard]] bool isForward(const HalfEdge& e) const {
+    return e.is_forward != (is_flipped_[e.triangle] != 0);
   }
 
   /// Turns closed patches that face in and lie in no other patch, with everything inside them.
@@ -332,6 +374,7 @@ class Repairer {
   /// raise one side and lower the other by a half.
   void setAsideWallsAndSheets() {
     const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
+    std::vector<std::size_t> aside;
     for (std::size_t i = 0; i < patches_.size(); ++i) {
       if (patches_[i].is_closed || std::abs(mean[i] - 0.5) < kClearly) continue;
       const WindingNumber alone(mesh(), patches_[i].triangles);
@@ -339,9 +382,38 @@ class Repairer {
       const std::vector<Facet> samples = samplesOf(patches_[i], kSamples);
       for (const Facet& f : samples) self += inPlane(alone, f) / static_cast<double>(samples.size());
       if (std::abs(self) > 0.5 - kClearly) continue;
-      const bool is_wall = mean[i] > 0.5;
-      (is_wall ? report().internal_facets : report().sheet_facets) += patches_[i].triangles.size();
-      for (const std::uint32_t t : patches_[i].triangles) is_kept_[t] = is_wall ? Keep::None : Keep::Surface;
+      aside.push_back(i);
+      setKept(patches_[i], mean[i] > 0.5 ? Keep::None : Keep::Surface);
+    }
+    if (aside.size() > 1 && aside.size() <= kMaxCopies) keepOneOfCopies(aside);
+    for (const std::size_t i : aside) {
+      const Keep keep = is_kept_[patches_[i].triangles[0]];
+      if (keep == Keep::None) report().internal_facets += patches_[i].triangles.size();
+      if (keep == Keep::Surface) report().sheet_facets += patches_[i].triangles.size();
+    }
+  }
+
+  void setKept(const Patch& patch, Keep keep) {
+    for (const std::uint32_t t : patch.triangles) is_kept_[t] = keep;
+  }
+
+  /// Two copies of a patch of the surface, cut into different facets, look like sheets, since there the
+  /// winding number falls by two. Without the others the first does not.
+  void keepOneOfCopies(const std::vector<std::size_t>& aside) {
+    std::vector<std::uint32_t> bounding;
+    for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
+      if (is_kept_[i] == Keep::Both) bounding.push_back(i);
+    for (const std::size_t i : aside) {
+      const std::vector<std::uint32_t>& own = patches_[i].triangles;
+      bounding.insert(bounding.end(), own.begin(), own.end());
+      const WindingNumber w(mesh(), bounding);
+      double mean = 0;
+      const std::vector<Facet> samples = samplesOf(patches_[i], kSamples);
+      for (const Facet& f : samples) mean += inPlane(w, f) / static_cast<double>(samples.size());
+      if (std::abs(mean - 0.5) < kClearly)
+        setKept(patches_[i], Keep::Both);
+      else
+        bounding.resize(bounding.size() - own.size());
     }
   }
 
@@ -410,15 +482,28 @@ class Repairer {
   const bool is_crossing_;
   RepairedMesh result_;
   std::vector<HalfEdge> edges_;  // as the facets were at first
+  JoinedFacets joined_;          // as the facets were at first
   std::vector<Patch> patches_;
-  std::vector<std::uint32_t> patch_of_;  // by triangle
-  std::vector<Keep> is_kept_;            // by triangle
+  std::vector<std::uint32_t> patch_of_;   // by triangle
+  std::vector<std::uint8_t> is_flipped_;  // by triangle: since edges_ were found
+  std::vector<Keep> is_kept_;             // by triangle
 };
 
 }  // namespace
 
 RepairedMesh repairMesh(Mesh mesh, Crossing crossing) {
   return Repairer(std::move(mesh), crossing).run();
+}
+
+RepairedMesh repairCrossing(const RepairedMesh& sound) {
+  RepairedMesh again = repairMesh(sound.surface, Crossing::Seen);
+  again.is_sound = false;
+  again.report.triangles = sound.report.triangles;
+  again.report.duplicate_triangles += sound.report.duplicate_triangles;
+  again.report.flipped_edges += sound.report.flipped_edges;
+  again.report.flipped_facets += sound.report.flipped_facets;
+  again.report.turned_shells += sound.report.turned_shells;
+  return again;
 }
 
 std::string describe(const MeshReport& report) {

@@ -5,11 +5,14 @@
 
 namespace vps::inline v0 {
 
-void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
+std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                         const std::vector<HalfEdge>& edges) {
   // Of each set of duplicates the first of the majority is kept, or, if they are back to back, a pair that is
   // decided below.
-  std::vector<char> is_dropped(mesh.triangles.size(), 0), is_pair(mesh.triangles.size(), 0);
-  forEachTwin(mesh, [&](std::span<const Twin> same) {
+  std::vector<std::uint8_t> is_dropped(triangles.size(), 0), is_pair(triangles.size(), 0);
+  forEachTwin(triangles, [&](std::span<const Twin> same) {
+    const auto& corners = same[0].corners;
+    if (corners[0] == corners[1] || corners[1] == corners[2]) return;
     const auto even = static_cast<std::size_t>(
         std::count_if(same.begin(), same.end(), [](const Twin& t) { return t.is_even; }));
     const bool is_balanced = 2 * even == same.size();
@@ -21,28 +24,30 @@ void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges) {
       is_pair[t.triangle] = is_balanced;
     }
   });
-  // A pair at which other facets end is a wall between solids; connected pairs are treated alike.
-  Groups groups(mesh.triangles.size());
-  std::vector<char> is_wall(mesh.triangles.size(), 0);
+  Groups groups(triangles.size());  // of pairs
+  std::vector<std::uint8_t> ends_at_even(triangles.size(), 0), ends_at_odd(triangles.size(), 0);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
     std::uint32_t first = UINT32_MAX;
-    bool has_other = false;
+    std::size_t others = 0;
     for (const HalfEdge& e : same) {
-      has_other |= !is_pair[e.triangle];
+      others += !is_pair[e.triangle] && !is_dropped[e.triangle];
       if (!is_pair[e.triangle]) continue;
       if (first == UINT32_MAX) first = e.triangle;
       groups.join(e.triangle, first);
     }
-    if (first != UINT32_MAX && has_other) is_wall[first] = 1;
+    if (first == UINT32_MAX || others == 0) return;
+    (others % 2 == 0 ? ends_at_even : ends_at_odd)[first] = 1;
   });
-  for (std::uint32_t i = 0; i < is_wall.size(); ++i)
-    if (is_wall[i]) is_wall[groups.find(i)] = 1;
-  std::size_t next = 0;
-  for (std::uint32_t i = 0; i < is_dropped.size(); ++i) {
-    const bool is_in_wall = is_pair[i] && is_wall[groups.find(i)];
-    if (!is_dropped[i] && !is_in_wall) mesh.triangles[next++] = mesh.triangles[i];
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t root = groups.find(i);
+    ends_at_even[root] |= ends_at_even[i];
+    ends_at_odd[root] |= ends_at_odd[i];
   }
-  mesh.triangles.resize(next);
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t root = groups.find(i);
+    is_dropped[i] |= is_pair[i] && ends_at_even[root] && !ends_at_odd[root];
+  }
+  return is_dropped;
 }
 
 void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report) {

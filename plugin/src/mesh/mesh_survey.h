@@ -2,16 +2,22 @@
 // Faults of a mesh that its edges show independently of orientation: duplicate facets and borders.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "mesh/mesh_edges.h"
 
 namespace vps::inline v0 {
 
-/// Keeps one of each set of triangles with the same corners, the first of the majority. Of back-to-back pairs
-/// none is kept if other facets end at them or at pairs connected to them: that is a wall between two solids.
-/// Otherwise one is kept, of undecided orientation: a surface that was exported for both sides. O(n log n).
-void dropDuplicates(Mesh& mesh, const std::vector<HalfEdge>& edges);
+/// Flags all but one of each set of triangles with the same corners; the first of the majority stays. Of
+/// back-to-back pairs none stays if an even number of other facets ends at each edge of them and of pairs
+/// connected to them, since these close without it: a wall between two solids. Otherwise one stays, of
+/// undecided orientation: a surface that was exported for both sides, or given twice and turned once.
+/// O(n log n).
+/// @param edges  of the same triangles
+std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                                         const std::vector<HalfEdge>& edges);
 
 /// Counts holes (connected open edges) and T-junctions (corners within an open edge).
 void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report);

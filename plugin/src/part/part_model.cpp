@@ -3,11 +3,9 @@
 
 #include <utility>
 
-namespace vps::inline v0 {
+#include "mesh/interior.h"
 
-std::shared_ptr<const MeshDistance> buildSurface(const Mesh& mesh) {
-  return mesh.triangles.empty() ? nullptr : std::make_shared<const MeshDistance>(welded(mesh));
-}
+namespace vps::inline v0 {
 
 std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                 const VoxMapSettings& voxels,
@@ -15,10 +13,13 @@ std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh me
   auto model = std::make_shared<PartModel>();
   model->name = name;
   model->material = material;
-  model->map = std::make_shared<const VoxMap>(buildVoxMap(mesh, voxels, name));
-  model->shell = std::make_shared<const PointShell>(buildPointShell(mesh, points, name));
-  model->surface = buildSurface(mesh);
+  auto solid = std::make_shared<const Solid>(mesh, name);
+  model->map = std::make_shared<const VoxMap>(buildVoxMap(*solid, voxels, name));
+  model->shell = std::make_shared<const PointShell>(buildPointShell(*solid, points, name));
+  const bool was_turned = solid->report().flipped_facets + solid->report().turned_shells > 0;
+  if (was_turned) mesh = solid->interior() != nullptr ? solid->interior()->mesh() : solid->mesh();
   model->mesh = std::make_shared<const Mesh>(std::move(mesh));
+  model->solid = std::move(solid);
   return model;
 }
 

@@ -9,6 +9,7 @@
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
 #include "vps/load_error.h"
+#include "vps/solid.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -94,6 +95,24 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
   return nodes;
 }
 
+/// The shell of a mesh with shared vertices.
+PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const Progress& progress) {
+  const auto report = [&progress](double share) {
+    if (progress) progress("sampling points", share);
+  };
+  report(0);
+  const std::vector<Vec3> normals = triangleNormals(mesh);
+  std::vector<ShellSample> samples =
+      sampleFeatures(mesh, normals, kEdgeStep * settings.spacing_m, kEdgeTolerance * settings.spacing_m,
+                     settings.edge_angle_rad);
+  report(0.1);
+  sampleFaces(mesh, normals, settings.spacing_m, samples);
+  report(0.8);
+  PointShell shell = laidOut(samples, settings.spacing_m);
+  report(1);
+  return shell;
+}
+
 }  // namespace
 
 std::size_t PointShell::memoryBytes() const noexcept {
@@ -104,23 +123,15 @@ std::size_t PointShell::memoryBytes() const noexcept {
 
 PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings, const std::string& part,
                            const Progress& progress) {
-  const auto report = [&progress](double share) {
-    if (progress) progress("sampling points", share);
-  };
   requireUsable(mesh, "", part);
   requireSettings(mesh, settings, part);
-  report(0);
-  const Mesh shared = welded(mesh);  // otherwise every edge would be open, and so sharp
-  const std::vector<Vec3> normals = triangleNormals(shared);
-  std::vector<ShellSample> samples =
-      sampleFeatures(shared, normals, kEdgeStep * settings.spacing_m, kEdgeTolerance * settings.spacing_m,
-                     settings.edge_angle_rad);
-  report(0.1);
-  sampleFaces(shared, normals, settings.spacing_m, samples);
-  report(0.8);
-  PointShell shell = laidOut(samples, settings.spacing_m);
-  report(1);
-  return shell;
+  return sampled(welded(mesh), settings, progress);  // otherwise every edge would be open, and so sharp
+}
+
+PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings, const std::string& part,
+                           const Progress& progress) {
+  requireSettings(solid.mesh(), settings, part);
+  return sampled(solid.mesh(), settings, progress);
 }
 
 PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs) {

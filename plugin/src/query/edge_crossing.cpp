@@ -19,9 +19,12 @@ constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over 
 /// to the next stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
 /// How far beyond its end a segment still crosses, as a share of the gap: at the joints of a curved edge the
-/// crossing falls between two segments. Assumed. At a true end, separating along the edge must not be shorter
-/// than separating across: the rim of a square peg in a square hole has long passed the hole's rim.
-constexpr double kPast_m = 1e-6, kPastShare = 0.1;
+/// crossing falls between two segments, by the gap times the tangent of half their turn, of at most 20
+/// degrees. At a true end, separating along the edge must not be shorter than separating across: the rim of a
+/// square peg in a square hole has long passed the hole's rim.
+constexpr double kPast_m = 1e-6, kPastShare = 0.18;
+/// The same at a true end, before the edges touch. assumed.
+constexpr double kEndShare = 0.1;
 
 struct Face {
   Vec3 normal, apex;
@@ -199,7 +202,7 @@ class CrossingSearch {
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
     const double joint_m = kPast_m + kPastShare * std::abs(c.gap_m);
-    const double end_m = c.gap_m >= 0 ? joint_m : kPast_m + c.gap_m;
+    const double end_m = kPast_m + (c.gap_m >= 0 ? kEndShare * c.gap_m : c.gap_m);
     const auto isOn = [&](const EdgeSegment& s, double at_m, double length_m) {
       return at_m >= -(s.ends[0] ? end_m : joint_m) && at_m <= length_m + (s.ends[1] ? end_m : joint_m);
     };

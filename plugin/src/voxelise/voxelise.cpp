@@ -16,6 +16,8 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "voxelise/brick_assembly.h"
 #include "voxelise/map_estimate.h"
@@ -24,6 +26,7 @@
 #include "voxmap/center_bounds.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
+#include "vps/solid.h"
 
 namespace vps::inline v0 {
 
@@ -301,11 +304,51 @@ std::shared_ptr<VoxLayout> Voxeliser::build(const Progress& progress) {
   return layout_;
 }
 
-/// Prepares a mesh for voxelising: signs need shared vertices.
-RepairedMesh prepared(const Mesh& mesh, const std::string& part) {
-  Mesh shared = welded(mesh);
-  requireUsable(shared, "", part);
-  return repairMesh(std::move(shared));
+/// The map of a repaired surface; nothing if its pseudonormals contradict each other.
+/// @param interior  null: signs come from pseudonormals
+/// @param report    receives the share of certain signs
+std::optional<VoxMap> voxelised(const Mesh& surface, const Interior* interior, const Box& box,
+                                const VoxMapSettings& settings, const Progress& progress,
+                                MeshReport& report) {
+  std::optional<WindingSigner> signer;
+  if (interior != nullptr) signer.emplace(*interior);
+  Voxeliser voxeliser(surface, box, settings, signer ? &*signer : nullptr);
+  std::shared_ptr<const VoxLayout> layout = voxeliser.build(progress);
+  if (!voxeliser.areSignsConsistent()) return std::nullopt;
+  if (signer) {
+    report.signed_by_winding = true;
+    report.certain_share = signer->certainShare();
+  }
+  return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
+}
+
+/// As above, of a mesh whose interior is decided by winding numbers.
+VoxMap voxelised(RepairedMesh repaired, const Box& box, const VoxMapSettings& settings,
+                 const Progress& progress, MeshReport* report) {
+  const Interior interior(std::move(repaired.solid), bounds(repaired.surface));
+  const std::optional<VoxMap> map =
+      voxelised(repaired.surface, &interior, box, settings, progress, repaired.report);
+  if (report != nullptr) *report = repaired.report;
+  return *map;
+}
+
+/// A surface with its interior, null where pseudonormals decide.
+struct Body {
+  const Mesh& surface;
+  const Interior* interior;
+  MeshReport report;
+};
+
+VoxMap voxelised(Body body, const Box& box, const VoxMapSettings& settings, const Progress& progress,
+                 MeshReport* report) {
+  const std::optional<VoxMap> map =
+      voxelised(body.surface, body.interior, box, settings, progress, body.report);
+  if (!map) {  // it crosses itself
+    const RepairedMesh sound{{}, body.surface, body.report, true};
+    return voxelised(repairCrossing(sound), box, settings, progress, report);
+  }
+  if (report != nullptr) *report = body.report;
+  return *map;
 }
 
 }  // namespace
@@ -314,26 +357,36 @@ VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::
                    const Progress& progress, MeshReport* report) {
   requireUsable(mesh, "", part);
   requireFits(mesh, settings, part);
-  RepairedMesh repaired = prepared(mesh, part);
+  Mesh shared = welded(mesh);  // signs need shared vertices
+  requireUsable(shared, "", part);
+  RepairedMesh repaired = repairMesh(std::move(shared));
   const Box box = bounds(mesh);
-  std::shared_ptr<const VoxLayout> layout;
-  if (repaired.is_sound) {
-    Voxeliser voxeliser(repaired.surface, box, settings, nullptr);
-    layout = voxeliser.build(progress);
-    if (!voxeliser.areSignsConsistent()) {
-      layout = nullptr;
-      repaired = repairMesh(welded(mesh), Crossing::Seen);
-      repaired.is_sound = false;
-    }
+  if (repaired.is_sound)
+    return voxelised({repaired.surface, nullptr, repaired.report}, box, settings, progress, report);
+  return voxelised(std::move(repaired), box, settings, progress, report);
+}
+
+VoxMap buildVoxMap(const PlacedSolid& part, const VoxMapSettings& settings, const std::string& name,
+                   const Progress& progress, MeshReport* report) {
+  const Solid& solid = *part.solid;
+  const Interior* interior = solid.interior();
+  if (part.X_MP.R.isIdentity(0) && part.X_MP.p.isZero(0)) {
+    requireFits(solid.mesh(), settings, name);
+    return voxelised({solid.mesh(), interior, solid.report()}, bounds(solid.mesh()), settings, progress,
+                     report);
   }
-  if (layout == nullptr) {
-    WindingSigner signer(repaired.solid);
-    layout = Voxeliser(repaired.surface, box, settings, &signer).build(progress);
-    repaired.report.signed_by_winding = true;
-    repaired.report.certain_share = signer.certainShare();
-  }
-  if (report != nullptr) *report = repaired.report;
-  return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
+  const Mesh surface = transformed(solid.mesh(), part.X_MP);
+  requireUsable(surface, "", name);  // coordinates may overflow
+  requireFits(surface, settings, name);
+  std::optional<Interior> placed;
+  if (interior != nullptr) placed.emplace(transformed(interior->mesh(), part.X_MP), bounds(surface));
+  return voxelised({surface, placed ? &*placed : nullptr, solid.report()}, bounds(surface), settings,
+                   progress, report);
+}
+
+VoxMap buildVoxMap(const Solid& solid, const VoxMapSettings& settings, const std::string& part,
+                   const Progress& progress, MeshReport* report) {
+  return buildVoxMap(PlacedSolid{&solid, Pose()}, settings, part, progress, report);
 }
 
 }  // namespace vps::inline v0

@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "voxmap/voxmap_access.h"
+#include "vps/solid.h"
 #include "vps/write_file.h"
 
 namespace vps::inline v0 {
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Incremented when the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 /// Reads as another number on a machine of the other byte order.
 constexpr std::uint32_t kByteOrder = 0x01020304;
@@ -248,6 +249,19 @@ fs::path VoxMapCache::fileOf(const Mesh& mesh, const VoxMapSettings& settings) c
 
 VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
                           const Progress& progress, MeshReport* report) const {
+  return readOrBuild(mesh, settings, report, [&](MeshReport& found) {
+    return buildVoxMap(Solid(mesh, part), settings, part, progress, &found);
+  });
+}
+
+VoxMap VoxMapCache::build(const Mesh& mesh, const Solid& solid, const VoxMapSettings& settings,
+                          const std::string& part, const Progress& progress, MeshReport* report) const {
+  return readOrBuild(mesh, settings, report,
+                     [&](MeshReport& found) { return buildVoxMap(solid, settings, part, progress, &found); });
+}
+
+VoxMap VoxMapCache::readOrBuild(const Mesh& mesh, const VoxMapSettings& settings, MeshReport* report,
+                                const std::function<VoxMap(MeshReport&)>& make) const {
   const Digest key = keyOf(mesh, settings);
   const fs::path file = folder_ / nameOf(key);
   const auto warn = [&](const fs::path& about, const std::string& text) {
@@ -263,7 +277,7 @@ VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, cons
     }
     warn(file, why + "; built again");
   }
-  const VoxMap map = buildVoxMap(mesh, settings, part, progress, &found);
+  const VoxMap map = make(found);
   if (report != nullptr) *report = found;
   fs::create_directories(folder_, error);
   WholeFile whole(file);

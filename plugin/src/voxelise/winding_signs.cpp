@@ -6,55 +6,40 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
-#include "mesh/mesh_edges.h"
 #include "voxelise/brick_assembly.h"
 #include "voxmap/node_steps.h"
 
 namespace vps::inline v0 {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 /// A winding number this far from 0.5 is certain, and may be passed to neighbours.
 constexpr double kCertainMargin = 0.25;
-/// Subtracted from the margin before a value is passed on: many times the clusters' measured error.
-constexpr double kDoubt = 0.02;
 /// Values are limited to this distance from 0.5: crossing a facet inside the solid, which distances do not
 /// show, changes the winding number from 2 to 1.
 constexpr double kMaxMargin = 0.5;
 
-double boxGap2(const Box& a, const Box& b) {
-  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
-}
-
-/// Nodes that may be inside. Nothing is inside at a band or more from the box of the surface, whatever the
-/// winding number: walls that face the wrong way raise it above 0.5 far from the part. So the directory's
-/// rim, whose outermost nodes are that far, is outside, and with it everything beyond, which reads as the
-/// rim.
+/// Which nodes and cells may have an inside. The directory's rim, a band or more from the surface's box, has
+/// none, and so everything beyond reads as outside.
 class Within {
  public:
-  Within(const VoxLayout& layout, double voxel_m, double quantum_m) {
-    const Box& box = layout.parts.front().bounds;
-    const double band_m = kFullBand * quantum_m;
-    // Computed like the directory: a cell is eight voxels, so that both are rounded alike.
-    low_ = ((box.min.array() - band_m) / voxel_m).floor().cast<int>();
-    high_ = ((box.max.array() + band_m) / voxel_m).ceil().cast<int>();
-  }
+  Within(const Interior& interior, double voxel_m) : interior_(interior), voxel_m_(voxel_m) {}
   [[nodiscard]] bool holds(const Index3& node) const {
-    return (node.array() > low_.array()).all() && (node.array() < high_.array()).all();
+    return interior_.mayHold(voxel_m_ * node.cast<double>());
   }
   [[nodiscard]] bool holdsAllOf(const Index3& cell) const {
     return holds(kBrick * cell) && holds(kBrick * (cell + Index3::Ones()));
   }
   [[nodiscard]] bool holdsNoneOf(const Index3& cell) const {
-    return (kBrick * cell.array() >= high_.array()).any() ||
-           (kBrick * (cell.array() + 1) <= low_.array()).any();
+    const Vec3 low = voxel_m_ * (kBrick * cell).cast<double>();
+    const Vec3 high = voxel_m_ * (kBrick * (cell + Index3::Ones())).cast<double>();
+    const Box& box = interior_.box();
+    return (low.array() >= box.max.array()).any() || (high.array() <= box.min.array()).any();
   }
 
  private:
-  Index3 low_, high_;
+  const Interior& interior_;
+  double voxel_m_;
 };
 
 /// Calls visit(other) for the up to six neighbours of a node among size^3 nodes.
@@ -69,76 +54,12 @@ void forEachNeighbour(const Index3& at, const Index3& size, Visit visit) {
 
 }  // namespace
 
-WindingSlope::WindingSlope(const Mesh& mesh) {
-  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
-    int net = 0;
-    for (const HalfEdge& e : same) net += e.is_forward ? 1 : -1;
-    if (net == 0) return;
-    const Vec3 &a = mesh.vertices[same[0].low], &b = mesh.vertices[same[0].high];
-    Box box;
-    box.add(a);
-    box.add(b);
-    edges_.emplace_back(box, std::abs(net) * (b - a).norm());
-  });
-  if (edges_.empty()) return;
-  constexpr std::uint32_t kLeafEdges = 4;
-  nodes_.emplace_back().count = static_cast<std::uint32_t>(edges_.size());
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::uint32_t first = nodes_[n].first, size = nodes_[n].count, half = size / 2;
-    Box box;
-    double length_m = 0;
-    for (std::uint32_t i = first; i < first + size; ++i) {
-      box.add(edges_[i].first.min);
-      box.add(edges_[i].first.max);
-      length_m += edges_[i].second;
-    }
-    nodes_[n].box = box;
-    nodes_[n].length_m = length_m;
-    if (size <= kLeafEdges) continue;
-    int axis = 0;
-    box.size().maxCoeff(&axis);
-    const auto range = edges_.begin() + first;
-    std::stable_sort(range, range + size, [&](const auto& a, const auto& b) {
-      return a.first.min[axis] + a.first.max[axis] < b.first.min[axis] + b.first.max[axis];
-    });
-    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].count = 0;
-    nodes_.push_back({{}, 0, first, half});
-    nodes_.push_back({{}, 0, first + half, size - half});
-  }
-}
-
-double WindingSlope::bound(const Box& box) const noexcept {
-  if (nodes_.empty()) return 0;
-  double sum = 0;
-  std::uint32_t stack[64];  // halving by count: 32 levels at most, one waiting child each
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const Node& node = nodes_[stack[--waiting]];
-    const double gap2 = boxGap2(node.box, box);
-    if (gap2 > 4 * node.box.size().squaredNorm()) {
-      sum += node.length_m / gap2;
-    } else if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const double edge_gap2 = boxGap2(edges_[i].first, box);
-        if (!(edge_gap2 > 0)) return kInfinite;
-        sum += edges_[i].second / edge_gap2;
-      }
-    } else {
-      stack[waiting++] = node.first + 1;
-      stack[waiting++] = node.first;
-    }
-  }
-  return sum / (4 * std::numbers::pi);
-}
-
 WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& low, double voxel_m,
                                               double quantum_m) const {
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
-  const double loss = slope_.bound(box) * voxel_m;  // of margin, per step
+  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin, per step
   Count count;
   std::array<int, kBrickNodes> size;
   std::array<float, kBrickNodes> margin;
@@ -152,14 +73,14 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   std::array<std::int16_t, kBrickNodes> queue;
   for (int seed = 0; seed < kBrickNodes; ++seed) {
     if (margin[seed] >= 0) continue;
-    const double w = winding_.at(voxel_m * (low + nodeAt(seed)).cast<double>()).w;
+    const double w = interior_.windingNumber(voxel_m * (low + nodeAt(seed)).cast<double>());
     const int sign = w > 0.5 ? -1 : 1;
     margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMaxMargin));
     int end = 0;
     queue[end++] = static_cast<std::int16_t>(seed);
     for (int next = 0; next < end; ++next) {
       const int i = queue[next];
-      const double left = margin[i] - loss - (i == seed ? kDoubt : 0);
+      const double left = margin[i] - loss - (i == seed ? Interior::kDoubt : 0);
       // On the surface itself both signs are right, and the winding number leaves it open.
       count.certain += size[i] < kFullBand && (margin[i] > kCertainMargin || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
@@ -202,7 +123,7 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
                               double quantum_m) {
   std::atomic<std::size_t> nodes = 0, certain = 0;
   std::atomic<int> steepest = 0;
-  const Within within(layout, voxel_m, quantum_m);
+  const Within within(interior_, voxel_m);
   tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
     NodeValue* of_brick = layout.pool->nodes(layout.bricks[cells[i]]);
     const Count count = signBrick(of_brick, kBrick * layout.cellAt(cells[i]), voxel_m, quantum_m);
@@ -219,7 +140,7 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
   layout.is_metric = layout.steepest <= 1;
 }
 
-std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m, double quantum_m,
+std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m,
                                                  const std::vector<std::uint8_t>& is_uncertain) const {
   const CellBox corners = {layout.low, layout.size + Index3::Ones()};  // each by the cell above it
   const auto cornerOf = [&](std::size_t cell, int corner) {
@@ -229,11 +150,11 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
   std::vector<std::uint8_t> side(corners.cellCount(), Skipped);
   for (std::size_t i = 0; i < is_uncertain.size(); ++i)
     for (int k = 0; k < 8 && is_uncertain[i] != 0; ++k) side[cornerOf(i, k)] = Pending;
-  const Within within(layout, voxel_m, quantum_m);
+  const Within within(interior_, voxel_m);
   tbb::parallel_for(std::size_t{0}, side.size(), [&](std::size_t i) {
     if (side[i] != Pending) return;
     const Index3 node = kBrick * corners.cellAt(i);
-    side[i] = within.holds(node) && winding_.at(voxel_m * node.cast<double>()).w > 0.5 ? In : Out;
+    side[i] = within.holds(node) && interior_.windingNumber(voxel_m * node.cast<double>()) > 0.5 ? In : Out;
   });
   std::vector<std::size_t> cut;
   for (std::size_t i = 0; i < is_uncertain.size(); ++i) {
@@ -249,7 +170,7 @@ std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double
 }
 
 void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m) {
-  if (slope_.isZero()) return;
+  if (interior_.slope().isZero()) return;
   const double cell_m = kBrick * voxel_m;
   const auto boxOf = [&](std::size_t i) {
     const Vec3 low = cell_m * layout.cellAt(i).cast<double>();
@@ -258,12 +179,12 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
   std::vector<float> loss(layout.bricks.size()), margin(layout.bricks.size(), -1);
   tbb::parallel_for(std::size_t{0}, layout.bricks.size(), [&](std::size_t i) {
     if (isConstant(layout.bricks[i]))
-      loss[i] = static_cast<float>(std::min(1.0, slope_.bound(boxOf(i)) * cell_m));
+      loss[i] = static_cast<float>(std::min(1.0, interior_.slope().bound(boxOf(i)) * cell_m));
   });
   std::vector<std::size_t> queue;
   for (std::size_t seed = 0; seed < layout.bricks.size(); ++seed) {
     if (!isConstant(layout.bricks[seed]) || margin[seed] >= 0) continue;
-    const double w = winding_.at(boxOf(seed).center()).w;
+    const double w = interior_.windingNumber(boxOf(seed).center());
     const std::uint32_t brick = w > 0.5 ? kInside : kOutside;
     margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMaxMargin));
     queue.assign(1, seed);
@@ -273,7 +194,8 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
       forEachNeighbour(layout.cellAt(i) - layout.low, layout.size, [&](const Index3& at) {
         const std::size_t j = layout.cellIndex(layout.low + at);
         // Empty cells are adjacent, and the surface is at least a band away from both.
-        const float left = margin[i] - std::max(loss[i], loss[j]) - (i == seed ? float{kDoubt} : 0.0f);
+        const float left =
+            margin[i] - std::max(loss[i], loss[j]) - (i == seed ? float{Interior::kDoubt} : 0.0f);
         if (!isConstant(layout.bricks[j]) || margin[j] >= 0 || !(left > float{kCertainMargin})) return;
         margin[j] = left;
         queue.push_back(j);
@@ -281,7 +203,7 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
     }
   }
 
-  const Within within(layout, voxel_m, quantum_m);
+  const Within within(interior_, voxel_m);
   std::vector<std::uint8_t> is_uncertain(layout.bricks.size());
   for (std::size_t i = 0; i < is_uncertain.size(); ++i) {
     if (!isConstant(layout.bricks[i])) continue;
@@ -291,9 +213,10 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
     }
     // The distance from a cell's centre to its corners: half its diagonal. Where passing values on ends,
     // corners may disagree.
-    is_uncertain[i] = margin[i] < 0.87f * loss[i] + float{kDoubt} || !within.holdsAllOf(layout.cellAt(i));
+    is_uncertain[i] =
+        margin[i] < 0.87f * loss[i] + float{Interior::kDoubt} || !within.holdsAllOf(layout.cellAt(i));
   }
-  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, quantum_m, is_uncertain);
+  const std::vector<std::size_t> cut = cutCells(layout, voxel_m, is_uncertain);
   if (cut.empty()) return;
   std::uint32_t brick = takeBricks(layout, cut.size());
   for (const std::size_t cell : cut) {

@@ -27,6 +27,7 @@ struct Part {
 struct ScenePart {
   Part part;
   Pose X_WP;                   ///< as designed: the pose in the CAD file, or that of the scene file
+  Twist V_WP_W;                ///< of its origin, at the start of simulate(); assemble() starts at rest
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another part (interference fits)
   std::string file;            ///< file that the mesh was read from, for messages

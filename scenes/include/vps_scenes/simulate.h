@@ -21,7 +21,34 @@ struct BodyState {
   Twist V_WP_W;  ///< of the part's origin, in W
 };
 
+/// How deep two bodies overlap, by exact distance between their meshes.
+struct PairOverlap {
+  std::string a, b;
+  double depth_m = 0;
+  Vec3 at_W = Vec3::Zero();
+  double time_s = 0;
+};
+
+/// Two bodies that overlapped at the start by more than the limit.
+struct OverlappingStart {
+  PairOverlap start;
+  std::optional<double> apart_s;  ///< when they first overlapped by the limit or less; empty: never
+};
+
+struct JudgedOverlap {
+  double limit_m = 0;
+  std::size_t poses_judged = 0;
+  /// Of all pairs and judged steps, but for pairs that overlapped at the start: as long as they have not come
+  /// apart, they count only where they are deeper than then, by the limit or more.
+  PairOverlap deepest;
+  std::vector<OverlappingStart> at_start;
+  [[nodiscard]] bool isWithinLimit() const { return deepest.depth_m <= limit_m; }
+};
+
 struct SimulateOptions : ModelOptions {
+  /// Measures the overlap of all pairs of bodies at the start, after every so many steps and at the end; 0:
+  /// never. Not together with is_real_time.
+  int judge_every = 0;
   /// By the system's clock: each step begins when it is due. The steps and their results stay the same.
   bool is_real_time = false;
   const std::atomic<bool>* stop = nullptr;  ///< set it to end early
@@ -32,6 +59,7 @@ struct SimulateOptions : ModelOptions {
 struct SimulateResult {
   std::vector<BodyState> bodies;
   double max_penetration_m = 0;  ///< deepest contact of the run, by the voxmaps
+  std::optional<JudgedOverlap> overlap;
   double kinetic_energy_J = 0;   ///< at the end
   TickTimes step, contact_step;  ///< of all steps; of those with contact
   ModelledCost modelled;
@@ -45,7 +73,8 @@ struct SimulateResult {
   std::optional<RealTime> real_time;  ///< of a run in real time
 };
 
-/// Every part that is not fixed is a dynamic body at its designed pose. Throws LoadError as assemble() does.
+/// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a
+/// quarter of the least clearance that a step states. Throws LoadError as assemble() does.
 VPS_SCENES_API SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
 
 }  // namespace vps::scenes::inline v0

@@ -26,7 +26,7 @@ void keep(Deepest& deepest, double depth_m, const Vec3& p_S) {
 
 /// Exact signed distance of a point whose distance is at most most_m, which bounds the search.
 double signedDistance(const JudgedBody& solid, const Vec3& p_S, double most_m) {
-  return solid.model->surface->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
+  return solid.model->solid->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
 }
 
 /// Deepest point of segment ab in the solid, to kCertain_m.
@@ -39,7 +39,7 @@ Deepest deepestOnSegment(const JudgedBody& solid, const Vec3& a, const Vec3& b) 
   Deepest deepest;
   std::array<Piece, 64> stack;  // bisection to kCertain_m: 64 levels would be an edge of 10^13 m
   std::size_t count = 0;
-  const double f_a = solid.model->surface->signedDistance(a),
+  const double f_a = solid.model->solid->signedDistance(a),
                f_b = signedDistance(solid, b, std::abs(f_a) + (b - a).norm());
   keep(deepest, -f_a, a);
   keep(deepest, -f_b, b);
@@ -108,7 +108,7 @@ Deepest deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& 
 }  // namespace
 
 JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
-  const Mesh& mesh = model->surface->mesh();
+  const Mesh& mesh = model->solid->mesh();
   std::vector<SharpEdge> edges;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});

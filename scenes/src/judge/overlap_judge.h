@@ -15,7 +15,7 @@ struct SharpEdge {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
 };
 
-/// A part as the judge sees it. The surface decides; the map only proves what is outside, and the shell gives
+/// A part as the judge sees it. The solid decides; the map only proves what is outside, and the shell gives
 /// probes on faces. All three are needed.
 struct JudgedBody {
   std::shared_ptr<const PartModel> model;
@@ -34,8 +34,9 @@ struct Penetration {
 /// Measures along every sharp edge of both parts and at the shells' points on faces. An edge is bisected
 /// until no point on it can be deeper than the result by kCertain_m (the signed distance is 1-Lipschitz along
 /// the edge). Two surfaces that cross do so at an edge of one of them. So only overlaps of smooth faces can
-/// be missed: those that lie between two face points, or are smaller than the facets' own deviation. For
-/// closed meshes.
+/// be missed: those that lie between two face points, or are smaller than the facets' own deviation. What is
+/// inside of a faulty mesh is its Solid's answer; in the middle of a hole, where the signed distance jumps, a
+/// point may be missed.
 class OverlapJudge {
  public:
   static constexpr double kCertain_m = 0.5e-6;

@@ -33,7 +33,7 @@ OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
   if (!samples.empty()) judged.insert(samples.size() - 1);
 
   OverlapVerdict verdict;
-  const Box box = bounds(moving.model->surface->mesh());
+  const Box box = bounds(moving.model->solid->mesh());
   const Pose* last = nullptr;
   for (const std::size_t i : judged) {
     if (stop != nullptr && stop->load()) break;

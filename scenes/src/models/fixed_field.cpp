@@ -17,14 +17,14 @@ bool isInPlace(const Pose& X_WP) {
   return X_WP.R.isIdentity(0) && X_WP.p.isZero(0);
 }
 
-PlacedMesh placedMesh(const FieldPart& part) {
-  return {part.model->mesh.get(), part.placed.X_WP};
+PlacedSolid placedSolid(const FieldPart& part) {
+  return {part.model->solid.get(), part.placed.X_WP};
 }
 
 /// The first part's map in W: its own, where its frame is W's.
 std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& order) {
   if (part.model->map && !order.rebuilds_maps && isInPlace(part.placed.X_WP)) return part.model->map;
-  VoxMap map = cookVoxMap({placedMesh(part)}, voxMapSettings(order.fidelity));
+  VoxMap map = cookVoxMap({placedSolid(part)}, voxMapSettings(order.fidelity));
   if (part.kept_P.empty()) return std::make_shared<VoxMap>(std::move(map));
   std::vector<Box> kept_W;
   for (const Box& box : part.kept_P) kept_W.push_back(moved(box, part.placed.X_WP));
@@ -39,7 +39,7 @@ std::shared_ptr<const VoxMap> mapOf(const FieldOrder& order) {
   std::shared_ptr<const VoxMap> map = order.below;
   for (std::size_t i = map ? order.below_count : 0; i < order.parts.size() && !isStopped(order); ++i) {
     const FieldPart& part = order.parts[i];
-    map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, placedMesh(part))) : firstMap(part, order);
+    map = map ? std::make_shared<VoxMap>(mountVoxMap(*map, placedSolid(part))) : firstMap(part, order);
   }
   return map;
 }
@@ -87,7 +87,7 @@ CookedField cookField(const FieldOrder& order) {
   if (order.has_mesh) models.mesh = meshOf(order);
   for (const FieldPart& part : order.parts) {
     field.parts.push_back(part.placed);
-    models.surfaces.push_back({part.model->surface, part.placed.X_WP});
+    models.surfaces.push_back({part.model->solid, part.placed.X_WP});
   }
   field.shape = std::make_unique<bullet::Shape>(std::move(models));
   field.wall_s = wallSeconds() - begun_s;

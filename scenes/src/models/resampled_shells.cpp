@@ -14,7 +14,7 @@ namespace {
 
 std::shared_ptr<const PointShell> coarserShell(const PartModel& part, const PartModelPlan& planned,
                                                const PointShellSettings& settings) {
-  auto shell = std::make_shared<PointShell>(buildPointShell(*part.mesh, settings, part.name));
+  auto shell = std::make_shared<PointShell>(buildPointShell(*part.solid, settings, part.name));
   if (planned.kept_P.empty()) return shell;
   return std::make_shared<PointShell>(croppedShell(*shell, planned.kept_P));
 }

@@ -32,13 +32,13 @@ bool isEqualGeometry(const Mesh& a, const Mesh& b) {
 namespace {
 
 /// Builds a part's map, or takes it from the cache.
-std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const VoxMapSettings& settings,
+std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, const VoxMapSettings& settings,
                                     const ModelOptions& options) {
   const std::string& name = part.part.name;
   MeshReport report;
-  auto map = std::make_shared<VoxMap>(options.cache != nullptr
-                                          ? options.cache->build(part.part.mesh, settings, name, {}, &report)
-                                          : buildVoxMap(part.part.mesh, settings, name, {}, &report));
+  auto map = std::make_shared<VoxMap>(
+      options.cache != nullptr ? options.cache->build(part.part.mesh, solid, settings, name, {}, &report)
+                               : buildVoxMap(solid, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
     options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
@@ -73,12 +73,13 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
                      const ModelOptions& options, PartModel& model) {
   BuildTimes times;
   double begun_s = wallSeconds();
-  if (planned.has_map && !model.map) model.map = mapOf(scene_part, voxMapSettings(fidelity), options);
+  if (planned.has_map && !model.map)
+    model.map = mapOf(scene_part, *model.solid, voxMapSettings(fidelity), options);
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
   if (planned.has_shell && !model.shell)
     model.shell = std::make_shared<PointShell>(
-        buildPointShell(scene_part.part.mesh, pointShellSettings(fidelity), scene_part.part.name));
+        buildPointShell(*model.solid, pointShellSettings(fidelity), scene_part.part.name));
   scene_part.is_cropped = !planned.kept_P.empty();
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
@@ -104,11 +105,11 @@ std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const M
     if (!is_modelled && !part.model) continue;
     PartModel model =
         startingModel(part, planned.same_as ? scene.parts[*planned.same_as].model.get() : nullptr);
+    if (is_modelled && !model.solid) model.solid = std::make_shared<const Solid>(*model.mesh, part.part.name);
     if (planned.same_as)
       part.is_cropped = false;
     else
       times[i] = buildPart(part, planned, scene.fidelity, options, model);
-    if (is_modelled && !model.surface) model.surface = buildSurface(*model.mesh);
     part.model = std::make_shared<const PartModel>(std::move(model));
   }
   if (progress) progress("modelling", 1);

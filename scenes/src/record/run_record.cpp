@@ -101,7 +101,9 @@ std::string programVersion() {
 #else
   const char* precision = "float";
 #endif
-  return std::string(VPS_VERSION_STRING) + ", compiler " + __VERSION__ + ", Bullet " + precision;
+  // Not with +: GCC 12 takes that for an overflow.
+  std::string words(VPS_VERSION_STRING);
+  return words.append(", compiler " __VERSION__ ", Bullet ").append(precision);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -202,6 +202,8 @@ class SceneReader {
       if (&other != &part && other.part.name == part.part.name)
         keys.failWhole("is the second part named '" + part.part.name + "'; give it another 'name'");
     keys.pose("pose", part.X_WP);
+    keys.numbers("velocity_m_s", 3, part.V_WP_W.v.data());
+    keys.numbers("angular_velocity_rad_s", 3, part.V_WP_W.w.data());
     readFields(keys, part, kPartKeys);
     readColor(keys, part.part.color);
   }

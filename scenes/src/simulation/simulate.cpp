@@ -7,6 +7,7 @@
 #include "core/tick_times.h"
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
+#include "simulation/body_overlaps.h"
 #include "simulation/physics_clock.h"
 #include "simulation/simulation.h"
 #include "vps/load_error.h"
@@ -61,6 +62,8 @@ class StepPacer {
 SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
+  if (options.judge_every > 0 && options.is_real_time)
+    throw LoadError(scene.file, "", "overlap is measured between the steps, which real time has no time for");
   const double begun_s = wallSeconds();
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything);
   buildModels(scene, plan, options);
@@ -70,6 +73,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     if (scene.parts[i].is_fixed) continue;
     simulation.addBody(i, scene.parts[i].X_WP);
+    simulation.setTwist(i, scene.parts[i].V_WP_W);
     moving.push_back(i);
   }
   SimulateResult result;
@@ -84,6 +88,15 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     return bodies;
   };
   const auto steps = static_cast<long>(std::lround(seconds / dt_s));
+  std::optional<BodyOverlaps> overlaps;
+  const auto judge = [&](double time_s) {
+    for (const std::size_t i : moving) overlaps->move(i, simulation.pose(i));
+    overlaps->judge(time_s);
+  };
+  if (options.judge_every > 0) {
+    overlaps.emplace(scene);
+    overlaps->judgeStart();
+  }
   StepPacer pacer(dt_s, options.is_real_time);
   for (long i = 0; i < steps && !(options.stop != nullptr && options.stop->load()); ++i) {
     pacer.wait();
@@ -95,12 +108,15 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
     all.add(us);
     if (touch.contacts > 0) in_contact.add(us);
     result.max_penetration_m = std::max(result.max_penetration_m, touch.depth_m);
+    if (overlaps && ((i + 1) % options.judge_every == 0 || i + 1 == steps))
+      judge(static_cast<double>(i + 1) * dt_s);
     if (options.trace) options.trace(static_cast<double>(i + 1) * dt_s, states(), touch.depth_m);
     if (options.progress)
       options.progress("simulating", static_cast<double>(i + 1) / static_cast<double>(steps));
   }
   result.real_time = pacer.finish();
   result.bodies = states();
+  if (overlaps) result.overlap = overlaps->result();
   result.kinetic_energy_J = simulation.kineticEnergy();
   result.step = all.summary();
   result.contact_step = in_contact.summary();

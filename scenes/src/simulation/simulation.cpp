@@ -220,6 +220,13 @@ void Simulation::removeBody(std::size_t part) {
   world_->remove(part);
 }
 
+void Simulation::setTwist(std::size_t part, const Twist& V_WP_W) {
+  const DynamicBody& b = world_->bodies.at(part);
+  const Vec3 p_PB_W = pose(part).R * b.frame.X_PB.p;
+  b.body->setLinearVelocity(bullet::toBt(Vec3(V_WP_W.v + V_WP_W.w.cross(p_PB_W))));
+  b.body->setAngularVelocity(bullet::toBt(V_WP_W.w));
+}
+
 void Simulation::grasp(std::size_t part, const Pose& X_PG, const CouplingGains& gains) {
   World& w = *world_;
   w.uncouple();

@@ -15,12 +15,12 @@ ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSamp
   const double error_m = solid.model->map->sampleError_m();
   const double least_m = estimate_m.empty() ? 0 : *std::min_element(estimate_m.begin(), estimate_m.end());
   const double cutoff_m = std::max(least_m + 2 * error_m, error_m);
-  std::vector<MeshDistance::Closest> found(samples.size());
+  std::vector<Solid::Closest> found(samples.size());
   std::vector<double> exact(samples.size(), std::numeric_limits<double>::infinity());
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     if (estimate_m[i] > cutoff_m || estimate_m[i] >= solid.model->map->band_m()) return;
     const Vec3 p_S = X_SB * samples[i].p;
-    found[i] = solid.model->surface->closest(p_S);
+    found[i] = solid.model->solid->closest(p_S);
     const bool is_inside = (p_S - found[i].q).dot(found[i].normal) < 0;
     exact[i] = is_inside ? -found[i].distance_m : found[i].distance_m;
   });

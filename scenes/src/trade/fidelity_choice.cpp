@@ -13,7 +13,7 @@
 #include "trade/surface_samples.h"
 #include "vps/load_error.h"
 #include "vps/map_estimate.h"
-#include "vps/mesh_distance.h"
+#include "vps/solid.h"
 #include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes::inline v0 {
@@ -33,21 +33,21 @@ constexpr double kExpectedOverKept =
 
 /// Points on and near a part's surface, with their exact distances.
 struct Check {
+  Solid solid;
   std::vector<Vec3> points;
   std::vector<double> exact_m;
 };
 
 Check makeCheck(const Mesh& mesh, double reach_m) {
-  Check check;
+  Check check{Solid(mesh), {}, {}};
   const double spacing_m = std::sqrt(area(mesh) / static_cast<double>(kSamples));
-  const MeshDistance exact(mesh);
   SeededDraw draw(7);
   for (const SurfaceSample& sample : sampleSurface(mesh, spacing_m, bounds(mesh))) {
     if (sample.area_m2 == 0 || draw() * static_cast<double>(kSamples) * sample.area_m2 > 2 * area(mesh))
       continue;
     const Vec3 aside = Vec3(draw() - 0.5, draw() - 0.5, draw() - 0.5) * (2 * reach_m);
     check.points.push_back(sample.p + aside);
-    check.exact_m.push_back(exact.signedDistance(check.points.back()));
+    check.exact_m.push_back(check.solid.signedDistance(check.points.back()));
   }
   return check;
 }
@@ -110,8 +110,7 @@ double Chooser::worstError(double voxel_m, double enough_m) {
   settings.voxel_m = voxel_m;
   for (std::size_t i = 0; i < scene_.parts.size() && worst_m <= enough_m; ++i)
     worst_m = std::max(
-        worst_m,
-        errorOf(buildVoxMap(scene_.parts[i].part.mesh, settings, scene_.parts[i].part.name), checks_[i]));
+        worst_m, errorOf(buildVoxMap(checks_[i].solid, settings, scene_.parts[i].part.name), checks_[i]));
   return worst_m;
 }
 

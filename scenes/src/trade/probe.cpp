@@ -56,13 +56,13 @@ Probe::Probe(const Scene& scene, std::vector<Pose> poses, const Progress& progre
     near_moving.add(box.max);
   }
   for (spacing_m_ = kFiner * scene.fidelity.spacing_m;; spacing_m_ *= 1.4) {
-    moving_body_.samples = sampleSurface(moving_body_.body.model->surface->mesh(), spacing_m_, near_moving);
+    moving_body_.samples = sampleSurface(moving_body_.body.model->solid->mesh(), spacing_m_, near_moving);
     std::size_t most = moving_body_.samples.size();
     for (SampledBody& fixed : mounted_) {
       std::vector<Pose> X_BPs;
       for (const Pose& X_WP : poses_) X_BPs.push_back(fixed.X_WB.inverse() * X_WP);
-      fixed.samples = sampleSurface(fixed.body.model->surface->mesh(), spacing_m_,
-                                    boxAt(moving_body_.body.model->surface->mesh(), X_BPs));
+      fixed.samples = sampleSurface(fixed.body.model->solid->mesh(), spacing_m_,
+                                    boxAt(moving_body_.body.model->solid->mesh(), X_BPs));
       most = std::max(most, fixed.samples.size());
     }
     if (most <= kMaxSamples) break;

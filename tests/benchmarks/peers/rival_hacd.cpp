@@ -63,7 +63,7 @@ std::shared_ptr<Hulls> cut(const Mesh& mesh, double concavity_m) {
 }  // namespace
 
 std::optional<dynamics::Engine> hacdEngine(double concavity_m) {
-  const auto kept = std::make_shared<std::map<std::shared_ptr<const MeshDistance>, std::shared_ptr<Hulls>>>();
+  const auto kept = std::make_shared<std::map<std::shared_ptr<const Solid>, std::shared_ptr<Hulls>>>();
   dynamics::Engine engine;
   engine.name = "HACD";
   engine.install = [](btCollisionDispatcher&, dynamics::Mode) {};

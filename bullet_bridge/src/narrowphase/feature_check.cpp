@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/feature_check.h"
+
+#include <algorithm>
+
+namespace vps::bullet::inline v0 {
+
+namespace {
+
+// Contacts of a pair added in one check. assumed: a body is held by six, and the next check adds more.
+constexpr std::size_t kMostAdded = 8;
+// A feature's index in a contact's key, by kind, so that no two contacts have the same one. Edges have the
+// indices of edges(), as crossings do; they are renumbered so as not to meet them.
+constexpr std::uint32_t kCorner = 1U << 28, kFacet = 2U << 28, kEdge = 4U << 28;
+
+Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
+  return (X_WS[0] * pair.shape[0]->X_SM()).inverse() * (X_WS[1] * pair.shape[1]->X_SM());
+}
+
+void findContacts(const PairView& start, const EndPoses& end, PairState& state,
+                  std::vector<FeatureContact>& found) {
+  found.clear();
+  const Pose X_01_end = poseBetween(start, end.X_WS);
+  state.features.check(start.shape[0]->features(), start.shape[1]->features(), poseBetween(start, start.X_WS),
+                       X_01_end, found);
+}
+
+std::uint32_t codeOf(const FeatureContact& c, int i) {
+  const bool is_corner = (c.kind == FeatureContact::Kind::CornerOnFacet) == (i == 0);
+  const std::uint32_t kind = c.kind == FeatureContact::Kind::EdgeOnEdge ? kEdge
+                             : is_corner                                ? kCorner
+                                                                        : kFacet;
+  return kind | (c.feature[i] & (kCorner - 1));
+}
+
+// Facets of one plane, and edges that meet in a corner, give the same contact several times.
+bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*>& chosen) {
+  constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed; a quarter of a degree
+  return std::any_of(chosen.begin(), chosen.end(), [&](const FeatureContact* other) {
+    return other->plane_of == c.plane_of && other->n.dot(c.n) > kCosSame &&
+           (other->p[0] - c.p[0]).norm() < kNear_m;
+  });
+}
+
+}  // namespace
+
+bool hasFeatures(const PairView& pair, const Settings& settings) {
+  if (settings.contact_method != ContactMethod::Constraint || !settings.use_surfaces) return false;
+  return pair.shape[0] && pair.shape[1] && !pair.shape[0]->features().isEmpty() &&
+         !pair.shape[1]->features().isEmpty();
+}
+
+void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts) {
+  if (!hasFeatures(pair, settings)) return;
+  const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
+  for (Candidate& c : contacts)
+    if (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)) c.rest_m = rest_m;
+}
+
+void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
+                        std::vector<MissedContact>& out) {
+  thread_local std::vector<FeatureContact> found;
+  findContacts(start, end, state, found);
+  if (found.empty()) return;
+  thread_local std::vector<const FeatureContact*> chosen;
+  chosen.clear();
+  std::stable_sort(found.begin(), found.end(),
+                   [](const FeatureContact& a, const FeatureContact& b) { return a.share < b.share; });
+  for (const FeatureContact& c : found)
+    if (chosen.size() < kMostAdded && !isRepeated(c, chosen)) chosen.push_back(&c);
+  const Pose X_01 = poseBetween(start, start.X_WS), X_01_end = poseBetween(start, end.X_WS);
+  const Pose X_WM0 = start.X_WS[0] * start.shape[0]->X_SM();
+  const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
+  for (const FeatureContact* c : chosen) {
+    Candidate at;
+    at.n_W = X_WM0.R * c->normal_0(X_01);
+    at.p_W = X_WM0 * c->p[0];
+    at.distance_m = c->gap_m(X_01);
+    at.id = codeOf(*c, 0);
+    at.crossed = codeOf(*c, 1) + 1;
+    at.rest_m = rest_m;
+    at.plane_of = c->kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c->plane_of;
+    MissedContact missed;
+    missed.point = state.writer->put(at, start.wrapper, state.motion);
+    for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
+    missed.end_gap_m = c->gap_m(X_01_end);
+    missed.kept_m = std::min(rest_m, c->start_m);
+    missed.rest_m = rest_m;
+    out.push_back(missed);
+  }
+}
+
+double freeShareOf(const PairView& start, const EndPoses& end, PairState& state) {
+  thread_local std::vector<FeatureContact> found;
+  findContacts(start, end, state, found);
+  double share = 1;
+  for (const FeatureContact& c : found) share = std::min(share, c.share);
+  return share;
+}
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Keeps corners, sharp edges and facets of two bodies apart, by the exact motion of a solved step.
+#pragma once
+
+#include <vector>
+
+#include "narrowphase/pair_state.h"
+#include "narrowphase/pair_view.h"
+#include "solver/step_check.h"
+
+namespace vps::bullet::inline v0 {
+
+/// Overlaps below this share of the contact margin are left to the solver's push. assumed: 1 um of 20 um, far
+/// above what the solver leaves and below what matters.
+constexpr double kToleratedShare = 0.05;
+
+/// True if both bodies have exact surfaces, whose features can be compared.
+bool hasFeatures(const PairView& pair, const Settings& settings);
+
+/// Marks the contacts at sharp features, which bullet::Solver keeps at their rest gap.
+void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts);
+
+/// Both bodies' shapes at the end of a step.
+struct EndPoses {
+  Pose X_WS[2];
+};
+
+/// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
+/// @param start  at the start of the step
+void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
+                        std::vector<MissedContact>& out);
+
+/// The share of the motion up to which no features come too near; 1 if none do.
+double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);
+
+}  // namespace vps::bullet::inline v0

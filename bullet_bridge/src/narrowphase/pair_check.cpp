@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/pair_check.h"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
+#include "native_shapes/primitive.h"
+
+namespace vps::bullet::inline v0 {
+
+namespace {
+
+// An overlap that existed before the step may grow by this share of that: rounding.
+constexpr double kGrowthShare = 0.1;
+// Contacts added for a pair in one check. assumed: a body is held by six, and the next check adds more.
+constexpr std::size_t kMostAdded = 8;
+// The field's error in voxels, up to which points count as possibly inside: at edges, and on faces.
+constexpr double kEdgeError = 0.45, kFaceError = 0.05;
+
+Pose between(const Pose& X_start, const Pose& X_end, double share) {
+  const Mat3 R = rotationFromVector(share * rotationVector(X_end.R * X_start.R.transpose()));
+  return {Mat3(R * X_start.R), X_start.p + share * (X_end.p - X_start.p)};
+}
+
+double turn_rad(const Mat3& R) {
+  return rotationVector(R).norm();
+}
+
+// The points of a contact on both bodies.
+void pointsOf(const Candidate& c, Vec3 (&on)[2]) {
+  on[c.side] = c.p_W;
+  on[1 - c.side] = c.p_W - (c.side == 0 ? 1 : -1) * c.distance_m * c.n_W;
+}
+
+/// Displacements of both bodies.
+struct Displacement {
+  Pose D[2];
+
+  [[nodiscard]] Vec3 normal(const Candidate& c) const {
+    if (c.plane_of != Candidate::kBetween) return D[c.plane_of].R * c.n_W;
+    return (D[0].R * c.n_W + D[1].R * c.n_W).normalized();
+  }
+  /// The contact where its points and its plane go.
+  [[nodiscard]] Candidate moved(const Candidate& c) const {
+    Vec3 on[2];
+    pointsOf(c, on);
+    for (int i = 0; i < 2; ++i) on[i] = D[i] * on[i];
+    Candidate to = c;
+    to.n_W = normal(c);
+    to.p_W = on[c.side];
+    to.distance_m = to.n_W.dot(on[0] - on[1]);
+    return to;
+  }
+  [[nodiscard]] Displacement inverse() const { return {{D[0].inverse(), D[1].inverse()}}; }
+};
+
+// True if the overlap at the end is more than tolerated, and more than it was.
+bool isMissed(double start_m, double end_m, double tolerated_m) {
+  return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
+}
+
+// True if a place on an edge, as a share of its length, is not beyond its end. Where a curved edge goes on in
+// another segment, a crossing may lie past the joint, as findCrossings() allows.
+bool isOn(const EdgeSegment& s, double at, double gap_m) {
+  constexpr double kPastShare = 0.18;
+  const double past = kPastShare * std::abs(gap_m) / (s.to - s.from).norm();
+  return at >= (s.ends[0] ? 0 : -past) && at <= 1 + (s.ends[1] ? 0 : past);
+}
+
+/// Where two edges cross, when the bodies' models are at X_WM. False: beyond the end of one of them.
+bool crossAt(Candidate& c, const SideView& body0, const SideView& body1) {
+  const EdgeSegment &s0 = body0.shape->edges().segments()[c.id],
+                    &s1 = body1.shape->edges().segments()[c.crossed - 1];
+  const Vec3 from0 = body0.X_WM * s0.from, from1 = body1.X_WM * s1.from;
+  const Vec3 d0 = body0.X_WM.R * (s0.to - s0.from), d1 = body1.X_WM.R * (s1.to - s1.from);
+  Vec3 n = d0.cross(d1);
+  const double square = n.squaredNorm();
+  if (!(square > 1e-6 * d0.squaredNorm() * d1.squaredNorm())) return false;
+  const Vec3 r = from1 - from0;
+  const double at0 = r.cross(d1).dot(n) / square, at1 = r.cross(d0).dot(n) / square;
+  n /= std::sqrt(square);
+  if (n.dot(c.n_W) < 0) n = -n;
+  c.p_W = from0 + at0 * d0;
+  c.n_W = n;
+  c.distance_m = n.dot(c.p_W - (from1 + at1 * d1));
+  return isOn(s0, at0, c.distance_m) && isOn(s1, at1, c.distance_m);
+}
+
+// How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
+double overlapOf(Candidate c, const PairView& pair) {
+  if (c.isCrossing() && !crossAt(c, pair.side(0), pair.side(1))) return 0;
+  return std::min(0.0, c.distance_m);
+}
+
+// True if a point is deeper than tolerated in the other side; where that is no solid, always.
+bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tolerated_m) {
+  if (!other.shape || other.shape->models().surfaces.empty()) return true;
+  for (const Surface& surface : other.shape->models().surfaces) {
+    if (surface.sheet) return true;
+    const Vec3 p = (other.X_WM * surface.X_MP).inverse() * p_W;
+    if (surface.distance->signedDistance(p, near_m) < -tolerated_m) return true;
+  }
+  return false;
+}
+
+double voxel_m(const PairView& pair, int i) {
+  return pair.hasMap(i) ? pair.shape[i]->models().map->voxel_m() : 0;
+}
+
+/// Points and crossings that overlap by more than tolerated where the bodies are, by the exact surfaces.
+void findOverlaps(const PairView& pair, Context& context, double tolerated_m, std::vector<Candidate>& found) {
+  found.clear();
+  double cutoff_m = tolerated_m;
+  for (int i = 0; i < 2; ++i) cutoff_m = std::max(cutoff_m, kEdgeError * voxel_m(pair, i));
+  findCandidates(pair, std::min(cutoff_m, queryRange_m(pair)), context, found);
+  std::erase_if(found, [&](Candidate& c) {
+    c.predicted_m = c.distance_m;
+    if (c.isCrossing()) return c.distance_m >= -tolerated_m;
+    const bool is_edge = pair.shape[c.side]->isEdgePoint(c.id);
+    return c.distance_m > (is_edge ? kEdgeError : kFaceError) * voxel_m(pair, 1 - c.side);
+  });
+  const double radius_m = pair.radius_m();
+  const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
+  for (double cell_m = radius_m / 16; found.size() > limit && cell_m < radius_m; cell_m *= 2)
+    reduceByCell(found, cell_m);
+  RelativeMotion still;
+  still.contact_margin_m = context.settings.contact_margin_m;
+  refineAll(pair, still, context.settings, found);
+  std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -tolerated_m; });
+}
+
+// The contact that a point has where the bodies are, if its distance is less than max_m.
+bool refineAt(const PairView& pair, double max_m, const Settings& settings, Candidate& c) {
+  thread_local std::vector<Candidate> one;
+  one.assign(1, c);
+  one[0].distance_m = -max_m;
+  refineAll(pair, RelativeMotion(), settings, one);
+  c = one[0];
+  return std::abs(c.distance_m) < max_m;
+}
+
+}  // namespace
+
+/// Both bodies at other poses than Bullet's.
+struct PairCheck::Placed {
+  btTransform X_WS[2];
+  btCollisionObjectWrapper wrapper0, wrapper1;
+  PairView pair;
+
+  Placed(const PairCheck& check, const Pose (&X)[2])
+      : X_WS{toBt(X[0]), toBt(X[1])},
+        wrapper0(nullptr, check.shape_[0], check.object_[0], X_WS[0], -1, -1),
+        wrapper1(nullptr, check.shape_[1], check.object_[1], X_WS[1], -1, -1),
+        pair(&wrapper0, &wrapper1) {}
+  Placed(const Placed&) = delete;
+  Placed& operator=(const Placed&) = delete;
+};
+
+/// The solved step.
+struct PairCheck::Motion {
+  Pose start[2], end[2];        ///< of the shapes
+  Displacement step;            ///< from start to end
+  Displacement since_selected;  ///< from where the contacts were selected to the end
+  double tolerated_m = 0;
+  double travel_m = 0;     ///< greatest of a point of the smaller body relative to the other body
+  double deviation_m = 0;  ///< greatest from where the selection predicted the point
+  double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
+  double bend_m = 0;                            ///< how far a point's path may bend from its tangent
+};
+
+void PairCheck::setBodies(const PairView& pair) {
+  for (int i = 0; i < 2; ++i) {
+    object_[i] = pair.wrapper[i]->getCollisionObject();
+    shape_[i] = pair.wrapper[i]->getCollisionShape();
+    X_BS_[i] = fromBt(object_[i]->getWorldTransform()).inverse() * pair.X_WS[i];
+  }
+}
+
+void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) {
+  const Selection& selection = state_.selection;
+  if (!selection.is_valid || !object_[0]) return;
+  Motion m;
+  m.tolerated_m = kToleratedShare * state_.context->settings.contact_margin_m;
+  const Pose selected[2] = {selection.X_W0, selection.X_W0 * selection.X_01};
+  for (int i = 0; i < 2; ++i) {
+    m.start[i] = fromBt(object_[i]->getWorldTransform()) * X_BS_[i];
+    m.end[i] = X_WB_end[i] * X_BS_[i];
+    if (!m.end[i].isFinite()) return;
+    m.step.D[i] = m.end[i] * m.start[i].inverse();
+    m.since_selected.D[i] = m.end[i] * selected[i].inverse();
+  }
+  const Placed at_start(*this, m.start);
+  const Vec3 center_W = at_start.pair.center_W();
+  const double radius_m = at_start.pair.radius_m();
+  const Vec3 moved = m.step.D[0] * center_W - m.step.D[1] * center_W;
+  const Vec3 turned = rotationVector(m.step.D[0].R * m.step.D[1].R.transpose());
+  m.turn_rad = turned.norm();
+  m.travel_m = moved.norm() + m.turn_rad * radius_m;
+  if (!(m.travel_m > 0)) return;
+  const std::size_t had = out.size();
+  if (hasFeatures(at_start.pair, state_.context->settings)) {
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, state_, out);
+    if (out.size() > had) state_.is_incomplete = true;
+  }
+  if (m.travel_m <= m.tolerated_m) return;
+  const double dt_s = state_.motion.dt_s;
+  const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
+  m.turn_deviation_rad = (turned - dt_s * selection.V.w).norm();
+  for (int i = 0; i < 2; ++i) {
+    const double angle_rad = vps::bullet::turn_rad(m.step.D[i].R);
+    const double lever_m = radius_m + (center_W - fromBt(object_[i]->getWorldTransform().getOrigin())).norm();
+    m.bend_m += 0.5 * angle_rad * angle_rad * lever_m + angle_rad * m.travel_m;
+  }
+  m.deviation_m = (moved - predicted).norm() + m.turn_deviation_rad * radius_m + m.bend_m;
+
+  thread_local std::vector<Candidate> missed;
+  missed.clear();
+  findAmongRefined(m, missed);
+  if (missed.empty() && out.size() == had && mayMissPoints(m)) findAlongPath(m, missed);
+  if (missed.empty()) return;
+  emit(m, missed, out);
+  state_.is_incomplete = true;
+}
+
+double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
+  if (!state_.selection.is_valid || !object_[0]) return 1;
+  const Pose start[2] = {fromBt(object_[0]->getWorldTransform()) * X_BS_[0],
+                         fromBt(object_[1]->getWorldTransform()) * X_BS_[1]};
+  const EndPoses end = {{X_WB_end[0] * X_BS_[0], X_WB_end[1] * X_BS_[1]}};
+  const Placed at_start(*this, start);
+  if (!end.X_WS[0].isFinite() || !end.X_WS[1].isFinite()) return 1;
+  if (!hasFeatures(at_start.pair, state_.context->settings)) return 1;
+  return freeShareOf(at_start.pair, end, state_);
+}
+
+// Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
+// the deviation is less. Or they were out of reach of this motion in any direction.
+bool PairCheck::mayMissPoints(const Motion& m) const {
+  // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
+  // assumed: 100 rad/s in steps of 1 ms. Sharp features are looked at however fast they turn.
+  constexpr double kMaxTurn_rad = 0.1;
+  if (m.turn_rad > kMaxTurn_rad) return false;
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const bool is_in_reach = !state_.selection.is_of_path &&
+                           (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
+  // Among neighbours, those nearest now and at the predicted end were selected; another becomes nearer if the
+  // part turns otherwise.
+  const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
+  return !is_in_reach || sampling_m > m.tolerated_m;
+}
+
+void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
+  if (state_.selection.refined.size() <= state_.selection.contacts.size() && m.bend_m <= m.tolerated_m)
+    return;
+  const Placed at_end(*this, m.end);
+  const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
+  for (const Candidate& c : state_.selection.refined) {
+    Candidate end = m.since_selected.moved(c);
+    if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
+    const double near_m = std::abs(end.distance_m) + voxel_m(at_end.pair, 1 - c.side);
+    if (c.isCrossing() ? !crossAt(end, side[0], side[1])
+                       : !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m))
+      continue;
+    if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
+    missed.push_back(end);
+  }
+}
+
+void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
+  const Placed at_start(*this, m.start);
+  const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
+  constexpr double kMaxPlaces = 16;
+  const int places = static_cast<int>(std::ceil(std::min(m.travel_m / range_m, kMaxPlaces)));
+  thread_local std::vector<Candidate> entered;
+  for (int k = 1; k <= places && missed.empty(); ++k) {
+    const double share = static_cast<double>(k) / places;
+    const Pose then[2] = {between(m.start[0], m.end[0], share), between(m.start[1], m.end[1], share)};
+    const Placed placed(*this, then);
+    findOverlaps(placed.pair, *state_.context, m.tolerated_m, missed);
+    const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
+    const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
+    entered.clear();
+    for (const Candidate& c : missed) {
+      Candidate start = back.moved(c), end = onward.moved(c);
+      if (c.isCrossing()) {
+        start.distance_m = overlapOf(start, at_start.pair);
+        if (-c.distance_m > m.travel_m) continue;
+      } else if (start.distance_m < -m.tolerated_m) {
+        // It was behind this plane before, so it did not enter through it. The plane that it had then
+        // decides.
+        if (!refineAt(at_start.pair, m.travel_m, state_.context->settings, start)) continue;
+        end = m.step.moved(start);
+      }
+      if (isMissed(start.distance_m, end.distance_m, m.tolerated_m)) entered.push_back(end);
+    }
+    missed.swap(entered);
+  }
+}
+
+void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vector<MissedContact>& out) {
+  for (Candidate& c : missed) c.predicted_m = c.distance_m;
+  const Placed at_start(*this, m.start);
+  reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m);
+  const Displacement back = m.step.inverse();
+  // The contact acts where it is at the end of the step: with its lever and normal there. With the point
+  // moved back and the plane of the other body as it is, the lever would be turned against the normal by the
+  // step's rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the
+  // slope of its thread.
+  Displacement with_body;
+  for (int i = 0; i < 2; ++i) {
+    const Pose X_BS_inverse = X_BS_[i].inverse();
+    with_body.D[i] =
+        Pose(Mat3(Mat3::Identity()), (m.start[i] * X_BS_inverse).p - (m.end[i] * X_BS_inverse).p);
+  }
+  for (const Candidate& end : missed) {
+    const Candidate start = back.moved(end);
+    Candidate acting = with_body.moved(end);
+    acting.distance_m = start.distance_m;
+    MissedContact added;
+    added.point = state_.writer->put(acting, at_start.pair.wrapper, state_.motion);
+    if (!added.point) continue;
+    for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
+    added.end_gap_m = end.distance_m;
+    added.kept_m = overlapOf(start, at_start.pair);
+    out.push_back(added);
+  }
+}
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Looks whether a solved step lets the bodies of a pair overlap, and with which contacts it would not.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
+#include <vector>
+
+#include "narrowphase/contact_candidate.h"
+#include "narrowphase/pair_state.h"
+#include "narrowphase/pair_view.h"
+#include "solver/step_check.h"
+
+namespace vps::bullet::inline v0 {
+
+/// A pair's check of the solved step, in four stages, each only where the one before cannot exclude an
+/// overlap:
+///
+///   1. Bounds of the motion: how far any point moved relative to the other body, and how far from where it
+///   was
+///      predicted.
+///   2. The points that were refined for the step's selection, including those that were left out of it: the
+///      gaps of their planes at the end of the step, exactly. (The solver's are to first order in the
+///      motion.)
+///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
+///   4. A query of all points at the end of the step, and of a fast body at places on its way.
+///
+/// A contact that is missing gets the plane through which the point entered.
+class PairCheck final : public StepCheck {
+ public:
+  explicit PairCheck(PairState& state) : state_(state) {}
+
+  /// To be called in each step before it is solved, since Bullet's wrappers live for one call.
+  void setBodies(const PairView& pair);
+  [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
+  void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
+  double freeShare(const Pose (&X_WB_end)[2]) override;
+
+ private:
+  struct Placed;
+  struct Motion;
+  void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
+  void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
+  [[nodiscard]] bool mayMissPoints(const Motion& motion) const;
+  void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);
+
+  PairState& state_;
+  const btCollisionObject* object_[2] = {nullptr, nullptr};
+  const btCollisionShape* shape_[2] = {nullptr, nullptr};
+  Pose X_BS_[2];
+};
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the narrow phase can say about a step that is solved: which contacts it lacked.
+//
+// Contacts are planes, found for the motion that is predicted before the step. Contact changes that motion: a
+// part that breaks free of a jam turns, an edge that was out of reach meets a wall, and a fast turn bends the
+// path of a point away from its plane. So the solver asks each pair whether the bodies would overlap at the
+// poses that it found, and solves the step again with the contacts that were missing. Source: Fang, Gao et
+// al. and other sequential methods linearise constraints again at the solution; here with a bounded number of
+// rounds.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "vps/pose.h"
+
+class btCollisionObject;
+class btManifoldPoint;
+class btPersistentManifold;
+
+namespace vps::bullet::inline v0 {
+
+/// A contact without which two bodies overlap at the end of the step.
+struct MissedContact {
+  btManifoldPoint* point = nullptr;  ///< new, or one that the solver has, with another plane; null: no room
+  const btCollisionObject* object[2] = {nullptr, nullptr};
+  double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked; negative
+  double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
+  double rest_m = 0;  ///< the gap that the push restores
+};
+
+/// A pair of bodies that checks a solved step.
+class StepCheck {
+ public:
+  virtual ~StepCheck() = default;
+  [[nodiscard]] virtual const btCollisionObject* object(int i) const = 0;
+  /// Appends the contacts that the step lacks.
+  /// @param X_WB_end  where the bodies' frames are at the end of the step
+  virtual void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
+  /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
+  virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
+};
+
+/// The check behind the first manifold of each pair, for the pairs of one installation.
+class StepChecks {
+ public:
+  /// Thread-safe: btCollisionDispatcherMt processes pairs in parallel.
+  void add(const btPersistentManifold* manifold, StepCheck* check);
+  void remove(const btPersistentManifold* manifold);
+  /// Null: not of a pair that checks, or not its first manifold. Takes no lock: Bullet solves after all pairs
+  /// have been processed.
+  [[nodiscard]] StepCheck* find(const btPersistentManifold* manifold) const;
+
+ private:
+  std::mutex mutex_;
+  std::map<const btPersistentManifold*, StepCheck*> checks_;
+};
+
+}  // namespace vps::bullet::inline v0

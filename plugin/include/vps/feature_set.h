@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Corners, sharp edges and facets of a part: what two polyhedra first touch with.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "vps/export.h"
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+enum class FeatureKind : std::uint8_t { Corner, Edge, Facet };
+
+/// A sharp edge that is not a groove, or an edge that does not have exactly two facets.
+struct FeatureEdge {
+  std::uint32_t from = 0, to = 0;               ///< vertices
+  Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
+  bool has_faces = false;                       ///< false: `into` is unknown
+  /// At an end it goes on in one other edge, which turns by less than 8 degrees.
+  bool is_curved = false;
+  Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
+};
+
+/// The features of one or several meshes in one frame, with a tree of boxes over each kind.
+class VPS_API FeatureSet {
+ public:
+  FeatureSet();
+  ~FeatureSet();
+  FeatureSet(FeatureSet&&) noexcept;
+  FeatureSet& operator=(FeatureSet&&) noexcept;
+
+  /// Adds a mesh placed by X_MP; call build() afterwards. Facets without area are left out. O(n log n).
+  /// @param is_sheet  its facets are met from both sides
+  void append(const Mesh& mesh, const Pose& X_MP, bool is_sheet);
+  /// O(n log n).
+  void build();
+
+  [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
+  [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
+  /// True if a neighbour turns by less than 8 degrees: the facet stands for a curved surface.
+  [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
+  [[nodiscard]] const std::vector<FeatureEdge>& edges() const { return edges_; }
+  /// Vertices at which edges end.
+  [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
+  [[nodiscard]] bool isEmpty() const { return facets_.empty(); }
+  /// The edges that end at a corner, as indices of edges().
+  [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t corner) const {
+    return std::span(edges_at_).subspan(first_edge_[corner], first_edge_[corner + 1] - first_edge_[corner]);
+  }
+  [[nodiscard]] const Box& box() const { return box_; }
+  [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
+
+  /// The features whose own boxes overlap `box`, in a fixed order; what `found` held is lost.
+  void find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const;
+
+ private:
+  void markCurvedEdges(std::size_t first);
+
+  std::vector<Vec3> vertices_;
+  std::vector<std::array<std::uint32_t, 3>> facets_;
+  static constexpr std::uint8_t kTwoSided = 1, kCurved = 2;
+  std::vector<std::uint8_t> facet_flags_;
+  std::vector<FeatureEdge> edges_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::uint32_t> edges_at_, first_edge_;
+  Box box_;
+  struct Tree;
+  std::unique_ptr<const Tree> trees_[3];
+};
+
+}  // namespace vps::inline v0

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How deep two meshes overlap, by exact distance and exact crossings of edges with faces, without voxmaps.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "vps/box.h"
+#include "vps/export.h"
+#include "vps/solid.h"
+
+namespace vps::inline v0 {
+
+/// A solid with the edges of its surface and a tree of its triangles' boxes.
+class VPS_API OverlapMesh {
+ public:
+  /// O(n log n).
+  explicit OverlapMesh(std::shared_ptr<const Solid> solid);
+  ~OverlapMesh();
+  OverlapMesh(OverlapMesh&&) noexcept;
+  OverlapMesh& operator=(OverlapMesh&&) noexcept;
+
+  [[nodiscard]] const Solid& solid() const { return *solid_; }
+  [[nodiscard]] const Mesh& mesh() const { return solid_->mesh(); }
+  [[nodiscard]] const Box& box() const { return box_; }
+  /// Vertex pairs of all edges between faces that are not in one plane, and of all that do not have exactly
+  /// two faces.
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+  /// Appends where segment ab crosses the surface, as fractions of the segment, not sorted. A crossing at the
+  /// border of two triangles may appear twice.
+  void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
+
+ private:
+  struct Triangles;
+  std::shared_ptr<const Solid> solid_;
+  Box box_;
+  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::unique_ptr<const Triangles> triangles_;
+};
+
+struct Overlap {
+  double depth_m = 0;       ///< 0 when free
+  Vec3 p_W = Vec3::Zero();  ///< the deepest point found
+};
+
+/// Depths are found to within this.
+inline constexpr double kOverlapCertain_m = 0.1e-6;
+
+/// The deepest point of the edges of each mesh in the other one. Surfaces that intersect do so at an edge of
+/// one of them, so no overlap is missed; the point of a face that is deepest in the other mesh is represented
+/// by the other's edges there. O(edges near the other mesh x log triangles). Allocates. Thread-safe.
+VPS_API Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b,
+                               const Pose& X_WB);
+
+}  // namespace vps::inline v0

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A part's surface and what is inside of it: the one place where the sign of a distance is decided.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vps/export.h"
+#include "vps/mesh.h"
+#include "vps/mesh_distance.h"
+
+namespace vps::inline v0 {
+
+class Interior;
+struct RepairedMesh;
+
+/// A repaired mesh (see repairMesh()) with its exact signed distance. The voxmap, the pointshell, the overlap
+/// judge and the Bullet bridge all take surface and sign from the same Solid, so that they agree.
+///
+/// The sign is that of the angle-weighted pseudonormal at the nearest point where the mesh is closed,
+/// consistently oriented and free of crossings. Otherwise inside is where the generalised winding number of
+/// the repaired mesh exceeds 0.5, within the mesh's box. Of such a mesh, facets around which both rules are
+/// known to give the same answer are found in advance, so that most queries need no winding number.
+///
+/// In the middle of a hole the sign changes where there is no surface: there the signed distance jumps by up
+/// to the hole's width.
+class VPS_API Solid {
+ public:
+  using Closest = MeshDistance::Closest;
+
+  /// Merges equal vertices, repairs the mesh and prepares it for queries. A mesh with shared vertices and
+  /// without faults keeps its facets in their order. O(n log n); with faults some six winding numbers for
+  /// each facet. Throws LoadError as requireUsable(), naming the part.
+  explicit Solid(const Mesh& mesh, const std::string& part = "");
+  /// A surface without an inside, used as it is: every point is outside, normals are the facets' own. For
+  /// surfaces that are met from either side. Accepts an empty mesh.
+  static Solid sheet(const Mesh& mesh);
+  /// The same solid, larger by a factor. Costs as much as building it.
+  [[nodiscard]] Solid scaled(double factor) const;
+  Solid(Solid&&) noexcept;
+  Solid& operator=(Solid&&) noexcept;
+  ~Solid();
+
+  /// The nearest point of the surface; as MeshDistance::closest(), but its normal points out of the solid:
+  /// its product with p - q has the sign of the distance. Where the facets' pseudonormal does not, the normal
+  /// is the direction between p and q. Thread-safe; never allocates. O(log n) typical.
+  [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
+  /// Negative inside; +max_m if no surface is nearer than that, on either side.
+  [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
+  [[nodiscard]] bool isInside(const Vec3& p) const noexcept;
+
+  /// Of single facets; see MeshDistance. Triangles are numbered as in mesh().
+  [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept {
+    return distance_.featureNormal(triangle, feature);
+  }
+  [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept {
+    return distance_.smoothNormal(triangle, q);
+  }
+  [[nodiscard]] Mat3 smoothCurvature(std::uint32_t triangle) const noexcept {
+    return distance_.smoothCurvature(triangle);
+  }
+
+  /// The repaired surface: facets face out, without duplicates, inner walls and facets within the solid.
+  [[nodiscard]] const Mesh& mesh() const noexcept { return distance_.mesh(); }
+  /// What was found and repaired. `certain_share` is that of a voxmap and is not set.
+  [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
+  /// True if pseudonormals do not decide everywhere.
+  [[nodiscard]] bool isByWinding() const noexcept { return interior_ != nullptr; }
+
+  /// For the library's own use; null if pseudonormals decide everywhere.
+  [[nodiscard]] const Interior* interior() const noexcept { return interior_.get(); }
+
+ private:
+  explicit Solid(RepairedMesh&& repaired);
+  Solid(const Mesh& surface, const MeshReport& report);
+
+  MeshDistance distance_;
+  MeshReport report_;
+  std::unique_ptr<const Interior> interior_;
+  /// By triangle, if interior_ is not null: up to this distance the pseudonormal's sign is the winding
+  /// number's.
+  std::vector<float> sure_m_;
+  bool is_sheet_ = false;
+};
+
+}  // namespace vps::inline v0

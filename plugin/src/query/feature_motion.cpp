@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/feature_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/triangle_distance.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+using Kind = FeatureContact::Kind;
+
+/// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
+struct Features {
+  Vec3 own[3];  ///< of part 0, in its own frame
+  Vec3 a[3], way[3], b[3];
+  int a_count = 0, b_count = 0;
+
+  void moveTo(double share, Vec3 (&at)[3]) const {
+    for (int i = 0; i < a_count; ++i) at[i] = a[i] + share * way[i];
+  }
+};
+
+/// The nearest points of two features.
+struct Nearest {
+  Vec3 p = Vec3::Zero(), q = Vec3::Zero();  // on part 0, on part 1
+  bool is_end = false;                      // of two edges: at an end of one of them
+};
+
+// Ericson, Real-Time Collision Detection, section 5.1.9.
+Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
+  const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
+  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
+  const double square = a * e - b * b;
+  double s = square > 1e-12 * a * e ? std::clamp((b * f - c * e) / square, 0.0, 1.0) : 0.0;
+  double t = (b * s + f) / e;
+  if (t < 0) {
+    t = 0;
+    s = std::clamp(-c / a, 0.0, 1.0);
+  } else if (t > 1) {
+    t = 1;
+    s = std::clamp((b - c) / a, 0.0, 1.0);
+  }
+  return {p1 + s * d1, p2 + t * d2, s <= 0 || s >= 1 || t <= 0 || t >= 1};
+}
+
+Nearest nearestOf(Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]) {
+  if (kind == Kind::CornerOnFacet) return {a[0], closestOnTriangleInline(a[0], b[0], b[1], b[2]).q};
+  if (kind == Kind::FacetOnCorner) return {closestOnTriangleInline(b[0], a[0], a[1], a[2]).q, b[0]};
+  return nearestOfSegments(a[0], a[1], b[0], b[1]);
+}
+
+int pointsOf(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]) {
+  const std::vector<Vec3>& v = part.vertices();
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge& edge = part.edges()[feature];
+    out[0] = v[edge.from];
+    out[1] = v[edge.to];
+    return 2;
+  }
+  if ((kind == Kind::CornerOnFacet) == (i == 0)) {
+    out[0] = v[part.corners()[feature]];
+    return 1;
+  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = v[part.facets()[feature][k]];
+  return 3;
+}
+
+/// Where features reach a distance.
+struct Reach {
+  double share = 0;
+  Nearest nearest;
+};
+
+// Up to which share of the step the slab between both features along n stays wider than least_m.
+double slabShare(const Features& f, const Vec3& n, double least_m) {
+  double top = n.dot(f.b[0]);
+  for (int i = 1; i < f.b_count; ++i) top = std::max(top, n.dot(f.b[i]));
+  double share = 2;
+  for (int i = 0; i < f.a_count; ++i) {
+    const double speed = n.dot(f.way[i]);
+    if (speed < 0) share = std::min(share, (top + least_m - n.dot(f.a[i])) / speed);
+  }
+  return share;
+}
+
+/// A vector that changes linearly between two shares.
+struct Linear {
+  Vec3 from, to;
+};
+
+// The vectors whose product C = A x B is across both edges, or across the facet, and r between them.
+void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, Linear& B, Linear& r) {
+  Vec3 at[2][3];
+  f.moveTo(from, at[0]);
+  f.moveTo(to, at[1]);
+  const auto of = [&](Linear& out, const auto& get) { out = {get(at[0]), get(at[1])}; };
+  using Points = Vec3[3];
+  if (kind == Kind::EdgeOnEdge) {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    B = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else if (kind == Kind::CornerOnFacet) {
+    A = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    B = {f.b[2] - f.b[0], f.b[2] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    of(B, [](const Points& a) { return Vec3(a[2] - a[0]); });
+    of(r, [&](const Points& a) { return Vec3(f.b[0] - a[0]); });
+  }
+}
+
+// True if the lines of both edges, or the corner and the facet's plane, stay farther apart than least_m
+// between two shares: C . r is a cubic polynomial, which lies between its Bernstein coefficients.
+bool staysApart(Kind kind, const Features& f, double from, double to, double least_m) {
+  Linear A, B, r;
+  vectorsOf(kind, f, from, to, A, B, r);
+  const Vec3 C[3] = {A.from.cross(B.from), 0.5 * (A.from.cross(B.to) + A.to.cross(B.from)), A.to.cross(B.to)};
+  const double h[4] = {C[0].dot(r.from), (C[0].dot(r.to) + 2 * C[1].dot(r.from)) / 3,
+                       (2 * C[1].dot(r.to) + C[2].dot(r.from)) / 3, C[2].dot(r.to)};
+  const double limit = least_m * std::max({C[0].norm(), C[1].norm(), C[2].norm()});
+  const double sign = h[0] < 0 ? -1 : 1;
+  return sign * h[0] > limit && sign * h[1] > limit && sign * h[2] > limit && sign * h[3] > limit;
+}
+
+// The share up to which they are known to stay apart in that sense; at least `least_share`.
+double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
+  constexpr int kMost = 6;
+  double to = 1;
+  for (int k = 0; k < kMost && to > least_share; ++k, to = 0.5 * (from + to))
+    if (staysApart(kind, f, from, to, least_m)) return to;
+  return least_share;
+}
+
+/// False: they stay farther apart than least_m.
+/// @param reach  holds their nearest points at the start
+bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
+  constexpr int kMost = 60;  // assumed; most need two or three
+  const double near_m = 1.1 * least_m;
+  double distance_m = start_m;
+  double fastest_m = 0;
+  for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
+  for (int k = 0; k < kMost; ++k) {
+    const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
+    // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
+    const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
+    const double slab = std::max(slabShare(f, n, least_m), reach.share + least_step);
+    if (!(slab < 1)) return false;
+    // A long edge that turns leaves its slab soon, though the edges stay apart where they are nearest.
+    reach.share = planeShare(kind, f, reach.share, slab, least_m);
+    if (!(reach.share < 1)) return false;
+    Vec3 at[3];
+    f.moveTo(reach.share, at);
+    reach.nearest = nearestOf(kind, at, f.b);
+    distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    if (distance_m <= near_m) return true;
+  }
+  return true;
+}
+
+// Not of unit length.
+Vec3 facetNormal(const FeatureSet& part, std::uint32_t facet) {
+  const auto& t = part.facets()[facet];
+  const std::vector<Vec3>& v = part.vertices();
+  return (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
+}
+
+// A facet is met from outside, an edge from between its facets. Other pairs are nearest through the solid,
+// behind a feature that is met first.
+bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& n) {
+  constexpr double kLean = 0.1;         // assumed; while the features touch, other features may be as near
+  const double sign = i == 1 ? 1 : -1;  // n points out of part 1 and into part 0
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge& edge = part.edges()[feature];
+    return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
+  }
+  if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
+  return sign * n.dot(facetNormal(part, feature)) > 0;
+}
+
+// True if curved surfaces lie flush in each other where the features are.
+bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i, std::uint32_t j,
+             const Mat3& R_10) {
+  constexpr double kCosFlush = 0.94;  // 20 degrees
+  const auto isOpposite = [&](const Vec3& n0, const Vec3& n1) { return (R_10 * n0).dot(n1) < -kCosFlush; };
+  const auto edgeAgainst = [&](const FeatureEdge& edge, const auto& test) {
+    return test(edge.normal[0]) || test(edge.normal[1]);
+  };
+  if (kind == Kind::EdgeOnEdge) {
+    const FeatureEdge &edge0 = part0.edges()[i], &edge1 = part1.edges()[j];
+    if (!edge0.is_curved || !edge1.is_curved) return false;
+    return edgeAgainst(edge0, [&](const Vec3& n0) {
+      return edgeAgainst(edge1, [&](const Vec3& n1) { return isOpposite(n0, n1); });
+    });
+  }
+  const bool is_corner0 = kind == Kind::CornerOnFacet;
+  const FeatureSet &with_corner = is_corner0 ? part0 : part1, &with_facet = is_corner0 ? part1 : part0;
+  const std::uint32_t corner = is_corner0 ? i : j, facet = is_corner0 ? j : i;
+  if (!with_facet.isCurved(facet)) return false;
+  const Vec3 n = facetNormal(with_facet, facet).normalized();
+  for (const std::uint32_t edge : with_corner.edgesAt(corner))
+    if (edgeAgainst(with_corner.edges()[edge],
+                    [&](const Vec3& m) { return is_corner0 ? isOpposite(m, n) : isOpposite(n, m); }))
+      return true;
+  return false;
+}
+
+double angle_rad(const Mat3& R) {
+  // 2 asin(|R - 1| / sqrt(8)): exact for a rotation, and above it by rounding only.
+  return 2 * std::asin(std::min(1.0, (R - Mat3::Identity()).norm() / std::sqrt(8.0)));
+}
+
+}  // namespace
+
+double travel_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01_start,
+                const Pose& X_01_end) {
+  const bool is_first = part0.radius_m() <= part1.radius_m();
+  const FeatureSet& smaller = is_first ? part0 : part1;
+  const Pose start = is_first ? X_01_start.inverse() : X_01_start;
+  const Pose end = is_first ? X_01_end.inverse() : X_01_end;
+  const Vec3 moved = end * smaller.box().center() - start * smaller.box().center();
+  return moved.norm() + angle_rad(end.R * start.R.transpose()) * smaller.radius_m();
+}
+
+Vec3 FeatureContact::normal_0(const Pose& X_01) const {
+  const Vec3 fixed = plane_of == 0 ? n : Vec3(X_01.R * n);
+  if (kind != Kind::EdgeOnEdge) return fixed;
+  const Vec3 across = along[0].cross(X_01.R * along[1]);
+  constexpr double kParallel = 1e-3;  // assumed: edges in line have no plane of their own
+  if (!(across.norm() > kParallel)) return fixed;
+  return (across.dot(fixed) < 0 ? -1 : 1) * across.normalized();
+}
+
+double FeatureContact::gap_m(const Pose& X_01) const {
+  return normal_0(X_01).dot(p[0] - X_01 * p[1]);
+}
+
+double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
+  constexpr double kShareOfRadius = 1e-3;  // assumed
+  return std::min(kRest_m, kShareOfRadius * std::min(part0.radius_m(), part1.radius_m()));
+}
+
+void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01,
+                           double margin_m) {
+  near_.clear();
+  margin_m_ = margin_m;
+  path_m_ = 0;
+  const Pose X_10 = X_01.inverse();
+  const auto addIfNear = [&](Kind kind, std::uint32_t i, std::uint32_t j) {
+    Vec3 a[3], b[3];
+    const int count = pointsOf(part0, kind, 0, i, a);
+    for (int k = 0; k < count; ++k) a[k] = X_10 * a[k];
+    pointsOf(part1, kind, 1, j, b);
+    const Nearest nearest = nearestOf(kind, a, b);
+    const double distance_m = (nearest.p - nearest.q).norm();
+    if (distance_m <= margin_m && !isFlush(part0, part1, kind, i, j, X_10.R))
+      near_.push_back({kind, {i, j}, distance_m, 0});
+  };
+  // The items of part 0 that are near part 1's box, then what is near each.
+  thread_local std::vector<std::uint32_t> items, others;
+  const auto searchPairs = [&](Kind kind, const FeatureSet& own, const FeatureSet& other, FeatureKind of_own,
+                               FeatureKind of_other, const Pose& X_other_own) {
+    own.find(grown(moved(other.box(), X_other_own.inverse()), margin_m), of_own, items);
+    for (const std::uint32_t i : items) {
+      Box box;
+      if (of_own == FeatureKind::Corner) {
+        box.add(X_other_own * own.vertices()[own.corners()[i]]);
+      } else {
+        box.add(X_other_own * own.vertices()[own.edges()[i].from]);
+        box.add(X_other_own * own.vertices()[own.edges()[i].to]);
+      }
+      other.find(grown(box, margin_m), of_other, others);
+      for (const std::uint32_t j : others)
+        kind == Kind::FacetOnCorner ? addIfNear(kind, j, i) : addIfNear(kind, i, j);
+    }
+  };
+  searchPairs(Kind::CornerOnFacet, part0, part1, FeatureKind::Corner, FeatureKind::Facet, X_10);
+  searchPairs(Kind::FacetOnCorner, part1, part0, FeatureKind::Corner, FeatureKind::Facet, X_01);
+  searchPairs(Kind::EdgeOnEdge, part0, part1, FeatureKind::Edge, FeatureKind::Edge, X_10);
+}
+
+namespace {
+
+// The same point of part 0 in its own frame, by its weights among the feature's vertices.
+Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3& p) {
+  if (kind == Kind::CornerOnFacet) return own[0];
+  if (kind == Kind::EdgeOnEdge) {
+    const Vec3 way = at[1] - at[0];
+    return own[0] + (p - at[0]).dot(way) / way.squaredNorm() * (own[1] - own[0]);
+  }
+  const Vec3 u = at[1] - at[0], v = at[2] - at[0], r = p - at[0];
+  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), det = uu * vv - uv * uv;
+  const double s = (vv * r.dot(u) - uv * r.dot(v)) / det, t = (uu * r.dot(v) - uv * r.dot(u)) / det;
+  return own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
+}
+
+// The plane in which features touch that were carried a share of their way.
+FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
+                         const Reach& reach) {
+  FeatureContact contact;
+  contact.kind = kind;
+  for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
+  Vec3 at[3];
+  f.moveTo(reach.share, at);
+  contact.p[0] = inOwnFrame(kind, f.own, at, reach.nearest.p);
+  contact.p[1] = reach.nearest.q;
+  if (kind == Kind::EdgeOnEdge) {
+    contact.along[0] = (f.own[1] - f.own[0]).normalized();
+    contact.along[1] = (f.b[1] - f.b[0]).normalized();
+  }
+  return contact;
+}
+
+// Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
+// evenly.
+void findWay(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
+             std::vector<Pose>& way_10) {
+  constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
+  constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
+  const bool is_first = part0.radius_m() <= part1.radius_m();
+  const FeatureSet& smaller = is_first ? part0 : part1;
+  const Pose from = is_first ? start.inverse() : start, to = is_first ? end.inverse() : end;
+  const Vec3 turn = rotationVector(to.R * from.R.transpose()), center = smaller.box().center();
+  const double sagitta_m = turn.squaredNorm() * smaller.radius_m() / 8;
+  const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
+  const Vec3 c_from = from * center, c_to = to * center;
+  way_10.clear();
+  for (int k = 0; k <= pieces; ++k) {
+    const double share = static_cast<double>(k) / pieces;
+    Pose X = k == pieces ? to : from;
+    if (k > 0 && k < pieces) {
+      X.R = rotationFromVector(share * turn) * from.R;
+      X.p = c_from + share * (c_to - c_from) - X.R * center;
+    }
+    way_10.push_back(is_first ? X : X.inverse());
+  }
+}
+
+/// The piece of the way in which features reach a distance first.
+struct Met {
+  std::size_t piece = 0;
+  Features features;
+  Reach reach;
+};
+
+bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
+  Features& f = met.features;
+  for (std::size_t k = 0; k + 1 < way_10.size(); ++k) {
+    for (int v = 0; v < f.a_count; ++v) {
+      f.a[v] = way_10[k] * f.own[v];
+      f.way[v] = way_10[k + 1] * f.own[v] - f.a[v];
+    }
+    if (k > 0) {
+      met.reach.nearest = nearestOf(kind, f.a, f.b);
+      distance_m = (met.reach.nearest.p - met.reach.nearest.q).norm();
+    }
+    met.piece = k;
+    met.reach.share = 0;
+    if (findReach(kind, f, least_m, distance_m, met.reach)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
+                          const Pose& end, std::vector<FeatureContact>& out) {
+  constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
+  constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
+  constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
+  const double step_m = travel_m(part0, part1, start, end);
+  const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
+  if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
+  if (!is_valid_ || path_m_ + step_m + looked_at_m > margin_m_)
+    search(part0, part1, start, 1.25 * step_m + kMargin_m);
+  is_valid_ = true;
+  last_ = start;
+  way_10_.clear();
+  const Pose start_10 = start.inverse();
+  for (Near& near : near_) {
+    if (near.distance_m - (path_m_ - near.path_m) > step_m + looked_at_m) continue;
+    Met met;
+    Features& f = met.features;
+    f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], f.own);
+    f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
+    for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * f.own[k];
+    Nearest& nearest = met.reach.nearest;
+    nearest = nearestOf(near.kind, f.a, f.b);
+    near.distance_m = (nearest.p - nearest.q).norm();
+    near.path_m = path_m_;
+    if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
+    if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
+    const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
+    if (!findFirst(near.kind, way_10_, least_m, near.distance_m, met)) continue;
+    if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
+    if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
+    const Vec3 n_1 = (nearest.p - nearest.q).normalized();
+    // Within a piece the rotation changes little; the plane is that of its start.
+    const Vec3 n_0 = way_10_[met.piece].R.transpose() * n_1;
+    if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
+        !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
+      continue;
+    FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
+    contact.share =
+        (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
+    contact.start_m = near.distance_m;
+    contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
+    contact.n = contact.plane_of == 0 ? n_0 : n_1;
+    if (contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m) out.push_back(contact);
+  }
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/feature_set.h"
+
+#include <algorithm>
+#include <span>
+
+#include "mesh/box_tree.h"
+#include "mesh/mesh_edges.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+constexpr double kCosSharp = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
+// Facets and segments that turn by less stand for something curved, if they turn at all. assumed: 8 degrees,
+// a polygon of 45 corners. A coarser one is met as it is.
+constexpr double kCosCurved = 0.9903;
+constexpr double kFlat = 1e-4;          // sine; assumed: above the rounding of files in single precision
+constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
+
+bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return (b - a).cross(c - a).norm() > kMinSlimness * longest2;
+}
+
+}  // namespace
+
+struct FeatureSet::Tree {
+  explicit Tree(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {}
+  std::vector<Box> boxes;
+  BoxTree tree;
+};
+
+FeatureSet::FeatureSet() {
+  build();
+}
+FeatureSet::~FeatureSet() = default;
+FeatureSet::FeatureSet(FeatureSet&&) noexcept = default;
+FeatureSet& FeatureSet::operator=(FeatureSet&&) noexcept = default;
+
+void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
+  const auto first = static_cast<std::uint32_t>(vertices_.size());
+  for (const Vec3& p : mesh.vertices) vertices_.push_back(X_MP * p);
+  const auto vertex = [&](std::uint32_t i) -> const Vec3& { return vertices_[first + i]; };
+  constexpr std::uint32_t kNone = ~0U;
+  std::vector<std::uint32_t> facet_of(mesh.triangles.size(), kNone);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    if (!hasArea(vertex(t[0]), vertex(t[1]), vertex(t[2]))) continue;
+    facets_.push_back({first + t[0], first + t[1], first + t[2]});
+    facet_of[i] = static_cast<std::uint32_t>(facet_flags_.size());
+    facet_flags_.push_back(is_sheet ? kTwoSided : 0);
+  }
+  const std::size_t first_edge = edges_.size();
+  Groups planes(mesh.triangles.size());
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    FeatureEdge edge;
+    edge.from = first + same[0].low;
+    edge.to = first + same[0].high;
+    const Vec3 way = vertices_[edge.to] - vertices_[edge.from];
+    if (!(way.squaredNorm() > 0)) return;
+    const Vec3 along = way.normalized();
+    edge.has_faces = same.size() == 2 && same[0].is_forward != same[1].is_forward && !is_sheet;
+    Vec3(&normal)[2] = edge.normal;
+    for (std::size_t i = 0; i < 2 && i < same.size(); ++i) {
+      const auto& t = mesh.triangles[same[i].triangle];
+      const Vec3 &a = vertex(t[0]), &b = vertex(t[1]), &c = vertex(t[2]);
+      if (!hasArea(a, b, c)) {
+        edge.has_faces = false;
+        continue;
+      }
+      normal[i] = (b - a).cross(c - a).normalized();
+      const Vec3 into = vertex(t[(same[i].side + 2U) % 3]) - vertices_[edge.from];
+      edge.into[i] = (into - along * along.dot(into)).normalized();
+    }
+    if (edge.has_faces && normal[0].dot(normal[1]) >= kCosSharp) {
+      const double sine = normal[0].cross(normal[1]).norm();
+      if (sine > kFlat && normal[0].dot(normal[1]) > kCosCurved)
+        for (const HalfEdge& e : same) facet_flags_[facet_of[e.triangle]] |= kCurved;
+      else if (sine <= kFlat)
+        planes.join(same[0].triangle, same[1].triangle);
+      return;
+    }
+    if (edge.has_faces && !(normal[0].dot(edge.into[1]) < 0)) return;  // a groove
+    edges_.push_back(edge);
+    corners_.push_back(edge.from);
+    corners_.push_back(edge.to);
+  });
+  markCurvedEdges(first_edge);
+  // Triangles of one plane are one facet.
+  std::vector<std::uint8_t> is_curved(mesh.triangles.size(), 0);
+  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
+    if (facet_of[i] != kNone && isCurved(facet_of[i])) is_curved[planes.find(i)] = 1;
+  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
+    if (facet_of[i] != kNone && is_curved[planes.find(i)] != 0) facet_flags_[facet_of[i]] |= kCurved;
+}
+
+void FeatureSet::markCurvedEdges(std::size_t first) {
+  struct End {
+    std::uint32_t vertex, edge;
+    Vec3 away;
+  };
+  std::vector<End> ends;
+  for (std::size_t i = first; i < edges_.size(); ++i) {
+    const auto edge = static_cast<std::uint32_t>(i);
+    const Vec3 along = (vertices_[edges_[i].to] - vertices_[edges_[i].from]).normalized();
+    ends.push_back({edges_[i].from, edge, along});
+    ends.push_back({edges_[i].to, edge, -along});
+  }
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.edge < b.edge;
+  });
+  for (std::size_t i = 0; i < ends.size();) {
+    std::size_t end = i + 1;
+    while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
+    if (end - i == 2 && ends[i].away.dot(ends[i + 1].away) < -kCosCurved &&
+        ends[i].away.cross(ends[i + 1].away).norm() > kFlat)
+      edges_[ends[i].edge].is_curved = edges_[ends[i + 1].edge].is_curved = true;
+    i = end;
+  }
+}
+
+void FeatureSet::build() {
+  std::sort(corners_.begin(), corners_.end());
+  corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  std::vector<std::uint32_t> corner_of(vertices_.size(), 0);
+  for (std::uint32_t i = 0; i < corners_.size(); ++i) corner_of[corners_[i]] = i;
+  first_edge_.assign(corners_.size() + 1, 0);
+  const auto forEachEnd = [&](const auto& visit) {
+    for (std::uint32_t i = 0; i < edges_.size(); ++i)
+      for (const std::uint32_t v : {edges_[i].from, edges_[i].to}) visit(i, corner_of[v]);
+  };
+  forEachEnd([&](std::uint32_t, std::uint32_t corner) { ++first_edge_[corner + 1]; });
+  for (std::size_t i = 1; i < first_edge_.size(); ++i) first_edge_[i] += first_edge_[i - 1];
+  edges_at_.resize(first_edge_.back());
+  std::vector<std::uint32_t> next(first_edge_.begin(), first_edge_.end() - 1);
+  forEachEnd([&](std::uint32_t edge, std::uint32_t corner) { edges_at_[next[corner]++] = edge; });
+
+  box_ = Box();
+  for (const Vec3& p : vertices_) box_.add(p);
+  const auto plant = [&](FeatureKind kind, std::size_t count, const auto& addPoints) {
+    std::vector<Box> boxes(count);
+    for (std::size_t i = 0; i < count; ++i) addPoints(i, boxes[i]);
+    trees_[static_cast<std::size_t>(kind)] = std::make_unique<const Tree>(std::move(boxes));
+  };
+  plant(FeatureKind::Corner, corners_.size(),
+        [&](std::size_t i, Box& box) { box.add(vertices_[corners_[i]]); });
+  plant(FeatureKind::Edge, edges_.size(), [&](std::size_t i, Box& box) {
+    box.add(vertices_[edges_[i].from]);
+    box.add(vertices_[edges_[i].to]);
+  });
+  plant(FeatureKind::Facet, facets_.size(), [&](std::size_t i, Box& box) {
+    for (const std::uint32_t v : facets_[i]) box.add(vertices_[v]);
+  });
+}
+
+void FeatureSet::find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const {
+  found.clear();
+  trees_[static_cast<std::size_t>(kind)]->tree.forEachOverlap(box, [&](std::uint32_t i) {
+    found.push_back(i);
+    return true;
+  });
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/feature_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "vps/mesh_overlap.h"
+
+namespace vps {
+namespace {
+
+constexpr double kLeast_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
+
+/// A solid as features and for exact overlap.
+struct Body {
+  FeatureSet features;
+  OverlapMesh exact;
+
+  explicit Body(const Mesh& mesh) : exact(std::make_shared<const Solid>(mesh)) {
+    features.append(exact.mesh(), Pose(), false);
+    features.build();
+  }
+};
+
+Mesh box(const Vec3& half) {
+  return makeBox(2 * half);
+}
+
+Mesh tetrahedron(std::mt19937& random) {
+  std::uniform_real_distribution<double> inside(-10e-3, 10e-3);
+  for (;;) {
+    Mesh mesh;
+    for (int i = 0; i < 4; ++i) mesh.vertices.emplace_back(inside(random), inside(random), inside(random));
+    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const double volume_m3 = massProperties(mesh).volume_m3;
+    if (volume_m3 < 0)
+      for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    if (std::abs(volume_m3) > 1e-8) return mesh;
+  }
+}
+
+Vec3 direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+Pose pose(std::mt19937& random, double away_m) {
+  std::uniform_real_distribution<double> angle(0, std::numbers::pi);
+  return {rotationFromVector(angle(random) * direction(random)), away_m * direction(random)};
+}
+
+std::vector<FeatureContact> check(const Body& a, const Body& b, const Pose& start, const Pose& end) {
+  FeatureMotion motion;
+  std::vector<FeatureContact> found;
+  motion.check(a.features, b.features, start, end, found);
+  return found;
+}
+
+TEST(FeatureSet, HasTheCornersAndEdgesOfABox) {
+  const Body a(box(Vec3(1e-3, 2e-3, 3e-3)));
+  EXPECT_EQ(a.features.corners().size(), 8u);
+  EXPECT_EQ(a.features.edges().size(), 12u);  // not the diagonals
+  EXPECT_EQ(a.features.facets().size(), 12u);
+  for (std::uint32_t i = 0; i < 8; ++i) EXPECT_EQ(a.features.edgesAt(i).size(), 3u);
+  for (std::uint32_t i = 0; i < 12; ++i) EXPECT_FALSE(a.features.isCurved(i));
+}
+
+// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its way.
+TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  const Body tip(mesh);
+  const double height_m = 10e-6, fall_m = 100e-6, slide_m = 300e-6;
+  const Pose start = Pose::translation(Vec3(0, 0, 5e-3 + height_m));
+  const Pose end = Pose::translation(Vec3(slide_m, 0, 5e-3 + height_m - fall_m));
+  // The tip is part 0, so the poses are those of the floor in it.
+  const auto found = check(tip, floor, start.inverse(), end.inverse());
+  ASSERT_EQ(found.size(), 1u);
+  const FeatureContact& c = found[0];
+  EXPECT_EQ(c.kind, FeatureContact::Kind::CornerOnFacet);
+  // It may stop a tenth of the least distance early.
+  EXPECT_NEAR(c.share, (height_m - kLeast_m) / fall_m, 0.1 * kLeast_m / fall_m);
+  EXPECT_NEAR(c.start_m, height_m, 1e-15);
+  EXPECT_LE((c.n - Vec3::UnitZ()).norm(), 1e-9);
+  EXPECT_LE(c.p[0].norm(), 1e-12);
+  EXPECT_NEAR(c.gap_m(start.inverse()), height_m, 1e-12);
+  EXPECT_NEAR(c.gap_m(end.inverse()), height_m - fall_m, 1e-12);
+}
+
+// Two roofs whose ridges cross at a right angle touch in no corner.
+TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
+  Mesh roof;
+  roof.vertices = {{-10e-3, 0, 0},       {10e-3, 0, 0},          {-10e-3, 4e-3, -4e-3},
+                   {10e-3, 4e-3, -4e-3}, {-10e-3, -4e-3, -4e-3}, {10e-3, -4e-3, -4e-3}};
+  roof.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 5, 1}, {0, 4, 5}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}};
+  const Body below(roof), above(roof);
+  // Upside down, and turned by a quarter about z.
+  const Mat3 R =
+      rotationFromVector(Vec3(0, 0, std::numbers::pi / 2)) * rotationFromVector(Vec3(std::numbers::pi, 0, 0));
+  const Pose start(R, Vec3(1e-3, 2e-3, 20e-6)), end(R, Vec3(1e-3, 2e-3, -30e-6));
+  const auto found = check(below, above, start, end);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].kind, FeatureContact::Kind::EdgeOnEdge);
+  EXPECT_LE((found[0].normal_0(start) - Vec3(0, 0, -1)).norm(), 1e-9);  // from the upper one to the lower
+  EXPECT_NEAR(found[0].gap_m(end), -30e-6, 1e-12);
+}
+
+TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
+  const Body floor(box(Vec3(50e-3, 50e-3, 5e-3))), block(box(Vec3(5e-3, 5e-3, 5e-3)));
+  FeatureMotion motion;
+  std::vector<FeatureContact> found;
+  Pose at = Pose::translation(Vec3(0, 0, 10e-3 + FeatureMotion::kRest_m));
+  for (int i = 0; i < 40; ++i) {  // over the floor's middle, its diagonals and its rim
+    const Pose next(rotationFromVector(Vec3(0, 0, 0.03)) * at.R, at.p + Vec3(1.1e-3, 0.9e-3, 0));
+    motion.check(floor.features, block.features, at, next, found);
+    EXPECT_TRUE(found.empty()) << i;
+    found.clear();
+    at = next;
+  }
+}
+
+// Whenever two tetrahedra overlap at the end of a step, and did not at its start, the way there is reported.
+TEST(FeatureMotion, NoOverlapIsMissed) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int overlaps = 0, reported_in_vain = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const Body a(tetrahedron(random)), b(tetrahedron(random));
+    const Pose start = pose(random, 12e-3 * unit(random));
+    if (deepestOverlap(a.exact, Pose(), b.exact, start).depth_m > 0) continue;
+    const double travel_m = std::pow(10, -6 + 4 * unit(random));
+    const Pose end(rotationFromVector(0.2 * unit(random) * direction(random)) * start.R,
+                   start.p - travel_m * start.p.normalized());
+    const bool overlaps_now = deepestOverlap(a.exact, Pose(), b.exact, end).depth_m > 0;
+    const bool is_reported = !check(a, b, start, end).empty();
+    EXPECT_TRUE(is_reported || !overlaps_now) << i;
+    overlaps += overlaps_now;
+    reported_in_vain += is_reported && !overlaps_now;
+  }
+  EXPECT_GT(overlaps, 200);
+  // What comes near and goes on past is not reported: its gap at the end is large enough.
+  EXPECT_LT(reported_in_vain, overlaps);
+}
+
+TEST(FeatureMotion, ListsKeptFromStepToStepChangeNoAnswer) {
+  std::mt19937 random(11);
+  const Body a(tetrahedron(random)), b(tetrahedron(random));
+  FeatureMotion kept;
+  std::vector<FeatureContact> found;
+  Pose at(Mat3::Identity(), Vec3(0, 0, 30e-3));
+  std::size_t reported = 0;
+  for (int i = 0; i < 700; ++i) {
+    const Pose next(rotationFromVector(Vec3(1e-3, 2e-3, 0)) * at.R, at.p + Vec3(0, 0, -50e-6));
+    found.clear();
+    kept.check(a.features, b.features, at, next, found);
+    const auto fresh = check(a, b, at, next);
+    ASSERT_EQ(found.size(), fresh.size()) << i;
+    double sum_kept = 0, sum_fresh = 0;  // in another order
+    for (const FeatureContact& c : found) sum_kept = std::max(sum_kept, c.share);
+    for (const FeatureContact& c : fresh) sum_fresh = std::max(sum_fresh, c.share);
+    EXPECT_EQ(sum_kept, sum_fresh) << i;
+    reported += found.size();
+    at = next;
+  }
+  EXPECT_GT(reported, 0u);
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Faults that CAD exports have, put into a closed mesh.
+#pragma once
+
+#include "random.h"
+#include "vps/mesh.h"
+
+namespace vps::search {
+
+/// Vertices along a crack are moved by this at most, so that the surface stays where it was.
+inline constexpr double kCrack_m = 0.5e-6;
+
+/// The same solid with one to three kinds of fault: facets that do not share their vertices, cracks,
+/// T-junctions, turned facets, the whole mesh turned, repeated facets.
+Mesh withFaults(const Mesh& mesh, Random& random);
+
+}  // namespace vps::search
