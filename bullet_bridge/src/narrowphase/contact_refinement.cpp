@@ -41,6 +41,17 @@ struct OwnPoint {
   [[nodiscard]] const EdgeSegment& segment(std::uint32_t i) const {
     return side->shape->edges().segments()[i];
   }
+  /// True if one of the faces beside the point's edges lies flush on a face with this normal.
+  [[nodiscard]] bool isFlushOn(const Vec3& n_W) const {
+    const Vec3 n = inModel(n_W);
+    for (const std::uint32_t i : edges)
+      for (const Vec3& into : segment(i).into) {
+        const Vec3 own = (segment(i).to - segment(i).from).cross(into).normalized();
+        if (std::abs(n.dot(own)) > kCosFlush && (n.dot(own) < 0) == (own.dot(segment(i).outward) > 0))
+          return true;
+      }
+    return false;
+  }
   [[nodiscard]] Vec3 inModel(const Vec3& n_W) const { return side->X_WM.R.transpose() * n_W; }
   /// True if the part lies, around the point, behind the plane with this normal through the point. If not,
   /// another of its points meets the plane, and deeper; or, where the other part ends earlier, its edge meets
@@ -79,6 +90,7 @@ struct Foot {
   const Surface* surface = nullptr;  ///< null: a primitive
   Mat3 R_WP = Mat3::Identity();      ///< of the surface's part
   std::uint32_t triangle = 0;
+  bool is_curved = false;  ///< the triangle stands for a curved surface
 };
 
 struct Exact {
@@ -90,6 +102,7 @@ struct Exact {
   bool is_edge_on_edge = false;
   bool is_smooth = false;                           ///< two faces touch flush
   bool is_own_face = false, is_their_face = false;  ///< whose the plane is
+  bool is_curved = false;                           ///< the other's face stands for a curved surface
   FacePoint face;                                   ///< if is_smooth: the other's
   Vec3 from_q = Vec3::Zero();                       ///< the point minus its foot
 };
@@ -146,6 +159,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
+  exact.is_curved = foot.is_curved;
   if (exact.is_contact && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;
     exact.is_smooth = is_flush && !own.is_edge;
@@ -177,8 +191,11 @@ struct Refiner {
     if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
-    for (const Surface& surface : other.shape->models().surfaces) {
-      const Exact exact = contactAt(footOn(surface, other.X_WM, own, max_m), own);
+    const std::vector<Surface>& surfaces = other.shape->models().surfaces;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      Foot foot = footOn(surfaces[i], other.X_WM, own, max_m);
+      foot.is_curved = foot.found && other.shape->features().isCurved(i, foot.triangle);
+      const Exact exact = contactAt(foot, own);
       nearest.found |= exact.found;
       nearest.is_inside |= exact.is_inside;
       if (exact.is_contact && (!nearest.is_contact || exact.distance_m < nearest.distance_m)) nearest = exact;
@@ -257,6 +274,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
       exact = atEndOfStep(exact, refiner, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
+    c.is_flush = exact.is_curved && own.isFlushOn(exact.n);
     c.plane_of = exact.is_own_face     ? side.side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
                                        : Candidate::kBetween;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/curved_contact.h"
 #include "vps/edge_crossing.h"
 
 namespace vps::bullet::inline v0 {
@@ -31,18 +32,19 @@ bool isCovered(const EdgeCrossing& at, const SideView& body0, const SideView& bo
          isCovered(*body1.shape, ownerOf(body1, 1), X_10 * at.p[1], X_10.R * at.n);
 }
 
+bool isCurved(const EdgeSegment& s) {
+  return s.is_curved[0] || s.is_curved[1];
+}
+
 // The direction of a joint of a curved edge, as that of the parabola through it and the far ends of both
 // segments. Where the edge ends, that of the segment.
 Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   const Vec3 way = s.to - s.from;
-  if (s.ends[end]) return way;
+  if (!s.is_curved[end]) return way;
   constexpr double kSame_m = 1e-9;
   const Vec3& joint = end == 0 ? s.from : s.to;
   Vec3 direction = way;
-  // A coarser polygon, of fewer than 45 corners, is met as it is: chain links of 10 corners gained energy
-  // along the curves' normals, since their gap is that of the segments. assumed, as FeatureEdge::is_curved
-  constexpr double kCosCurved = 0.9903;  // 8 degrees
-  double most_cos = kCosCurved;
+  double most_cos = 0;
   edges.forEachNear(joint, kSame_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;
@@ -61,7 +63,7 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
 Vec3 smoothDirection(const EdgeSet& edges, std::uint32_t i, const Vec3& p) {
   const EdgeSegment& s = edges.segments()[i];
   const Vec3 way = s.to - s.from;
-  if (s.ends[0] && s.ends[1]) return way;
+  if (!isCurved(s)) return way;
   const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
   return (1 - share) * directionAt(edges, s, 0).normalized() + share * directionAt(edges, s, 1).normalized();
 }
@@ -76,6 +78,19 @@ Vec3 smoothNormal(const EdgeCrossing& at, const EdgeSet& edges0, const EdgeSet& 
                      .normalized();
   const double cos = n.dot(at.n);
   return std::abs(cos) > kCosNear ? Vec3(cos < 0 ? -n : n) : at.n;
+}
+
+// True if curved faces beside both edges lie flush, as those of a thread and its nut.
+bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
+  if (!isCurved(s0) || !isCurved(s1)) return false;
+  const auto normalOf = [](const EdgeSegment& s, const Vec3& into) {
+    const Vec3 n = (s.to - s.from).cross(into).normalized();
+    return Vec3(n.dot(s.outward) < 0 ? -n : n);
+  };
+  for (const Vec3& into0 : s0.into)
+    for (const Vec3& into1 : s1.into)
+      if (normalOf(s0, into0).dot(R_01 * normalOf(s1, into1)) < -kCosFlush) return true;
+  return false;
 }
 
 }  // namespace
@@ -100,6 +115,7 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
     c.distance_m = at.gap_m;
     c.id = at.edge[0];
     c.crossed = at.edge[1] + 1;
+    c.is_flush = isFlush(edges0.segments()[at.edge[0]], edges1.segments()[at.edge[1]], X_01.R);
     c.owner = edges1.segments()[at.edge[1]].owner;
     out.push_back(c);
   }

@@ -54,7 +54,7 @@ void markSharp(const PairView& pair, const Settings& settings, std::vector<Candi
   if (!hasFeatures(pair, settings)) return;
   const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
   for (Candidate& c : contacts)
-    if (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)) c.rest_m = rest_m;
+    if (!c.is_flush && (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id))) c.rest_m = rest_m;
 }
 
 void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,

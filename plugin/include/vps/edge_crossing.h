@@ -20,7 +20,9 @@ struct EdgeSegment {
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each face
   Vec3 outward = Vec3::Zero();                  ///< mean of the faces' outward normals, unit
   std::uint16_t owner = 0;                      ///< part
-  bool ends[2] = {true, true};  ///< at from, at to: false where a curved edge goes on in another segment
+  bool ends[2] = {true, true};  ///< at from, at to: false where the edge goes on in another segment
+  /// True where it goes on in one that turns by less than 8 degrees: both stand for a curve.
+  bool is_curved[2] = {false, false};
 };
 
 /// Appends a mesh's convex edges whose faces turn by more than 20 degrees, placed by X_MP. Edges of one face,

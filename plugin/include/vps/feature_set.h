@@ -44,6 +44,18 @@ class VPS_API FeatureSet {
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
   /// True if a neighbour turns by less than 8 degrees: the facet stands for a curved surface.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
+  /// The same of a triangle of a mesh, numbered as they were added; false for triangles without area.
+  [[nodiscard]] bool isCurved(std::size_t mesh, std::uint32_t triangle) const {
+    const std::uint32_t facet = facet_of_[first_triangle_[mesh] + triangle];
+    return facet != kNone && isCurved(facet);
+  }
+  static constexpr std::uint32_t kNone = ~0U;
+  /// The facets across the sides of a facet, from corner k to the next; kNone where there is not exactly one.
+  [[nodiscard]] const std::array<std::uint32_t, 3>& neighbours(std::uint32_t facet) const {
+    return neighbours_[facet];
+  }
+  /// How far a curved edge leaves its segments near a vertex; 0 where no edge is curved.
+  [[nodiscard]] double sagitta_m(std::uint32_t vertex) const { return sagitta_m_[vertex]; }
   [[nodiscard]] const std::vector<FeatureEdge>& edges() const { return edges_; }
   /// Vertices at which edges end.
   [[nodiscard]] const std::vector<std::uint32_t>& corners() const { return corners_; }
@@ -65,6 +77,10 @@ class VPS_API FeatureSet {
   std::vector<std::array<std::uint32_t, 3>> facets_;
   static constexpr std::uint8_t kTwoSided = 1, kCurved = 2;
   std::vector<std::uint8_t> facet_flags_;
+  std::vector<std::array<std::uint32_t, 3>> neighbours_;
+  std::vector<float> sagitta_m_;
+  std::vector<std::uint32_t> facet_of_;      // of the triangles of all meshes
+  std::vector<std::size_t> first_triangle_;  // of each mesh
   std::vector<FeatureEdge> edges_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> edges_at_, first_edge_;

@@ -168,9 +168,40 @@ Vec3 facetNormal(const FeatureSet& part, std::uint32_t facet) {
   return (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
 }
 
+// The line through side k of a facet, from this corner to the next.
+double distanceToSide(const FeatureSet& part, std::uint32_t facet, std::size_t k, const Vec3& p) {
+  const auto& t = part.facets()[facet];
+  const Vec3 &from = part.vertices()[t[k]], way = part.vertices()[t[(k + 1) % 3]] - from;
+  return (p - from).cross(way).norm() / way.norm();
+}
+
+// The corner of a facet that another does not have, as a place.
+Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
+  const auto &t = part.facets()[facet], &u = part.facets()[other];
+  const auto* apex = std::find_if(
+      t.begin(), t.end() - 1, [&](std::uint32_t v) { return std::find(u.begin(), u.end(), v) == u.end(); });
+  return part.vertices()[*apex];
+}
+
+// True if a facet's neighbour is nearer than the facet's nearest point p, which then lies on its border; so
+// the neighbour's own contact counts. A nut's corner that slides on a flank passes below the crest's facets,
+// which end there, and does not touch them.
+bool isNeighbourNearer(const FeatureSet& part, std::uint32_t facet, const Vec3& p, const Vec3& n) {
+  constexpr double kLean = 0.1, kOn_m = 1e-9;  // assumed: as for edges; far below the rest gap
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t other = part.neighbours(facet)[k];
+    if (other == FeatureSet::kNone || distanceToSide(part, facet, k, p) > kOn_m) continue;
+    const Vec3 into = apexOf(part, other, facet) - p;
+    if (n.dot(into) > kLean * into.norm()) return true;
+  }
+  return false;
+}
+
 // A facet is met from outside, an edge from between its facets. Other pairs are nearest through the solid,
 // behind a feature that is met first.
-bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& n) {
+// @param p  the nearest point, in the part's frame
+bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& p,
+                      const Vec3& n) {
   constexpr double kLean = 0.1;         // assumed; while the features touch, other features may be as near
   const double sign = i == 1 ? 1 : -1;  // n points out of part 1 and into part 0
   if (kind == Kind::EdgeOnEdge) {
@@ -178,13 +209,26 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
     return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
   }
   if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
-  return sign * n.dot(facetNormal(part, feature)) > 0;
+  return sign * n.dot(facetNormal(part, feature)) > 0 && !isNeighbourNearer(part, feature, p, sign * n);
+}
+
+constexpr double kCosFlush = 0.94;  // 20 degrees
+
+// True if one of the faces around a corner lies flush on a facet that stands for a curved surface.
+// @param R  from the frame of the corner's part to the facet's
+bool isFlushOn(const FeatureSet& with_corner, std::uint32_t corner, const FeatureSet& with_facet,
+               std::uint32_t facet, const Mat3& R) {
+  if (!with_facet.isCurved(facet)) return false;
+  const Vec3 n = R.transpose() * facetNormal(with_facet, facet).normalized();
+  for (const std::uint32_t edge : with_corner.edgesAt(corner))
+    for (const Vec3& own : with_corner.edges()[edge].normal)
+      if (own.dot(n) < -kCosFlush) return true;
+  return false;
 }
 
 // True if curved surfaces lie flush in each other where the features are.
 bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i, std::uint32_t j,
              const Mat3& R_10) {
-  constexpr double kCosFlush = 0.94;  // 20 degrees
   const auto isOpposite = [&](const Vec3& n0, const Vec3& n1) { return (R_10 * n0).dot(n1) < -kCosFlush; };
   const auto edgeAgainst = [&](const FeatureEdge& edge, const auto& test) {
     return test(edge.normal[0]) || test(edge.normal[1]);
@@ -197,14 +241,25 @@ bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::u
     });
   }
   const bool is_corner0 = kind == Kind::CornerOnFacet;
-  const FeatureSet &with_corner = is_corner0 ? part0 : part1, &with_facet = is_corner0 ? part1 : part0;
-  const std::uint32_t corner = is_corner0 ? i : j, facet = is_corner0 ? j : i;
-  if (!with_facet.isCurved(facet)) return false;
-  const Vec3 n = facetNormal(with_facet, facet).normalized();
-  for (const std::uint32_t edge : with_corner.edgesAt(corner))
-    if (edgeAgainst(with_corner.edges()[edge],
-                    [&](const Vec3& m) { return is_corner0 ? isOpposite(m, n) : isOpposite(n, m); }))
-      return true;
+  return isFlushOn(is_corner0 ? part0 : part1, is_corner0 ? i : j, is_corner0 ? part1 : part0,
+                   is_corner0 ? j : i, is_corner0 ? R_10 : Mat3(R_10.transpose()));
+}
+
+// True if a corner slides over the border of a facet from a curved neighbour on which it lies flush, as a
+// thread's crest does where it comes out of its nut. There the polygons overlap by as much as they leave
+// their curves; twice that, since a border that meets another edge at its end has no curve known there.
+// @param p  the nearest point of the facet, in its part's frame
+bool slidesOverBorder(const FeatureSet& with_corner, std::uint32_t corner, const FeatureSet& with_facet,
+                      std::uint32_t facet, const Mat3& R, const Vec3& p) {
+  const double own_m = with_corner.sagitta_m(with_corner.corners()[corner]);
+  if (!(own_m > 0)) return false;
+  const auto& t = with_facet.facets()[facet];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t other = with_facet.neighbours(facet)[k];
+    if (other == FeatureSet::kNone || !isFlushOn(with_corner, corner, with_facet, other, R)) continue;
+    const double their_m = std::max(with_facet.sagitta_m(t[k]), with_facet.sagitta_m(t[(k + 1) % 3]));
+    if (distanceToSide(with_facet, facet, k, p) < 2 * (own_m + their_m)) return true;
+  }
   return false;
 }
 
@@ -400,10 +455,17 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     const Vec3 n_1 = (nearest.p - nearest.q).normalized();
     // Within a piece the rotation changes little; the plane is that of its start.
     const Vec3 n_0 = way_10_[met.piece].R.transpose() * n_1;
-    if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], n_0) ||
-        !isMetFromOutside(part1, near.kind, 1, near.feature[1], n_1))
-      continue;
     FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
+    if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], contact.p[0], n_0) ||
+        !isMetFromOutside(part1, near.kind, 1, near.feature[1], contact.p[1], n_1))
+      continue;
+    const Mat3& R_10 = way_10_[met.piece].R;
+    if (near.kind == Kind::CornerOnFacet &&
+        slidesOverBorder(part0, near.feature[0], part1, near.feature[1], R_10, contact.p[1]))
+      continue;
+    if (near.kind == Kind::FacetOnCorner &&
+        slidesOverBorder(part1, near.feature[1], part0, near.feature[0], R_10.transpose(), contact.p[0]))
+      continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = near.distance_m;

@@ -41,19 +41,26 @@ FeatureSet& FeatureSet::operator=(FeatureSet&&) noexcept = default;
 void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
   const auto first = static_cast<std::uint32_t>(vertices_.size());
   for (const Vec3& p : mesh.vertices) vertices_.push_back(X_MP * p);
+  sagitta_m_.resize(vertices_.size(), 0);
   const auto vertex = [&](std::uint32_t i) -> const Vec3& { return vertices_[first + i]; };
-  constexpr std::uint32_t kNone = ~0U;
-  std::vector<std::uint32_t> facet_of(mesh.triangles.size(), kNone);
+  first_triangle_.push_back(facet_of_.size());
+  facet_of_.resize(facet_of_.size() + mesh.triangles.size(), kNone);
+  const std::span<std::uint32_t> facet_of = std::span(facet_of_).subspan(first_triangle_.back());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto& t = mesh.triangles[i];
     if (!hasArea(vertex(t[0]), vertex(t[1]), vertex(t[2]))) continue;
     facets_.push_back({first + t[0], first + t[1], first + t[2]});
     facet_of[i] = static_cast<std::uint32_t>(facet_flags_.size());
     facet_flags_.push_back(is_sheet ? kTwoSided : 0);
+    neighbours_.push_back({kNone, kNone, kNone});
   }
   const std::size_t first_edge = edges_.size();
   Groups planes(mesh.triangles.size());
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    if (same.size() == 2)
+      for (const std::size_t i : {0U, 1U})
+        if (const std::uint32_t facet = facet_of[same[i].triangle]; facet != kNone)
+          neighbours_[facet][same[i].side] = facet_of[same[1 - i].triangle];
     FeatureEdge edge;
     edge.from = first + same[0].low;
     edge.to = first + same[0].high;
@@ -113,9 +120,17 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
   for (std::size_t i = 0; i < ends.size();) {
     std::size_t end = i + 1;
     while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
-    if (end - i == 2 && ends[i].away.dot(ends[i + 1].away) < -kCosCurved &&
-        ends[i].away.cross(ends[i + 1].away).norm() > kFlat)
-      edges_[ends[i].edge].is_curved = edges_[ends[i + 1].edge].is_curved = true;
+    const double sine = end - i == 2 ? ends[i].away.cross(ends[i + 1].away).norm() : 0;
+    if (sine > kFlat && ends[i].away.dot(ends[i + 1].away) < -kCosCurved) {
+      double length_m = 0;
+      for (const std::size_t k : {i, i + 1}) {
+        FeatureEdge& edge = edges_[ends[k].edge];
+        edge.is_curved = true;
+        length_m = std::max(length_m, (vertices_[edge.to] - vertices_[edge.from]).norm());
+      }
+      // Of an arc that turns by this angle over the length: length times angle / 8.
+      sagitta_m_[ends[i].vertex] = static_cast<float>(length_m * sine / 8);
+    }
     i = end;
   }
 }
