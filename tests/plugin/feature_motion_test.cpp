@@ -56,7 +56,7 @@ Pose pose(std::mt19937& random, double away_m) {
 std::vector<FeatureContact> check(const Body& a, const Body& b, const Pose& start, const Pose& end) {
   FeatureMotion motion;
   std::vector<FeatureContact> found;
-  motion.check(a.features, b.features, start, end, found);
+  motion.check(a.features, b.features, start, end, false, found);
   return found;
 }
 
@@ -118,7 +118,7 @@ TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
   Pose at = Pose::translation(Vec3(0, 0, 10e-3 + FeatureMotion::kRest_m));
   for (int i = 0; i < 40; ++i) {  // over the floor's middle, its diagonals and its rim
     const Pose next(rotationFromVector(Vec3(0, 0, 0.03)) * at.R, at.p + Vec3(1.1e-3, 0.9e-3, 0));
-    motion.check(floor.features, block.features, at, next, found);
+    motion.check(floor.features, block.features, at, next, false, found);
     EXPECT_TRUE(found.empty()) << i;
     found.clear();
     at = next;
@@ -158,7 +158,7 @@ TEST(FeatureMotion, ListsKeptFromStepToStepChangeNoAnswer) {
   for (int i = 0; i < 700; ++i) {
     const Pose next(rotationFromVector(Vec3(1e-3, 2e-3, 0)) * at.R, at.p + Vec3(0, 0, -50e-6));
     found.clear();
-    kept.check(a.features, b.features, at, next, found);
+    kept.check(a.features, b.features, at, next, false, found);
     const auto fresh = check(a, b, at, next);
     ASSERT_EQ(found.size(), fresh.size()) << i;
     double sum_kept = 0, sum_fresh = 0;  // in another order

@@ -17,12 +17,12 @@ Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
   return (X_WS[0] * pair.shape[0]->X_SM()).inverse() * (X_WS[1] * pair.shape[1]->X_SM());
 }
 
-void findContacts(const PairView& start, const EndPoses& end, PairState& state,
+void findContacts(const PairView& start, const EndPoses& end, bool holds_close, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
   const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), poseBetween(start, start.X_WS),
-                       X_01_end, found);
+                       X_01_end, holds_close, found);
 }
 
 std::uint32_t codeOf(const FeatureContact& c, int i) {
@@ -57,10 +57,10 @@ void markSharp(const PairView& pair, const Settings& settings, std::vector<Candi
     if (!c.is_flush && (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id))) c.rest_m = rest_m;
 }
 
-void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
+void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out) {
   thread_local std::vector<FeatureContact> found;
-  findContacts(start, end, state, found);
+  findContacts(start, end, is_first, state, found);
   if (found.empty()) return;
   thread_local std::vector<const FeatureContact*> chosen;
   chosen.clear();
@@ -92,7 +92,7 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& s
 
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state) {
   thread_local std::vector<FeatureContact> found;
-  findContacts(start, end, state, found);
+  findContacts(start, end, false, state, found);
   double share = 1;
   for (const FeatureContact& c : found) share = std::min(share, c.share);
   return share;

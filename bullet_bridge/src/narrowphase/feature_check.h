@@ -27,7 +27,7 @@ struct EndPoses {
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
 /// @param start  at the start of the step
-void addFeatureContacts(const PairView& start, const EndPoses& end, PairState& state,
+void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out);
 
 /// The share of the motion up to which no features come too near; 1 if none do.

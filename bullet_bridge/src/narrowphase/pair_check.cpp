@@ -180,7 +180,7 @@ void PairCheck::setBodies(const PairView& pair) {
   }
 }
 
-void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) {
+void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
   const Selection& selection = state_.selection;
   if (!selection.is_valid || !object_[0]) return;
   Motion m;
@@ -203,10 +203,13 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>
   if (!(m.travel_m > 0)) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, state_, out);
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, is_first, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
-  if (m.travel_m <= m.tolerated_m) return;
+  // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
+  // assumed: 100 rad/s in steps of 1 ms. Sharp features were looked at above, however fast they turn.
+  constexpr double kMaxTurn_rad = 0.1;
+  if (m.travel_m <= m.tolerated_m || m.turn_rad > kMaxTurn_rad) return;
   const double dt_s = state_.motion.dt_s;
   const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
   m.turn_deviation_rad = (turned - dt_s * selection.V.w).norm();
@@ -240,10 +243,6 @@ double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
 // the deviation is less. Or they were out of reach of this motion in any direction.
 bool PairCheck::mayMissPoints(const Motion& m) const {
-  // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
-  // assumed: 100 rad/s in steps of 1 ms. Sharp features are looked at however fast they turn.
-  constexpr double kMaxTurn_rad = 0.1;
-  if (m.turn_rad > kMaxTurn_rad) return false;
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);

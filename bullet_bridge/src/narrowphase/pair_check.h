@@ -33,7 +33,7 @@ class PairCheck final : public StepCheck {
   /// To be called in each step before it is solved, since Bullet's wrappers live for one call.
   void setBodies(const PairView& pair);
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
-  void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
+  void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
 
  private:

@@ -58,6 +58,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
   c.gap_m = point.getDistance() + info.m_linearSlop - restGap_m(point);
+  c.is_sharp = restGap_m(point) > 0;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
@@ -110,6 +111,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     const double v = velocity(c.normal);
     const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
     c.gap_m = gap_m - m.rest_m;
+    c.is_sharp = m.rest_m > 0;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
       c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
@@ -265,10 +267,12 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
       // What is to be removed may contradict itself, as for a part that is jammed; what must not be added
-      // cannot.
-      const double softness = c.push_m_s > 0 ? kSoftness : 0;
-      const double p = std::max(0.0, c.p_push + (c.push_m_s - v - softness * c.normal.W * c.p_push) /
-                                                    ((1 + softness) * c.normal.W));
+      // cannot. So a gap is restored softly, but no other row's push takes from that of sharp features.
+      const double W = c.normal.W;
+      double p = c.push_m_s <= 0 || c.is_sharp ? c.p_push + (std::min(0.0, c.push_m_s) - v) / W : 0;
+      if (c.push_m_s > 0)
+        p = std::max(p, c.p_push + (c.push_m_s - v - kSoftness * W * c.p_push) / ((1 + kSoftness) * W));
+      p = std::max(0.0, p);
       if (p == c.p_push) continue;
       apply(c.normal, p - c.p_push);
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);

@@ -63,7 +63,7 @@ struct Solver::Work {
   SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
-  bool addMissed(const btContactSolverInfo& info);
+  bool addMissed(const btContactSolverInfo& info, bool is_first);
   bool shorten(double dt_s);
 };
 
@@ -225,13 +225,13 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
 }
 
 // True if contacts were added, so that the step must be solved again.
-bool Solver::Work::addMissed(const btContactSolverInfo& info) {
+bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
   const double dt_s = info.m_timeStep;
   missed.clear();
   for (StepCheck* check : checks) {
     const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
                               island.endPose(check->object(1), rigid.push(), dt_s)};
-    check->findMissed(X_WB_end, missed);
+    check->findMissed(X_WB_end, is_first, missed);
   }
   rigid.addMissed(missed, info);
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
@@ -288,7 +288,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;
     work.rigid.solvePush(info, settings_.iteration_limit);
-    if (checked == kMaxChecks || !work.addMissed(info)) break;
+    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
   }
   if (!work.is_penalty && !work.missed.empty() && work.shorten(dt_s)) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {

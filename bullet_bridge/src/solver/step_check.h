@@ -37,7 +37,8 @@ class StepCheck {
   [[nodiscard]] virtual const btCollisionObject* object(int i) const = 0;
   /// Appends the contacts that the step lacks.
   /// @param X_WB_end  where the bodies' frames are at the end of the step
-  virtual void findMissed(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
+  /// @param is_first  the first check of this step
+  virtual void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) = 0;
   /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
   virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
 };

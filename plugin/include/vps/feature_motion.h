@@ -48,6 +48,9 @@ class VPS_API FeatureMotion {
   /// other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
   /// arcs by at most 0.05 um.
   ///
+  /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
+  /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step
+  ///
   /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
   /// surfaces, so that they slide smoothly.
@@ -57,7 +60,7 @@ class VPS_API FeatureMotion {
   /// (Mirtich 1996), here along the separating plane of the nearest points, which sliding features never
   /// reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
-             std::vector<FeatureContact>& out);
+             bool holds_close, std::vector<FeatureContact>& out);
   /// To be called when a part's features change.
   void reset() { is_valid_ = false; }
 

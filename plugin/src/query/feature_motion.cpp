@@ -401,13 +401,17 @@ struct Met {
   Reach reach;
 };
 
+void placeAt(Features& f, const std::vector<Pose>& way_10, std::size_t piece) {
+  for (int v = 0; v < f.a_count; ++v) {
+    f.a[v] = way_10[piece] * f.own[v];
+    f.way[v] = way_10[piece + 1] * f.own[v] - f.a[v];
+  }
+}
+
 bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
   Features& f = met.features;
   for (std::size_t k = 0; k + 1 < way_10.size(); ++k) {
-    for (int v = 0; v < f.a_count; ++v) {
-      f.a[v] = way_10[k] * f.own[v];
-      f.way[v] = way_10[k + 1] * f.own[v] - f.a[v];
-    }
+    placeAt(f, way_10, k);
     if (k > 0) {
       met.reach.nearest = nearestOf(kind, f.a, f.b);
       distance_m = (met.reach.nearest.p - met.reach.nearest.q).norm();
@@ -422,9 +426,10 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 }  // namespace
 
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
-                          const Pose& end, std::vector<FeatureContact>& out) {
+                          const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
   constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
   constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
+  constexpr double kHeldShare = 0.2;    // assumed: half of what is looked at on the way
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
@@ -449,7 +454,14 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
     if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
-    if (!findFirst(near.kind, way_10_, least_m, near.distance_m, met)) continue;
+    const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
+    const Nearest at_start = nearest;
+    if (!findFirst(near.kind, way_10_, least_m, near.distance_m, met)) {
+      if (!is_held) continue;
+      placeAt(f, way_10_, 0);
+      met.piece = 0;
+      met.reach = {0, at_start};
+    }
     if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
     if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
     const Vec3 n_1 = (nearest.p - nearest.q).normalized();
@@ -471,7 +483,8 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     contact.start_m = near.distance_m;
     contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
     contact.n = contact.plane_of == 0 ? n_0 : n_1;
-    if (contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m) out.push_back(contact);
+    if (is_held || contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m)
+      out.push_back(contact);
   }
 }
 
