@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "faults.h"
+#include "prism.h"
 #include "vps/solid.h"
 
 namespace vps::search {
@@ -62,7 +63,12 @@ const Family* findFamily(const std::string& name) {
 Case makeCase(const Family& family, std::uint64_t seed, bool is_faulty) {
   Random random(seedOf(family, seed));
   for (int attempt = 0; attempt < 1000; ++attempt) {
-    Case made = family.draw(random);
+    Case made;
+    try {
+      made = family.draw(random);
+    } catch (const NotSimple&) {
+      continue;
+    }
     made.family = family.name;
     made.seed = seed;
     made.is_faulty = is_faulty;

@@ -95,7 +95,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulated(const Region& region) {
   while (loop.size() > 3) {
     std::size_t i = 0;
     while (i < loop.size() && !isEar(region.points, loop, i)) ++i;
-    if (i == loop.size()) throw std::logic_error("the polygon is not simple");
+    if (i == loop.size()) throw NotSimple();
     const std::size_t n = loop.size();
     triangles.push_back({loop[(i + n - 1) % n], loop[i], loop[(i + 1) % n]});
     loop.erase(loop.begin() + static_cast<std::ptrdiff_t>(i));

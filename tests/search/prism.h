@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stdexcept>
 #include <vector>
 
 #include "vps/mesh.h"
@@ -20,7 +21,12 @@ Polygon regularPolygon(int sides, double inner_m);
 /// much air between parallel sides. Sides must stay.
 Polygon enlarged(const Polygon& polygon, double by_m);
 
-/// The polygon without its holes, from z = low to z = high.
+/// A polygon whose sides cross or touch, or come too near for rounding.
+struct NotSimple : std::invalid_argument {
+  NotSimple() : std::invalid_argument("the polygon is not simple") {}
+};
+
+/// The polygon without its holes, from z = low to z = high. Throws NotSimple.
 Mesh makePrism(const Polygon& outline, const std::vector<Polygon>& holes, double low_m, double high_m);
 /// The prism with its polygon in the (y, z) plane, along x.
 Mesh alongX(const Mesh& prism);

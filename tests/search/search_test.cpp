@@ -106,8 +106,7 @@ TEST_P(FamilyTest, HasFaultyMeshesOfTheSameSolid) {
   bool is_any_faulty = false;
   for (const CaseBody& body : made.bodies) {
     is_any_faulty = is_any_faulty || !checkMesh(body.given).isClosed();
-    for (const Vec3& p : body.given.vertices)
-      EXPECT_LE(body.exact->solid().closest(p).distance_m, kCrack_m);
+    for (const Vec3& p : body.given.vertices) EXPECT_LE(body.exact->solid().closest(p).distance_m, kCrack_m);
   }
   EXPECT_TRUE(is_any_faulty);
 }
