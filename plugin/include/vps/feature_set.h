@@ -23,6 +23,7 @@ struct FeatureEdge {
   /// At an end it goes on in one other edge, which turns by less than 8 degrees.
   bool is_curved = false;
   Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
+  bool has_curved_face[2] = {false, false};       ///< the facet stands for a curved surface
 };
 
 /// The features of one or several meshes in one frame, with a tree of boxes over each kind.

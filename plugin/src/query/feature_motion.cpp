@@ -226,23 +226,20 @@ bool isFlushOn(const FeatureSet& with_corner, std::uint32_t corner, const Featur
   return false;
 }
 
-// True if curved surfaces lie flush in each other where the features are.
-bool isFlush(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i, std::uint32_t j,
-             const Mat3& R_10) {
-  const auto isOpposite = [&](const Vec3& n0, const Vec3& n1) { return (R_10 * n0).dot(n1) < -kCosFlush; };
-  const auto edgeAgainst = [&](const FeatureEdge& edge, const auto& test) {
-    return test(edge.normal[0]) || test(edge.normal[1]);
-  };
-  if (kind == Kind::EdgeOnEdge) {
-    const FeatureEdge &edge0 = part0.edges()[i], &edge1 = part1.edges()[j];
-    if (!edge0.is_curved || !edge1.is_curved) return false;
-    return edgeAgainst(edge0, [&](const Vec3& n0) {
-      return edgeAgainst(edge1, [&](const Vec3& n1) { return isOpposite(n0, n1); });
-    });
-  }
-  const bool is_corner0 = kind == Kind::CornerOnFacet;
-  return isFlushOn(is_corner0 ? part0 : part1, is_corner0 ? i : j, is_corner0 ? part1 : part0,
-                   is_corner0 ? j : i, is_corner0 ? R_10 : Mat3(R_10.transpose()));
+// True if curved surfaces lie flush in each other beside two curved edges, and the edges meet across them.
+// Where a round peg's rim comes down on that of its hole, the walls are opposite too, but the edges meet
+// along them.
+// @param n_1  direction between the edges, in the frame of part 1
+bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {
+  constexpr double kAcross = 0.7;  // assumed: within 45 degrees
+  if (!edge0.is_curved || !edge1.is_curved) return false;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (edge0.has_curved_face[i] && edge1.has_curved_face[j] &&
+          (R_10 * edge0.normal[i]).dot(edge1.normal[j]) < -kCosFlush &&
+          std::abs(edge1.normal[j].dot(n_1)) > kAcross)
+        return true;
+  return false;
 }
 
 // True if a corner slides over the border of a facet from a curved neighbour on which it lies flush, as a
@@ -311,8 +308,10 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
     pointsOf(part1, kind, 1, j, b);
     const Nearest nearest = nearestOf(kind, a, b);
     const double distance_m = (nearest.p - nearest.q).norm();
-    if (distance_m <= margin_m && !isFlush(part0, part1, kind, i, j, X_10.R))
-      near_.push_back({kind, {i, j}, distance_m, 0});
+    if (distance_m > margin_m || (kind == Kind::CornerOnFacet && isFlushOn(part0, i, part1, j, X_10.R)) ||
+        (kind == Kind::FacetOnCorner && isFlushOn(part1, j, part0, i, X_01.R)))
+      return;
+    near_.push_back({kind, {i, j}, distance_m, 0});
   };
   // The items of part 0 that are near part 1's box, then what is near each.
   thread_local std::vector<std::uint32_t> items, others;
@@ -463,20 +462,24 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
       met.reach = {0, at_start};
     }
     if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
-    if (isFlush(part0, part1, near.kind, near.feature[0], near.feature[1], way_10_[met.piece].R)) continue;
-    const Vec3 n_1 = (nearest.p - nearest.q).normalized();
     // Within a piece the rotation changes little; the plane is that of its start.
-    const Vec3 n_0 = way_10_[met.piece].R.transpose() * n_1;
+    const Mat3& R_10 = way_10_[met.piece].R;
+    const Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
+    const std::uint32_t(&feature)[2] = near.feature;
+    if (near.kind == Kind::EdgeOnEdge &&
+        isFlush(part0.edges()[feature[0]], part1.edges()[feature[1]], R_10, n_1))
+      continue;
     FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
     if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], contact.p[0], n_0) ||
         !isMetFromOutside(part1, near.kind, 1, near.feature[1], contact.p[1], n_1))
       continue;
-    const Mat3& R_10 = way_10_[met.piece].R;
     if (near.kind == Kind::CornerOnFacet &&
-        slidesOverBorder(part0, near.feature[0], part1, near.feature[1], R_10, contact.p[1]))
+        (isFlushOn(part0, feature[0], part1, feature[1], R_10) ||
+         slidesOverBorder(part0, feature[0], part1, feature[1], R_10, contact.p[1])))
       continue;
     if (near.kind == Kind::FacetOnCorner &&
-        slidesOverBorder(part1, near.feature[1], part0, near.feature[0], R_10.transpose(), contact.p[0]))
+        (isFlushOn(part1, feature[1], part0, feature[0], R_10.transpose()) ||
+         slidesOverBorder(part1, feature[1], part0, feature[0], R_10.transpose(), contact.p[0])))
       continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);

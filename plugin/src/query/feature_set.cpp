@@ -55,6 +55,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     neighbours_.push_back({kNone, kNone, kNone});
   }
   const std::size_t first_edge = edges_.size();
+  std::vector<std::uint32_t> facets_beside;  // two for each edge
   Groups planes(mesh.triangles.size());
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     if (same.size() == 2)
@@ -89,6 +90,9 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       return;
     }
     if (edge.has_faces && !(normal[0].dot(edge.into[1]) < 0)) return;  // a groove
+    for (std::size_t i = 0; i < 2 && i < same.size(); ++i)
+      facets_beside.push_back(facet_of[same[i].triangle]);
+    facets_beside.resize(2 * (edges_.size() + 1 - first_edge), kNone);
     edges_.push_back(edge);
     corners_.push_back(edge.from);
     corners_.push_back(edge.to);
@@ -100,6 +104,9 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (facet_of[i] != kNone && isCurved(facet_of[i])) is_curved[planes.find(i)] = 1;
   for (std::uint32_t i = 0; i < facet_of.size(); ++i)
     if (facet_of[i] != kNone && is_curved[planes.find(i)] != 0) facet_flags_[facet_of[i]] |= kCurved;
+  for (std::size_t i = 0; i < facets_beside.size(); ++i)
+    edges_[first_edge + i / 2].has_curved_face[i % 2] =
+        facets_beside[i] != kNone && isCurved(facets_beside[i]);
 }
 
 void FeatureSet::markCurvedEdges(std::size_t first) {
