@@ -58,7 +58,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
   c.gap_m = point.getDistance() + info.m_linearSlop - restGap_m(point);
-  c.is_sharp = restGap_m(point) > 0;
+  c.is_sharp = restGap_m(point) > 0 && point.getDistance() > 0;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
@@ -111,7 +111,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     const double v = velocity(c.normal);
     const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
     c.gap_m = gap_m - m.rest_m;
-    c.is_sharp = m.rest_m > 0;
+    c.is_sharp = m.rest_m > 0 && m.kept_m > 0;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
       c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
@@ -151,8 +151,26 @@ void ContactSweeps::prepare() {
   }
 }
 
+// Last step's impulses p are a good start if they lower the function that the solution minimises,
+// p A p / 2 + p (v - target), with A p the change of velocity that they cause. Where contacts contradict each
+// other, as in parts that start in each other, impulses that balanced each other would otherwise grow from
+// step to step with every contact that comes or goes.
 void ContactSweeps::start() {
   prepare();
+  for (IslandBody& b : island_.bodies) b.u = b.effective_inverse * (b.momentum + b.coupling_impulse);
+  const auto work = [&] {
+    double sum = 0;
+    for (const RigidContact& c : contacts_) {
+      if (c.p_n != 0) sum += c.p_n * (0.5 * velocity(c.normal) - 0.5 * c.target_m_s);
+      for (int t = 0; t < 2; ++t)
+        if (c.p_t[t] != 0) sum += c.p_t[t] * 0.5 * velocity(c.tangent[t]);
+    }
+    return sum;
+  };
+  const double before = work();
+  applyImpulses();
+  if (before + work() <= 0) return;
+  for (RigidContact& c : contacts_) c.p_n = c.p_t[0] = c.p_t[1] = 0;
   applyImpulses();
 }
 

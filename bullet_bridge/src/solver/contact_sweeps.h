@@ -43,7 +43,7 @@ struct RigidContact {
   double push_m_s = 0;    ///< least normal velocity of the push
   double gap_m = 0;
   double mu = 0;
-  bool is_sharp = false;                        ///< of sharp features, whose gap no push may take
+  bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
   double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
   double W_t = 0;                               ///< its greatest eigenvalue
