@@ -10,6 +10,7 @@
 
 #include "vps/wrench.h"
 #include "vps_scenes/snapshot.h"
+#include "vps_scenes/verdict.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -22,9 +23,20 @@ struct TickTimes {
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
+/// An overlap at a step's target, as drawn.
+struct Block {
+  std::string by;  ///< the other part; empty: none
+  Vec3 at_W = Vec3::Zero();
+  double depth_m = 0, error_m = 0;
+};
+
 struct StepResult {
   std::string part;
-  bool completed = false;
+  Verdict verdict = Verdict::NotShown;
+  std::string reason;  ///< of the verdict, in words; empty when it fits
+  Block block;
+  std::string stands_on;  ///< an earlier part that is not where it belongs and was put there; empty: none
+  bool completed = false;      ///< the part reached its target by contact, whatever else is wrong
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
   double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
@@ -36,7 +48,8 @@ struct StepResult {
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
   int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
-  double final_error_m = 0, final_error_rad = 0;
+  double final_error_m = 0;  ///< greatest displacement of a point of its surface from the target
+  double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;
   double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
@@ -47,16 +60,16 @@ struct StepResult {
 /// Greatest drift of a released part that counts as being at rest.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
-/// A step is good if it was completed, within its penetration limit, and at rest afterwards. Report, table,
-/// JSON and exit status all use these functions.
+/// What a verdict is made of.
 inline bool isWithinLimit(const StepResult& step) {
   return step.max_penetration_m <= step.penetration_limit_m;
 }
 inline bool isAtRest(const StepResult& step) {
   return step.rest_drift_m <= kRestDriftLimit_m;
 }
+/// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
 inline bool isGood(const StepResult& step) {
-  return step.completed && isWithinLimit(step) && isAtRest(step);
+  return step.verdict == Verdict::Fits;
 }
 
 /// What the hand does with the part.
@@ -125,6 +138,7 @@ struct RealTimeResult {
 
 struct AssembleResult {
   std::string scene;
+  Verdict verdict = Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
   bool completed = false;
   std::vector<StepResult> steps;
   std::vector<TraceRow> trace;

@@ -34,6 +34,16 @@ inline constexpr auto kLoopTimes =
 
 inline constexpr auto kStepFields = std::make_tuple(
     field("part", &StepResult::part, "name of the part"),
+    field("verdict", &StepResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("reason", &StepResult::reason, "of the verdict, in words; empty when it fits"),
+    field("blocked_by", path(&StepResult::block, &Block::by),
+          "the part that it overlaps at its target, as drawn; empty if none"),
+    field("blocked_at_m", path(&StepResult::block, &Block::at_W), "place of that overlap, in the world"),
+    field("blocked_depth_m", path(&StepResult::block, &Block::depth_m), "depth of that overlap"),
+    field("blocked_error_m", path(&StepResult::block, &Block::error_m),
+          "error of that depth, by the meshes' distance from the faces that they stand for"),
+    field("stands_on", &StepResult::stands_on,
+          "an earlier part that did not reach its target and was put there for this step; empty if none"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("failure_reason", &StepResult::failure_reason, "empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
@@ -52,7 +62,7 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("slides", &StepResult::slides, "number of contacts that slide"),
     field("index_count", &StepResult::index_count,
           "how often the device was clutched and recentred, on a path longer than its workspace"),
-    field("final_error_m", &StepResult::final_error_m, "distance of the part's origin from its target"),
+    field("final_error_m", &StepResult::final_error_m, "greatest displacement of a point of the part's surface from its target"),
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
@@ -130,6 +140,7 @@ using LocalContact = decltype(AssembleResult::local_contact);
 
 inline constexpr auto kAssembleFields = std::make_tuple(
     field("scene", &AssembleResult::scene, "name of the scene"),
+    field("verdict", &AssembleResult::verdict, "`fits`, `blocked` or `not_shown`"),
     field("completed", &AssembleResult::completed, "all steps were completed"),
     field("contacts_left_out", &AssembleResult::contacts_left_out,
           "near points that found no room in a query; 0 unless a limit was set"),

@@ -100,10 +100,9 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
 
 }  // namespace
 
-StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
+StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult result) {
   world.pauseLocalContact();
   const SceneStep& step = world.scene().steps[index];
-  StepResult result;
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
   result.penetration_limit_m = penetrationLimit_m(step);
@@ -124,6 +123,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
   world.reportProgress(0.9);
   judgeCompletion(world, step, world.movingPose(), result);
   settleStep(world, trace.takeSamples(), result);
+  judgeStep(result);
   return result;
 }
 
