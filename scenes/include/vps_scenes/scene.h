@@ -31,6 +31,7 @@ struct ScenePart {
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another part (interference fits)
   std::string file;            ///< file that the mesh was read from, for messages
+  std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for

@@ -171,7 +171,9 @@ void fields(Archive& archive, T& x) {
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
   // The model is built again; velocities are for simulate(), which is not recorded.
-  [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, file, model, is_cropped] = x;
+  // The deflection says how the mesh was made and changes no run.
+  [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, file, deflection_m, model,
+                          is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>
