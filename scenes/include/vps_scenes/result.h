@@ -23,18 +23,13 @@ struct TickTimes {
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
-/// An overlap at a step's target, as drawn.
-struct Block {
-  std::string by;  ///< the other part; empty: none
-  Vec3 at_W = Vec3::Zero();
-  double depth_m = 0, error_m = 0;
-};
-
 struct StepResult {
   std::string part;
   Verdict verdict = Verdict::NotShown;
   std::string reason;  ///< of the verdict, in words; empty when it fits
-  Block block;
+  std::string blocked_by;  ///< the part that it overlaps at its target, as drawn; empty: none
+  Vec3 blocked_at_W = Vec3::Zero();
+  double blocked_depth_m = 0, blocked_error_m = 0;
   std::string stands_on;  ///< an earlier part that is not where it belongs and was put there; empty: none
   bool completed = false;      ///< the part reached its target by contact, whatever else is wrong
   std::string failure_reason;  ///< empty when completed

@@ -32,6 +32,7 @@ struct ScenePart {
   bool allow_overlap = false;  ///< may start inside another part (interference fits)
   bool is_scenery = false;     ///< of assemble(): nothing collides with it
   std::string file;            ///< file that the mesh was read from, for messages
+  std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for

@@ -17,14 +17,13 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<Block>& blocks,
+void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& blocks,
               AssembleResult& result) {
   result.completed = true;
   const std::size_t count = world.scene().steps.size();
   std::string not_in_place;
   for (std::size_t i = 0; i < count && !world.isStopped(); ++i) {
-    StepResult known;
-    known.block = blocks[i];
+    StepResult known = blocks[i];
     known.stands_on = not_in_place;
     result.steps.push_back(runStep(world, trace, i, std::move(known)));
     const StepResult& step = result.steps.back();
@@ -58,7 +57,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options) {
   AssembleResult result;
   const double begun_s = wallSeconds();
-  const std::vector<Block> blocks = blocksAtTargets(scene, options.progress);
+  const std::vector<StepResult> blocks = blocksAtTargets(scene, options.progress);
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);

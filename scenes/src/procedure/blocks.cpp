@@ -20,18 +20,21 @@ bool isInPlace(const Scene& scene, const std::string& name, std::size_t step) {
 
 }  // namespace
 
-std::vector<Block> blocksAtTargets(const Scene& scene, const Progress& progress) {
+std::vector<StepResult> blocksAtTargets(const Scene& scene, const Progress& progress) {
   CheckSettings settings;
   settings.has_fits = settings.has_play = false;
   const CheckResult checked = checkAssembly(scene.name, drawnParts(scene), settings, progress);
-  std::vector<Block> blocks(scene.steps.size());
+  std::vector<StepResult> blocks(scene.steps.size());
   for (std::size_t i = 0; i < scene.steps.size(); ++i) {
     const std::string& part = scene.parts[scene.steps[i].part].part.name;
     for (const CheckedPair& pair : checked.pairs) {
       if (!pair.isClash() || (pair.a != part && pair.b != part)) continue;
       const std::string& other = pair.a == part ? pair.b : pair.a;
-      if (pair.interference_depth_m <= blocks[i].depth_m || !isInPlace(scene, other, i)) continue;
-      blocks[i] = {other, pair.at_W, pair.interference_depth_m, pair.error_m};
+      if (pair.interference_depth_m <= blocks[i].blocked_depth_m || !isInPlace(scene, other, i)) continue;
+      blocks[i].blocked_by = other;
+      blocks[i].blocked_at_W = pair.at_W;
+      blocks[i].blocked_depth_m = pair.interference_depth_m;
+      blocks[i].blocked_error_m = pair.error_m;
     }
   }
   return blocks;

@@ -10,8 +10,8 @@
 
 namespace vps::scenes::inline v0 {
 
-/// The deepest such overlap of each step, beyond the error of the meshes; empty `by` where there is none, or
-/// where the scene allows it. Exact distances on all cores.
-std::vector<Block> blocksAtTargets(const Scene& scene, const Progress& progress);
+/// Results with the deepest such overlap of each step, beyond the error of the meshes; blocked_by is empty
+/// where there is none, or where the scene allows it. Exact distances on all cores.
+std::vector<StepResult> blocksAtTargets(const Scene& scene, const Progress& progress);
 
 }  // namespace vps::scenes::inline v0

@@ -22,8 +22,9 @@ std::string micrometres(double length_m) {
 }
 
 std::string place(const Vec3& p_W) {
-  return "(" + number(1e3 * p_W.x(), 2) + ", " + number(1e3 * p_W.y(), 2) + ", " + number(1e3 * p_W.z(), 2) +
-         ") mm";
+  std::string text = "(";
+  for (int i = 0; i < 3; ++i) text.append(i == 0 ? "" : ", ").append(number(1e3 * p_W[i], 2));
+  return text.append(") mm");
 }
 
 std::string failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
@@ -57,10 +58,10 @@ void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Po
 }
 
 void judgeStep(StepResult& result) {
-  if (!result.block.by.empty()) {
+  if (!result.blocked_by.empty()) {
     result.verdict = Verdict::Blocked;
-    result.reason = "as drawn, it overlaps '" + result.block.by + "' by " + micrometres(result.block.depth_m) +
-                    " (error " + micrometres(result.block.error_m) + ") at " + place(result.block.at_W);
+    result.reason = "as drawn, it overlaps '" + result.blocked_by + "' by " + micrometres(result.blocked_depth_m) +
+                    " (error " + micrometres(result.blocked_error_m) + ") at " + place(result.blocked_at_W);
     return;
   }
   result.verdict = Verdict::NotShown;
