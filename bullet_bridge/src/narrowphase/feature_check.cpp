@@ -7,8 +7,6 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Contacts of a pair added in one check. assumed: a body is held by six, and the next check adds more.
-constexpr std::size_t kMostAdded = 8;
 // A feature's index in a contact's key, by kind, so that no two contacts have the same one. Edges have the
 // indices of edges(), as crossings do; they are renumbered so as not to meet them.
 constexpr std::uint32_t kCorner = 1U << 28, kFacet = 2U << 28, kEdge = 4U << 28;

@@ -16,8 +16,6 @@ namespace {
 
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
-// Contacts added for a pair in one check. assumed: a body is held by six, and the next check adds more.
-constexpr std::size_t kMostAdded = 8;
 // The field's error in voxels, up to which points count as possibly inside: at edges, and on faces.
 constexpr double kEdgeError = 0.45, kFaceError = 0.05;
 

@@ -8,6 +8,7 @@
 // bounded number of times.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <mutex>
 #include <vector>
@@ -28,6 +29,10 @@ struct MissedContact {
   double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
   double rest_m = 0;  ///< the gap that the push restores
 };
+
+/// Contacts of a kind that are added for a pair in one check. assumed: a body is held by six, and the next
+/// check adds more.
+inline constexpr std::size_t kMostAdded = 8;
 
 /// A pair of bodies that checks a solved step.
 class StepCheck {

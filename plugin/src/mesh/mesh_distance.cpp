@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
 
@@ -23,21 +24,10 @@ constexpr double kTouch = 1e-9;
 /// Four children by count limit the depth to log4(2^31), with three waiting children on each level.
 constexpr int kStack = 64;
 
-/// Unit v, or zero where v is too short to have a direction.
-Vec3 unitOrZero(const Vec3& v) {
-  const double length = v.norm();
-  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
-}
-
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
   return n.norm() > kMinSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
-}
-
-/// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
-double angleBetween(const Vec3& u, const Vec3& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 }  // namespace

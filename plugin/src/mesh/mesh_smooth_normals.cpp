@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "mesh/directions.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::inline v0 {
@@ -16,16 +17,6 @@ constexpr double kCosSmooth = 0.94;
 /// Corners with more faces than this are the hubs of nearly flat fans; comparing all pairs of faces would
 /// take quadratic time.
 constexpr std::size_t kMaxFaces = 64;
-
-Vec3 unitOrZero(const Vec3& v) {
-  const double length = v.norm();
-  return length > 0 ? Vec3(v / length) : Vec3(Vec3::Zero());
-}
-
-/// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
-double angleBetween(const Vec3& u, const Vec3& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
-}
 
 /// A triangle's corner at a vertex.
 struct Corner {

@@ -7,18 +7,13 @@
 #include <utility>
 
 #include "mesh/mesh_edges.h"
+#include "query/feature_angles.h"
 
 namespace vps::inline v0 {
 
 namespace {
 
-constexpr double kCosSharp = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
-// assumed, as FeatureEdge::is_curved: a coarser polygon, of fewer than 45 corners, is met as it is. Chain
-// links of 10 corners gained energy along the normals of curves, since their gap is that of the segments.
-constexpr double kCosCurved = 0.9903;   // 8 degrees
-constexpr double kStraight = 1e-4;      // sine; assumed: above the rounding of files in single precision
-constexpr double kMinSine = 0.087;      // 5 degrees: below it the crossing of lines is mostly rounding
-constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
+constexpr double kMinSine = 0.087;  // 5 degrees: below it the crossing of lines is mostly rounding
 /// How far the plane may lean into a face, as a sine: so an edge that passes from one edge of a fine polygon
 /// to the next stays a crossing meanwhile. Assumed.
 constexpr double kLean = 0.02;
@@ -61,7 +56,7 @@ void joinTips(std::vector<Tip>& tips, std::vector<EdgeSegment>& segments) {
     std::size_t end = i + 1;
     while (end < tips.size() && tips[end].vertex == tips[i].vertex) ++end;
     const double cos = end - i == 2 ? -tips[i].away.dot(tips[i + 1].away) : 0;
-    const bool is_curved = cos > kCosCurved && tips[i].away.cross(tips[i + 1].away).norm() > kStraight;
+    const bool is_curved = cos > kCosCurved && tips[i].away.cross(tips[i + 1].away).norm() > kFlat;
     if (cos > kCosSharp)
       for (std::size_t k = i; k < end; ++k) {
         segments[tips[k].segment].ends[tips[k].end] = false;

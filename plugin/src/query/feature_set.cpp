@@ -6,17 +6,11 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
+#include "query/feature_angles.h"
 
 namespace vps::inline v0 {
 
 namespace {
-
-constexpr double kCosSharp = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
-// Facets and segments that turn by less stand for something curved, if they turn at all. assumed: 8 degrees,
-// a polygon of 45 corners. A coarser one is met as it is.
-constexpr double kCosCurved = 0.9903;
-constexpr double kFlat = 1e-4;          // sine; assumed: above the rounding of files in single precision
-constexpr double kMinSlimness = 1e-10;  // as MeshDistance: twice the area over the longest edge's square
 
 bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "mesh/directions.h"
+
 namespace vps::inline v0 {
 namespace {
 
@@ -19,12 +21,6 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (p - a - t * along).norm();
 }
-
-/// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
-double angleBetween(const Vec3& u, const Vec3& v) {
-  return std::atan2(u.cross(v).norm(), u.dot(v));
-}
-
 std::uint32_t next(std::uint32_t side) {
   return side == 2 ? 0 : side + 1;
 }

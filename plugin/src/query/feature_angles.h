@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which edges and facets count as sharp, as curved and as flat.
+#pragma once
+
+namespace vps::inline v0 {
+
+/// Faces that turn by more meet at a sharp edge; an edge goes on in another one that turns by less: 20
+/// degrees, as PointShellSettings::edge_angle_rad.
+inline constexpr double kCosSharp = 0.94;
+/// Facets and segments that turn by less stand for something curved, if they turn at all. assumed: 8 degrees,
+/// a polygon of 45 corners. A coarser one is met as it is: chain links of 10 corners gained energy along the
+/// normals of curves, since their gap is that of the segments.
+inline constexpr double kCosCurved = 0.9903;
+/// Sine; assumed: above the rounding of files in single precision.
+inline constexpr double kFlat = 1e-4;
+/// As MeshDistance: twice the area over the longest edge's square.
+inline constexpr double kMinSlimness = 1e-10;
+
+}  // namespace vps::inline v0
