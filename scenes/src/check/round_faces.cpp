@@ -14,6 +14,8 @@ namespace {
 
 /// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
 constexpr double kRounding = 2e-6;
+/// In the radius: 1 um at 4 mm, what coordinates in metres with six decimals need.
+constexpr double kCoarse = 2.5e-4;
 constexpr double kLeastTurn = 0.3;
 constexpr std::size_t kPatch = 16;  // facets from which a cylinder is guessed
 /// Flat strips from which a circle can be told; one strip may be divided into many facets.
@@ -98,16 +100,24 @@ class Finder {
     }
     std::optional<Cylinder> guess = guessed(facets);
     if (!guess) return std::nullopt;
+    // Files of few digits have corners off the circle by more; the face's residual then says so.
+    for (const double within_m : {tolerance_m_, kCoarse * guess->radius_m})
+      if (std::optional<RoundFace> face = grown(seed, *guess, within_m)) return face;
+    return std::nullopt;
+  }
+
+  std::optional<RoundFace> grown(std::uint32_t seed, Cylinder guess, double within_m) {
+    std::vector<std::uint32_t> facets;
     // A small patch tells the cylinder less well than all of it: the tolerance narrows.
-    for (const double loose_m : {1e-4 * guess->radius_m + tolerance_m_, tolerance_m_}) {
-      const Cylinder& on = *guess;
+    for (const double loose_m : {1e-4 * guess.radius_m + 3 * within_m, within_m}) {
+      const Cylinder& on = guess;
       const auto lies = [&](std::uint32_t i) { return liesOn(on, i, loose_m); };
       if (!lies(seed)) return std::nullopt;
       facets = flood(seed, is_taken_.size(), lies);
-      if (facets.size() < 6 || !refine(*guess, facets)) return std::nullopt;
+      if (facets.size() < 6 || !refine(guess, facets)) return std::nullopt;
     }
-    std::erase_if(facets, [&](std::uint32_t i) { return !liesOn(*guess, i, 2 * tolerance_m_); });
-    return finished(*guess, std::move(facets));
+    std::erase_if(facets, [&](std::uint32_t i) { return !liesOn(guess, i, 2 * within_m); });
+    return finished(guess, std::move(facets));
   }
 
   /// Their number, up to kLeastNormals.
