@@ -2,6 +2,7 @@
 // Fits of parts whose sizes are known by construction.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "check/iso_286.h"
@@ -69,6 +70,30 @@ TEST(CheckFits, AShaftInABoreHasItsClearanceWhateverTheFacets) {
       EXPECT_NEAR(fit.length_m, 0.03, 1e-9);  // the shaft's middle is 10 mm up, and 25 mm to its end
       EXPECT_NEAR((X.inverse() * fit.at_W).norm(), 0, 1e-9);
     }
+}
+
+// As files of other programs have it: the new corners lie on the flat facets, inside the circle.
+TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {
+  Mesh bore = makeTube(0.02, 0.00605, 0.03, 60);
+  for (int round = 0; round < 3; ++round) {
+    Mesh divided{bore.vertices, {}};
+    for (const auto& t : bore.triangles) {
+      std::array<std::uint32_t, 3> middle;
+      for (std::size_t e = 0; e < 3; ++e) {
+        middle[e] = static_cast<std::uint32_t>(divided.vertices.size());
+        divided.vertices.emplace_back(0.5 * (bore.vertices[t[e]] + bore.vertices[t[(e + 1) % 3]]));
+      }
+      for (std::size_t e = 0; e < 3; ++e) divided.triangles.push_back({t[e], middle[e], middle[(e + 2) % 3]});
+      divided.triangles.push_back(middle);
+    }
+    bore = welded(divided);
+  }
+  const std::vector<CheckedFit> fits =
+      fitsOf({part("bore", bore), part("shaft", makeCylinder(0.006, 0.05, 100))});
+  ASSERT_EQ(fits.size(), 1U);
+  EXPECT_NEAR(fits[0].diametral_clearance_m, 100e-6, 1e-9);
+  EXPECT_LT(fits[0].error_m, 1e-9);
+  EXPECT_NEAR(fits[0].length_m, 0.03, 1e-9);
 }
 
 TEST(CheckFits, AKeywayLeavesTheRestOfTheBore) {

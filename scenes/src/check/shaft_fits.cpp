@@ -63,9 +63,9 @@ void addOnce(const CheckedFit& fit, std::size_t first, std::vector<CheckedFit>& 
   for (std::size_t i = first; i < out.size(); ++i) {
     CheckedFit& other = out[i];
     const Vec3 r = fit.at_W - other.at_W;
-    const bool is_same = other.shaft == fit.shaft &&
-                         std::abs(other.shaft_m - fit.shaft_m) <= 1e-5 * fit.shaft_m &&
-                         std::abs(other.bore_m - fit.bore_m) <= 1e-5 * fit.bore_m &&
+    const double same_m = 1e-5 * fit.shaft_m + fit.error_m + other.error_m;
+    const bool is_same = other.shaft == fit.shaft && std::abs(other.shaft_m - fit.shaft_m) <= same_m &&
+                         std::abs(other.bore_m - fit.bore_m) <= same_m &&
                          (r - fit.axis_W.dot(r) * fit.axis_W).norm() <= 1e-3 * fit.shaft_m &&
                          std::abs(fit.axis_W.dot(other.axis_W)) > 0.999;
     if (!is_same) continue;
