@@ -14,6 +14,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
+#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
