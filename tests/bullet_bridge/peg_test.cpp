@@ -122,7 +122,9 @@ TEST_P(PegInBore, DroppedItSeats) {
   // measured), since bends do not include the rounding of a pose.
   const bool creeps = GetParam().solver != SolverKind::Constraint && sizeof(btScalar) == 4;
   EXPECT_LE((later.p - rest.p).norm(), creeps ? 4e-5 : 1e-6);
-  EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6);
+  // A rigid contact takes back the rounding of a pose in each step: 3.7 nm at up to 62 mm, in 1 ms.
+  const double rounding_m_s = sizeof(btScalar) == 4 ? 2 * 3.7e-6 : 0;
+  EXPECT_LE(speed_m_s, creeps ? 2e-5 : 1e-6 + rounding_m_s);
   EXPECT_LE(deepest_m, kDeepest_m);
 }
 

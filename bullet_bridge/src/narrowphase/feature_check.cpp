@@ -40,6 +40,13 @@ bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*
   });
 }
 
+// A corner that is behind a sheet, as after a start in it, is pushed back through it by the other contacts.
+bool isOnSheet(const FeatureContact& c, const PairView& pair) {
+  if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
+  const int with_facet = c.kind == FeatureContact::Kind::CornerOnFacet ? 1 : 0;
+  return pair.shape[with_facet]->features().isTwoSided(c.feature[with_facet]);
+}
+
 }  // namespace
 
 bool hasFeatures(const PairView& pair, const Settings& settings) {
@@ -84,6 +91,7 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
     missed.end_gap_m = c->gap_m(X_01_end);
     missed.kept_m = std::min(rest_m, c->start_m);
     missed.rest_m = rest_m;
+    missed.is_sharp = !isOnSheet(*c, start);
     out.push_back(missed);
   }
 }

@@ -111,7 +111,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     const double v = velocity(c.normal);
     const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
     c.gap_m = gap_m - m.rest_m;
-    c.is_sharp = m.rest_m > 0 && m.kept_m > 0;
+    c.is_sharp = m.is_sharp;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
       c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);

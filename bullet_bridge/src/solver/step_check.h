@@ -28,6 +28,7 @@ struct MissedContact {
   double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked; negative
   double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
   double rest_m = 0;  ///< the gap that the push restores
+  bool is_sharp = false;  ///< no other contact's push may take the gap
 };
 
 /// Contacts of a kind that are added for a pair in one check. assumed: a body is held by six, and the next
