@@ -96,7 +96,8 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
     field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
           "encoders have their finite resolution"),
     field("indexing", &DeviceSettings::has_indexing,
-          "a path longer than the workspace is split, see below; false: such a path is an error",
+          "a path that is longer, or turns farther, than the device can is split, see below; false: such a "
+          "path is an error",
           {.since = 3}));
 static_assert(coversAllMembers<DeviceSettings, 1>(kDeviceKeys));
 
