@@ -22,6 +22,12 @@ struct TickTimes {
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
+/// One strategy that the virtual operator used while it inserted or pressed.
+struct StrategyUse {
+  std::string strategy;  ///< "tilt_in": vps_device/operator.h
+  double start_s = 0, duration_s = 0;
+};
+
 struct StepResult {
   std::string part;
   bool completed = false;
@@ -36,6 +42,7 @@ struct StepResult {
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
   int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
+  std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
   double final_error_m = 0, final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;
@@ -66,9 +73,10 @@ enum class TracePhase { Reach, Insert, Press, Rest };
 struct TraceRow {
   double time_s = 0;
   int step = -1;
-  int phase = 0;    ///< a TracePhase
-  Wrench F_hand_W;  ///< on the hand
-  Pose X_WP;        ///< part in hand
+  int phase = 0;     ///< a TracePhase
+  int strategy = 0;  ///< a device::OperatorStrategy
+  Wrench F_hand_W;   ///< on the hand
+  Pose X_WP;         ///< part in hand
   Pose X_W_Proxy;
   int contacts = 0;
   double depth_m = 0;  ///< by the voxmap

@@ -122,6 +122,7 @@ class SimulatedHand final : public Hand {
   }
 
   [[nodiscard]] device::OperatorPhase phase() const override { return operator_.phase(); }
+  [[nodiscard]] device::OperatorStrategy strategy() const override { return operator_.strategy(); }
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
@@ -269,7 +270,10 @@ class RecordedHand final : public Hand {
   void goOn() override {}
   void step(const device::HeldPart&, const device::HapticLoop&, double) override {}
   [[nodiscard]] device::OperatorPhase phase() const override {
-    return static_cast<device::OperatorPhase>(recording_.phase().value_or(0));
+    return device::stateFromByte(recording_.phase().value_or(0)).phase;
+  }
+  [[nodiscard]] device::OperatorStrategy strategy() const override {
+    return device::stateFromByte(recording_.phase().value_or(0)).strategy;
   }
   [[nodiscard]] std::vector<device::SyncEvent> sync_events() const override {
     std::vector<device::SyncEvent> all;

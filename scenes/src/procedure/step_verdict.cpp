@@ -9,12 +9,15 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 
-const char* failureReason(const AssemblyWorld& world, const SceneStep& step, double begun_s, bool is_done) {
+const char* failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
+                          bool is_done) {
   if (world.hasEnded()) return "the recording ends here";
   if (world.isStopped()) return "stopped";
-  if (is_done) return "moved off its target after it was let go";
-  return world.state().time_s - begun_s > step.timeout_s ? "the hand gave up: target not reached in time"
-                                                         : "the hand gave up: target not reached";
+  if (is_done && !isAtRest(result)) return "moved off its target after it was let go";
+  if (is_done) return "the hand took it to be in place and let go, but it is off its target";
+  return world.state().time_s - result.start_s > step.timeout_s
+             ? "the hand gave up: target not reached in time"
+             : "the hand gave up: target not reached";
 }
 
 }  // namespace
@@ -31,7 +34,7 @@ void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Po
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
   result.completed = is_done && is_on_target;
-  if (!result.completed) result.failure_reason = failureReason(world, step, result.start_s, is_done);
+  if (!result.completed) result.failure_reason = failureReason(world, step, result, is_done);
 }
 
 }  // namespace vps::scenes::inline v0
