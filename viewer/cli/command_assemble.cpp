@@ -93,9 +93,12 @@ int runAssemble(const AssembleArguments& given) {
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
   switch (result.verdict) {
-    case scenes::Verdict::Fits: return kGood;
-    case scenes::Verdict::Blocked: return kBad;
-    case scenes::Verdict::NotShown: break;
+    case scenes::Verdict::Fits:
+      return kGood;
+    case scenes::Verdict::Blocked:
+      return kBad;
+    case scenes::Verdict::NotShown:
+      break;
   }
   return kNotShown;
 }

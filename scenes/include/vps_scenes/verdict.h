@@ -7,8 +7,8 @@
 namespace vps::scenes::inline v0 {
 
 enum class Verdict {
-  Fits,     ///< brought home by contact within tolerance, nothing overlaps, and it stays there
-  Blocked,  ///< proven by geometry: as drawn, the part overlaps another by more than the error of the meshes
+  Fits,      ///< brought home by contact within tolerance, nothing overlaps, and it stays there
+  Blocked,   ///< proven by geometry: as drawn, the part overlaps another by more than the error of the meshes
   NotShown,  ///< the hand did not manage it, and nothing proves that it cannot be done
 };
 

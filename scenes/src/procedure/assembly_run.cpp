@@ -6,8 +6,8 @@
 
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
-#include "procedure/blocks.h"
 #include "procedure/assembly_world.h"
+#include "procedure/blocks.h"
 #include "procedure/run_trace.h"
 #include "procedure/step_run.h"
 #include "procedure/step_verdict.h"
@@ -45,7 +45,8 @@ void requireSteps(const Scene& scene) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const ScenePart& part = scene.parts[i];
     const auto moves = [i](const SceneStep& step) { return step.part == i; };
-    if (part.is_fixed || part.is_scenery || std::any_of(scene.steps.begin(), scene.steps.end(), moves)) continue;
+    if (part.is_fixed || part.is_scenery || std::any_of(scene.steps.begin(), scene.steps.end(), moves))
+      continue;
     throw LoadError(scene.file, part.part.name,
                     "is not fixed, and no [[step]] moves it, so nothing would collide with it and the answer "
                     "could be wrong; give it a [[step]], fixed = true, or scenery = true if it is only to be "

@@ -33,7 +33,8 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
   if (world.isStopped()) return "stopped";
   const std::string where = "its surface was still up to " + micrometres(result.final_error_m) +
                             " from its target (tolerance " + micrometres(step.tolerance_m) + ")";
-  if (is_done) return "it moved off its target after it was let go: " + where;
+  if (is_done && !isAtRest(result)) return "it moved off its target after it was let go: " + where;
+  if (is_done) return "the hand took it to be in place and let go, but " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
   return std::string("the hand gave up") + (is_late ? " after its time was over: " : ": ") + where;
 }
@@ -60,8 +61,9 @@ void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Po
 void judgeStep(StepResult& result) {
   if (!result.blocked_by.empty()) {
     result.verdict = Verdict::Blocked;
-    result.reason = "as drawn, it overlaps '" + result.blocked_by + "' by " + micrometres(result.blocked_depth_m) +
-                    " (error " + micrometres(result.blocked_error_m) + ") at " + place(result.blocked_at_W);
+    result.reason = "as drawn, it overlaps '" + result.blocked_by + "' by " +
+                    micrometres(result.blocked_depth_m) + " (error " + micrometres(result.blocked_error_m) +
+                    ") at " + place(result.blocked_at_W);
     return;
   }
   result.verdict = Verdict::NotShown;

@@ -101,8 +101,7 @@ class PictureSet {
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption =
-          result_.steps[i].reason.empty() ? "end: in place" : "end: " + result_.steps[i].reason;
+      options.caption = result_.steps[i].reason.empty() ? "end: in place" : "end: " + result_.steps[i].reason;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;

@@ -67,6 +67,17 @@ std::string stepTable(const scenes::AssembleResult& result) {
       rows);
 }
 
+/// "approach 1.2 s, touch 0.4 s": in order, with spaces in the names.
+std::string strategiesInWords(const std::vector<scenes::StrategyUse>& uses) {
+  std::string words;
+  for (const scenes::StrategyUse& use : uses) {
+    std::string name = use.strategy;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    words.append(words.empty() ? "" : ", ").append(name).append(format(use.duration_s, " %.2f s"));
+  }
+  return words.empty() ? "none" : words;
+}
+
 std::string stepFacts(const scenes::StepResult& s) {
   const Vec3 at_mm = 1e3 * s.deepest_at_W;
   std::string deepest = micrometres(s.max_penetration_m) + " µm";
@@ -78,22 +89,22 @@ std::string stepFacts(const scenes::StepResult& s) {
     deepest += ", at (" + format(at_mm.x(), "%.2f") + ", " + format(at_mm.y(), "%.2f") + ", " +
                format(at_mm.z(), "%.2f") + ") mm, " + format(s.deepest_time_s, "%.3f") + " s";
   }
-  return html::facts(
-      {{"Verdict", scenes::isGood(s) ? "fits"
-                                     : "<b class=\"bad\">" + std::string(words(s.verdict)) + "</b>: " +
-                                           escapeHtml(s.reason)},
-       {"Brought to its target by contact", s.completed ? "yes" : "no"},
-       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
-       {"Greatest overlap, by exact distance", deepest},
-       {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
-       {"Peak force, torque on the hand",
-        format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
-       {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-       {"Times the device was clutched and recentred", std::to_string(s.index_count)},
-       {"Final error",
-        micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
-       {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
-        micrometres(s.rest_drift_m) + " µm"}});
+  return html::facts({{"Verdict", scenes::isGood(s) ? "fits"
+                                                    : "<b class=\"bad\">" + std::string(words(s.verdict)) +
+                                                          "</b>: " + escapeHtml(s.reason)},
+                      {"Brought to its target by contact", s.completed ? "yes" : "no"},
+                      {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
+                      {"Greatest overlap, by exact distance", deepest},
+                      {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
+                      {"Peak force, torque on the hand",
+                       format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
+                      {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
+                      {"What the hand tried, in order", strategiesInWords(s.strategies)},
+                      {"Times the device was clutched and recentred", std::to_string(s.index_count)},
+                      {"Final error", micrometres(s.final_error_m, "%.2f") + " µm, " +
+                                          format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
+                      {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
+                       micrometres(s.rest_drift_m) + " µm"}});
 }
 
 std::string plotFigure(const std::string& name, const std::string& caption) {

@@ -19,9 +19,12 @@ std::string partsWith(const scenes::AssembleResult& result, scenes::Verdict verd
 
 const char* words(scenes::Verdict verdict) {
   switch (verdict) {
-    case scenes::Verdict::Fits: return "fits";
-    case scenes::Verdict::Blocked: return "blocked";
-    case scenes::Verdict::NotShown: break;
+    case scenes::Verdict::Fits:
+      return "fits";
+    case scenes::Verdict::Blocked:
+      return "blocked";
+    case scenes::Verdict::NotShown:
+      break;
   }
   return "not shown";
 }
@@ -36,7 +39,8 @@ std::string verdictLine(const scenes::AssembleResult& result) {
     case scenes::Verdict::Blocked:
       return "No, the parts do not go together: blocked at " + partsWith(result, scenes::Verdict::Blocked) +
              "; " + count + " steps fit.";
-    case scenes::Verdict::NotShown: break;
+    case scenes::Verdict::NotShown:
+      break;
   }
   const std::string parts = partsWith(result, scenes::Verdict::NotShown);
   return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
