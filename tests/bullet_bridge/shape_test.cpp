@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/shape.h"
-#include "vps/feature_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,7 @@
 
 #include "bullet_bridge/world.h"
 #include "support/lathe.h"
+#include "vps/feature_motion.h"
 #include "vps/load_error.h"
 #include "vps/query.h"
 

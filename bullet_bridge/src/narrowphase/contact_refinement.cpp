@@ -45,11 +45,7 @@ struct OwnPoint {
   [[nodiscard]] bool isFlushOn(const Vec3& n_W) const {
     const Vec3 n = inModel(n_W);
     for (const std::uint32_t i : edges)
-      for (const Vec3& into : segment(i).into) {
-        const Vec3 own = (segment(i).to - segment(i).from).cross(into).normalized();
-        if (std::abs(n.dot(own)) > kCosFlush && (n.dot(own) < 0) == (own.dot(segment(i).outward) > 0))
-          return true;
-      }
+      if (n.dot(segment(i).normal(0)) < -kCosFlush || n.dot(segment(i).normal(1)) < -kCosFlush) return true;
     return false;
   }
   [[nodiscard]] Vec3 inModel(const Vec3& n_W) const { return side->X_WM.R.transpose() * n_W; }
@@ -217,11 +213,11 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
     const EdgeSegment& s = edges.segments()[i];
     const Vec3 r = p - s.from, way = s.to - s.from;
     if (r.dot(way) < 0 || r.dot(way) > way.squaredNorm()) return;
-    for (const Vec3& into : s.into) {
-      Vec3 n = way.cross(into).normalized();
-      if (n.dot(s.outward) < 0) n = -n;
+    for (const int face : {0, 1}) {
+      const Vec3 n = s.normal(face);
       const double distance_m = n.dot(r);
-      if (distance_m > 0 || r.dot(into) < -kTouching_m || (best.found && distance_m <= best.distance_m))
+      if (distance_m > 0 || r.dot(s.into[face]) < -kTouching_m ||
+          (best.found && distance_m <= best.distance_m))
         continue;
       if (!own.isFirstAlong(X_WM.R * n)) continue;
       best.found = best.is_contact = best.is_their_face = true;

@@ -83,13 +83,9 @@ Vec3 smoothNormal(const EdgeCrossing& at, const EdgeSet& edges0, const EdgeSet& 
 // True if curved faces beside both edges lie flush, as those of a thread and its nut.
 bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
   if (!isCurved(s0) || !isCurved(s1)) return false;
-  const auto normalOf = [](const EdgeSegment& s, const Vec3& into) {
-    const Vec3 n = (s.to - s.from).cross(into).normalized();
-    return Vec3(n.dot(s.outward) < 0 ? -n : n);
-  };
-  for (const Vec3& into0 : s0.into)
-    for (const Vec3& into1 : s1.into)
-      if (normalOf(s0, into0).dot(R_01 * normalOf(s1, into1)) < -kCosFlush) return true;
+  for (const int i : {0, 1})
+    for (const int j : {0, 1})
+      if (s0.normal(i).dot(R_01 * s1.normal(j)) < -kCosFlush) return true;
   return false;
 }
 

@@ -26,7 +26,8 @@ struct EndPoses {
 };
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
-/// @param start  at the start of the step
+/// @param start     at the start of the step
+/// @param is_first  in the first check of a step, small gaps are restored too: FeatureMotion::check()
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out);
 

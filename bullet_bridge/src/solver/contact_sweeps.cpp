@@ -157,7 +157,7 @@ void ContactSweeps::prepare() {
 // step to step with every contact that comes or goes.
 void ContactSweeps::start() {
   prepare();
-  for (IslandBody& b : island_.bodies) b.u = b.effective_inverse * (b.momentum + b.coupling_impulse);
+  setFreeVelocities();
   const auto work = [&] {
     double sum = 0;
     for (const RigidContact& c : contacts_) {
@@ -174,8 +174,12 @@ void ContactSweeps::start() {
   applyImpulses();
 }
 
-void ContactSweeps::applyImpulses() {
+void ContactSweeps::setFreeVelocities() {
   for (IslandBody& b : island_.bodies) b.u = b.effective_inverse * (b.momentum + b.coupling_impulse);
+}
+
+void ContactSweeps::applyImpulses() {
+  setFreeVelocities();
   for (const RigidContact& c : contacts_) {
     if (c.p_n != 0) apply(c.normal, c.p_n);
     for (int t = 0; t < 2; ++t)

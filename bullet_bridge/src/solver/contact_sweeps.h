@@ -85,6 +85,7 @@ class ContactSweeps {
                                    const Vec3& d) const;
   void prepareRow(ContactRow& row) const;
   void prepare();
+  void setFreeVelocities();
   [[nodiscard]] double pushVelocity(const ContactRow& row) const;
   double sweepOnce();
   double sweepJoints();

@@ -4,8 +4,8 @@
 // Contacts are planes, found for the motion that is predicted before the step. Contact changes that motion: a
 // part that breaks free of a jam turns, an edge that was out of reach meets a wall, and a fast turn bends the
 // path of a point away from its plane. So the solver asks each pair whether the bodies would overlap at the
-// poses that it found, and solves the step again with the contacts that were missing, a
-// bounded number of times.
+// poses that it found, and solves the step again with the contacts that were missing, a bounded number of
+// times.
 #pragma once
 
 #include <cstddef>

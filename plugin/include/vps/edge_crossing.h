@@ -23,6 +23,12 @@ struct EdgeSegment {
   bool ends[2] = {true, true};  ///< at from, at to: false where the edge goes on in another segment
   /// True where it goes on in one that turns by less than 8 degrees: both stand for a curve.
   bool is_curved[2] = {false, false};
+
+  /// Outward normal of the face beside it, unit; not defined where the edge has no length.
+  [[nodiscard]] Vec3 normal(int face) const {
+    const Vec3 n = (to - from).cross(into[face]).normalized();
+    return n.dot(outward) < 0 ? Vec3(-n) : n;
+  }
 };
 
 /// Appends a mesh's convex edges whose faces turn by more than 20 degrees, placed by X_MP. Edges of one face,

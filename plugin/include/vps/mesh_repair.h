@@ -26,12 +26,10 @@ enum class Crossing { Unknown, Seen };
 
 /// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
 /// - Of triangles with the same corners, or with cracks between them, one is kept. Of a back-to-back pair
-/// none
-///   is kept if it is a wall between two solids, and one if it is the only surface there (a surface exported
-///   for both sides, or given twice and turned once).
+///   none is kept if it is a wall between two solids, and one if it is the only surface there (a surface
+///   exported for both sides, or given twice and turned once).
 /// - Facets are turned to agree across edges of two facets, also where a crack or a T-junction parts them;
-/// the
-///   minority is turned. Cracks may be 1/600 of the mesh's size and a quarter of the edges beside them.
+///   the minority is turned. Cracks may be 1/600 of the mesh's size and a quarter of the edges beside them.
 /// - Closed shells that face in are turned, unless they are a cavity, which lies within a shell that faces
 ///   out. Shells within a turned shell are turned with it.
 /// - Open patches are turned where the rest of the mesh shows clearly on which side the solid is.

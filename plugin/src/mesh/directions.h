@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Directions and the angles between them.
+// Directions, the angles between them, and whether a triangle has one.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "vps/pose.h"
@@ -17,6 +18,14 @@ inline Vec3 unitOrZero(const Vec3& v) {
 /// The angle between u and v; atan2 keeps its accuracy near 0 and pi, where acos loses half the digits.
 inline double angleBetween(const Vec3& u, const Vec3& v) {
   return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+/// False for a triangle so slim that the direction across it is rounding: twice its area is at most this
+/// share of its longest edge's square.
+inline bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
+  constexpr double kMinSlimness = 1e-10;
+  const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
+  return (b - a).cross(c - a).norm() > kMinSlimness * longest2;
 }
 
 }  // namespace vps::inline v0

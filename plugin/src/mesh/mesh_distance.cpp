@@ -16,8 +16,6 @@
 namespace vps::inline v0 {
 namespace {
 
-/// Twice the area over the square of the longest edge, below which corners are collinear up to rounding.
-constexpr double kMinSlimness = 1e-10;
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
@@ -25,9 +23,7 @@ constexpr double kTouch = 1e-9;
 constexpr int kStack = 64;
 
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 n = (b - a).cross(c - a);
-  const double longest2 = std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()});
-  return n.norm() > kMinSlimness * longest2 ? unitOrZero(n) : Vec3(Vec3::Zero());
+  return hasArea(a, b, c) ? unitOrZero((b - a).cross(c - a)) : Vec3(Vec3::Zero());
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
+#include "query/edge_joints.h"
 #include "query/feature_angles.h"
 
 namespace vps::inline v0 {
@@ -35,42 +37,27 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
   Vec3 corner[3];
   for (int k = 0; k < 3; ++k) corner[k] = X_MP * mesh.vertices[t[static_cast<std::size_t>(k)]];
   const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  double longest2 = 0;
-  for (int k = 0; k < 3; ++k) longest2 = std::max(longest2, (corner[(k + 1) % 3] - corner[k]).squaredNorm());
-  return {n.normalized(), corner[(e.side + 2) % 3], n.norm() > kMinSlimness * longest2};
+  return {n.normalized(), corner[(e.side + 2) % 3], hasArea(corner[0], corner[1], corner[2])};
 }
 
-/// An end of a segment at a vertex.
-struct Tip {
-  std::uint32_t vertex, segment;
-  int end;
-  Vec3 away;  ///< unit, along the segment
-};
-
-// Two edges that meet in a line with no third are one curved edge.
-void joinTips(std::vector<Tip>& tips, std::vector<EdgeSegment>& segments) {
-  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
-    return a.vertex != b.vertex ? a.vertex < b.vertex : a.segment < b.segment;
+// Two edges that meet in a line with no third are one edge.
+void joinEnds(std::vector<EdgeEnd>& ends, std::vector<EdgeSegment>& segments) {
+  forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
+    const double cos = -a.away.dot(b.away);
+    if (!(cos > kCosSharp)) return;
+    const bool is_curved = cos > kCosCurved && a.away.cross(b.away).norm() > kFlat;
+    for (const EdgeEnd* e : {&a, &b}) {
+      segments[e->edge].ends[e->end] = false;
+      segments[e->edge].is_curved[e->end] = is_curved;
+    }
   });
-  for (std::size_t i = 0; i < tips.size();) {
-    std::size_t end = i + 1;
-    while (end < tips.size() && tips[end].vertex == tips[i].vertex) ++end;
-    const double cos = end - i == 2 ? -tips[i].away.dot(tips[i + 1].away) : 0;
-    const bool is_curved = cos > kCosCurved && tips[i].away.cross(tips[i + 1].away).norm() > kFlat;
-    if (cos > kCosSharp)
-      for (std::size_t k = i; k < end; ++k) {
-        segments[tips[k].segment].ends[tips[k].end] = false;
-        segments[tips[k].segment].is_curved[tips[k].end] = is_curved;
-      }
-    i = end;
-  }
 }
 
 }  // namespace
 
 void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::vector<EdgeSegment>& out) {
   const std::size_t first = out.size();
-  std::vector<Tip> tips;
+  std::vector<EdgeEnd> ends;
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     if (same.size() != 2 || same[0].is_forward == same[1].is_forward) return;
     EdgeSegment s;
@@ -89,11 +76,11 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
     const Vec3 mean = face[0].normal + face[1].normal;
     s.outward = mean.norm() > 1e-6 ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
     s.owner = owner;
-    tips.push_back({same[0].low, static_cast<std::uint32_t>(out.size()), 0, along});
-    tips.push_back({same[0].high, static_cast<std::uint32_t>(out.size()), 1, -along});
+    ends.push_back({same[0].low, static_cast<std::uint32_t>(out.size()), 0, along});
+    ends.push_back({same[0].high, static_cast<std::uint32_t>(out.size()), 1, -along});
     out.push_back(s);
   });
-  if (out.size() > first) joinTips(tips, out);
+  if (out.size() > first) joinEnds(ends, out);
 }
 
 EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segments)) {

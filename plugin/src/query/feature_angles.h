@@ -13,7 +13,5 @@ inline constexpr double kCosSharp = 0.94;
 inline constexpr double kCosCurved = 0.9903;
 /// Sine; assumed: above the rounding of files in single precision.
 inline constexpr double kFlat = 1e-4;
-/// As MeshDistance: twice the area over the longest edge's square.
-inline constexpr double kMinSlimness = 1e-10;
 
 }  // namespace vps::inline v0

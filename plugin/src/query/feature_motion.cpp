@@ -214,14 +214,29 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
 
 constexpr double kCosFlush = 0.94;  // 20 degrees
 
-// True if one of the faces around a corner lies flush on a facet that stands for a curved surface.
-// @param R  from the frame of the corner's part to the facet's
-bool isFlushOn(const FeatureSet& with_corner, std::uint32_t corner, const FeatureSet& with_facet,
-               std::uint32_t facet, const Mat3& R) {
-  if (!with_facet.isCurved(facet)) return false;
-  const Vec3 n = R.transpose() * facetNormal(with_facet, facet).normalized();
-  for (const std::uint32_t edge : with_corner.edgesAt(corner))
-    for (const Vec3& own : with_corner.edges()[edge].normal)
+/// The corner and the facet of a pair, whichever part has which.
+struct CornerAndFacet {
+  const FeatureSet& with_corner;
+  std::uint32_t corner;
+  const FeatureSet& with_facet;
+  std::uint32_t facet;
+  Mat3 R;  ///< from the frame of the corner's part to the facet's
+};
+
+/// @param kind  not EdgeOnEdge
+CornerAndFacet cornerAndFacet(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i,
+                              std::uint32_t j, const Mat3& R_10) {
+  if (kind == Kind::CornerOnFacet) return {part0, i, part1, j, R_10};
+  return {part1, j, part0, i, R_10.transpose()};
+}
+
+// True if one of the faces around the corner lies flush on a facet that stands for a curved surface.
+// @param facet  the pair's, or another one of the same part
+bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
+  if (!pair.with_facet.isCurved(facet)) return false;
+  const Vec3 n = pair.R.transpose() * facetNormal(pair.with_facet, facet).normalized();
+  for (const std::uint32_t edge : pair.with_corner.edgesAt(pair.corner))
+    for (const Vec3& own : pair.with_corner.edges()[edge].normal)
       if (own.dot(n) < -kCosFlush) return true;
   return false;
 }
@@ -246,16 +261,16 @@ bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_1
 // thread's crest does where it comes out of its nut. There the polygons overlap by as much as they leave
 // their curves; twice that, since a border that meets another edge at its end has no curve known there.
 // @param p  the nearest point of the facet, in its part's frame
-bool slidesOverBorder(const FeatureSet& with_corner, std::uint32_t corner, const FeatureSet& with_facet,
-                      std::uint32_t facet, const Mat3& R, const Vec3& p) {
-  const double own_m = with_corner.sagitta_m(with_corner.corners()[corner]);
+bool slidesOverBorder(const CornerAndFacet& pair, const Vec3& p) {
+  const double own_m = pair.with_corner.sagitta_m(pair.with_corner.corners()[pair.corner]);
   if (!(own_m > 0)) return false;
-  const auto& t = with_facet.facets()[facet];
+  const FeatureSet& part = pair.with_facet;
+  const auto& t = part.facets()[pair.facet];
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t other = with_facet.neighbours(facet)[k];
-    if (other == FeatureSet::kNone || !isFlushOn(with_corner, corner, with_facet, other, R)) continue;
-    const double their_m = std::max(with_facet.sagitta_m(t[k]), with_facet.sagitta_m(t[(k + 1) % 3]));
-    if (distanceToSide(with_facet, facet, k, p) < 2 * (own_m + their_m)) return true;
+    const std::uint32_t other = part.neighbours(pair.facet)[k];
+    if (other == FeatureSet::kNone || !isFlushOn(pair, other)) continue;
+    const double their_m = std::max(part.sagitta_m(t[k]), part.sagitta_m(t[(k + 1) % 3]));
+    if (distanceToSide(part, pair.facet, k, p) < 2 * (own_m + their_m)) return true;
   }
   return false;
 }
@@ -308,9 +323,11 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, con
     pointsOf(part1, kind, 1, j, b);
     const Nearest nearest = nearestOf(kind, a, b);
     const double distance_m = (nearest.p - nearest.q).norm();
-    if (distance_m > margin_m || (kind == Kind::CornerOnFacet && isFlushOn(part0, i, part1, j, X_10.R)) ||
-        (kind == Kind::FacetOnCorner && isFlushOn(part1, j, part0, i, X_01.R)))
-      return;
+    if (distance_m > margin_m) return;
+    if (kind != Kind::EdgeOnEdge) {
+      const CornerAndFacet pair = cornerAndFacet(part0, part1, kind, i, j, X_10.R);
+      if (isFlushOn(pair, pair.facet)) return;
+    }
     near_.push_back({kind, {i, j}, distance_m, 0});
   };
   // The items of part 0 that are near part 1's box, then what is near each.
@@ -366,6 +383,16 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
     contact.along[1] = (f.b[1] - f.b[0]).normalized();
   }
   return contact;
+}
+
+// True for features of curved surfaces that lie flush in each other: points of pointshells meet these.
+bool isLeftToPoints(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
+                    const Mat3& R_10, const Vec3& n_1) {
+  const auto [i, j] = contact.feature;
+  if (contact.kind == Kind::EdgeOnEdge) return isFlush(part0.edges()[i], part1.edges()[j], R_10, n_1);
+  const CornerAndFacet pair = cornerAndFacet(part0, part1, contact.kind, i, j, R_10);
+  const Vec3& on_facet = contact.p[contact.kind == Kind::CornerOnFacet ? 1 : 0];
+  return isFlushOn(pair, pair.facet) || slidesOverBorder(pair, on_facet);
 }
 
 // Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
@@ -465,22 +492,11 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     // Within a piece the rotation changes little; the plane is that of its start.
     const Mat3& R_10 = way_10_[met.piece].R;
     const Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
-    const std::uint32_t(&feature)[2] = near.feature;
-    if (near.kind == Kind::EdgeOnEdge &&
-        isFlush(part0.edges()[feature[0]], part1.edges()[feature[1]], R_10, n_1))
-      continue;
     FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
     if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], contact.p[0], n_0) ||
         !isMetFromOutside(part1, near.kind, 1, near.feature[1], contact.p[1], n_1))
       continue;
-    if (near.kind == Kind::CornerOnFacet &&
-        (isFlushOn(part0, feature[0], part1, feature[1], R_10) ||
-         slidesOverBorder(part0, feature[0], part1, feature[1], R_10, contact.p[1])))
-      continue;
-    if (near.kind == Kind::FacetOnCorner &&
-        (isFlushOn(part1, feature[1], part0, feature[0], R_10.transpose()) ||
-         slidesOverBorder(part1, feature[1], part0, feature[0], R_10.transpose(), contact.p[0])))
-      continue;
+    if (isLeftToPoints(part0, part1, contact, R_10, n_1)) continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = near.distance_m;

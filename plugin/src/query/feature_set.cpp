@@ -5,19 +5,12 @@
 #include <span>
 
 #include "mesh/box_tree.h"
+#include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
+#include "query/edge_joints.h"
 #include "query/feature_angles.h"
 
 namespace vps::inline v0 {
-
-namespace {
-
-bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return (b - a).cross(c - a).norm() > kMinSlimness * longest2;
-}
-
-}  // namespace
 
 struct FeatureSet::Tree {
   explicit Tree(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {}
@@ -104,36 +97,25 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
 }
 
 void FeatureSet::markCurvedEdges(std::size_t first) {
-  struct End {
-    std::uint32_t vertex, edge;
-    Vec3 away;
-  };
-  std::vector<End> ends;
+  std::vector<EdgeEnd> ends;
   for (std::size_t i = first; i < edges_.size(); ++i) {
     const auto edge = static_cast<std::uint32_t>(i);
     const Vec3 along = (vertices_[edges_[i].to] - vertices_[edges_[i].from]).normalized();
-    ends.push_back({edges_[i].from, edge, along});
-    ends.push_back({edges_[i].to, edge, -along});
+    ends.push_back({edges_[i].from, edge, 0, along});
+    ends.push_back({edges_[i].to, edge, 1, -along});
   }
-  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
-    return a.vertex != b.vertex ? a.vertex < b.vertex : a.edge < b.edge;
-  });
-  for (std::size_t i = 0; i < ends.size();) {
-    std::size_t end = i + 1;
-    while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
-    const double sine = end - i == 2 ? ends[i].away.cross(ends[i + 1].away).norm() : 0;
-    if (sine > kFlat && ends[i].away.dot(ends[i + 1].away) < -kCosCurved) {
-      double length_m = 0;
-      for (const std::size_t k : {i, i + 1}) {
-        FeatureEdge& edge = edges_[ends[k].edge];
-        edge.is_curved = true;
-        length_m = std::max(length_m, (vertices_[edge.to] - vertices_[edge.from]).norm());
-      }
-      // Of an arc that turns by this angle over the length: length times angle / 8.
-      sagitta_m_[ends[i].vertex] = static_cast<float>(length_m * sine / 8);
+  forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
+    const double sine = a.away.cross(b.away).norm();
+    if (!(sine > kFlat && a.away.dot(b.away) < -kCosCurved)) return;
+    double length_m = 0;
+    for (const EdgeEnd* e : {&a, &b}) {
+      FeatureEdge& edge = edges_[e->edge];
+      edge.is_curved = true;
+      length_m = std::max(length_m, (vertices_[edge.to] - vertices_[edge.from]).norm());
     }
-    i = end;
-  }
+    // Of an arc that turns by this angle over the length: length times angle / 8.
+    sagitta_m_[a.vertex] = static_cast<float>(length_m * sine / 8);
+  });
 }
 
 void FeatureSet::build() {

@@ -21,6 +21,7 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
   return (p - a - t * along).norm();
 }
+
 std::uint32_t next(std::uint32_t side) {
   return side == 2 ? 0 : side + 1;
 }
