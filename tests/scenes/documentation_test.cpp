@@ -12,6 +12,7 @@
 #include <string>
 
 #include "scene/read_fields.h"
+#include "vps_scenes/check_fields.h"
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/trade_fields.h"
 
@@ -206,6 +207,10 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(
       readme, "trade",
       head + resultLines("rows[].", kTradeRowFields) + resultLines("wall.rows[].", kTradeRowWallFields));
+  checkSection(readme, "check",
+               head + resultLines("pairs[].", kCheckedPairFields) +
+                   resultLines("fits[].", kCheckedFitFields) + resultLines("parts[].", kCheckedPartFields) +
+                   resultLines("wall.", kCheckWallFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }
 

@@ -39,6 +39,7 @@ Scene pinsOnPlate() {
     SceneStep step;
     step.part = i;
     step.X_WP_target = scene.parts[i].X_WP;
+    step.tolerance_m = 0.5 * kMm;  // nothing guides the pins across: five standard deviations of sight
     step.X_WP_start = Pose::translation(scene.parts[i].X_WP.p + Vec3(0, 0, 0.2 * kMm));
     scene.steps.push_back(step);
   }

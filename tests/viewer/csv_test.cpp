@@ -28,11 +28,12 @@ TEST(Csv, NumbersReadBackAsTheSameValue) {
 TEST(Csv, VectorsAndPosesHaveAColumnForEachNumber) {
   const auto columns = csvColumns<scenes::TraceRow>(scenes::kTraceFields);
   const std::string header = csvLine(columns);
-  // The columns that other programs read since the first version.
+  // The columns that other programs read since the first version; later ones stand at the end.
   EXPECT_EQ(header,
             "time_s,step,phase,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
             "part_x_m,part_y_m,part_z_m,part_qx,part_qy,part_qz,part_qw,"
-            "proxy_x_m,proxy_y_m,proxy_z_m,proxy_qx,proxy_qy,proxy_qz,proxy_qw,contacts,depth_m\n");
+            "proxy_x_m,proxy_y_m,proxy_z_m,proxy_qx,proxy_qy,proxy_qz,proxy_qw,contacts,depth_m,"
+            "strategy\n");
 }
 
 TEST(Csv, WhatWasNotMeasuredHasEmptyCells) {

@@ -14,6 +14,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
+#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -83,15 +84,23 @@ int runAssemble(const AssembleArguments& given) {
   json.write(toJson(result));
   bar.clear();
 
-  const bool is_good = printSteps(result);
+  printSteps(result);
   for (const std::string& note : notes) warn(note);
   if (result.real_time) {
     for (const std::string& words : result.real_time->warnings) warn(words);
     std::fputs(describe(result).c_str(), stdout);
   }
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
-  std::printf("%s; report: %s/report.html\n", is_good ? "done" : "not done", given.out.c_str());
-  return is_good ? kGood : kBad;
+  std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
+  switch (result.verdict) {
+    case scenes::Verdict::Fits:
+      return kGood;
+    case scenes::Verdict::Blocked:
+      return kBad;
+    case scenes::Verdict::NotShown:
+      break;
+  }
+  return kNotShown;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "json_fields.h"
 #include "vps_device/dual_arm/character.h"
+#include "vps_scenes/check_fields.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/result_fields.h"
 #include "vps_scenes/trade_fields.h"
@@ -225,6 +226,29 @@ std::string toJson(const std::string& scene, const scenes::FidelityChoice& choic
   Json json = {{"scene", scene}};
   addFields(json, choice, scenes::kChoiceFields);
   return text(json);
+}
+
+std::string toJson(const scenes::CheckResult& result) {
+  Json parts = Json::array();
+  for (const scenes::CheckedPart& part : result.parts) {
+    Json& json = parts.emplace_back(toObject(part, scenes::kCheckedPartFields));
+    if (!part.play) continue;
+    json["play_axes"] = Json::array();
+    for (int axis = 0; axis < 3; ++axis)
+      json["play_axes"].push_back(toValue(Vec3(part.play_axes_W.col(axis))));
+    json["ways_out"] = Json::array();
+    for (const Vec3& way : part.ways_out_W) json["ways_out"].push_back(toValue(way));
+  }
+  Json pairs = Json::array(), fits = Json::array();
+  for (const scenes::CheckedPair& pair : result.pairs)
+    pairs.push_back(toObject(pair, scenes::kCheckedPairFields));
+  for (const scenes::CheckedFit& fit : result.fits) fits.push_back(toObject(fit, scenes::kCheckedFitFields));
+  return text({{"wall", toObject(result, scenes::kCheckWallFields)},
+               {"assembly", result.assembly},
+               {"clashes", result.clashes()},
+               {"pairs", pairs},
+               {"fits", fits},
+               {"parts", parts}});
 }
 
 std::string toJson(const scenes::TradeResult& result) {

@@ -16,6 +16,7 @@
 #include "vps_scenes/simulate.h"
 
 namespace vps::scenes::inline v0 {
+struct CheckResult;
 struct FidelityChoice;
 struct TradeResult;
 }  // namespace vps::scenes::inline v0
@@ -99,6 +100,7 @@ std::string toJson(const ExportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);
+std::string toJson(const scenes::CheckResult& result);
 std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice);
 std::string toJson(const device::DualArmCharacter& character, const device::DualArmFile& file);
 

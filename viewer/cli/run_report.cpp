@@ -9,16 +9,17 @@
 #include "vps_scenes/result_fields.h"
 #include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
+#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
 namespace {
 
 std::string tableOf(const std::vector<scenes::StepResult>& steps) {
-  Table table({"<step", "<completed", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
+  Table table({"<step", "<verdict", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
                "drift [um]"});
   for (const scenes::StepResult& step : steps)
-    table.add({step.part, step.completed ? "yes" : "no", fixed(step.duration_s, 2),
+    table.add({step.part, words(step.verdict), fixed(step.duration_s, 2),
                fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
                fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
                fixed(step.rest_drift_m * 1e6, 2)});
@@ -39,26 +40,21 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
   return std::move(outcome.notes);
 }
 
-bool printSteps(const scenes::AssembleResult& result) {
+void printSteps(const scenes::AssembleResult& result) {
   std::fputs(tableOf(result.steps).c_str(), stdout);
-  bool is_good = result.completed;
   for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
-    if (!step.completed) std::printf("%s: %s\n", name, step.failure_reason.c_str());
+    if (!step.reason.empty()) std::printf("%s: %s\n", name, step.reason.c_str());
+    if (!step.stands_on.empty())
+      std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
+                  step.stands_on.c_str());
     if (step.index_count > 0)
       std::printf("%s: the device was recentred %s, since the path is longer than its workspace\n", name,
                   step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
-    if (!scenes::isWithinLimit(step))
-      std::printf("%s: penetrated %s by more than its limit\n", name, step.deepest_against.c_str());
-    if (!scenes::isAtRest(step))
-      std::printf("%s: drifted by more than %g um after its release\n", name,
-                  scenes::kRestDriftLimit_m * 1e6);
-    is_good = is_good && scenes::isGood(step);
   }
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
          " near points found no room in a query; choose a coarser spacing");
-  return is_good;
 }
 
 }  // namespace vps::viewer::inline v0

@@ -21,7 +21,7 @@ struct RunFiles {
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files);
 
-/// Prints the table of steps, and a line for each problem of a step. Returns true if all steps are good.
-bool printSteps(const scenes::AssembleResult& result);
+/// Prints the table of steps, and a line for each problem of a step.
+void printSteps(const scenes::AssembleResult& result);
 
 }  // namespace vps::viewer::inline v0

@@ -35,6 +35,8 @@ struct DeviceLimits {
   double coulomb_Nm = 0;
   double resolution_m = 0;  ///< greatest error of a position read
   double resolution_rad = 0;
+  /// The handle reaches every rotation from the identity up to this one, anywhere in that box [rad]. 0: all.
+  double workspace_rad = 0;
 };
 
 /// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.

@@ -3,14 +3,13 @@
 // spring-damper towards an equilibrium that follows minimum-jerk segments.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "vps_device/export.h"
 #include "vps_device/hand_force.h"
-#include "vps_device/random.h"
 
 namespace vps::device::inline v0 {
 
@@ -32,18 +31,27 @@ struct OperatorHabits {
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
   double inertia_kgm2 = 0.004;
-  double insert_share = 0.5;    ///< of speed_m_s while inserting
-  double lag_rad_s = 40;        ///< natural frequency of the muscles' lag, critically damped
-  double see_rate_hz = 60;      ///< rate of visual samples
-  double see_delay_s = 0.1;     ///< from light to correction, at most 1 s
-  double see_gain_per_s = 2.5;  ///< integral correction of the seen error
-  double see_limit_m = 3e-3;    ///< bound of that correction
+  double insert_share = 0.5;  ///< of speed_m_s while inserting
+  double lag_rad_s = 40;      ///< natural frequency of the muscles' lag, critically damped
+  double see_rate_hz = 60;    ///< rate of visual samples
+  /// Errors of sight, standard deviations. A minute of arc, which normal eyes resolve, at 0.35 m; the least
+  /// turn of a line that is seen [Regan and Price 1986: 0.2 to 0.5 degrees]; the delay until a seen error is
+  /// corrected [Saunders and Knill 2003: 0.12 to 0.16 s]. assumed: for a part in hand the same
+  double see_error_m = 0.1e-3;
+  double see_error_rad = 0.0035;
+  double see_delay_s = 0.15;  ///< at most 1 s
+  double fixation_s = 0.3;    ///< the eye looks again, with a new error [Rayner 1998: 0.26 to 0.33 s]
+  double see_gain_per_s = 2;  ///< correction of a seen error at first; it averages what is seen later on
+  double see_limit_m = 3e-3;  ///< bound of that correction
   double see_limit_rad = 0.05;
-  double stuck_s = 0.4;         ///< without progress while pushing: retry with an offset
+  double stuck_s = 0.4;         ///< without progress while pushing: the strategy has failed
   double progress_m = 0.05e-3;  ///< least progress in that time
-  double back_off_m = 1e-3;
-  double search_m = 0.06e-3;  ///< spiral step of a retry
-  double search_rad = 0.003;
+  double back_off_m = 1e-3;     ///< how far it withdraws to try again
+  double touch_N = 1;         ///< resistance that counts as touching. assumed: ten times what a finger feels
+  double search_N = 1.5;      ///< push while searching. assumed: light, so that the part slides
+  double tilt_rad = 0.1;      ///< of the tilt with which a corner is put in first. assumed
+  double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: below the error of sight
+  double search_limit_m = 0.5e-3;  ///< radius of the spiral: five errors of sight
   double press_s = 0.3;
   double rest_m_s = 1e-3;   ///< slower counts as held
   double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand releases
@@ -70,6 +78,11 @@ struct OperatorTask {
   double tolerance_rad = 0.01;
   double timeout_s = 20;
   Vec3 weight_W = Vec3::Zero();  ///< of the part [N], which the hand carries by feed-forward
+  /// What a person sees of the part's shape: of the end that goes in first, the point farthest from the axis
+  /// of insertion through G. In P; zero: not known, then the hand does not tilt.
+  Vec3 tip_P = Vec3::Zero();
+  /// How far the part stays behind the handle under force, which a person feels as its stiffness [m/N].
+  double give_m_per_N = 0;
 };
 
 /// What the hand senses at one instant.
@@ -87,6 +100,36 @@ struct OperatorView {
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 
+/// What the hand does while it inserts or presses.
+enum class OperatorStrategy {
+  None,
+  Approach,       ///< moves ahead, guided by sight, until it touches
+  Touch,          ///< pushes lightly and lets the part slide
+  TiltIn,         ///< puts a corner in first, slides it against the wall, and turns the part upright
+  SpiralSearch,   ///< slides on the surface in a spiral until the part drops
+  AlignByTorque,  ///< pushes, and gives way to the force across and the torque that it feels
+  BackOff,        ///< withdraws, and looks again
+  PressHome,      ///< presses against the stop that it felt
+  PlaceBySight,   ///< nothing stops the part: holds it where it is seen at its target
+};
+inline constexpr int kOperatorStrategies = 9;
+/// "tilt_in"
+VPS_DEVICE_API const char* toText(OperatorStrategy strategy) noexcept;
+
+/// What the hand does, as a recording keeps it: in one byte.
+struct OperatorState {
+  OperatorPhase phase = OperatorPhase::Idle;
+  OperatorStrategy strategy = OperatorStrategy::None;
+  friend bool operator==(const OperatorState&, const OperatorState&) = default;
+};
+constexpr std::uint8_t toByte(OperatorState state) noexcept {
+  return static_cast<std::uint8_t>(static_cast<unsigned>(state.phase) | static_cast<unsigned>(state.strategy)
+                                                                            << 4U);
+}
+constexpr OperatorState stateFromByte(std::uint8_t byte) noexcept {
+  return {static_cast<OperatorPhase>(byte & 0xfU), static_cast<OperatorStrategy>(byte >> 4U)};
+}
+
 /// Minimum jerk from 0 to 1 over s in [0, 1]: 10 s^3 - 15 s^4 + 6 s^5, clamped outside. Source: [Flash and
 /// Hogan 1985].
 VPS_DEVICE_API double minimumJerk(double s) noexcept;
@@ -97,6 +140,9 @@ VPS_DEVICE_API double minimumJerkRate(double s) noexcept;
 class VPS_DEVICE_API VirtualOperator {
  public:
   explicit VirtualOperator(const OperatorHabits& habits = {});
+  VirtualOperator(VirtualOperator&&) noexcept;
+  VirtualOperator& operator=(VirtualOperator&&) noexcept;
+  ~VirtualOperator();
 
   /// Starts a task at time now_s. May allocate. Each call draws a new aim error.
   void begin(const OperatorTask& task, double now_s);
@@ -109,76 +155,15 @@ class VPS_DEVICE_API VirtualOperator {
   /// or allocates.
   void goOn() noexcept;
 
-  [[nodiscard]] OperatorPhase phase() const noexcept { return phase_; }
-  [[nodiscard]] int retries() const noexcept { return retries_; }
-  [[nodiscard]] const OperatorHabits& habits() const noexcept { return habits_; }
+  [[nodiscard]] OperatorPhase phase() const noexcept;
+  [[nodiscard]] OperatorStrategy strategy() const noexcept;
+  /// How often it backed off to try again.
+  [[nodiscard]] int retries() const noexcept;
+  [[nodiscard]] const OperatorHabits& habits() const noexcept;
 
  private:
-  struct Segment {
-    Pose X_from, X_to;  // of G
-    double start_s = 0, duration_s = 1;
-  };
-  struct Picture {
-    double time_s = 0;
-    Pose X_WP;
-    Twist V_WP;
-  };
-
-  void startSegment(const Pose& X_from, const Pose& X_to, double speed_share, double now_s) noexcept;
-  void startInsertion(double now_s) noexcept;
-  void enter(OperatorPhase phase, double now_s) noexcept;
-  void look(const OperatorView& view) noexcept;
-  void correct(double dt_s) noexcept;
-  void decide(const OperatorView& view, double dt_s) noexcept;
-  void reach(double now_s) noexcept;
-  void insert(const OperatorView& view, double dt_s) noexcept;
-  void press(double now_s) noexcept;
-  void retry(double now_s) noexcept;
-  void finish(OperatorPhase phase, const OperatorView& view) noexcept;
-  void follow(const Pose& X_wanted, double dt_s) noexcept;
-  [[nodiscard]] Pose wanted(double now_s) const noexcept;
-  [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
-  [[nodiscard]] HandForce impedance() const noexcept;
-  [[nodiscard]] Pose seenGrasp() const noexcept { return seen_.X_WP * task_.X_PG; }
-  [[nodiscard]] double progressOf(const Pose& X_WG) const noexcept;
-  [[nodiscard]] double shortfall_m() const noexcept;
-  [[nodiscard]] double pushLimit_N() const noexcept;
-  [[nodiscard]] bool isOnTarget(double share = 1) const noexcept;
-  [[nodiscard]] bool isAtRest() const noexcept;
-  [[nodiscard]] bool isInserting() const noexcept;
-
-  static constexpr std::size_t kPictures = 64;  // in the delay line
-
-  OperatorHabits habits_;
-  Random random_;
-  OperatorTask task_;
-  OperatorPhase phase_ = OperatorPhase::Idle;
-  double begin_s_ = 0, phase_s_ = 0;
-
-  // The plan.
-  std::vector<Pose> path_;  // of G: start, way points, target
-  std::size_t next_ = 0;    // index in path_ of the segment's end
-  Segment segment_;
-  Vec3 axis_W_ = Vec3::UnitZ();                               // direction of insertion
-  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();        // aim error, drawn once per task
-  Vec3 fix_m_ = Vec3::Zero(), fix_rad_ = Vec3::Zero();        // visual correction
-  Vec3 search_m_ = Vec3::Zero(), search_rad_ = Vec3::Zero();  // offset of the present retry
-  double push_N_ = 0;                                         // along the axis, beyond the planned pose
-  double retreat_until_s_ = 0, progress_m_ = 0, progress_s_ = 0;
-  bool has_stop_ = true;  // the target is assumed to be a stop until observed otherwise
-  int retries_ = 0;
-
-  // The hand.
-  bool has_view_ = false;
-  Pose X_eq_;  // equilibrium, after the muscles' lag
-  Twist V_eq_;
-  Pose X_rest_;  // equilibrium while there is no task
-
-  // Vision.
-  std::array<Picture, kPictures> pictures_{};
-  std::size_t picture_count_ = 0;
-  double next_look_s_ = 0;
-  Picture seen_;  // the newest picture that is older than the delay
+  class Person;
+  std::unique_ptr<Person> person_;
 };
 
 }  // namespace vps::device::inline v0

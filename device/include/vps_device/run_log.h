@@ -20,7 +20,7 @@ struct WrittenWrench {
 
 enum class RunEventKind : std::uint8_t {
   Take,   ///< the hand grasps the part of a step
-  Phase,  ///< the hand enters an OperatorPhase
+  Phase,  ///< the hand enters an OperatorPhase, or changes its strategy
   LetGo,  ///< the hand releases the part
   Note,   ///< anything else, in words
 };
@@ -29,7 +29,7 @@ struct VPS_DEVICE_API RunEvent {
   double time_s = 0;
   std::int32_t step = -1;
   RunEventKind kind = RunEventKind::Note;
-  std::uint8_t phase = 0;
+  std::uint8_t phase = 0;       ///< of Phase: toByte(OperatorState)
   std::array<char, 96> text{};  ///< zero-terminated
 
   /// Longer words are truncated.

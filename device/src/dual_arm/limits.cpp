@@ -14,6 +14,16 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 // brakes all rotations.
 constexpr double kGreatestTilt_rad = 0.5236;
 
+// Within this range of rotations the middle of two of them is unique.
+constexpr double kGreatestTurn_rad = 1.5;
+constexpr int kTurnBisections = 10;  // to 1.5 mrad
+constexpr int kCubeMiddle = 13;
+
+/// Point 0 to 26 of the grid of -1, 0 and 1 along each axis.
+Vec3 cubePoint(int i) {
+  return {i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+}
+
 double leastEigenvalue(const Mat3& m) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(m).eigenvalues()[0];
 }
@@ -41,6 +51,28 @@ void leastFriction(const DualArmParameters& p, DeviceLimits& limits) {
   }
 }
 
+/// The share of a rotation vector that is reachable at a place, by bisection: the joint ranges cut it off
+/// once.
+double reachableShare(const DualArmParameters& p, const Vec3& p_DH, const Vec3& turn_rad) {
+  double least = 0, most = 1;
+  for (int i = 0; i < kTurnBisections; ++i) {
+    const double share = 0.5 * (least + most);
+    (isReachable(p, Pose(rotationFromVector(share * turn_rad), p_DH)) ? least : most) = share;
+  }
+  return least;
+}
+
+double leastTurn_rad(const DualArmParameters& p) {
+  double least = 1;
+  for (int axis = 0; axis < 27; ++axis) {
+    const Vec3 along = cubePoint(axis).stableNormalized();
+    for (int corner = 0; corner < 27 && axis != kCubeMiddle; ++corner)
+      least = std::min(least, reachableShare(p, 0.5 * p.workspace_m.cwiseProduct(cubePoint(corner)),
+                                             kGreatestTurn_rad * along));
+  }
+  return least * kGreatestTurn_rad;
+}
+
 }  // namespace
 
 DeviceLimits dualArmLimits(const DualArmParameters& p, double rate_hz, bool has_quantised_encoders) {
@@ -55,6 +87,7 @@ DeviceLimits dualArmLimits(const DualArmParameters& p, double rate_hz, bool has_
   limits.delay_s = p.delay_ticks / rate_hz;
   limits.resolution_m = has_quantised_encoders ? p.resolution_m : 0;
   limits.resolution_rad = has_quantised_encoders ? p.resolution_rad : 0;
+  limits.workspace_rad = leastTurn_rad(p);
   leastFriction(p, limits);
   return limits;
 }

@@ -23,7 +23,7 @@ inline constexpr std::string_view kOldSyncTopic = "/run/meeting";  ///< of sync 
 template <typename Limits, typename Visit>
 void eachLimit(Limits& limits, Visit&& visit) {
   auto& [force, peak_force, torque, peak_torque, min_D, max_D, rate, delay, damping, turn_damping, coulomb,
-         turn_coulomb, resolution, turn_resolution] = limits;
+         turn_coulomb, resolution, turn_resolution, workspace_rad] = limits;
   visit("continuous_force_N", force);
   visit("peak_force_N", peak_force);
   visit("continuous_torque_Nm", torque);
@@ -41,6 +41,7 @@ void eachLimit(Limits& limits, Visit&& visit) {
   visit("coulomb_Nm", turn_coulomb);
   visit("resolution_m", resolution);
   visit("resolution_rad", turn_resolution);
+  visit("workspace_rad", workspace_rad);
 }
 
 }  // namespace vps::device::inline v0::recording

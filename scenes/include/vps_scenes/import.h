@@ -31,6 +31,9 @@ struct ImportedPart {
   Mesh mesh;         ///< welded, in the part's own frame, metres
   Pose X_WP;         ///< pose in the assembly
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
+  /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP); empty
+  /// for a file of meshes.
+  std::optional<double> deflection_m = {};
 };
 
 struct ImportedCad {

@@ -10,6 +10,7 @@
 
 #include "vps/wrench.h"
 #include "vps_scenes/snapshot.h"
+#include "vps_scenes/verdict.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -22,9 +23,21 @@ struct TickTimes {
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
+/// One strategy that the virtual operator used while it inserted or pressed.
+struct StrategyUse {
+  std::string strategy;  ///< "tilt_in": vps_device/operator.h
+  double start_s = 0, duration_s = 0;
+};
+
 struct StepResult {
   std::string part;
-  bool completed = false;
+  Verdict verdict = Verdict::NotShown;
+  std::string reason;      ///< of the verdict, in words; empty when it fits
+  std::string blocked_by;  ///< the part that it overlaps at its target, as drawn; empty: none
+  Vec3 blocked_at_W = Vec3::Zero();
+  double blocked_depth_m = 0, blocked_error_m = 0;
+  std::string stands_on;   ///< an earlier part that is not where it belongs and was put there; empty: none
+  bool completed = false;  ///< the part reached its target by contact, whatever else is wrong
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
   double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
@@ -36,7 +49,9 @@ struct StepResult {
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
   int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
-  double final_error_m = 0, final_error_rad = 0;
+  std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
+  double final_error_m = 0;             ///< greatest displacement of a point of its surface from the target
+  double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;
   double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
@@ -47,16 +62,16 @@ struct StepResult {
 /// Greatest drift of a released part that counts as being at rest.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
-/// A step is good if it was completed, within its penetration limit, and at rest afterwards. Report, table,
-/// JSON and exit status all use these functions.
+/// What a verdict is made of.
 inline bool isWithinLimit(const StepResult& step) {
   return step.max_penetration_m <= step.penetration_limit_m;
 }
 inline bool isAtRest(const StepResult& step) {
   return step.rest_drift_m <= kRestDriftLimit_m;
 }
+/// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
 inline bool isGood(const StepResult& step) {
-  return step.completed && isWithinLimit(step) && isAtRest(step);
+  return step.verdict == Verdict::Fits;
 }
 
 /// What the hand does with the part.
@@ -66,9 +81,10 @@ enum class TracePhase { Reach, Insert, Press, Rest };
 struct TraceRow {
   double time_s = 0;
   int step = -1;
-  int phase = 0;    ///< a TracePhase
-  Wrench F_hand_W;  ///< on the hand
-  Pose X_WP;        ///< part in hand
+  int phase = 0;     ///< a TracePhase
+  int strategy = 0;  ///< a device::OperatorStrategy
+  Wrench F_hand_W;   ///< on the hand
+  Pose X_WP;         ///< part in hand
   Pose X_W_Proxy;
   int contacts = 0;
   double depth_m = 0;  ///< by the voxmap
@@ -125,6 +141,8 @@ struct RealTimeResult {
 
 struct AssembleResult {
   std::string scene;
+  Verdict verdict =
+      Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
   bool completed = false;
   std::vector<StepResult> steps;
   std::vector<TraceRow> trace;

@@ -34,6 +34,16 @@ inline constexpr auto kLoopTimes =
 
 inline constexpr auto kStepFields = std::make_tuple(
     field("part", &StepResult::part, "name of the part"),
+    field("verdict", &StepResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("reason", &StepResult::reason, "of the verdict, in words; empty when it fits"),
+    field("blocked_by", &StepResult::blocked_by,
+          "the part that it overlaps at its target, as drawn; empty if none"),
+    field("blocked_at_m", &StepResult::blocked_at_W, "place of that overlap, in the world"),
+    field("blocked_depth_m", &StepResult::blocked_depth_m, "depth of that overlap"),
+    field("blocked_error_m", &StepResult::blocked_error_m,
+          "error of that depth, by the meshes' distance from the faces that they stand for"),
+    field("stands_on", &StepResult::stands_on,
+          "an earlier part that did not reach its target and was put there for this step; empty if none"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("failure_reason", &StepResult::failure_reason, "empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
@@ -52,11 +62,25 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("slides", &StepResult::slides, "number of contacts that slide"),
     field("index_count", &StepResult::index_count,
           "how often the device was clutched and recentred, on a path longer than its workspace"),
-    field("final_error_m", &StepResult::final_error_m, "distance of the part's origin from its target"),
+    field("final_error_m", &StepResult::final_error_m,
+          "greatest displacement of a point of the part's surface from its target"),
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
+
+inline constexpr auto kStrategyFields = std::make_tuple(
+    field(
+        "strategy", &StrategyUse::strategy,
+        "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
+        "press_home or place_by_sight"),
+    field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
+    field("duration_s", &StrategyUse::duration_s, "how long it took"));
+static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
+
+/// Lists, which a table of steps has no column for.
+inline constexpr auto kStepLists =
+    std::make_tuple(list("strategies", &StepResult::strategies, kStrategyFields));
 
 inline constexpr auto kStepWallFields = std::make_tuple(
     field("cook_s", &StepResult::cook_wall_s,
@@ -64,7 +88,7 @@ inline constexpr auto kStepWallFields = std::make_tuple(
     field("swap_s", &StepResult::swap_wall_s, "time to put that field in place, between two physics steps"),
     field("missed_while_cooking", &StepResult::missed_while_cooking,
           "haptic periods missed meanwhile, in real time"));
-static_assert(coversAllMembers<StepResult>(kStepFields, kStepWallFields));
+static_assert(coversAllMembers<StepResult>(kStepFields, kStepLists, kStepWallFields));
 
 // --- Parts of the result of a run
 
@@ -130,11 +154,12 @@ using LocalContact = decltype(AssembleResult::local_contact);
 
 inline constexpr auto kAssembleFields = std::make_tuple(
     field("scene", &AssembleResult::scene, "name of the scene"),
+    field("verdict", &AssembleResult::verdict, "`fits`, `blocked` or `not_shown`"),
     field("completed", &AssembleResult::completed, "all steps were completed"),
     field("contacts_left_out", &AssembleResult::contacts_left_out,
           "near points that found no room in a query; 0 unless a limit was set"),
     field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
-    list("steps", &AssembleResult::steps, kStepFields),
+    list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
     object("haptic",
            std::make_tuple(
                field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
@@ -171,6 +196,9 @@ inline constexpr auto kTraceFields = std::make_tuple(
     field("part", &TraceRow::X_WP, "pose of the part in hand"),
     field("proxy", &TraceRow::X_W_Proxy, "pose of the device's proxy"),
     field("contacts", &TraceRow::contacts, "number of contacts"),
-    field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"));
+    field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"),
+    field("strategy", &TraceRow::strategy,
+          "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
+          "7 press_home, 8 place_by_sight"));
 
 }  // namespace vps::scenes::inline v0

@@ -30,7 +30,9 @@ struct ScenePart {
   Twist V_WP_W;                ///< of its origin, at the start of simulate(); assemble() starts at rest
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another part (interference fits)
+  bool is_scenery = false;     ///< of assemble(): nothing collides with it
   std::string file;            ///< file that the mesh was read from, for messages
+  std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for
@@ -42,7 +44,7 @@ struct SceneStep {
   Pose X_WP_start;
   Pose X_WP_target;
   std::vector<Pose> way_points;  ///< poses of the part that the operator passes, between start and target
-  double tolerance_m = 0.1e-3;   ///< greatest distance of the part's origin from its target
+  double tolerance_m = 0.1e-3;   ///< greatest distance of a point of its surface from the target
   double tolerance_rad = 0.01;
   double clearance_m = 0;  ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
   double timeout_s = 20;

@@ -64,7 +64,10 @@ inline constexpr auto kPartKeys = std::make_tuple(
     group("", path(&ScenePart::part, &Part::material), kMaterialFields),
     Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "sRGB"},
     field("allow_overlap", &ScenePart::allow_overlap,
-          "the part may start inside another one (interference fits)"));
+          "the part may start inside another one (interference fits)"),
+    field("scenery", &ScenePart::is_scenery,
+          "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
+          "it"));
 
 /// `[[step]]`
 inline constexpr auto kStepKeys = std::make_tuple(
@@ -74,7 +77,8 @@ inline constexpr auto kStepKeys = std::make_tuple(
     Key{"approach", "3 lengths", "see below", "the start as an offset from the target, in the world"},
     Key{"way_points", "list of poses", "none",
         "poses of the part that the hand passes, from start to target"},
-    field("tolerance", &SceneStep::tolerance_m, "greatest distance of the part's origin from its target",
+    field("tolerance", &SceneStep::tolerance_m,
+          "greatest displacement of a point of the part's surface from the target",
           {.quantity = Quantity::Length, .range = kPositive}),
     field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
           {.quantity = Quantity::Angle, .range = kPositive}),
@@ -96,7 +100,8 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
     field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
           "encoders have their finite resolution"),
     field("indexing", &DeviceSettings::has_indexing,
-          "a path longer than the workspace is split, see below; false: such a path is an error",
+          "a path that is longer, or turns farther, than the device can is split, see below; false: such a "
+          "path is an error",
           {.since = 3}));
 static_assert(coversAllMembers<DeviceSettings, 1>(kDeviceKeys));
 

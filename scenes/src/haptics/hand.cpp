@@ -2,6 +2,7 @@
 #include "haptics/hand.h"
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 #include <thread>
 #include <utility>
@@ -43,14 +44,28 @@ device::DeviceOptions optionsOf(const Scene& scene) {
   return options;
 }
 
-Vec3 workspaceOf(const device::Device& device) {
-  const device::DeviceLimits limits = device.limits();
-  return limits.workspace_max_D - limits.workspace_min_D;
+Workspace workspaceOf(const device::DeviceLimits& limits) {
+  return {limits.workspace_max_D - limits.workspace_min_D, limits.workspace_rad};
 }
 
-std::vector<PathSegments> allSegments(const Scene& scene, const Vec3& workspace_m) {
+/// Refuses a push that the device cannot give to the hand.
+void requireForces(const Scene& scene, const device::DeviceLimits& limits) {
+  const auto require = [&](const char* key, double wanted_N) {
+    if (limits.peak_force_N <= 0 || wanted_N <= limits.peak_force_N) return;
+    char words[160];
+    std::snprintf(words, sizeof words,
+                  "[operator] %s is %g N, but the device gives %g N at most; choose a smaller force", key,
+                  wanted_N, limits.peak_force_N);
+    throw LoadError(scene.file, "", words);
+  };
+  require("press_N", scene.hand.press_N);
+  require("force_limit_N", scene.hand.force_limit_N);
+}
+
+std::vector<PathSegments> allSegments(const Scene& scene, const device::DeviceLimits& limits) {
+  requireForces(scene, limits);
   std::vector<PathSegments> all;
-  for (const SceneStep& step : scene.steps) all.push_back(splitPath(scene, step, workspace_m));
+  for (const SceneStep& step : scene.steps) all.push_back(splitPath(scene, step, workspaceOf(limits)));
   return all;
 }
 
@@ -64,7 +79,7 @@ class SimulatedHand final : public Hand {
  public:
   explicit SimulatedHand(const Scene& scene)
       : scene_(scene),
-        segments_(allSegments(scene, workspaceOf(*kindOf(scene).simulate(optionsOf(scene))))),
+        segments_(allSegments(scene, kindOf(scene).simulate(optionsOf(scene))->limits())),
         plant_(kindOf(scene).simulate(startingAt(optionsOf(scene), segments_))) {
     X_DH_from_ = X_DH_back_ = plant_->truePose();
   }
@@ -107,6 +122,7 @@ class SimulatedHand final : public Hand {
   }
 
   [[nodiscard]] device::OperatorPhase phase() const override { return operator_.phase(); }
+  [[nodiscard]] device::OperatorStrategy strategy() const override { return operator_.strategy(); }
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
@@ -254,7 +270,10 @@ class RecordedHand final : public Hand {
   void goOn() override {}
   void step(const device::HeldPart&, const device::HapticLoop&, double) override {}
   [[nodiscard]] device::OperatorPhase phase() const override {
-    return static_cast<device::OperatorPhase>(recording_.phase().value_or(0));
+    return device::stateFromByte(recording_.phase().value_or(0)).phase;
+  }
+  [[nodiscard]] device::OperatorStrategy strategy() const override {
+    return device::stateFromByte(recording_.phase().value_or(0)).strategy;
   }
   [[nodiscard]] std::vector<device::SyncEvent> sync_events() const override {
     std::vector<device::SyncEvent> all;

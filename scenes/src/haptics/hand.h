@@ -35,6 +35,9 @@ class Hand {
   /// One tick of the hand, after the loop's own.
   virtual void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual device::OperatorPhase phase() const = 0;
+  /// None where the hand is a person's.
+  [[nodiscard]] virtual device::OperatorStrategy strategy() const { return device::OperatorStrategy::None; }
+  [[nodiscard]] device::OperatorState state() const { return {phase(), strategy()}; }
   /// The recorded events of a real-time run that is replayed; empty otherwise.
   [[nodiscard]] virtual std::vector<device::SyncEvent> sync_events() const { return {}; }
   /// Whether this many ticks are left.

@@ -56,7 +56,9 @@ class HapticDriver {
   /// clock, and other gains. settings() stays as given.
   virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
-  [[nodiscard]] virtual device::OperatorPhase phase() = 0;
+  /// Of the hand.
+  [[nodiscard]] virtual device::OperatorState state() = 0;
+  [[nodiscard]] device::OperatorPhase phase() { return state().phase; }
   /// As of the last tick.
   [[nodiscard]] virtual const device::TickReport& last() = 0;
   /// Haptic periods without a tick so far; 0 in lockstep.

@@ -53,7 +53,7 @@ class LockstepDriver final : public HapticDriver {
     port_.physics.write(numbered);
     loop_.receivePart();  // now rather than with the next tick: a run may end before one
   }
-  device::OperatorPhase phase() override { return hand_.phase(); }
+  device::OperatorState state() override { return hand_.state(); }
   const device::TickReport& last() override { return loop_.last(); }
   device::PassivityObserver passivity() override { return loop_.passivity(); }
   TickTimes times() override { return clock_.summary(); }

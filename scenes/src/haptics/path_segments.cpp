@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <numbers>
 
 #include "vps/load_error.h"
 #include "vps/mesh.h"
@@ -12,11 +13,19 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 /// Left free on each side of a segment, at the device, for aim errors and the search for a hole. assumed.
-constexpr double kMargin_m = 20e-3;
+constexpr double kMargin_m = 20e-3, kMargin_rad = 0.1;
+/// Two poses this close to half a turn apart could be joined either way round.
+constexpr double kHalfTurnMargin_rad = 1e-3;
+/// Smaller shares of a leg are no segment of their own.
+constexpr double kLeastShare = 1e-6;
+constexpr int kBisections = 40;
+
+Vec3 turnBetween(const Mat3& R_from, const Mat3& R_to) {
+  return rotationVector(R_to * R_from.transpose());
+}
 
 Pose between(const Pose& X_from, const Pose& X_to, double share) {
-  const Vec3 turn_rad = rotationVector(X_to.R * X_from.R.transpose());
-  return {Mat3(rotationFromVector(share * turn_rad) * X_from.R),
+  return {Mat3(rotationFromVector(share * turnBetween(X_from.R, X_to.R)) * X_from.R),
           Vec3(X_from.p + share * (X_to.p - X_from.p))};
 }
 
@@ -31,6 +40,63 @@ double reachOf(const Box& box, const Vec3& size_m, const Vec3& a, const Vec3& b)
   return std::clamp(share, 0.0, 1.0);
 }
 
+/// Rotations of a segment. Around its middle, which is halfway between the two that are farthest apart, all
+/// lie within radius_rad(): rotations between two of them too, since a ball of less than a quarter turn is
+/// convex.
+class Turns {
+ public:
+  void add(const Mat3& R) {
+    all_.push_back(R);
+    for (const Mat3& other : all_)
+      if (const double apart_rad = turnBetween(other, R).norm(); apart_rad > apart_rad_) {
+        apart_rad_ = apart_rad;
+        middle_ = between(Pose(other, Vec3(Vec3::Zero())), Pose(R, Vec3(Vec3::Zero())), 0.5).R;
+      }
+  }
+  [[nodiscard]] double radius_rad() const {
+    double radius_rad = 0;
+    if (apart_rad_ > kRounding_rad)
+      for (const Mat3& R : all_) radius_rad = std::max(radius_rad, turnBetween(middle_, R).norm());
+    return radius_rad;
+  }
+  /// The handle's rotation at a pose of the grasp frame, if it has the identity at the middle.
+  [[nodiscard]] Mat3 handleAt(const Mat3& R) const {
+    return apart_rad_ > kRounding_rad ? Mat3(R * middle_.transpose()) : Mat3(Mat3::Identity());
+  }
+
+ private:
+  std::vector<Mat3> all_;
+  static constexpr double kRounding_rad = 1e-9;  // equal rotations
+  double apart_rad_ = kRounding_rad;
+  Mat3 middle_ = Mat3::Identity();
+};
+
+/// The share of the rotation from one pose to the next that fits together with `turns`.
+double turnReachOf(const Turns& turns, double limit_rad, const Pose& X_from, const Pose& X_to) {
+  const auto fits = [&](double share) {
+    Turns more = turns;
+    more.add(between(X_from, X_to, share).R);
+    return more.radius_rad() <= limit_rad;
+  };
+  if (limit_rad <= 0 || fits(1)) return 1;
+  double least = 0, most = 1;
+  for (int i = 0; i < kBisections; ++i) {
+    const double share = 0.5 * (least + most);
+    (fits(share) ? least : most) = share;
+  }
+  return least;
+}
+
+/// What one segment covers.
+struct Covered {
+  Box box;
+  Turns turns;
+  void add(const Pose& X) {
+    box.add(X.p);
+    turns.add(X.R);
+  }
+};
+
 /// The path of the grasp frame G, which the handle follows; at the device it is shorter by the scale.
 struct GraspPath {
   std::vector<Pose> X_WG;
@@ -38,84 +104,123 @@ struct GraspPath {
 };
 
 /// Splits from the target backwards, each segment as long as possible.
-GraspPath inSegments(const std::vector<Pose>& X_WG, const Vec3& workspace_W) {
+GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W) {
   GraspPath path{{X_WG.back()}, {false}};  // in reverse order until the end
-  Box box;
-  box.add(X_WG.back().p);
+  Covered covered;
+  covered.add(X_WG.back());
   for (std::size_t i = X_WG.size() - 1; i-- > 0;) {
     const Pose X_goal = X_WG[i];
     for (;;) {
       const Pose X_at = path.X_WG.back();
-      const double share = reachOf(box, workspace_W, X_at.p, X_goal.p);
+      const double share = std::min(reachOf(covered.box, workspace_W.size_m, X_at.p, X_goal.p),
+                                    turnReachOf(covered.turns, workspace_W.turn_rad, X_at, X_goal));
       if (share >= 1) break;
-      if (share > 0) {
+      if (share > kLeastShare) {
         path.X_WG.push_back(between(X_at, X_goal, share));
         path.is_index_point.push_back(true);
       } else {
         path.is_index_point.back() = true;  // the workspace ends at a way point
       }
-      box = Box{};
-      box.add(path.X_WG.back().p);
+      covered = Covered{};
+      covered.add(path.X_WG.back());
     }
     path.X_WG.push_back(X_goal);
     path.is_index_point.push_back(false);
-    box.add(X_goal.p);
+    covered.add(X_goal);
   }
   std::reverse(path.X_WG.begin(), path.X_WG.end());
   std::reverse(path.is_index_point.begin(), path.is_index_point.end());
   return path;
 }
 
-[[noreturn]] void refuse(const Scene& scene, const SceneStep& step, const Vec3& needed_m,
-                         const Vec3& workspace_m) {
+[[noreturn]] void refuse(const Scene& scene, const SceneStep& step, const std::string& words) {
+  throw LoadError(scene.file, scene.parts[step.part].part.name, words);
+}
+
+constexpr const char* kIndexingRemedy = "let the hand re-grasp it on the way ([device] indexing = true)";
+
+[[noreturn]] void refuseLength(const Scene& scene, const SceneStep& step, const Vec3& needed_m,
+                               const Vec3& workspace_m) {
   char words[240];
   std::snprintf(words, sizeof words,
                 "its path is longer than the device's workspace of %.0f x %.0f x %.0f mm; start nearer, set "
-                "[device] scale above %f, or let the hand re-grasp it on the way ([device] indexing = true)",
+                "[device] scale above %f, or %s",
                 1e3 * workspace_m.x(), 1e3 * workspace_m.y(), 1e3 * workspace_m.z(),
-                scene.device.scale * (needed_m.array() / workspace_m.array()).maxCoeff());
-  throw LoadError(scene.file, scene.parts[step.part].part.name, words);
+                scene.device.scale * (needed_m.array() / workspace_m.array()).maxCoeff(), kIndexingRemedy);
+  refuse(scene, step, words);
+}
+
+constexpr double inDegrees(double rad) {
+  return rad * 180 / std::numbers::pi;
+}
+
+[[noreturn]] void refuseTurn(const Scene& scene, const SceneStep& step, double needed_rad, double limit_rad) {
+  char words[240];
+  std::snprintf(
+      words, sizeof words,
+      "its path turns it by %.0f degrees to each side, and the device's handle turns by %.0f; turn it "
+      "less, or %s",
+      inDegrees(needed_rad), inDegrees(limit_rad), kIndexingRemedy);
+  refuse(scene, step, words);
+}
+
+/// The direction of half a turn between two poses is not defined.
+void requireDirections(const Scene& scene, const SceneStep& step, const std::vector<Pose>& X_WG) {
+  for (std::size_t i = 1; i < X_WG.size(); ++i)
+    if (turnBetween(X_WG[i - 1].R, X_WG[i].R).norm() > std::numbers::pi - kHalfTurnMargin_rad)
+      refuse(
+          scene, step,
+          "its path has two poses half a turn apart, so that the hand cannot know which way to turn; add a "
+          "way point between them");
 }
 
 /// Adds the handle's pose at the start of each segment.
 PathSegments withHandle(const GraspPath& path, const Pose& X_GP, double scale) {
   PathSegments segments;
-  Box segment;
-  Vec3 p_from = path.X_WG.front().p;
-  const auto endSegment = [&](const Vec3& p_next) {
-    segments.X_DH_start.push_back(Pose::translation((p_from - segment.center()) / scale));
-    p_from = p_next;
-    segment = Box{};
-    segment.add(p_next);
+  Covered segment;
+  Pose X_from = path.X_WG.front();
+  const auto endSegment = [&](const Pose& X_next) {
+    segments.X_DH_start.emplace_back(segment.turns.handleAt(X_from.R),
+                                     Vec3((X_from.p - segment.box.center()) / scale));
+    X_from = X_next;
+    segment = Covered{};
+    segment.add(X_next);
   };
   for (std::size_t i = 0; i < path.X_WG.size(); ++i) {
-    const Vec3& p = path.X_WG[i].p;
-    segment.add(p);
-    if (i > 0 && i + 1 < path.X_WG.size()) segments.way_points.push_back(path.X_WG[i] * X_GP);
+    const Pose& X = path.X_WG[i];
+    segment.add(X);
+    if (i > 0 && i + 1 < path.X_WG.size()) segments.way_points.push_back(X * X_GP);
     if (!path.is_index_point[i]) continue;
     segments.index_points.push_back(segments.way_points.size() - 1);
-    endSegment(p);
+    endSegment(X);
   }
-  endSegment(p_from);
+  endSegment(X_from);
   return segments;
 }
 
 }  // namespace
 
-PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& workspace_m) {
+PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   const double scale = scene.device.scale;
   const Pose X_PG = Pose::translation(massProperties(scene.parts[step.part].part.mesh).com);
   std::vector<Pose> X_WG = {step.X_WP_start * X_PG};
   for (const Pose& X_WP : step.way_points) X_WG.push_back(X_WP * X_PG);
   X_WG.push_back(step.X_WP_target * X_PG);
+  requireDirections(scene, step, X_WG);
 
-  Box all;
-  for (const Pose& X : X_WG) all.add(X.p);
-  const Vec3 needed_m = all.size() / scale;
-  if ((needed_m.array() > workspace_m.array()).any()) {
-    if (!scene.device.has_indexing) refuse(scene, step, needed_m, workspace_m);
-    const Vec3 margin_m = (workspace_m / 10).cwiseMin(kMargin_m);
-    return withHandle(inSegments(X_WG, scale * (workspace_m - 2 * margin_m)), X_PG.inverse(), scale);
+  Covered all;
+  for (const Pose& X : X_WG) all.add(X);
+  const Vec3 needed_m = all.box.size() / scale;
+  const bool is_too_long = (needed_m.array() > workspace.size_m.array()).any();
+  const double most_rad = workspace.turn_rad - std::min(kMargin_rad, workspace.turn_rad / 5),
+               needed_rad = all.turns.radius_rad();
+  const bool turns_too_far = workspace.turn_rad > 0 && needed_rad > most_rad;
+  if (is_too_long || turns_too_far) {
+    if (!scene.device.has_indexing && is_too_long) refuseLength(scene, step, needed_m, workspace.size_m);
+    if (!scene.device.has_indexing) refuseTurn(scene, step, needed_rad, most_rad);
+    const Vec3 margin_m = (workspace.size_m / 10).cwiseMin(kMargin_m);
+    const Workspace inner_W{scale * (workspace.size_m - 2 * margin_m), workspace.turn_rad > 0 ? most_rad : 0};
+    return withHandle(inSegments(X_WG, inner_W), X_PG.inverse(), scale);
   }
   PathSegments one = withHandle({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
   one.way_points = step.way_points;  // the same bits

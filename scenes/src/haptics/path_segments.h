@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splits a path that is longer than the device's workspace into segments that fit. Between two segments the
-// device is clutched and recentred (indexing).
+// Splits a path that is longer, or turns farther, than the device's workspace into segments that fit. Between
+// two segments the device is clutched and recentred (indexing).
 #pragma once
 
 #include <cstddef>
@@ -21,9 +21,16 @@ struct PathSegments {
   std::vector<Pose> X_DH_start;  ///< of the handle at each segment's start; one more than index_points
 };
 
-/// The fewest segments, each centred in a workspace of this size. A path that fits has one. The last segment
-/// is as long as possible, so that a part is not re-grasped while it enters another. Throws LoadError for a
-/// path that does not fit if the scene's device has no indexing.
-PathSegments splitPath(const Scene& scene, const SceneStep& step, const Vec3& workspace_m);
+/// What a device's handle can reach.
+struct Workspace {
+  Vec3 size_m = Vec3::Zero();  ///< box of its positions
+  double turn_rad = 0;         ///< greatest rotation from the identity, about any axis; 0: any
+};
+
+/// The fewest segments, each centred in the workspace in position and rotation. A path that fits has one. The
+/// last segment is as long as possible, so that a part is not re-grasped while it enters another. Throws
+/// LoadError for a path that does not fit if the scene's device has no indexing, and for two poses half a
+/// turn apart, since the direction in which the hand turns is then not defined.
+PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace);
 
 }  // namespace vps::scenes::inline v0

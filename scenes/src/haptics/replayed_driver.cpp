@@ -50,7 +50,7 @@ class ReplayedDriver final : public ClockedDriver {
     logEvent(device::SyncEventKind::Settled);
     return true;
   }
-  device::OperatorPhase phase() override { return hand_.phase(); }
+  device::OperatorState state() override { return hand_.state(); }
   std::uint64_t missed() override { return 0; }
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }

@@ -13,8 +13,12 @@ struct Reader {
                          const Progress& progress);
 };
 
+bool hasExactFaces(const std::string& format) {
+  return format == "STEP" || format == "IGES" || format == "BREP";
+}
+
 Reader readerOf(const std::string& format) {
-  if (format == "STEP" || format == "IGES" || format == "BREP") return {"Open CASCADE", import::readOcct};
+  if (hasExactFaces(format)) return {"Open CASCADE", import::readOcct};
   if (format == "Inventor" || format == "VRML") return {"Coin", import::readCoin};
   return {"assimp", import::readAssimp};
 }
@@ -36,6 +40,8 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   import::RawCad raw =
       settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
   import::finish(std::move(raw), cad);
+  if (hasExactFaces(cad.format))
+    for (ImportedPart& part : cad.parts) part.deflection_m = settings.deflection_m;
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;
 }

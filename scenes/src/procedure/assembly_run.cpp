@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "procedure/assembly_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
 #include "procedure/assembly_world.h"
+#include "procedure/blocks.h"
 #include "procedure/run_trace.h"
 #include "procedure/step_run.h"
+#include "procedure/step_verdict.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
-void runSteps(AssemblyWorld& world, RunTrace& trace, AssembleResult& result) {
+void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& blocks,
+              AssembleResult& result) {
   result.completed = true;
   const std::size_t count = world.scene().steps.size();
+  std::string not_in_place;
   for (std::size_t i = 0; i < count && !world.isStopped(); ++i) {
-    result.steps.push_back(runStep(world, trace, i));
-    if (result.steps.back().completed) continue;
+    StepResult known = blocks[i];
+    known.stands_on = not_in_place;
+    result.steps.push_back(runStep(world, trace, i, std::move(known)));
+    const StepResult& step = result.steps.back();
+    if (step.completed) continue;
     result.completed = false;
+    if (not_in_place.empty()) not_in_place = step.part;
     if (!world.options().keep_going) break;
   }
   if (result.steps.size() < count) result.completed = false;
+  result.verdict = verdictOf(result.steps, count);
 }
 
 }  // namespace
@@ -32,12 +42,23 @@ void requireSteps(const Scene& scene) {
   if (scene.steps.empty())
     throw LoadError(scene.file, "",
                     "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    const auto moves = [i](const SceneStep& step) { return step.part == i; };
+    if (part.is_fixed || part.is_scenery || std::any_of(scene.steps.begin(), scene.steps.end(), moves))
+      continue;
+    throw LoadError(scene.file, part.part.name,
+                    "is not fixed, and no [[step]] moves it, so nothing would collide with it and the answer "
+                    "could be wrong; give it a [[step]], fixed = true, or scenery = true if it is only to be "
+                    "left out");
+  }
 }
 
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options) {
   AssembleResult result;
   const double begun_s = wallSeconds();
+  const std::vector<StepResult> blocks = blocksAtTargets(scene, options.progress);
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);
@@ -49,7 +70,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   const double run_begun_s = wallSeconds();
   result.build_wall_s = run_begun_s - begun_s;
 
-  runSteps(world, trace, result);
+  runSteps(world, trace, blocks, result);
   world.finish();
   result.finished = snapshotOf(world);
   trace.moveTo(result);

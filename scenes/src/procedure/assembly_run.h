@@ -9,7 +9,7 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Throws LoadError for a scene without a step.
+/// Throws LoadError for a scene without a step, or with a part that is neither fixed, nor moved, nor scenery.
 void requireSteps(const Scene& scene);
 
 /// Builds the models that the scene lacks and runs every step. A hand that cannot go on (the end of a

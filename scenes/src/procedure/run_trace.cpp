@@ -28,6 +28,7 @@ TraceRow rowOf(const AssemblyWorld& world, TracePhase phase, const TouchState& t
   row.time_s = state.time_s;
   row.step = state.step;
   row.phase = static_cast<int>(phase);
+  row.strategy = static_cast<int>(world.driver().state().strategy);
   row.F_hand_W = state.is_holding ? world.driver().last().F_hand_W : Wrench{};
   row.X_WP = world.movingPose();
   row.X_W_Proxy = world.driver().last().X_WG;
@@ -81,16 +82,18 @@ void RunTrace::logEvent(const AssemblyWorld& world, device::RunEventKind kind,
   event.time_s = world.state().time_s;
   event.step = world.state().step;
   event.kind = kind;
-  if (kind == device::RunEventKind::Phase) event.phase = static_cast<std::uint8_t>(world.driver().phase());
+  if (kind == device::RunEventKind::Phase) event.phase = device::toByte(world.driver().state());
   event.setWords(text);
   log_->add(event);
 }
 
 void RunTrace::logPhase(const AssemblyWorld& world) {
-  const device::OperatorPhase phase = world.driver().phase();
-  if (logged_phase_ == phase) return;
-  logged_phase_ = phase;
-  logEvent(world, device::RunEventKind::Phase, toText(phase));
+  const device::OperatorState state = world.driver().state();
+  if (logged_state_ == state) return;
+  logged_state_ = state;
+  std::string words = toText(state.phase);
+  if (state.strategy != device::OperatorStrategy::None) words.append(": ").append(toText(state.strategy));
+  logEvent(world, device::RunEventKind::Phase, words);
 }
 
 void RunTrace::moveTo(AssembleResult& result) {

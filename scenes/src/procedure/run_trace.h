@@ -32,10 +32,10 @@ class RunTrace {
 
   /// Logs an event of the run. After the end of the hand's recording nothing is logged.
   void logEvent(const AssemblyWorld& world, device::RunEventKind kind, const std::string& text) const;
-  /// Logs the operator's phase if it has changed.
+  /// Logs the operator's phase and strategy if they have changed.
   void logPhase(const AssemblyWorld& world);
   /// The next phase is logged even if it is the same.
-  void forgetPhase() { logged_phase_.reset(); }
+  void forgetPhase() { logged_state_.reset(); }
 
   /// Moves rows and pictures into the result.
   void moveTo(AssembleResult& result);
@@ -48,7 +48,7 @@ class RunTrace {
   std::vector<OverlapSample> samples_;
   std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
   double peak_contact_N_ = 0;                    ///< of the current step
-  std::optional<device::OperatorPhase> logged_phase_;
+  std::optional<device::OperatorState> logged_state_;
 };
 
 /// What a viewer needs of this instant.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "haptics/clutching.h"
 #include "judge/box_motion.h"
@@ -14,7 +16,30 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-device::OperatorTask taskOf(const SceneStep& step, const StepPart& moving) {
+/// Of the part's end that goes in first, the vertex that is farthest from the axis of insertion through G; in
+/// P. Zero where the path has no last leg.
+Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
+  const Vec3 last_W = step.way_points.empty() ? step.X_WP_start * X_PG.p : step.way_points.back() * X_PG.p;
+  const Vec3 leg_W = step.X_WP_target * X_PG.p - last_W;
+  if (leg_W.norm() < 1e-9) return Vec3::Zero();
+  const Vec3 axis_P = step.X_WP_target.R.transpose() * leg_W.normalized();
+  constexpr double kEnd_m = 10e-6;  // facets of one end lie within this
+  double lead_m = -std::numeric_limits<double>::infinity(), farthest_m = -1;
+  const auto& vertices = scene.parts[step.part].part.mesh.vertices;
+  for (const Vec3& p : vertices) lead_m = std::max(lead_m, axis_P.dot(p));
+  Vec3 tip_P = Vec3::Zero();
+  for (const Vec3& p : vertices) {
+    const Vec3 off = p - X_PG.p;
+    const double across_m = (off - axis_P * axis_P.dot(off)).norm();
+    if (axis_P.dot(p) < lead_m - kEnd_m || across_m <= farthest_m) continue;
+    farthest_m = across_m;
+    tip_P = p;
+  }
+  return tip_P;
+}
+
+device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step) {
+  const StepPart& moving = world.state().moving;
   device::OperatorTask task;
   task.X_WP_start = step.X_WP_start;
   task.way_points = step.way_points;
@@ -24,6 +49,9 @@ device::OperatorTask taskOf(const SceneStep& step, const StepPart& moving) {
   task.tolerance_rad = step.tolerance_rad;
   task.timeout_s = step.timeout_s;
   task.weight_W = moving.weight_W;
+  task.tip_P = tipOf(world.scene(), step, moving.X_PG);
+  const double k_N_per_m = world.driver().settings().gains.k_N_per_m;
+  task.give_m_per_N = k_N_per_m > 0 ? 1 / k_N_per_m : 0;
   return task;
 }
 
@@ -58,8 +86,7 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
   const auto press = [&] { return advanceIn(TracePhase::Press); };
   const ClutchWork clutch(driver, [&world] { return world.handStep_s(); });
   if (!clutch.takeHold(reach)) return;
-  driver.begin(taskOf(step, world.state().moving), static_cast<std::size_t>(world.state().step),
-               world.state().time_s);
+  driver.begin(taskOf(world, step), static_cast<std::size_t>(world.state().step), world.state().time_s);
   trace.forgetPhase();
   trace.logPhase(world);
   while (isBusy(driver.phase()) && !world.isStopped() && world.advance()) {
@@ -98,12 +125,23 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   }
 }
 
+std::vector<StrategyUse> strategiesOf(std::span<const TraceRow> rows) {
+  std::vector<StrategyUse> uses;
+  int last = 0;
+  for (const TraceRow& row : rows) {
+    if (row.strategy != 0 && row.strategy != last)
+      uses.push_back({toText(static_cast<device::OperatorStrategy>(row.strategy)), row.time_s, 0});
+    last = row.strategy;
+    if (last != 0) uses.back().duration_s = row.time_s - uses.back().start_s;
+  }
+  return uses;
+}
+
 }  // namespace
 
-StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
+StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult result) {
   world.pauseLocalContact();
   const SceneStep& step = world.scene().steps[index];
-  StepResult result;
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
   result.penetration_limit_m = penetrationLimit_m(step);
@@ -115,6 +153,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
   world.pauseLocalContact();
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
     ++(episode.is_slide ? result.slides : result.impacts);
+  result.strategies = strategiesOf(trace.stepRows());
   result.duration_s = world.state().time_s - result.start_s;
   trace.endStep(world);
 
@@ -124,6 +163,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index) {
   world.reportProgress(0.9);
   judgeCompletion(world, step, world.movingPose(), result);
   settleStep(world, trace.takeSamples(), result);
+  judgeStep(result);
   return result;
 }
 

@@ -9,6 +9,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Runs scene.steps[index]. Throws LoadError as AssemblyWorld::take(). A step that fails is a result.
-StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index);
+/// @param known  what is known of it beforehand: block, stands_on
+StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult known);
 
 }  // namespace vps::scenes::inline v0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a step reached its target, and if not, why.
+// The one place where verdicts are made: whether a step reached its target, whether its part fits, and if not,
+// why.
 #pragma once
 
 #include "procedure/assembly_world.h"
@@ -14,5 +15,11 @@ double penetrationLimit_m(const SceneStep& step);
 /// reports that it is done and the part, now at rest, is within the step's tolerances.
 /// @param X_WP  of the part, after its rest
 void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
+
+/// Sets verdict and reason from the rest of a step's result.
+void judgeStep(StepResult& result);
+
+/// Of a run with so many planned steps.
+Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned);
 
 }  // namespace vps::scenes::inline v0

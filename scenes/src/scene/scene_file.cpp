@@ -100,6 +100,7 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   part.part.color = imported.color;
   part.X_WP = imported.X_WP;
   part.file = file;
+  part.deflection_m = imported.deflection_m;
   return part;
 }
 

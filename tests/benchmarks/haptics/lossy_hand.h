@@ -62,6 +62,7 @@ class LossyHand final : public scenes::Hand {
   void goOn() override { hand_->goOn(); }
   void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) override;
   [[nodiscard]] device::OperatorPhase phase() const override { return hand_->phase(); }
+  [[nodiscard]] device::OperatorStrategy strategy() const override { return hand_->strategy(); }
   [[nodiscard]] bool canGoOn(int ticks) const override { return hand_->canGoOn(ticks); }
 
   [[nodiscard]] const TrueEnergyBalance& energy() const { return energy_; }

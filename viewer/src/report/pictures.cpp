@@ -32,7 +32,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.show_target = options.show_contacts = options.show_force = options.show_legend = false;
     options.title = result_.scene.empty() ? scene_.name : result_.scene;
-    options.caption = result_.completed ? "as assembled" : "not complete";
+    options.caption = result_.verdict == scenes::Verdict::Fits ? "as assembled" : "as the run left it";
     const Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     pictures.overview = save("overview.png", result_.finished, camera, options);
     options.caption += ", cut through the middle";
@@ -101,8 +101,7 @@ class PictureSet {
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption =
-          result_.steps[i].completed ? "end: in place" : "end: " + result_.steps[i].failure_reason;
+      options.caption = result_.steps[i].reason.empty() ? "end: in place" : "end: " + result_.steps[i].reason;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;

@@ -11,6 +11,7 @@
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
 #include "vps_scenes/load_level.h"
+#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -36,20 +37,9 @@ std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace
 }
 
 std::string headline(const scenes::AssembleResult& result) {
-  const auto done = std::count_if(result.steps.begin(), result.steps.end(),
-                                  [](const scenes::StepResult& s) { return s.completed; });
-  const auto good = std::count_if(result.steps.begin(), result.steps.end(),
-                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
-  const std::string count = std::to_string(done) + " of " + std::to_string(result.steps.size());
-  const bool is_complete = result.completed && done == static_cast<std::ptrdiff_t>(result.steps.size());
-  std::string text = is_complete
-                         ? "Yes, the parts go together: " + count + " steps completed."
-                         : "No, the parts do not go together as planned: " + count + " steps completed.";
-  if (good < done)
-    text += " In " + std::to_string(done - good) +
-            " of them the part penetrated deeper than its limit or moved after it was released.";
-  return "<p class=\"verdict " + std::string(is_complete && good == done ? "good" : "bad") + "\">" + text +
-         "</p>\n";
+  const bool is_good = result.verdict == scenes::Verdict::Fits;
+  return "<p class=\"verdict " + std::string(is_good ? "good" : "bad") + "\">" +
+         escapeHtml(verdictLine(result)) + "</p>\n";
 }
 
 std::string stepTable(const scenes::AssembleResult& result) {
@@ -59,7 +49,7 @@ std::string stepTable(const scenes::AssembleResult& result) {
     const std::string number = std::to_string(i + 1);
     rows.push_back({{number, "n"},
                     {"<a href=\"#step-" + number + "\">" + escapeHtml(s.part) + "</a>", ""},
-                    {s.completed ? "yes" : "no", s.completed ? "good" : "bad"},
+                    {words(s.verdict), scenes::isGood(s) ? "good" : "bad"},
                     {format(s.duration_s, "%.2f"), "n"},
                     {micrometres(s.max_penetration_m), scenes::isWithinLimit(s) ? "n" : "n bad"},
                     {s.penetration_limit_m > 0 ? micrometres(s.penetration_limit_m) : "", "n"},
@@ -72,9 +62,20 @@ std::string stepTable(const scenes::AssembleResult& result) {
                     {micrometres(s.rest_drift_m), "n"}});
   }
   return html::table(
-      {"#", "part", "in place", "time [s]", "greatest overlap [µm]", "limit [µm]", "with", "peak force [N]",
+      {"#", "part", "verdict", "time [s]", "greatest overlap [µm]", "limit [µm]", "with", "peak force [N]",
        "peak torque [N m]", "impacts", "slides", "final error [µm]", "drift at rest [µm]"},
       rows);
+}
+
+/// "approach 1.2 s, touch 0.4 s": in order, with spaces in the names.
+std::string strategiesInWords(const std::vector<scenes::StrategyUse>& uses) {
+  std::string words;
+  for (const scenes::StrategyUse& use : uses) {
+    std::string name = use.strategy;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    words.append(words.empty() ? "" : ", ").append(name).append(format(use.duration_s, " %.2f s"));
+  }
+  return words.empty() ? "none" : words;
 }
 
 std::string stepFacts(const scenes::StepResult& s) {
@@ -88,19 +89,22 @@ std::string stepFacts(const scenes::StepResult& s) {
     deepest += ", at (" + format(at_mm.x(), "%.2f") + ", " + format(at_mm.y(), "%.2f") + ", " +
                format(at_mm.z(), "%.2f") + ") mm, " + format(s.deepest_time_s, "%.3f") + " s";
   }
-  return html::facts(
-      {{"In place", s.completed ? "yes" : "<b class=\"bad\">no</b>: " + escapeHtml(s.failure_reason)},
-       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
-       {"Greatest overlap, by exact distance", deepest},
-       {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
-       {"Peak force, torque on the hand",
-        format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
-       {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-       {"Times the device was clutched and recentred", std::to_string(s.index_count)},
-       {"Final error",
-        micrometres(s.final_error_m, "%.2f") + " µm, " + format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
-       {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
-        micrometres(s.rest_drift_m) + " µm"}});
+  return html::facts({{"Verdict", scenes::isGood(s) ? "fits"
+                                                    : "<b class=\"bad\">" + std::string(words(s.verdict)) +
+                                                          "</b>: " + escapeHtml(s.reason)},
+                      {"Brought to its target by contact", s.completed ? "yes" : "no"},
+                      {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
+                      {"Greatest overlap, by exact distance", deepest},
+                      {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
+                      {"Peak force, torque on the hand",
+                       format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
+                      {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
+                      {"What the hand tried, in order", strategiesInWords(s.strategies)},
+                      {"Times the device was clutched and recentred", std::to_string(s.index_count)},
+                      {"Final error", micrometres(s.final_error_m, "%.2f") + " µm, " +
+                                          format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
+                      {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
+                       micrometres(s.rest_drift_m) + " µm"}});
 }
 
 std::string plotFigure(const std::string& name, const std::string& caption) {
@@ -262,9 +266,10 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
   };
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
     const scenes::StepResult& step = result.steps[i];
-    if (!step.completed)
-      note("Step " + std::to_string(i + 1) + ", " + step.part + ": " +
-           (step.failure_reason.empty() ? "not completed" : step.failure_reason));
+    const std::string name = "Step " + std::to_string(i + 1) + ", " + step.part + ": ";
+    if (!step.reason.empty()) note(name + step.reason + ".");
+    if (!step.stands_on.empty())
+      note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
   }
   for (const std::string& text : notes) note(text);
   return out;

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator/insertion.h"
+
+#include <algorithm>
+
+namespace vps::device::inline v0 {
+
+namespace {
+
+constexpr double kInside_m = 0.5e-3;  // beyond the first touch: in the hole
+constexpr int kLittleBackOffs = 3;    // then it withdraws whole
+
+}  // namespace
+
+void Insertion::begin(const Situation& situation, const Feel& feel) noexcept {
+  situation_ = situation;
+  has_aligned_ = false;
+  retries_ = stuck_inside_ = searches_ = 0;
+  start(OperatorStrategy::Approach, feel);
+}
+
+Strategy& Insertion::present() noexcept {
+  switch (strategy_) {
+    case OperatorStrategy::Touch:
+      return touch_;
+    case OperatorStrategy::TiltIn:
+      return tilt_in_;
+    case OperatorStrategy::SpiralSearch:
+      return spiral_search_;
+    case OperatorStrategy::AlignByTorque:
+      return align_;
+    case OperatorStrategy::BackOff:
+      if (is_whole_) return back_off_whole_;
+      return back_off_little_;
+    case OperatorStrategy::PressHome:
+      return press_home_;
+    case OperatorStrategy::PlaceBySight:
+      return place_by_sight_;
+    case OperatorStrategy::None:
+    case OperatorStrategy::Approach:
+      break;
+  }
+  return approach_;
+}
+
+void Insertion::start(OperatorStrategy strategy, const Feel& feel) noexcept {
+  strategy_ = strategy;
+  const OperatorHabits& habits = situation_.habits;
+  situation_.push_limit_N = std::min(habits.force_limit_N, habits.press_N * (1 + 0.5 * (retries_ % 5)));
+  situation_.attempt = searches_ / 2;
+  present().start(situation_, feel);
+}
+
+Outcome Insertion::step(const Feel& feel, double dt_s) noexcept {
+  const Outcome outcome = present().step(feel, dt_s);
+  if (outcome == Outcome::GoingOn) return outcome;
+  const bool is_last =
+      strategy_ == OperatorStrategy::PressHome || strategy_ == OperatorStrategy::PlaceBySight;
+  if (is_last && outcome == Outcome::Done) return Outcome::Done;
+  next(outcome == Outcome::Done, feel);
+  return Outcome::GoingOn;
+}
+
+bool Insertion::isFree(const Feel& feel) const noexcept {
+  return feel.resist_N < 0.5 * situation_.habits.touch_N;
+}
+
+void Insertion::next(bool succeeded, const Feel& feel) noexcept {
+  switch (strategy_) {
+    case OperatorStrategy::Approach:
+      if (!succeeded) return start(OperatorStrategy::PlaceBySight, feel);
+      if (!situation_.has_touched) situation_.mouth_m = feel.along_m;
+      situation_.has_touched = true;
+      return start(OperatorStrategy::Touch, feel);
+    case OperatorStrategy::Touch:
+      return afterTouch(feel);
+    case OperatorStrategy::TiltIn:
+    case OperatorStrategy::SpiralSearch:
+      return succeeded ? start(OperatorStrategy::AlignByTorque, feel) : backOff(true, feel);
+    case OperatorStrategy::AlignByTorque:
+      return start(isFree(feel) ? OperatorStrategy::Approach : OperatorStrategy::Touch, feel);
+    case OperatorStrategy::BackOff:
+      if (!is_whole_) return start(OperatorStrategy::AlignByTorque, feel);
+      if (searches_ % 3 == 0) return start(OperatorStrategy::Approach, feel);
+      return start(searches_ % 3 == 1 && !situation_.corner_W.isZero() ? OperatorStrategy::TiltIn
+                                                                       : OperatorStrategy::SpiralSearch,
+                   feel);
+    case OperatorStrategy::PressHome:
+      return press_home_.hasYielded() ? start(OperatorStrategy::PlaceBySight, feel) : backOff(false, feel);
+    case OperatorStrategy::PlaceBySight:
+    case OperatorStrategy::None:
+      return;
+  }
+}
+
+// The part touches and slides no farther: is it home, in the hole, or beside it?
+void Insertion::afterTouch(const Feel& feel) noexcept {
+  if (std::abs(feel.seen_short_m) < situation_.near_m) return start(OperatorStrategy::PressHome, feel);
+  if (!has_aligned_) {
+    has_aligned_ = true;
+    return start(OperatorStrategy::AlignByTorque, feel);
+  }
+  const bool is_inside = feel.along_m > situation_.mouth_m + kInside_m;
+  backOff(!is_inside || ++stuck_inside_ % (kLittleBackOffs + 1) == 0, feel);
+}
+
+void Insertion::backOff(bool is_whole, const Feel& feel) noexcept {
+  ++retries_;
+  is_whole_ = is_whole;
+  if (is_whole) {
+    ++searches_;
+    has_aligned_ = false;
+  }
+  start(OperatorStrategy::BackOff, feel);
+}
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "operator/person.h"
+
+namespace vps::device::inline v0 {
+namespace {
+
+constexpr double kMinSegment_s = 0.3;   // assumed: no aimed movement is shorter
+constexpr double kArrived_m = 2e-3;     // distance from a way point that counts as reached
+constexpr double kArrivalWait_s = 0.5;  // longest wait for that
+constexpr double kRestWait_s = 2;
+constexpr double kFeel_s = 0.01;    // time constant of touch. assumed: a finger follows 16 Hz
+constexpr double kSoon_s = 0.2;     // of what is seen along the axis
+constexpr double kLeastGain = 0.2;  // of the first gain: what was seen long ago counts less
+constexpr double kGiveWay_per_s = 4;
+constexpr double kNear = 4;  // errors of sight, to the target
+
+Vec3 shortened(const Vec3& v, double limit) noexcept {
+  const double length = v.norm();
+  return length > limit ? Vec3(v * (limit / length)) : v;
+}
+
+Pose between(const Pose& X_from, const Pose& X_to, double share) noexcept {
+  const Vec3 turn = rotationVector(X_to.R * X_from.R.transpose());
+  return {Mat3(rotationFromVector(share * turn) * X_from.R), Vec3(X_from.p + share * (X_to.p - X_from.p))};
+}
+
+}  // namespace
+
+void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
+  task_ = task;
+  path_.assign(1, task.X_WP_start * task.X_PG);
+  for (const Pose& X_WP : task.way_points) path_.push_back(X_WP * task.X_PG);
+  path_.push_back(task.X_WP_target * task.X_PG);
+
+  const Vec3 last_leg = path_.back().p - path_[path_.size() - 2].p;
+  axis_W_ = last_leg.norm() > 1e-9 ? Vec3(last_leg.normalized()) : Vec3(-Vec3::UnitZ());
+  const bool knows_tip = !task.tip_P.isZero();
+  tip_m_ = knows_tip ? axis_W_.dot(task.X_WP_target * task.tip_P - path_.back().p) : 0;
+  aim_m_ = across(habits_.aim_error_m * random_.normal3());
+  aim_rad_ = habits_.aim_error_rad * random_.normal3();
+  belief_ = {};
+  seen_for_s_ = 0;
+  serve_m_ = serve_rad_ = Vec3::Zero();
+  has_view_ = is_home_ = false;  // the next view gives the hand's start
+  begin_s_ = now_s;
+  next_ = 1;
+  phase_ = OperatorPhase::Reach;
+  // Where the person looks: the middle of the end that goes in first.
+  const Vec3 p_tip_W = path_.back().p + tip_m_ * axis_W_;
+  sight_.begin(task.X_WP_target.inverse() * p_tip_W, now_s);
+}
+
+HandForce VirtualOperator::Person::step(const OperatorView& view, double dt_s) noexcept {
+  const bool is_good = view.X_WG_hand.isFinite() && view.X_WP.isFinite() && view.V_WP.isFinite() &&
+                       view.V_WG_hand.isFinite() && view.F_hand_W.isFinite() && std::isfinite(view.time_s) &&
+                       dt_s > 0;
+  if (!is_good) {
+    HandForce blind = impedance();
+    blind.F = {};
+    return blind;
+  }
+  if (!has_view_) {
+    has_view_ = true;
+    X_eq_ = X_rest_ = view.X_WG_hand;
+    V_eq_ = {};
+    feel_ = {};
+    if (phase_ == OperatorPhase::Reach) startSegment(X_eq_, path_[next_], view.time_s);
+  }
+  sense(view, dt_s);
+  const bool is_busy = phase_ == OperatorPhase::Reach || isInserting();
+  if (is_busy && view.time_s - begin_s_ > task_.timeout_s) {
+    finish(OperatorPhase::Failed, view);
+  } else if (phase_ == OperatorPhase::Reach) {
+    reach(view.time_s);
+    if (phase_ == OperatorPhase::Reach && next_ + 1 == path_.size()) startInsertion(view);
+  } else if (isInserting()) {
+    insert(view, dt_s);
+  }
+  Pose X_wanted = wanted(view.time_s);
+  serve(X_wanted, view.X_WG_hand, dt_s);
+  X_wanted.p += serve_m_;
+  X_wanted.R = rotationFromVector(serve_rad_) * X_wanted.R;
+  follow(limited(X_wanted, view.X_WG_hand), dt_s);
+  return impedance();
+}
+
+void VirtualOperator::Person::goOn() noexcept {
+  if (phase_ != OperatorPhase::Regrasp) return;
+  has_view_ = false;
+  phase_ = OperatorPhase::Reach;
+}
+
+// --- Plan
+
+void VirtualOperator::Person::startSegment(const Pose& X_from, const Pose& X_to, double now_s) noexcept {
+  const double length_m = (X_to.p - X_from.p).norm();
+  const double turn_rad = rotationVector(X_to.R * X_from.R.transpose()).norm();
+  segment_ = {X_from, X_to, now_s,
+              std::max({kMinSegment_s, length_m / habits_.speed_m_s, turn_rad / habits_.turn_rad_s})};
+}
+
+void VirtualOperator::Person::enter(OperatorPhase phase, double now_s) noexcept {
+  phase_ = phase;
+  phase_s_ = now_s;
+}
+
+void VirtualOperator::Person::finish(OperatorPhase phase, const OperatorView& view) noexcept {
+  X_rest_ = view.X_WG_hand;
+  serve_m_ = serve_rad_ = Vec3::Zero();
+  enter(phase, view.time_s);
+}
+
+void VirtualOperator::Person::reach(double now_s) noexcept {
+  const double end_s = segment_.start_s + segment_.duration_s;
+  if (next_ + 1 == path_.size() || now_s < end_s) return;
+  const bool has_arrived = sight_.hasSeen() && (seenGrasp().p - segment_.X_to.p).norm() < kArrived_m;
+  if (!has_arrived && now_s < end_s + kArrivalWait_s) return;
+  const auto& index_points = task_.index_points;
+  if (std::find(index_points.begin(), index_points.end(), next_ - 1) != index_points.end()) {
+    X_rest_ = wanted(now_s);
+    ++next_;
+    return enter(OperatorPhase::Regrasp, now_s);
+  }
+  ++next_;
+  startSegment(segment_.X_to, path_[next_], now_s);
+}
+
+void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
+  belief_.across_m = across(belief_.across_m) + aim_m_;
+  belief_.turn_rad += aim_rad_;
+  seen_for_s_ = 0;
+  const Pose& X_to = path_.back();
+  reach_m_ = axis_W_.dot(view.X_WG_hand.p - X_to.p);
+  Situation situation;
+  situation.habits = habits_;
+  situation.axis_W = axis_W_;
+  if (!task_.tip_P.isZero()) {
+    const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
+    if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
+  }
+  situation.near_m = task_.tolerance_m + kNear * habits_.see_error_m;
+  feel_.time_s = view.time_s;
+  insertion_.begin(situation, feel_);
+  enter(OperatorPhase::Insert, view.time_s);
+}
+
+void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noexcept {
+  if (!is_home_ && insertion_.step(feel_, dt_s) == Outcome::Done) {
+    is_home_ = true;
+    done_s_ = view.time_s;
+  }
+  const bool is_last = insertion_.strategy() == OperatorStrategy::PressHome ||
+                       insertion_.strategy() == OperatorStrategy::PlaceBySight;
+  if (is_last != (phase_ == OperatorPhase::Press))
+    enter(is_last ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
+  const Move& move = insertion_.move();
+  if (move.looks) correctAtTheHole(dt_s);
+  if (!move.looks) seen_for_s_ = 0;
+  if (move.gives_way) giveWay(dt_s);
+  // The reach leads the hand by the push at most, so that a part that comes free does not shoot ahead.
+  const double hand_m = axis_W_.dot(view.X_WG_hand.p - path_.back().p);
+  reach_m_ += dt_s * move.speed_m_s;
+  reach_m_ = std::min(reach_m_, hand_m + move.push_N / habits_.k_N_per_m);
+  reach_m_ = std::max(reach_m_, hand_m - habits_.force_limit_N / habits_.k_N_per_m);
+  if (!is_home_) return;
+  const bool is_still =
+      view.V_WG_hand.v.norm() < habits_.still_m_s && view.V_WG_hand.w.norm() < habits_.still_rad_s;
+  if (is_still || view.time_s > done_s_ + kRestWait_s) finish(OperatorPhase::Done, view);
+}
+
+// --- Senses
+
+void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexcept {
+  const bool is_new = sight_.look(view);
+  const Pose& X_target = path_.empty() ? X_rest_ : path_.back();
+  const Wrench& F = view.F_hand_W;
+  const double share = std::min(1.0, dt_s / kFeel_s);
+  const Vec3 f_N = F.f - task_.weight_W;
+  feel_.time_s = view.time_s;
+  feel_.resist_N += share * (-axis_W_.dot(f_N) - feel_.resist_N);
+  feel_.side_N += share * (across(f_N) - feel_.side_N);
+  feel_.speed_m_s += share * (axis_W_.dot(view.V_WG_hand.v) - feel_.speed_m_s);
+  const Vec3 p_m = view.X_WG_hand.p - X_target.p + task_.give_m_per_N * F.f;
+  feel_.along_m = axis_W_.dot(p_m);
+  feel_.across_m = across(p_m);
+  feel_.R_hand = view.X_WG_hand.R;
+  if (sight_.hasSeen()) {
+    const double short_m = axis_W_.dot(X_target.p - seenGrasp().p);
+    if (feel_.seen_for_s == 0) feel_.seen_short_m = short_m;
+    feel_.seen_for_s += dt_s;
+    feel_.seen_short_m += std::min(1.0, dt_s / kSoon_s) * (short_m - feel_.seen_short_m);
+  } else {
+    feel_.seen_short_m = -feel_.along_m;
+  }
+  if (is_new && phase_ == OperatorPhase::Reach) correctOnTheWay(1 / habits_.see_rate_hz);
+}
+
+// Integral action on the seen error across the path. Along the path the error is only the visual delay.
+void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
+  const Pose X_seen = seenGrasp();
+  const Vec3 leg = segment_.X_to.p - segment_.X_from.p;
+  const double length2 = leg.squaredNorm(), late_s = feel_.time_s - habits_.see_delay_s;
+  const double share = length2 < 1e-18
+                           ? minimumJerk((late_s - segment_.start_s) / segment_.duration_s)
+                           : std::clamp(leg.dot(X_seen.p - segment_.X_from.p) / length2, 0.0, 1.0);
+  const Pose X_path = between(segment_.X_from, segment_.X_to, share);
+  const Vec3 along = length2 < 1e-18 ? axis_W_ : Vec3(leg.normalized());
+  Vec3 error_m = X_path.p - X_seen.p;
+  error_m -= along * along.dot(error_m);
+  const double gain = habits_.see_gain_per_s * dt_s;
+  belief_.across_m = shortened(belief_.across_m + gain * error_m, habits_.see_limit_m);
+  belief_.turn_rad = shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()),
+                               habits_.see_limit_rad);
+}
+
+// The longer it looks, the more it averages: the gain falls as 1/t.
+void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
+  if (!sight_.hasSeen()) return;
+  seen_for_s_ += dt_s;
+  const double gain =
+      dt_s * habits_.see_gain_per_s * std::max(kLeastGain, 1 / (1 + habits_.see_gain_per_s * seen_for_s_));
+  const Pose X_seen = seenGrasp(), &X_to = path_.back();
+  const Vec3 tip_m = (X_seen.p - X_to.p) + tip_m_ * (X_seen.R * X_to.R.transpose() * axis_W_ - axis_W_);
+  belief_.across_m -= gain * across(tip_m);
+  const Mat3 R_path = turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
+  belief_.turn_rad += gain * rotationVector(R_path * X_seen.R.transpose());
+  belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
+  belief_.turn_rad = shortened(belief_.turn_rad, habits_.see_limit_rad);
+}
+
+// The belief moves to where the hand is pushed, until side force and torque vanish.
+void VirtualOperator::Person::giveWay(double dt_s) noexcept {
+  const double share = std::min(1.0, kGiveWay_per_s * dt_s);
+  const Pose& X_to = path_.back();
+  const Pose X_wanted = wantedAtTheHole();
+  const Vec3 p_hand = X_to.p + feel_.across_m;
+  belief_.across_m += share * across(p_hand - X_wanted.p);
+  belief_.turn_rad += share * rotationVector(feel_.R_hand * X_wanted.R.transpose());
+  belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
+  belief_.turn_rad = shortened(belief_.turn_rad, habits_.see_limit_rad);
+  serve_m_ -= share * serve_m_;
+  serve_rad_ -= share * serve_rad_;
+}
+
+// --- Hand
+
+Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
+  if (isInserting()) return wantedAtTheHole();
+  if (phase_ != OperatorPhase::Reach) return X_rest_;
+  const double share = minimumJerk((now_s - segment_.start_s) / segment_.duration_s);
+  Pose X = between(segment_.X_from, segment_.X_to, share);
+  // The aim error grows over the last free segment; it models the misjudged position of the hole.
+  const double aim = next_ + 2 == path_.size() ? share : 0;
+  X.p += aim * aim_m_ + belief_.across_m;
+  X.R = rotationFromVector(aim * aim_rad_ + belief_.turn_rad) * X.R;
+  return X;
+}
+
+// The attitude at this place of the last leg; of a leg that only turns, at this time.
+Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
+  const Pose &X_from = path_[path_.size() - 2], &X_to = path_.back();
+  const double length_m = (X_to.p - X_from.p).norm();
+  const double share = length_m > 1e-9 ? std::clamp(1 + along_m / length_m, 0.0, 1.0)
+                                       : minimumJerk((feel_.time_s - segment_.start_s) / segment_.duration_s);
+  return between(X_from, X_to, share).R;
+}
+
+// Turned about the tip, so that a lean does not move the tip.
+Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
+  const Move& move = insertion_.move();
+  const Pose& X_to = path_.back();
+  const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad);
+  const Vec3 tip = tip_m_ * axis_W_;
+  Vec3 p = X_to.p + belief_.across_m + move.across_m + tip - turn * tip;
+  p += axis_W_ * (reach_m_ - axis_W_.dot(p - X_to.p));
+  return {Mat3(turn * turnAtTheHole(reach_m_)), p};
+}
+
+// Integral action of the hand on its own position, against friction of the device.
+void VirtualOperator::Person::serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept {
+  constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.02;
+  if (!isInserting() || is_home_) return;
+  if (insertion_.move().gives_way) return;
+  serve_m_ = shortened(serve_m_ + kGain_per_s * dt_s * across(X_wanted.p - X_hand.p), kLimit_m);
+  serve_rad_ = shortened(serve_rad_ + kGain_per_s * dt_s * rotationVector(X_wanted.R * X_hand.R.transpose()),
+                         kLimit_rad);
+}
+
+Pose VirtualOperator::Person::limited(const Pose& X_wanted, const Pose& X_hand) const noexcept {
+  const Vec3 pull_m = shortened(X_wanted.p - X_hand.p, habits_.force_limit_N / habits_.k_N_per_m);
+  const Vec3 twist_rad = shortened(rotationVector(X_wanted.R * X_hand.R.transpose()),
+                                   habits_.torque_limit_Nm / habits_.k_Nm_per_rad);
+  return {Mat3(rotationFromVector(twist_rad) * X_hand.R), Vec3(X_hand.p + pull_m)};
+}
+
+// Muscle lag: a critically damped second-order filter, solved implicitly, between the wanted pose and the
+// equilibrium.
+void VirtualOperator::Person::follow(const Pose& X_wanted, double dt_s) noexcept {
+  const double omega = habits_.lag_rad_s, implicit = 1 / ((1 + dt_s * omega) * (1 + dt_s * omega));
+  const double spring = dt_s * omega * omega;
+  V_eq_.v = implicit * (V_eq_.v + spring * (X_wanted.p - X_eq_.p));
+  V_eq_.w = implicit * (V_eq_.w + spring * rotationVector(X_wanted.R * X_eq_.R.transpose()));
+  X_eq_ = Pose(Quat(rotationFromVector(dt_s * V_eq_.w) * X_eq_.R), Vec3(X_eq_.p + dt_s * V_eq_.v));
+}
+
+HandForce VirtualOperator::Person::impedance() const noexcept {
+  HandForce hand = evenHand(habits_);
+  hand.X_eq = X_eq_;
+  hand.V_eq = V_eq_;
+  const auto damping = [this](double k) { return handDamping(habits_, k, habits_.mass_kg); };
+  const double k = habits_.k_N_per_m, k_across = isInserting() ? habits_.k_lateral_share * k : k;
+  const Mat3 along = axis_W_ * axis_W_.transpose(), across = Mat3::Identity() - along;
+  hand.k_N_per_m = k * along + k_across * across;
+  hand.b_Ns_per_m = damping(k) * along + damping(k_across) * across;
+  const bool carries = phase_ != OperatorPhase::Idle && phase_ != OperatorPhase::Done;
+  if (carries) hand.F.f = -task_.weight_W;
+  return hand;
+}
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The person behind VirtualOperator: follows the path, inserts by strategies, and holds the handle.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "operator/insertion.h"
+#include "operator/sight.h"
+#include "vps_device/operator.h"
+#include "vps_device/random.h"
+
+namespace vps::device::inline v0 {
+
+/// Where the person believes the part's path and hole to be, as an offset from where they are.
+struct Belief {
+  Vec3 across_m = Vec3::Zero();
+  Vec3 turn_rad = Vec3::Zero();
+};
+
+class VirtualOperator::Person {
+ public:
+  explicit Person(const OperatorHabits& habits) : habits_(habits), random_(habits.seed), sight_(habits) {}
+
+  void begin(const OperatorTask& task, double now_s);
+  HandForce step(const OperatorView& view, double dt_s) noexcept;
+  void goOn() noexcept;
+
+  [[nodiscard]] OperatorPhase phase() const noexcept { return phase_; }
+  [[nodiscard]] OperatorStrategy strategy() const noexcept {
+    return isInserting() ? insertion_.strategy() : OperatorStrategy::None;
+  }
+  [[nodiscard]] int retries() const noexcept { return insertion_.retries(); }
+  [[nodiscard]] const OperatorHabits& habits() const noexcept { return habits_; }
+
+ private:
+  struct Segment {
+    Pose X_from, X_to;  // of G
+    double start_s = 0, duration_s = 1;
+  };
+
+  // Plan.
+  void startSegment(const Pose& X_from, const Pose& X_to, double now_s) noexcept;
+  void reach(double now_s) noexcept;
+  void startInsertion(const OperatorView& view) noexcept;
+  void insert(const OperatorView& view, double dt_s) noexcept;
+  void enter(OperatorPhase phase, double now_s) noexcept;
+  void finish(OperatorPhase phase, const OperatorView& view) noexcept;
+
+  // Senses.
+  void sense(const OperatorView& view, double dt_s) noexcept;
+  void correctOnTheWay(double dt_s) noexcept;
+  void correctAtTheHole(double dt_s) noexcept;
+  void giveWay(double dt_s) noexcept;
+  [[nodiscard]] Vec3 across(const Vec3& v) const noexcept { return v - axis_W_ * axis_W_.dot(v); }
+  [[nodiscard]] Pose seenGrasp() const noexcept { return sight_.seen() * task_.X_PG; }
+
+  // Hand.
+  [[nodiscard]] Pose wanted(double now_s) const noexcept;
+  [[nodiscard]] Pose wantedAtTheHole() const noexcept;
+  [[nodiscard]] Mat3 turnAtTheHole(double along_m) const noexcept;
+  void serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept;
+  [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
+  void follow(const Pose& X_wanted, double dt_s) noexcept;
+  [[nodiscard]] HandForce impedance() const noexcept;
+  [[nodiscard]] bool isInserting() const noexcept {
+    return phase_ == OperatorPhase::Insert || phase_ == OperatorPhase::Press;
+  }
+
+  OperatorHabits habits_;
+  Random random_;
+  Sight sight_;
+  OperatorTask task_;
+  OperatorPhase phase_ = OperatorPhase::Idle;
+  double begin_s_ = 0, phase_s_ = 0, done_s_ = 0;
+
+  std::vector<Pose> path_;  // of G: start, way points, target
+  std::size_t next_ = 0;    // index in path_ of the segment's end
+  Segment segment_;
+  Vec3 axis_W_ = Vec3::UnitZ();                         // of insertion
+  double tip_m_ = 0;                                    // from G along the axis to the end that goes in first
+  Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();  // aim error, drawn once per task
+
+  Belief belief_;
+  double seen_for_s_ = 0;
+  Feel feel_;
+  Insertion insertion_;
+  double reach_m_ = 0;  // of the hand along the axis, beyond the target
+  bool is_home_ = false;
+
+  bool has_view_ = false;
+  Pose X_eq_;  // equilibrium, after the muscles' lag
+  Twist V_eq_;
+  Pose X_rest_;                                             // equilibrium while there is no task
+  Vec3 serve_m_ = Vec3::Zero(), serve_rad_ = Vec3::Zero();  // of the hand against friction of the device
+};
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the operator sees of the part: late, and with an error that changes with each fixation of the eye.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "vps/pose.h"
+#include "vps_device/operator.h"
+#include "vps_device/random.h"
+
+namespace vps::device::inline v0 {
+
+class Sight {
+ public:
+  explicit Sight(const OperatorHabits& habits) : habits_(habits), random_(habits.seed ^ kStream) {}
+
+  /// @param tip_P  where the person looks: the error of position is that of this point
+  void begin(const Vec3& tip_P, double now_s) noexcept;
+  /// Takes a visual sample if one is due. True: there is a new one, and `seen()` is late by the delay.
+  bool look(const OperatorView& view) noexcept;
+  /// The part's pose as seen.
+  [[nodiscard]] const Pose& seen() const noexcept { return X_seen_; }
+  [[nodiscard]] bool hasSeen() const noexcept { return has_seen_; }
+
+ private:
+  struct Picture {
+    double time_s = 0;
+    Pose X_WP;
+  };
+  static constexpr std::size_t kPictures = 64;              // in the delay line
+  static constexpr std::uint64_t kStream = 0x5159ac0ffee5;  // apart from the draws of the aim
+
+  OperatorHabits habits_;
+  Random random_;
+  std::array<Picture, kPictures> pictures_{};
+  std::size_t count_ = 0;
+  double next_look_s_ = 0, next_fixation_s_ = 0;
+  Vec3 tip_P_ = Vec3::Zero(), error_m_ = Vec3::Zero(), error_rad_ = Vec3::Zero();
+  Pose X_seen_;
+  bool has_seen_ = false;
+};
+
+}  // namespace vps::device::inline v0

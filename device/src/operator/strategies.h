@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The strategies of insertion; each has a source of its own.
+#pragma once
+
+#include "operator/strategy.h"
+
+namespace vps::device::inline v0 {
+
+/// Hovers until it has looked long enough, then moves ahead until it touches, slowly near the target. Failed:
+/// the part is seen beyond its target and nothing stopped it.
+class Approach final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double start_s_ = 0;
+  Held touch_;
+};
+
+/// Pushes lightly until the part no longer slides on.
+class Touch final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double start_s_ = 0;
+  Progress progress_;
+};
+
+/// The part leans with one corner ahead and inside the hole, slides with it against the wall, and is turned
+/// upright there. For holes with sharp edges: it finds a hole from farther away than its clearance.
+class TiltIn final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  enum class Stage { Lean, Lower, Slide, Upright, Drop };
+  void enter(Stage stage, double now_s) noexcept;
+
+  Situation situation_;
+  Stage stage_ = Stage::Lean;
+  double stage_s_ = 0;
+  Vec3 corner_W_ = Vec3::Zero();
+  double slide_m_ = 0;
+  Held touch_;
+};
+
+/// Slides over the surface in an Archimedean spiral until the part drops.
+class SpiralSearch final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double angle_rad_ = 0, wait_s_ = 0, level_m_ = 0;
+};
+
+/// Pushes, giving way across and in rotation, with a small wobble against friction, until nothing moves on or
+/// nothing resists.
+class AlignByTorque final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double start_s_ = 0;
+  Progress progress_;
+  Held free_;
+};
+
+/// Withdraws: a little within the hole, else to before its mouth; there it looks again.
+class BackOff final : public Strategy {
+ public:
+  explicit BackOff(bool is_whole) : is_whole_(is_whole) {}
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  bool is_whole_;
+  double start_s_ = 0, goal_m_ = 0, looked_s_ = 0;
+};
+
+/// Presses the part against its stop, and relaxes. Failed: it yields, or it is seen elsewhere.
+class PressHome final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+  /// It moved on under the press: nothing stops it there.
+  [[nodiscard]] bool hasYielded() const noexcept { return has_yielded_; }
+
+ private:
+  Situation situation_;
+  double start_s_ = 0, start_m_ = 0;
+  bool has_yielded_ = false;
+};
+
+/// Holds the part where it is seen at its target, as nothing else tells where that is.
+class PlaceBySight final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double start_s_ = 0;
+};
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a strategy of insertion senses, and what it asks of the hand. Each strategy is a small state machine
+// of its own.
+#pragma once
+
+#include "vps/pose.h"
+#include "vps_device/operator.h"
+
+namespace vps::device::inline v0 {
+
+/// Positions are those of the part as the hand feels them, at G: its own position, less what gives way under
+/// the force that it feels. a: axis of insertion.
+struct Feel {
+  double time_s = 0;
+  double along_m = 0;              ///< beyond the target along a; negative before it
+  Vec3 across_m = Vec3::Zero();    ///< from the line through the target
+  Mat3 R_hand = Mat3::Identity();  ///< of the hand, in W
+  double resist_N = 0;             ///< against a
+  Vec3 side_N = Vec3::Zero();      ///< on the hand, across a
+  double speed_m_s = 0;            ///< of the hand along a
+  double seen_short_m = 0;         ///< how much the part is seen to lack to its target; late and noisy
+  double seen_for_s = 0;           ///< how long it has been seen since the last correction began
+};
+
+/// What the hand is to do, from where it believes the hole to be.
+struct Move {
+  Vec3 across_m = Vec3::Zero();  ///< of the part's tip
+  Vec3 turn_rad = Vec3::Zero();  ///< about the tip
+  double speed_m_s = 0;          ///< along a; negative: back
+  double push_N = 0;             ///< greatest push along a
+  bool looks = false;            ///< sight corrects the belief
+  bool gives_way = false;        ///< the felt side force and torque correct the belief
+};
+
+enum class Outcome {
+  GoingOn,
+  Done,    ///< it did what it is for
+  Failed,  ///< it did not
+};
+
+/// What a strategy knows of the task.
+struct Situation {
+  OperatorHabits habits;
+  Vec3 axis_W = Vec3::UnitZ();
+  Vec3 corner_W = Vec3::Zero();  ///< unit, across a: to the part's corner; zero: not known
+  double push_limit_N = 0;       ///< of the present attempt
+  double near_m = 0;             ///< seen this close to the target it may be there
+  bool has_touched = false;      ///< the hole leads, and sight no longer corrects across
+  double mouth_m = 0;            ///< `along` at the first touch
+  int attempt = 0;
+};
+
+class Strategy {
+ public:
+  virtual ~Strategy() = default;
+  virtual void start(const Situation& situation, const Feel& feel) noexcept = 0;
+  virtual Outcome step(const Feel& feel, double dt_s) noexcept = 0;
+  [[nodiscard]] const Move& move() const noexcept { return move_; }
+
+ protected:
+  Move move_;
+};
+
+/// Counts how long a condition has held.
+class Held {
+ public:
+  double step(bool holds, double dt_s) noexcept { return time_s_ = holds ? time_s_ + dt_s : 0; }
+  void reset() noexcept { time_s_ = 0; }
+
+ private:
+  double time_s_ = 0;
+};
+
+/// Tells when a part under push no longer moves on.
+class Progress {
+ public:
+  void start(double along_m, double now_s) noexcept {
+    best_m_ = along_m;
+    best_s_ = now_s;
+  }
+  /// Time since the last progress of at least `least_m`.
+  double step(double along_m, double now_s, double least_m) noexcept {
+    if (along_m > best_m_ + least_m) start(along_m, now_s);
+    return now_s - best_s_;
+  }
+
+ private:
+  double best_m_ = 0, best_s_ = 0;
+};
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of a check as JSON and CSV show them.
+#pragma once
+
+#include <vector>
+
+#include "vps_scenes/check.h"
+#include "vps_scenes/fields.h"
+
+namespace vps::scenes::inline v0 {
+
+inline constexpr auto kCheckedPairFields = std::make_tuple(
+    field("a", &CheckedPair::a, "name of one part"), field("b", &CheckedPair::b, "name of the other"),
+    field("state", &CheckedPair::state,
+          "`apart`, `contact` (within the error) or `clash` (an overlap beyond it)"),
+    field("clearance_m", &CheckedPair::clearance_m,
+          "least distance of the surfaces; 0 where the meshes overlap"),
+    field("interference_depth_m", &CheckedPair::interference_depth_m, "how deep the meshes overlap"),
+    field("interference_volume_m3", &CheckedPair::interference_volume_m3, "shared volume of a clash"),
+    field("volume_error_m3", &CheckedPair::volume_error_m3, "bound of the error of the volume"),
+    field("error_m", &CheckedPair::error_m,
+          "bound of the error of clearance and depth: chords of the meshes, rounding, search"),
+    field("at_m", &CheckedPair::at_W, "the deepest point, or the middle of the nearest points, in the world"),
+    field("is_allowed", &CheckedPair::is_allowed, "the scene allows the overlap (`allow_overlap`)"));
+static_assert(coversAllMembers<CheckedPair>(kCheckedPairFields));
+
+inline constexpr auto kCheckedFitFields = std::make_tuple(
+    field("kind", &CheckedFit::kind, "`shaft` in a bore, or `key`: two parallel faces between two others"),
+    field("shaft", &CheckedFit::shaft, "name of the inner part"),
+    field("bore", &CheckedFit::bore, "name of the outer part"),
+    field("axis", &CheckedFit::axis_W, "axis of the cylinders, or normal of the key's faces, in the world"),
+    field("at_m", &CheckedFit::at_W, "the middle of the fit, in the world"),
+    field("shaft_m", &CheckedFit::shaft_m, "diameter of the shaft, or width of the key"),
+    field("bore_m", &CheckedFit::bore_m, "diameter of the bore, or width of the slot"),
+    field("length_m", &CheckedFit::length_m, "length over which both fit"),
+    field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
+          "bore less shaft; negative: interference"),
+    field("error_m", &CheckedFit::error_m,
+          "bound of the clearance's error, from the corners' distance to the faces"),
+    field("iso_286", &CheckedFit::iso_286, "a common fit whose zones hold both sizes; empty: none"));
+static_assert(coversAllMembers<CheckedFit>(kCheckedFitFields));
+
+inline constexpr auto kPlayFields = std::make_tuple(
+    field(
+        "play_m", [](const Play& play) { return std::vector<double>(play.m.begin(), play.m.end()); },
+        "how far it moves along +x, -x, +y, -y, +z, -z of `play_axes`; null: away from the others"),
+    field(
+        "play_rad", [](const Play& play) { return std::vector<double>(play.rad.begin(), play.rad.end()); },
+        "how far it turns about these axes through `play_center_m`; null: a whole turn"));
+
+inline constexpr auto kCheckedPartFields = std::make_tuple(
+    field("name", &CheckedPart::name, "name of the part"),
+    field("triangles", &CheckedPart::triangles, "triangles of its mesh"),
+    field("chord_error_m", &CheckedPart::chord_error_m,
+          "greatest distance of the mesh from its curved faces"),
+    field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: it is closed"),
+    group("", &CheckedPart::play, kPlayFields),
+    field("play_error_m", &CheckedPart::play_error_m, "bound of the error of `play_m`"),
+    field("play_error_rad", &CheckedPart::play_error_rad, "bound of the error of `play_rad`"),
+    field("play_center_m", &CheckedPart::play_center_W, "where the axes of rotation meet, in the world"));
+
+inline constexpr auto kCheckWallFields =
+    std::make_tuple(field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),
+                    field("pairs_s", &CheckResult::pairs_wall_s, "time for the pairs"),
+                    field("fits_s", &CheckResult::fits_wall_s, "time for the fits"),
+                    field("play_s", &CheckResult::play_wall_s, "time for play and ways out"));
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far the nodes of a tree are from an axis of rotation, and where along it: turning changes neither.
+#pragma once
+
+#include <vector>
+
+#include "check/part_surface.h"
+
+namespace vps::scenes::inline v0 {
+
+struct AxisExtent {
+  double from_m = 1e300, to_m = -1e300;      ///< along the axis, from its centre
+  double nearest_m = 1e300, farthest_m = 0;  ///< from the axis
+
+  void add(const AxisExtent& other);
+  /// Whether what turns about the axis can come within this distance of the other.
+  [[nodiscard]] bool reaches(const AxisExtent& other, double within_m) const {
+    return from_m <= other.to_m + within_m && other.from_m <= to_m + within_m &&
+           nearest_m <= other.farthest_m + within_m && other.nearest_m <= farthest_m + within_m;
+  }
+};
+
+/// Of each node and each triangle of a part; the axis is in the part's frame. O(n).
+struct AxisExtents {
+  std::vector<AxisExtent> nodes, triangles;
+  AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center);
+};
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/check.h"
+
+#include <algorithm>
+
+#include "check/check_pair.h"
+#include "check/check_play.h"
+#include "check/fits.h"
+#include "check/on_cores.h"
+#include "core/wall_clock.h"
+#include "vps/mesh_repair.h"
+
+namespace vps::scenes::inline v0 {
+
+const char* toText(PairState state) {
+  switch (state) {
+    case PairState::Apart:
+      return "apart";
+    case PairState::Contact:
+      return "contact";
+    case PairState::Clash:
+      return "clash";
+  }
+  return "";
+}
+
+const char* toText(FitKind kind) {
+  return kind == FitKind::Shaft ? "shaft" : "key";
+}
+
+std::size_t CheckResult::clashes() const {
+  return static_cast<std::size_t>(
+      std::count_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); }));
+}
+
+const CheckedPair* CheckResult::deepestClash() const {
+  const auto found =
+      std::find_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); });
+  return found == pairs.end() ? nullptr : &*found;
+}
+
+namespace {
+
+std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, double near_m,
+                                    const Progress& progress) {
+  const auto near = nearPairs(parts, near_m);
+  std::vector<std::optional<CheckedPair>> found(near.size());
+  forEachOnCores(near.size(), progress, "measuring pairs", [&](std::size_t i) {
+    found[i] = checkPair(parts[near[i].first], parts[near[i].second], near_m);
+  });
+  std::vector<CheckedPair> pairs;
+  for (std::optional<CheckedPair>& pair : found)
+    if (pair) pairs.push_back(std::move(*pair));
+  std::stable_sort(pairs.begin(), pairs.end(), [](const CheckedPair& a, const CheckedPair& b) {
+    if (a.state != b.state) return a.state > b.state;
+    if (a.interference_depth_m != b.interference_depth_m)
+      return a.interference_depth_m > b.interference_depth_m;
+    return a.clearance_m < b.clearance_m;
+  });
+  return pairs;
+}
+
+std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, double near_m,
+                                  const Progress& progress) {
+  std::vector<FitFaces> faces(parts.size());
+  forEachOnCores(parts.size(), progress, "finding round and flat faces",
+                 [&](std::size_t i) { faces[i] = fitFaces(*parts[i].surface); });
+  const auto near = nearPairs(parts, near_m);
+  std::vector<std::vector<CheckedFit>> found(near.size());
+  forEachOnCores(near.size(), progress, "finding fits", [&](std::size_t i) {
+    const auto [a, b] = near[i];
+    const FittedPart of_a{parts[a], faces[a]}, of_b{parts[b], faces[b]};
+    appendShaftFits(of_a, of_b, found[i]);
+    appendKeyFits(of_a, of_b, found[i]);
+  });
+  std::vector<CheckedFit> fits;
+  for (const std::vector<CheckedFit>& of_pair : found)
+    fits.insert(fits.end(), of_pair.begin(), of_pair.end());
+  return fits;
+}
+
+CheckedPart describePart(const PlacedSurface& part) {
+  CheckedPart out;
+  out.name = part.name;
+  const Mesh& mesh = part.surface->mesh();
+  out.triangles = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < out.triangles; ++i)
+    out.chord_error_m = std::max(out.chord_error_m, part.surface->chord_m(i));
+  const MeshReport& report = part.surface->solid().report();
+  if (!report.isClosed() || part.surface->solid().isByWinding()) out.mesh_faults = describe(report);
+  return out;
+}
+
+}  // namespace
+
+CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
+                          const CheckSettings& settings, const Progress& progress) {
+  CheckResult result;
+  result.assembly = name;
+  double begun_s = wallSeconds();
+  const auto lap_s = [&] {
+    const double before_s = begun_s;
+    begun_s = wallSeconds();
+    return begun_s - before_s;
+  };
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
+  result.prepare_wall_s = lap_s();
+  result.pairs = checkPairs(placed, settings.near_m, progress);
+  result.pairs_wall_s = lap_s();
+  if (settings.has_fits) result.fits = checkFits(placed, settings.near_m, progress);
+  result.fits_wall_s = lap_s();
+  for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
+  if (settings.has_play) checkPlay(placed, result, progress);
+  result.play_wall_s = lap_s();
+  return result;
+}
+
+}  // namespace vps::scenes::inline v0

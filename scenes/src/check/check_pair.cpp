@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/check_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "check/overlap_volume.h"
+#include "check/surface_gap.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// Of some sums of coordinates.
+double roundingOf(const PlacedSurface& part) {
+  return 16 * std::numeric_limits<double>::epsilon() *
+         (part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff());
+}
+
+/// Distance of the meshes from the faces that they stand for, where the parts are near each other.
+double chordError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  const auto of = [near_m](const PlacedSurface& part, const PlacedSurface& other) {
+    return part.surface->chordIn(moved(grown(other.box_W, near_m), part.X_WP.inverse()));
+  };
+  return of(a, b) + of(b, a);
+}
+
+/// Solids whose edges all lie on each other's surface, as those of a part that is drawn twice, share an
+/// inside that no edge shows. The deepest of some points below the middle of facets of a.
+Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
+  constexpr std::uint32_t kFacets = 16;
+  const PartSurface& of = *a.surface;
+  const Pose X_BA = b.X_WP.inverse() * a.X_WP;
+  const double size_m = of.box().size().norm();
+  const auto count = static_cast<std::uint32_t>(of.mesh().triangles.size());
+  Overlap deepest;
+  for (std::uint32_t k = 0; k < std::min(kFacets, count); ++k) {
+    const auto i = static_cast<std::uint32_t>(std::uint64_t{count} * k / std::min(kFacets, count));
+    const Triangle t = of.triangle(i);
+    for (double below_m = 0.25 * size_m; below_m > 1e-4 * size_m; below_m *= 0.5) {
+      const Vec3 p_A = (t[0] + t[1] + t[2]) / 3 - below_m * of.normal(i);
+      const double in_a_m = -of.solid().signedDistance(p_A);
+      if (in_a_m <= deepest.depth_m) continue;
+      const double in_both_m = std::min(in_a_m, -b.surface->solid().signedDistance(X_BA * p_A));
+      if (in_both_m > deepest.depth_m) deepest = {in_both_m, a.X_WP * p_A};
+    }
+  }
+  return deepest;
+}
+
+Overlap deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m) {
+  const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
+  if (found.depth_m > error_m) return found;
+  const Box both{a.box_W.min.cwiseMax(b.box_W.min), a.box_W.max.cwiseMin(b.box_W.max)};
+  if (both.isEmpty() || both.size().minCoeff() <= error_m) return found;
+  for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
+    if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m) return flush;
+  return found;
+}
+
+}  // namespace
+
+std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  CheckedPair pair{.a = a.name, .b = b.name};
+  pair.is_allowed = a.allow_overlap || b.allow_overlap;
+  const double chord_m = chordError(a, b, near_m), round_m = roundingOf(a) + roundingOf(b);
+  pair.error_m = chord_m + round_m;
+  const Overlap overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m);
+  if (overlap.depth_m > 0) {
+    pair.error_m += kOverlapCertain_m;
+    pair.interference_depth_m = overlap.depth_m;
+    pair.at_W = overlap.p_W;
+    pair.state = overlap.depth_m > pair.error_m ? PairState::Clash : PairState::Contact;
+    if (pair.state == PairState::Contact) return pair;
+    const OverlapVolume shared = overlapVolume(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP);
+    pair.interference_volume_m3 = shared.volume_m3;
+    pair.volume_error_m3 = shared.error_m3 + shared.area_m2 * (chord_m + round_m);
+    return pair;
+  }
+  const double most_m = near_m + pair.error_m;
+  const SurfaceGap gap = surfaceGap(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP, most_m);
+  if (!(gap.distance_m < most_m)) return std::nullopt;
+  pair.clearance_m = gap.distance_m;
+  pair.at_W = a.X_WP * (0.5 * (gap.p_A + gap.p_B));
+  pair.state = gap.distance_m > pair.error_m ? PairState::Apart : PairState::Contact;
+  return pair;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/check_play.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "check/on_cores.h"
+#include "check/play.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::size_t kAxes = 6;
+constexpr std::size_t kTasks = kAxes + 1;  // of a part: its axes, and the ways out
+
+struct PartTask {
+  std::unique_ptr<const MotionSearch> search;
+  PlayFrame frame;
+  std::vector<CheckedFit> fits;
+  double error_m = 0;
+};
+
+bool isOf(const CheckedPair& pair, const std::string& name) {
+  return pair.a == name || pair.b == name;
+}
+
+/// Empty for a part that clashes: what overlaps cannot be moved apart by it.
+PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const CheckResult& result) {
+  PartTask task;
+  const std::string& name = parts[part].name;
+  std::vector<const PlacedSurface*> held;
+  std::vector<double> crossing_m;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == part) continue;
+    held.push_back(&parts[i]);
+    crossing_m.push_back(0);
+    for (const CheckedPair& pair : result.pairs) {
+      if (!isOf(pair, name) || !isOf(pair, parts[i].name)) continue;
+      if (pair.state == PairState::Clash) return task;
+      crossing_m.back() = pair.error_m;
+      task.error_m = std::max(task.error_m, pair.error_m);
+    }
+  }
+  for (const CheckedFit& fit : result.fits)
+    if (fit.shaft == name || fit.bore == name) task.fits.push_back(fit);
+  task.frame = playFrame(parts[part], task.fits);
+  task.search = std::make_unique<const MotionSearch>(parts[part], std::move(held), crossing_m);
+  task.error_m += task.search->rest_m();
+  return task;
+}
+
+}  // namespace
+
+void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const Progress& progress) {
+  std::vector<PartTask> tasks(parts.size());
+  forEachOnCores(parts.size(), progress, "preparing play",
+                 [&](std::size_t i) { tasks[i] = taskOf(parts, i, result); });
+  Box all;
+  for (const PlacedSurface& part : parts) {
+    all.add(part.box_W.min);
+    all.add(part.box_W.max);
+  }
+  const double leave_m = 2 * all.size().norm();
+  std::vector<Play> plays(parts.size());
+  forEachOnCores(kTasks * parts.size(), progress, "measuring play", [&](std::size_t i) {
+    const std::size_t part = i / kTasks, axis = i % kTasks;
+    const PartTask& task = tasks[part];
+    if (!task.search) return;
+    if (axis == kAxes) {
+      result.parts[part].ways_out_W = waysOut(*task.search, parts[part], task.frame, task.fits, leave_m);
+      return;
+    }
+    const std::array<double, 2> both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
+    std::array<double, 6>& of = axis < 3 ? plays[part].m : plays[part].rad;
+    of[2 * (axis % 3)] = both[0];
+    of[2 * (axis % 3) + 1] = both[1];
+  });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!tasks[i].search) continue;
+    CheckedPart& part = result.parts[i];
+    part.play = plays[i];
+    part.play_axes_W = tasks[i].frame.axes_W;
+    part.play_center_W = tasks[i].frame.center_W;
+    part.play_error_m = tasks[i].error_m;
+    // A contact at half the part's least size from the axis; farther out the error is less.
+    part.play_error_rad = tasks[i].error_m / (0.5 * parts[i].surface->box().size().minCoeff());
+  }
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the parts of a CAD file or a scene belong.
+#include "vps_scenes/check.h"
+
+namespace vps::scenes::inline v0 {
+
+std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
+  std::vector<DrawnPart> parts;
+  for (const ImportedPart& part : cad.parts)
+    parts.push_back({part.name, part.mesh, part.X_WP, part.deflection_m, false});
+  return parts;
+}
+
+std::vector<DrawnPart> drawnParts(const Scene& scene) {
+  std::vector<DrawnPart> parts;
+  for (const ScenePart& part : scene.parts)
+    parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap});
+  for (const SceneStep& step : scene.steps) parts[step.part].X_WP = step.X_WP_target;
+  return parts;
+}
+
+}  // namespace vps::scenes::inline v0

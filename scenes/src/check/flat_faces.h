@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The flat faces of a part, from the facets of its mesh.
+#pragma once
+
+#include <vector>
+
+#include "check/part_surface.h"
+#include "check/round_faces.h"
+
+namespace vps::scenes::inline v0 {
+
+/// Connected facets in one plane, outside of round faces.
+struct FlatFace {
+  Vec3 n = Vec3::UnitZ();  ///< outward, unit, in the part's frame
+  double offset_m = 0;     ///< n . x of its points
+  double area_m2 = 0;
+  double residual_m = 0;              ///< greatest distance of a corner from the plane
+  std::vector<std::uint32_t> facets;  ///< ascending
+};
+
+/// The largest `most` faces, the largest first. O(n log n).
+std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<RoundFace>& round,
+                                std::size_t most);
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/motion_search.h"
+
+#include "check/pair_step.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+/// A step of less than this stops the motion: a tenth of the rest depth.
+constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
+constexpr int kMostSteps = 400;
+/// The first step ends here, and each later one at four times as far: only what is near is looked at, where
+/// something is near.
+constexpr double kFirstStep_m = 0.1e-3;
+
+/// The greatest rest depth that the facets of a pair need as drawn.
+double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& X_HM, double crossing_m) {
+  const MovingPair pair{*part.surface, *held.surface, X_HM, {}, MotionSearch::kRest_m};
+  double needed_m = 0;
+  visitPairs(
+      held.surface->tree(), part.surface->tree(), [&](const Box& box) { return moved(box, X_HM); }, distance2,
+      [] { return std::numeric_limits<double>::min(); },
+      [&](std::uint32_t k, std::uint32_t i) { needed_m = std::max(needed_m, crossingDepth(pair, i, k)); });
+  return MotionSearch::kRest_m + std::min(needed_m, crossing_m);
+}
+
+/// When a box that moves along d reaches another one; forever if it passes by.
+double entry(const Box& moving, const Box& held, const Vec3& d) {
+  double first = 0, last = kForever;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double before = held.min[axis] - moving.max[axis], behind = held.max[axis] - moving.min[axis];
+    if (d[axis] == 0) {
+      if (before > 0 || behind < 0) return kForever;
+      continue;
+    }
+    const double from = (d[axis] > 0 ? before : behind) / d[axis],
+                 to = (d[axis] > 0 ? behind : before) / d[axis];
+    first = std::max(first, from);
+    last = std::min(last, to);
+  }
+  return first <= last ? first : kForever;
+}
+
+std::array<Vec3, 8> cornersOf(const Box& box) {
+  std::array<Vec3, 8> out;
+  for (int i = 0; i < 8; ++i)
+    out[static_cast<std::size_t>(i)] =
+        Vec3((i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
+             (i & 4) != 0 ? box.max.z() : box.min.z());
+  return out;
+}
+
+double greatestSpeed(const Motion& motion, const Box& box) {
+  double most = 0;
+  for (const Vec3& corner : cornersOf(box)) most = std::max(most, motion.velocity(corner).norm());
+  return most;
+}
+
+/// How long all of a box that moves stays above a plane; 0 if it is not now.
+double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double least_m) {
+  const double lowest_m = n.dot(box.center()) - 0.5 * n.cwiseAbs().dot(box.size());
+  if (lowest_m < least_m) return 0;
+  double s = kForever;
+  for (const Vec3& corner : cornersOf(box)) s = std::min(s, motion.staysAbove(n, corner, least_m));
+  return s;
+}
+
+Box boxOf(const Triangle& t) {
+  Box box;
+  for (const Vec3& p : t) box.add(p);
+  return box;
+}
+
+}  // namespace
+
+MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
+                           const std::vector<double>& crossing_m)
+    : part_(part) {
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const Pose X_HM = held[i]->X_WP.inverse() * part.X_WP;
+    held_.push_back({held[i], X_HM, restOf(part, *held[i], X_HM, crossing_m[i])});
+  }
+}
+
+double MotionSearch::rest_m() const {
+  double most_m = kRest_m;
+  for (const Held& held : held_) most_m = std::max(most_m, held.rest_m);
+  return most_m;
+}
+
+std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion) const {
+  if (!motion.is_turn) return std::nullopt;
+  const Motion in_moving = motion.in(part_.X_WP.inverse());
+  Turning turning{AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
+  const double farthest_m = (part_.box_W.min - motion.center)
+                                .cwiseAbs()
+                                .cwiseMax((part_.box_W.max - motion.center).cwiseAbs())
+                                .norm();
+  Box center;
+  center.add(motion.center);
+  for (const Held& held : held_) {
+    std::optional<AxisExtents>& extents = turning.held.emplace_back();
+    if (distance2(center, held.part->box_W) > farthest_m * farthest_m + held.rest_m) continue;
+    const Motion in_held = motion.in(held.part->X_WP.inverse());
+    extents.emplace(*held.part->surface, in_held.direction, in_held.center);
+  }
+  return turning;
+}
+
+double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Motion& motion_H,
+                          const Pose& X_HM, double most, Blocker& by) const {
+  const Held& held = held_[which];
+  if (turning && !turning->held[which]) return most;
+  const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
+  const MovingPair pair{moving, fixed, X_HM, motion_H, held.rest_m};
+  const double near_m = 2 * held.rest_m;
+  // Times at which boxes can come within the rest depth of each other.
+  const auto reaches = [&](const Box& of_moving, const Box& of_held, double radius_m) {
+    const Box wide = grown(of_moving, near_m);
+    if (!motion_H.is_turn) return entry(wide, of_held, motion_H.direction);
+    return std::sqrt(distance2(wide, of_held)) / std::max(radius_m, 1e-300);
+  };
+  double best = most;
+  const auto visit = [&](std::uint32_t k, std::uint32_t i) {
+    if (turning && !turning->moving.triangles[i].reaches(turning->held[which]->triangles[k], near_m)) return;
+    Triangle t = moving.triangle(i);
+    for (Vec3& p : t) p = X_HM * p;
+    const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
+    if (!(reaches(boxOf(t), boxOf(fixed.triangle(k)), radius_m) < best)) return;
+    const double safe = safeStep(pair, i, k);
+    if (safe >= best) return;
+    best = safe;
+    by.moving_facet = i;
+    by.held_facet = k;
+  };
+
+  struct Waiting {
+    std::uint32_t held, moving;
+    double bound;
+  };
+  const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
+  const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
+    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m)) return kForever;
+    const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
+    const Box box = moved(tree_M[i].box, X_HM);
+    const double bound = reaches(box, tree[k].box, radius_m);
+    if (!(bound < best)) return bound;
+    // As safeStep() does for two facets: the plane of a flat node parts all of both.
+    if (const PartSurface::NodePlane& plane = fixed.planes()[k]; plane.isFlat())
+      if (staysAbove(motion_H, box, plane.n, plane.highest_m - held.rest_m) >= best) return kForever;
+    if (const PartSurface::NodePlane& plane = moving.planes()[i]; plane.isFlat()) {
+      const Vec3 n = X_HM.R * plane.n;
+      if (staysAbove(motion_H.reversed(), tree[k].box, n, plane.highest_m + n.dot(X_HM.p) - held.rest_m) >=
+          best)
+        return kForever;
+    }
+    return bound;
+  };
+  std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
+  while (!stack.empty() && best > 0) {
+    const Waiting now = stack.back();
+    stack.pop_back();
+    if (!(now.bound < best)) continue;
+    const TriangleTree::Node &of_held = tree[now.held], &of_moving = tree_M[now.moving];
+    if (of_held.isLeaf() && of_moving.isLeaf()) {
+      for (std::uint32_t a = of_held.first; a < of_held.end; ++a)
+        for (std::uint32_t b = of_moving.first; b < of_moving.end; ++b)
+          visit(fixed.tree().order()[a], moving.tree().order()[b]);
+      continue;
+    }
+    const bool halves_held =
+        of_moving.isLeaf() ||
+        (!of_held.isLeaf() && of_held.box.size().squaredNorm() >= of_moving.box.size().squaredNorm());
+    Waiting first = now, second = now;
+    (halves_held ? first.held : first.moving) = halves_held ? of_held.left : of_moving.left;
+    (halves_held ? second.held : second.moving) = (halves_held ? of_held.left : of_moving.left) + 1;
+    first.bound = boundOf(first.held, first.moving);
+    second.bound = boundOf(second.held, second.moving);
+    if (second.bound < first.bound) std::swap(first, second);
+    if (second.bound < best) stack.push_back(second);
+    if (first.bound < best) stack.push_back(first);
+  }
+  return best;
+}
+
+Reach MotionSearch::reach(const Motion& motion, double most) const {
+  return reach(motion, most, turningOf(motion));
+}
+
+std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most) const {
+  const std::optional<Turning> turning = turningOf(motion);
+  return {reach(motion, most, turning), reach(motion.reversed(), most, turning)};
+}
+
+Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning) const {
+  std::vector<Motion> in_held;
+  for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
+  const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
+  const double least = kLeastStep_m / speed;
+  double longest = kFirstStep_m / speed;
+  Reach reach;
+  for (int i = 0; i < kMostSteps && reach.s < most; ++i) {
+    const double wanted = std::min(longest, most - reach.s);
+    double safe = wanted;
+    for (std::size_t h = 0; h < held_.size() && safe > 0; ++h) {
+      Blocker by{h, 0, 0};
+      const double here = step(h, turning, in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, by);
+      if (here >= safe) continue;
+      safe = here;
+      reach.by = by;
+      reach.is_stopped = true;
+    }
+    reach.s = std::min(most, reach.s + safe);
+    if (safe == wanted) longest *= 4;
+    if (safe < std::min(least, wanted)) return backedOff(reach, in_held, speed);
+  }
+  if (reach.s >= most) reach.is_stopped = false;
+  return reach;
+}
+
+/// Takes back the rest depth by which facets may enter each other.
+Reach MotionSearch::backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const {
+  const Held& held = held_[reach.by.held];
+  const Motion& motion = in_held[reach.by.held];
+  const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
+                        held.rest_m};
+  // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.
+  const double closing =
+      std::max(closingSpeed(pair, reach.by.moving_facet, reach.by.held_facet), 0.1 * speed);
+  reach.s = std::max(0.0, reach.s - kRest_m / closing);
+  return reach;
+}
+
+bool MotionSearch::isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const {
+  const Held& held = held_[blocker.held];
+  const Motion motion_H = motion.in(held.part->X_WP.inverse());
+  double s = 0;
+  for (int i = 0; i < kMostSteps && s < most; ++i) {
+    const MovingPair pair{*part_.surface, *held.part->surface, motion_H.at(s) * held.X_HM, motion_H,
+                          held.rest_m};
+    const double safe = safeStep(pair, blocker.moving_facet, blocker.held_facet);
+    if (safe < kLeastStep_m) return true;
+    s += safe;
+  }
+  return false;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far a part can move until it touches what is held.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "check/axis_extents.h"
+#include "check/motion.h"
+#include "check/placed_surface.h"
+
+namespace vps::scenes::inline v0 {
+
+/// Two facets that stopped a motion.
+struct Blocker {
+  std::size_t held = 0;  ///< index in MotionSearch's list
+  std::uint32_t moving_facet = 0, held_facet = 0;
+};
+
+struct Reach {
+  double s = 0;  ///< as asked for at most
+  bool is_stopped = false;
+  Blocker by;
+};
+
+/// The motions of one part, with the others held where they stand.
+///
+/// Conservative advancement: from a pose, each pair of triangles has a way on which it stays apart
+/// (safeStep()); the least of them is safe for the part. It is moved by it, again and again, until it cannot
+/// be. Sources: Mirtich 1996; the bound by planes of facets follows Tang, Kim and Manocha, C2A, 2009.
+class MotionSearch {
+ public:
+  /// How deep the facets of parts that rest on each other may be in each other.
+  static constexpr double kRest_m = 0.1e-6;
+
+  /// @param crossing_m by pair of the part and each held one: facets may cross as deep as drawn, up to this
+  MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
+               const std::vector<double>& crossing_m);
+
+  /// @param motion in the world
+  [[nodiscard]] Reach reach(const Motion& motion, double most) const;
+  /// Of the motion and of its reverse.
+  [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most) const;
+  /// Whether the two facets alone stop the motion.
+  [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
+  /// The greatest rest depth of all pairs.
+  [[nodiscard]] double rest_m() const;
+
+ private:
+  struct Held {
+    const PlacedSurface* part;
+    Pose X_HM;  ///< the moving part, as drawn
+    double rest_m;
+  };
+  /// For a turn: of the part, and of each held part that it can reach.
+  struct Turning {
+    AxisExtents moving;
+    std::vector<std::optional<AxisExtents>> held;
+  };
+  [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion) const;
+  [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning) const;
+  [[nodiscard]] Reach backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const;
+  double step(std::size_t held, const std::optional<Turning>& turning, const Motion& motion_H,
+              const Pose& X_HM, double most, Blocker& by) const;
+
+  const PlacedSurface& part_;
+  std::vector<Held> held_;
+};
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/overlap_volume.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// A triangle with its plane.
+struct Flat {
+  Triangle t;
+  Vec3 n;  // not unit: its length is twice the area
+  explicit Flat(const Triangle& of) : t(of), n((of[1] - of[0]).cross(of[2] - of[0])) {}
+  [[nodiscard]] double above(const Vec3& p) const { return n.dot(p - t[0]); }
+  /// Twice the signed area of the triangle of t[0], p and q.
+  [[nodiscard]] double sweep(const Vec3& p, const Vec3& q) const {
+    return (p - t[0]).cross(q - t[0]).dot(n) / n.norm();
+  }
+};
+
+/// The part of segment pq within the triangle, whose plane holds the segment; false if there is none.
+bool clip(const Flat& in, Vec3& p, Vec3& q) {
+  double from = 0, to = 1;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 inward = in.n.cross(in.t[(i + 1) % 3] - in.t[i]);
+    const double at_p = inward.dot(p - in.t[i]), at_q = inward.dot(q - in.t[i]);
+    if (at_p < 0 && at_q < 0) return false;
+    if ((at_p < 0) == (at_q < 0)) continue;
+    const double fraction = at_p / (at_p - at_q);
+    if (at_p < 0)
+      from = std::max(from, fraction);
+    else
+      to = std::min(to, fraction);
+  }
+  if (!(from < to)) return false;
+  const Vec3 first = p + from * (q - p);
+  q = p + to * (q - p);
+  p = first;
+  return true;
+}
+
+/// Twice the area that the line in which `cutting` meets the triangle sweeps, with the inside of cutting's
+/// solid on its left.
+double sweepOfCut(const Flat& of, const Flat& cutting) {
+  Vec3 ends[2];
+  int count = 0;
+  double above[3];
+  for (int i = 0; i < 3; ++i) above[i] = of.above(cutting.t[i]);
+  for (int i = 0; i < 3 && count < 2; ++i) {
+    const int k = (i + 1) % 3;
+    if ((above[i] > 0) != (above[k] > 0))
+      ends[count++] = cutting.t[i] + above[i] / (above[i] - above[k]) * (cutting.t[k] - cutting.t[i]);
+  }
+  if (count < 2) return 0;
+  if ((ends[1] - ends[0]).dot(of.n.cross(cutting.n)) < 0) std::swap(ends[0], ends[1]);
+  return clip(of, ends[0], ends[1]) ? of.sweep(ends[0], ends[1]) : 0;
+}
+
+/// The same for the pieces of the triangle's own sides within the solid.
+double sweepOfSides(const Flat& of, const PartSurface& solid, std::vector<double>& crossings) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &a = of.t[i], &b = of.t[(i + 1) % 3];
+    crossings.clear();
+    solid.overlap().appendCrossings(a, b, crossings);
+    std::sort(crossings.begin(), crossings.end());
+    crossings.push_back(1);
+    double from = 0;
+    for (const double to : crossings) {
+      // A crossing at the border of two triangles is found twice, and differs by rounding.
+      if (to > from + 1e-14 && solid.solid().isInside(a + 0.5 * (from + to) * (b - a)))
+        sum += of.sweep(a + from * (b - a), a + to * (b - a));
+      from = to;
+    }
+  }
+  return sum;
+}
+
+struct Flux {
+  double volume_m3 = 0, area_m2 = 0;
+};
+
+/// The share that the surface of `of` within `solid` has in the volume.
+/// @param X_SO   pose of `of` in the solid's frame
+/// @param p_S    the point from which the volume is measured
+Flux fluxInside(const PartSurface& of, const PartSurface& solid, const Pose& X_SO, const Vec3& p_S) {
+  Flux flux;
+  std::vector<double> crossings;
+  const Box box_O = moved(solid.box(), X_SO.inverse());
+  of.tree().forEach([&](const Box& node) { return distance2(node, box_O) == 0; },
+                    [&](std::uint32_t i) {
+                      const Triangle t = of.triangle(i);
+                      const Flat facet({X_SO * t[0], X_SO * t[1], X_SO * t[2]});
+                      const double length2 = facet.n.norm();
+                      if (!(length2 > 0)) return;
+                      Box box;
+                      for (const Vec3& p : facet.t) box.add(p);
+                      if (distance2(box, solid.box()) > 0) return;
+                      double sweep2 = sweepOfSides(facet, solid, crossings);
+                      solid.tree().forEach(
+                          [&](const Box& node) { return distance2(node, box) == 0; },
+                          [&](std::uint32_t k) { sweep2 += sweepOfCut(facet, Flat(solid.triangle(k))); });
+                      const double area_m2 = std::clamp(0.5 * sweep2, 0.0, 0.5 * length2);
+                      flux.area_m2 += area_m2;
+                      flux.volume_m3 += area_m2 * facet.n.dot(facet.t[0] - p_S) / length2 / 3;
+                    });
+  return flux;
+}
+
+}  // namespace
+
+OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB) {
+  // Any direction that is not parallel to faces as they are drawn.
+  const Vec3 shift = kVolumeShift_m * Vec3(0.4242, 0.5657, 0.7071).normalized();
+  const Pose X_AS(X_AB.R, X_AB.p + shift), X_SA = X_AS.inverse();
+  const Box box_B = moved(b.box(), X_AS);
+  const Box both{a.box().min.cwiseMax(box_B.min), a.box().max.cwiseMin(box_B.max)};
+  if (both.isEmpty()) return {};
+  const Vec3 p_A = both.center();
+  const Flux of_a = fluxInside(a, b, X_SA, X_SA * p_A), of_b = fluxInside(b, a, X_AS, p_A);
+  OverlapVolume out;
+  out.area_m2 = of_a.area_m2 + of_b.area_m2;
+  // A shift of each face by so much, and of each coordinate by some roundings.
+  const double round_m = 1e-14 * (p_A.norm() + both.size().norm());
+  out.error_m3 = out.area_m2 * (kVolumeShift_m + round_m);
+  out.volume_m3 = std::max(0.0, of_a.volume_m3 + of_b.volume_m3);
+  return out;
+}
+
+}  // namespace vps::scenes::inline v0

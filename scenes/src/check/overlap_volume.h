@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The volume that two solids share.
+#pragma once
+
+#include "check/part_surface.h"
+
+namespace vps::scenes::inline v0 {
+
+struct OverlapVolume {
+  double volume_m3 = 0;
+  double area_m2 = 0;   ///< of its surface
+  double error_m3 = 0;  ///< of closed meshes; a hole of an open one adds its area times the overlap's size
+};
+
+/// By the divergence theorem over the parts of each surface inside the other solid, whose areas are exact:
+/// B is moved by kVolumeShift_m first, so that no two faces coincide. O(facets near the other part x log
+/// facets).
+inline constexpr double kVolumeShift_m = 1e-9;
+OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB);
+
+}  // namespace vps::scenes::inline v0

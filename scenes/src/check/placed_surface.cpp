@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/placed_surface.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "models/scene_models.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr double kLeastPart_m = 10e-6;  // a hundred times the certainty of a depth
+constexpr double kGreatestPart_m = 1e3;
+
+void requireMeasurable(const DrawnPart& part) {
+  requireUsable(part.mesh, "", part.name);
+  if (!part.X_WP.isFinite()) throw LoadError("", part.name, "has a pose that is not finite");
+  const double size_m = bounds(part.mesh).size().maxCoeff();
+  if (size_m >= kLeastPart_m && size_m <= kGreatestPart_m) return;
+  char size[32];
+  std::snprintf(size, sizeof size, "%.3g m", size_m);
+  throw LoadError("", part.name,
+                  std::string("is ").append(size).append(
+                      " large; a check measures parts of 10 um to 1 km. Is the unit right?"));
+}
+
+}  // namespace
+
+std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress) {
+  std::vector<PlacedSurface> placed(parts.size());
+  std::vector<std::size_t> source(parts.size());
+  std::vector<std::size_t> own;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    requireMeasurable(parts[i]);
+    source[i] = i;
+    for (const std::size_t k : own)
+      if (parts[k].chord_m == parts[i].chord_m && isEqualGeometry(parts[k].mesh, parts[i].mesh)) {
+        source[i] = k;
+        break;
+      }
+    if (source[i] == i) own.push_back(i);
+  }
+  if (progress) progress("preparing the parts", 0);
+  tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t k) {
+    const DrawnPart& part = parts[own[k]];
+    placed[own[k]].surface = std::make_shared<const PartSurface>(
+        std::make_shared<const Solid>(part.mesh, part.name), part.chord_m);
+  });
+  if (progress) progress("preparing the parts", 1);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PlacedSurface& part = placed[i];
+    part.name = parts[i].name;
+    part.surface = placed[source[i]].surface;
+    part.X_WP = parts[i].X_WP;
+    part.allow_overlap = parts[i].allow_overlap;
+    for (const Vec3& p : part.surface->mesh().vertices) part.box_W.add(part.X_WP * p);
+  }
+  return placed;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
+                                                           double near_m) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t a = 0; a < parts.size(); ++a)
+    for (std::size_t b = a + 1; b < parts.size(); ++b)
+      if (distance2(parts[a].box_W, parts[b].box_W) <= near_m * near_m) pairs.emplace_back(a, b);
+  return pairs;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of an assembly, prepared and in place.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check/part_surface.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes::inline v0 {
+
+struct PlacedSurface {
+  std::string name;
+  std::shared_ptr<const PartSurface> surface;  ///< parts of equal geometry share it
+  Pose X_WP;
+  bool allow_overlap = false;
+  Box box_W;  ///< of the vertices themselves
+};
+
+/// On all cores. Throws LoadError; see checkAssembly().
+std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress);
+
+/// Pairs of parts whose boxes are nearer than near_m, in ascending order.
+std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
+                                                           double near_m);
+
+}  // namespace vps::scenes::inline v0

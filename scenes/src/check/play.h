@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Play of a part, and the directions in which it leaves.
+#pragma once
+
+#include <vector>
+
+#include "check/motion_search.h"
+
+namespace vps::scenes::inline v0 {
+
+/// The axes along and about which a part's play is measured.
+struct PlayFrame {
+  Mat3 axes_W = Mat3::Identity();
+  Vec3 center_W = Vec3::Zero();
+};
+
+/// The part's own axes through its centre of mass. With fits, the axis of the longest is one of them, and the
+/// centre is on it.
+PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fits);
+
+/// Play along (0 to 2) or about (3 to 5) an axis of the frame, forwards and back.
+/// @param leave_m  a way on which a part certainly leaves all others
+std::array<double, 2> playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m);
+
+/// Unit directions in the world in which the part leaves the others on a straight line: of the frame's axes,
+/// of those of its fits, and of 42 directions all around.
+std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,
+                          const std::vector<CheckedFit>& fits, double leave_m);
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps_hand: how many seeds of the virtual operator bring a peg into its hole, and how long they take.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "peg_scenes.h"
+#include "vps_scenes/assemble.h"
+
+namespace {
+
+using vps::hand::PegScene;
+
+int usage() {
+  std::printf(
+      "usage: vps_hand CASE [FIRST [LAST]] [--trace FILE]\n"
+      "Runs the seeds FIRST to LAST (default 1 to 100) and prints a line for each, then their share.\n"
+      "  --trace  writes time, phase, pose error and force of every 10th physics step of the last seed\n"
+      "cases:\n");
+  for (const PegScene& scene : vps::hand::pegScenes())
+    std::printf("  %-12s %s\n", scene.name, scene.description);
+  return 2;
+}
+
+void writeTrace(const vps::scenes::AssembleResult& result, const vps::Pose& X_target, const char* file) {
+  std::FILE* out = std::fopen(file, "w");
+  if (out == nullptr) return;
+  for (std::size_t i = 0; i < result.trace.size(); i += 10) {
+    const vps::scenes::TraceRow& row = result.trace[i];
+    const vps::Vec3 off_um = 1e6 * (row.X_WP.p - X_target.p);
+    const vps::Vec3 turn_mrad = 1e3 * vps::rotationVector(row.X_WP.R * X_target.R.transpose());
+    std::fprintf(out,
+                 "%.3f %d  %8.1f %8.1f %8.1f  %7.2f %7.2f %7.2f  %6.2f %6.2f %6.2f  %7.3f %7.3f %7.3f %d\n",
+                 row.time_s, row.phase, off_um.x(), off_um.y(), off_um.z(), turn_mrad.x(), turn_mrad.y(),
+                 turn_mrad.z(), row.F_hand_W.f.x(), row.F_hand_W.f.y(), row.F_hand_W.f.z(),
+                 row.F_hand_W.tau.x(), row.F_hand_W.tau.y(), row.F_hand_W.tau.z(), row.contacts);
+  }
+  std::fclose(out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::string trace;
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--trace" && i + 1 < argc)
+      trace = argv[++i];
+    else
+      words.emplace_back(argv[i]);
+  }
+  if (words.empty()) return usage();
+  const auto& scenes = vps::hand::pegScenes();
+  const auto chosen =
+      std::find_if(scenes.begin(), scenes.end(), [&](const PegScene& s) { return words[0] == s.name; });
+  if (chosen == scenes.end()) return usage();
+  const std::uint64_t first = words.size() > 1 ? std::strtoull(words[1].c_str(), nullptr, 10) : 1;
+  const std::uint64_t last =
+      words.size() > 2 ? std::strtoull(words[2].c_str(), nullptr, 10) : (words.size() > 1 ? first : 100);
+  int good = 0, runs = 0;
+  double total_s = 0;
+  for (std::uint64_t seed = first; seed <= last; ++seed, ++runs) {
+    vps::scenes::Scene scene = chosen->make(seed);
+    vps::scenes::AssembleOptions options;
+    options.judge_stride = 1000;
+    const vps::scenes::AssembleResult result = vps::scenes::assemble(scene, options);
+    const vps::scenes::StepResult& step = result.steps.at(0);
+    if (step.completed) {
+      ++good;
+      total_s += step.duration_s;
+    }
+    std::printf("seed %llu: %s, %.2f s, peak %.1f N, deepest %.1f um, error %.1f um %.2f mrad %s\n",
+                static_cast<unsigned long long>(seed), step.completed ? "done" : "failed", step.duration_s,
+                step.peak_force_N, 1e6 * step.max_penetration_m, 1e6 * step.final_error_m,
+                1e3 * step.final_error_rad, step.failure_reason.c_str());
+    std::fflush(stdout);
+    if (!trace.empty() && seed == last) writeTrace(result, scene.steps[0].X_WP_target, trace.c_str());
+  }
+  std::printf("%s: %d of %d seeds succeed, mean %.2f s\n", chosen->name, good, runs,
+              good > 0 ? total_s / good : 0);
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `vps check` as its users run it.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace vps {
+namespace {
+
+using nlohmann::json;
+
+class Check : public Program {
+ protected:
+  /// A plate, and a pin of 8 mm in height whose foot is this far above its top.
+  std::string scene(double gap_mm, const std::string& more = "") const {
+    return "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n[[part]]\nfile = 'pin.stl'\n" + more +
+           "pose = {position = [0, 0, " + std::to_string(9 + gap_mm) + "]}\n";
+  }
+};
+
+TEST_F(Check, AGapAContactAndAClashHaveTheirExitStatusAndNumbers) {
+  struct Case {
+    double gap_mm;
+    int status;
+    const char* state;
+  };
+  for (const Case& c : {Case{0.02, 0, "apart"}, Case{0, 0, "contact"}, Case{-0.02, 1, "clash"}}) {
+    write("drawn.toml", scene(c.gap_mm));
+    const Ran ran = run("check drawn.toml --json check.json");
+    EXPECT_EQ(ran.status, c.status) << ran.out << ran.err;
+    const json found = json::parse(slurp(folder_ / "check.json"));
+    ASSERT_EQ(found["pairs"].size(), 1U);
+    const json& pair = found["pairs"][0];
+    EXPECT_EQ(pair["state"], c.state);
+    EXPECT_NEAR(pair["clearance_m"], std::max(0.0, 1e-3 * c.gap_mm), 1e-9);  // single precision of the file
+    EXPECT_NEAR(pair["interference_depth_m"], std::max(0.0, -1e-3 * c.gap_mm), 0.2e-6);
+    EXPECT_EQ(found["clashes"], c.status);
+    EXPECT_EQ(found["parts"].size(), 2U);
+    EXPECT_EQ(found["parts"][1].contains("play_m"), c.status == 0);
+  }
+}
+
+TEST_F(Check, AStepsTargetIsWhereThePartIsChecked) {
+  write("drawn.toml", scene(5) + "[[step]]\npart = 'pin'\ntarget = {position = [0, 0, 8.95]}\n");
+  const Ran ran = run("check drawn.toml --no-play");
+  // 50 um, of which the search may miss 0.1.
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("1 clash: plate and pin by 49.9"), std::string::npos) << ran.out;
+}
+
+TEST_F(Check, AnAllowedOverlapIsNoClash) {
+  write("drawn.toml", scene(-0.02, "allow_overlap = true\n"));
+  const Ran ran = run("check drawn.toml");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("clash (allowed)"), std::string::npos) << ran.out;
+}
+
+TEST_F(Check, WritesCsvAndAPageAndRepeatsByteForByte) {
+  write("drawn.toml", scene(0.02));
+  ASSERT_EQ(run("check drawn.toml --json a.json --csv a.csv --html a.html").status, 0);
+  ASSERT_EQ(run("check drawn.toml --json b.json --csv b.csv --html b.html").status, 0);
+  EXPECT_EQ(slurp(folder_ / "a.csv"), slurp(folder_ / "b.csv"));
+  EXPECT_EQ(slurp(folder_ / "a.html"), slurp(folder_ / "b.html"));
+  json a = json::parse(slurp(folder_ / "a.json")), b = json::parse(slurp(folder_ / "b.json"));
+  a.erase("wall");
+  b.erase("wall");
+  EXPECT_EQ(a, b);
+  EXPECT_TRUE(
+      slurp(folder_ / "a.csv").starts_with("what,a,b,quantity,value,error\npair,plate,pin,clearance_m,"));
+  EXPECT_NE(slurp(folder_ / "a.html").find("No parts overlap as drawn"), std::string::npos);
+  // Sideways and up the pin is free, down it has the gap.
+  const json& pin = a["parts"][1];
+  EXPECT_TRUE(pin["play_m"][4].is_null());
+  EXPECT_NEAR(pin["play_m"][5], 20e-6, 1e-6);
+  EXPECT_FALSE(pin["ways_out"].empty());
+}
+
+TEST_F(Check, ACadFileNeedsItsUnitAndASceneDoesNotTakeOne) {
+  expectRefused("check plate.stl", "--units");
+  EXPECT_EQ(run("check plate.stl --units mm").status, 0);
+  write("drawn.toml", scene(0.02));
+  expectRefused("check drawn.toml --units mm", "leave out --units");
+  expectRefused("check drawn.toml --near 2", "--near");
+  expectRefused("check plate.stl --units um --json plate.stl", "plate.stl");
+}
+
+TEST_F(Check, PartsOfTheWrongUnitAreNamed) {
+  write("speck.stl", stlBox(Vec3(1e-3, 1e-3, 1e-3)));
+  const Ran ran = run("check speck.stl --units um");  // the import warns of it as well
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("part 'speck': is 1e-09 m large; a check measures parts of 10 um to 1 km"),
+            std::string::npos)
+      << ran.err;
+}
+
+}  // namespace
+}  // namespace vps

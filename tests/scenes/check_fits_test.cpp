@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fits of parts whose sizes are known by construction.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "check/iso_286.h"
+#include "support/lathe.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes {
+namespace {
+
+const CheckSettings kFits{.has_fits = true, .has_play = false};
+
+std::vector<CheckedFit> fitsOf(const std::vector<DrawnPart>& parts) {
+  return checkAssembly("test", parts, kFits).fits;
+}
+DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
+  return {name, mesh, X_WP, {}, false};
+}
+
+/// Tabulated values of ISO 286-2:2010 [um].
+TEST(Iso286, ZonesAreThoseOfTheTables) {
+  struct Row {
+    const char* zone;
+    double nominal_mm, lower_um, upper_um;
+  };
+  for (const Row& row :
+       {Row{"H7", 24, 0, 21}, Row{"g6", 24, -20, -7}, Row{"f7", 40, -50, -25}, Row{"k6", 12, 1, 12},
+        Row{"n6", 50, 17, 33}, Row{"p6", 80, 32, 51}, Row{"d9", 100, -207, -120}, Row{"h11", 3, -60, 0},
+        Row{"G7", 30, 7, 28}, Row{"F8", 10, 13, 35}, Row{"e8", 18, -59, -32}, Row{"H8", 18.5, 0, 33},
+        Row{"m6", 400, 21, 57}}) {
+    const std::optional<Zone> zone = isoZone(row.zone, 1e-3 * row.nominal_mm);
+    ASSERT_TRUE(zone) << row.zone;
+    EXPECT_NEAR(zone->lower_m, 1e-6 * row.lower_um, 1e-12) << row.zone << " at " << row.nominal_mm;
+    EXPECT_NEAR(zone->upper_m, 1e-6 * row.upper_um, 1e-12) << row.zone << " at " << row.nominal_mm;
+  }
+  EXPECT_FALSE(isoZone("H7", 0.501));
+  EXPECT_FALSE(isoZone("x7", 0.02));
+  EXPECT_FALSE(isoZone("H", 0.02));
+}
+
+TEST(Iso286, FitsAreNamedWhereBothSizesLieInTheirZones) {
+  EXPECT_EQ(isoFit(24.010e-3, 23.985e-3), "H7/g6");
+  EXPECT_EQ(isoFit(24.010e-3, 23.995e-3), "H6/h5");
+  EXPECT_EQ(isoFit(24.010e-3, 24.020e-3), "H7/m6");
+  EXPECT_EQ(isoFit(24.000e-3, 24.000e-3), "H6/h5");
+  EXPECT_EQ(isoFit(24.300e-3, 24.000e-3), "");
+}
+
+TEST(CheckFits, AShaftInABoreHasItsClearanceWhateverTheFacets) {
+  for (const double clearance_m : {-10e-6, 0.0, 1e-6, 24e-6, 0.5e-3})
+    for (const int segments : {32, 101, 720}) {
+      const Pose X(rotationFromVector(Vec3(0.7, -0.3, 0.9)), Vec3(0.04, 0.1, -0.02));
+      const Mesh bore = makeTube(0.02, 0.006 + clearance_m / 2, 0.03, segments);
+      const std::vector<CheckedFit> fits =
+          fitsOf({part("bore", bore, X), part("shaft", makeCylinder(0.006, 0.05, segments + 7),
+                                              X * Pose::translation(Vec3(0, 0, 0.01)))});
+      ASSERT_EQ(fits.size(), 1U) << clearance_m << " " << segments;
+      const CheckedFit& fit = fits[0];
+      EXPECT_EQ(fit.kind, FitKind::Shaft);
+      EXPECT_EQ(fit.shaft, "shaft");
+      EXPECT_EQ(fit.bore, "bore");
+      EXPECT_NEAR(fit.diametral_clearance_m, clearance_m, 1e-12);
+      EXPECT_LT(fit.error_m, 1e-12);  // the corners lie on the circles
+      EXPECT_NEAR(fit.shaft_m, 0.012, 1e-12);
+      EXPECT_NEAR(std::abs(fit.axis_W.dot(X.R * Vec3::UnitZ())), 1, 1e-12);
+      EXPECT_NEAR(fit.length_m, 0.03, 1e-9);  // the shaft's middle is 10 mm up, and 25 mm to its end
+      EXPECT_NEAR((X.inverse() * fit.at_W).norm(), 0, 1e-9);
+    }
+}
+
+// As files of other programs have it: the new corners lie on the flat facets, inside the circle.
+TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {
+  Mesh bore = makeTube(0.02, 0.00605, 0.03, 60);
+  for (int round = 0; round < 3; ++round) {
+    Mesh divided{bore.vertices, {}};
+    for (const auto& t : bore.triangles) {
+      std::array<std::uint32_t, 3> middle;
+      for (std::size_t e = 0; e < 3; ++e) {
+        middle[e] = static_cast<std::uint32_t>(divided.vertices.size());
+        divided.vertices.emplace_back(0.5 * (bore.vertices[t[e]] + bore.vertices[t[(e + 1) % 3]]));
+      }
+      for (std::size_t e = 0; e < 3; ++e) divided.triangles.push_back({t[e], middle[e], middle[(e + 2) % 3]});
+      divided.triangles.push_back(middle);
+    }
+    bore = welded(divided);
+  }
+  const std::vector<CheckedFit> fits =
+      fitsOf({part("bore", bore), part("shaft", makeCylinder(0.006, 0.05, 100))});
+  ASSERT_EQ(fits.size(), 1U);
+  EXPECT_NEAR(fits[0].diametral_clearance_m, 100e-6, 1e-9);
+  EXPECT_LT(fits[0].error_m, 1e-9);
+  EXPECT_NEAR(fits[0].length_m, 0.03, 1e-9);
+}
+
+TEST(CheckFits, AKeywayLeavesTheRestOfTheBore) {
+  // A bore of 300 degrees: facets of the gap are left out, and the surface is open there.
+  Mesh bore = makeTube(0.02, 0.00601, 0.03, 180);
+  std::erase_if(bore.triangles, [&](const auto& t) {
+    const Vec3 p = (bore.vertices[t[0]] + bore.vertices[t[1]] + bore.vertices[t[2]]) / 3;
+    return p.x() > 0 && std::abs(p.y()) < 0.5 * p.x() && p.head<2>().norm() < 0.0061;
+  });
+  const std::vector<CheckedFit> fits =
+      fitsOf({part("bore", bore), part("shaft", makeCylinder(0.006, 0.05, 180))});
+  ASSERT_EQ(fits.size(), 1U);
+  EXPECT_NEAR(fits[0].diametral_clearance_m, 20e-6, 1e-12);
+}
+
+TEST(CheckFits, ASteppedShaftFitsEachOfItsBores) {
+  const Mesh shaft =
+      test::lathe({{0, 0}, {5e-3, 0}, {5e-3, 10e-3}, {8e-3, 10e-3}, {8e-3, 20e-3}, {0, 20e-3}}, 200);
+  const Mesh housing = test::lathe(
+      {{5.01e-3, -1e-3}, {20e-3, -1e-3}, {20e-3, 21e-3}, {8.02e-3, 21e-3}, {8.02e-3, 9e-3}, {5.01e-3, 9e-3}},
+      200);
+  std::vector<CheckedFit> fits = fitsOf({part("shaft", shaft), part("housing", housing)});
+  ASSERT_EQ(fits.size(), 2U);
+  std::sort(fits.begin(), fits.end(), [](const auto& a, const auto& b) { return a.shaft_m < b.shaft_m; });
+  EXPECT_NEAR(fits[0].diametral_clearance_m, 20e-6, 1e-12);
+  EXPECT_NEAR(fits[0].length_m, 9e-3, 1e-9);
+  EXPECT_NEAR(fits[1].diametral_clearance_m, 40e-6, 1e-12);
+  EXPECT_NEAR(fits[1].length_m, 10e-3, 1e-9);
+}
+
+TEST(CheckFits, PrismsConesAndBallsAreNoShafts) {
+  const Mesh plate = makeTube(0.02, 0.0101, 0.03, 400);
+  const Mesh cone = test::lathe({{0, 0}, {10e-3, 0}, {9.9e-3, 20e-3}, {0, 20e-3}}, 400);
+  EXPECT_TRUE(fitsOf({part("bore", plate), part("prism", makeCylinder(0.01, 0.05, 8))}).empty());
+  EXPECT_TRUE(fitsOf({part("bore", plate), part("cone", cone)}).empty());
+  EXPECT_TRUE(fitsOf({part("bore", plate), part("ball", makeSphere(0.01, 4))}).empty());
+}
+
+TEST(CheckFits, AKeyInASlotHasItsWidthsAndClearance) {
+  const Pose X(rotationFromVector(Vec3(0.2, 0.5, -0.4)), Vec3(0.01, 0.02, 0.03));
+  for (const double clearance_m : {-5e-6, 0.0, 40e-6, 0.3e-3}) {
+    const double wall_m = 10e-3, slot_m = 5e-3 + clearance_m;
+    // Two walls on a floor, as one part.
+    Mesh slot = makeBox(Vec3(0.03, 0.03, 0.01));
+    for (const double side : {-1.0, 1.0})
+      append(slot, transformed(makeBox(Vec3(wall_m, 0.03, 0.01)),
+                               Pose::translation(Vec3(side * (slot_m + wall_m) / 2, 0, 0.01))));
+    const Pose X_key = X * Pose::translation(Vec3(0, 0, 0.0081));
+    const std::vector<CheckedFit> fits =
+        fitsOf({part("slot", slot, X), part("key", makeBox(Vec3(5e-3, 0.02, 0.006)), X_key)});
+    ASSERT_EQ(fits.size(), 1U) << clearance_m;
+    EXPECT_EQ(fits[0].kind, FitKind::Key);
+    EXPECT_EQ(fits[0].shaft, "key");
+    EXPECT_NEAR(fits[0].shaft_m, 5e-3, 1e-12);
+    EXPECT_NEAR(fits[0].diametral_clearance_m, clearance_m, 1e-12);
+    EXPECT_LT(fits[0].error_m, 1e-12);
+    EXPECT_NEAR(std::abs(fits[0].axis_W.dot(X.R * Vec3::UnitX())), 1, 1e-12);
+    EXPECT_NEAR(fits[0].length_m, 0.02, 1e-9);
+  }
+}
+
+TEST(CheckFits, ABlockThatStandsBesideOneWallFitsNothing) {
+  EXPECT_TRUE(fitsOf({part("floor", makeBox(Vec3(0.1, 0.1, 0.01))),
+                      part("block", makeBox(Vec3(0.01, 0.01, 0.01)), Pose::translation(Vec3(0, 0, 0.01)))})
+                  .empty());
+}
+
+}  // namespace
+}  // namespace vps::scenes

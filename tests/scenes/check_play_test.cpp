@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Play and ways out of parts for which both have a formula.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/lathe.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr double kMetre = 1e-6, kRadian = 1e-4;  // what play is promised to
+
+DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
+  return {name, mesh, X_WP, {}, false};
+}
+CheckedPart playOf(const std::string& name, const std::vector<DrawnPart>& parts) {
+  for (const CheckedPart& found : checkAssembly("test", parts).parts)
+    if (found.name == name) return found;
+  return {};
+}
+void expectBoth(const std::array<double, 6>& play, int axis, double value, double within) {
+  for (const int i : {2 * axis, 2 * axis + 1})
+    EXPECT_NEAR(play[static_cast<std::size_t>(i)], value, within) << i;
+}
+void expectFree(const std::array<double, 6>& play, int axis) {
+  for (const int i : {2 * axis, 2 * axis + 1})
+    EXPECT_TRUE(std::isinf(play[static_cast<std::size_t>(i)])) << i;
+}
+/// The angle at which r cos + h sin is `reach`: a corner at (r, h) reaches a wall.
+double tilt(double r, double h, double reach) {
+  return std::acos(reach / std::hypot(r, h)) * -1 + std::atan2(h, r);
+}
+bool has(const std::vector<Vec3>& ways, const Vec3& d) {
+  return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) { return (way - d).norm() < 1e-6; });
+}
+
+// A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends
+// touch.
+TEST(CheckPlay, APegInAThroughBore) {
+  const double r = 4e-3, length_m = 20e-3;
+  for (const double clearance_m : {10e-6, 50e-6, 200e-6}) {
+    const double bore_m = r + clearance_m / 2;
+    const CheckedPart peg = playOf("peg", {part("bore", makeTube(0.01, bore_m, length_m, 720)),
+                                           part("peg", makeCylinder(r, length_m, 720))});
+    ASSERT_TRUE(peg.play);
+    expectBoth(peg.play->m, 0, clearance_m / 2, kMetre);
+    expectBoth(peg.play->m, 1, clearance_m / 2, kMetre);
+    expectFree(peg.play->m, 2);
+    expectBoth(peg.play->rad, 0, tilt(r, length_m / 2, bore_m), kRadian);
+    expectBoth(peg.play->rad, 1, tilt(r, length_m / 2, bore_m), kRadian);
+    expectFree(peg.play->rad, 2);
+    EXPECT_EQ(peg.ways_out_W.size(), 2U);
+    EXPECT_TRUE(has(peg.ways_out_W, Vec3::UnitZ()));
+    EXPECT_TRUE(has(peg.ways_out_W, -Vec3::UnitZ()));
+    EXPECT_LT(peg.play_error_m, kMetre);
+  }
+}
+
+// The same with another number of facets, in another place and attitude.
+TEST(CheckPlay, MovesWithTheAssembly) {
+  const Pose X(rotationFromVector(Vec3(0.6, -0.5, 0.8)), Vec3(0.1, -0.05, 0.2));
+  const CheckedPart peg = playOf("peg", {part("bore", makeTube(0.01, 4.025e-3, 20e-3, 900), X),
+                                         part("peg", makeCylinder(4e-3, 20e-3, 640), X)});
+  ASSERT_TRUE(peg.play);
+  expectBoth(peg.play->m, 0, 25e-6, kMetre);
+  expectBoth(peg.play->m, 1, 25e-6, kMetre);
+  expectFree(peg.play->m, 2);
+  expectBoth(peg.play->rad, 0, tilt(4e-3, 10e-3, 4.025e-3), kRadian);
+  expectFree(peg.play->rad, 2);
+  EXPECT_TRUE(has(peg.ways_out_W, X.R * Vec3::UnitZ()));
+}
+
+TEST(CheckPlay, APegInABlindBoreStandsOnItsFloor) {
+  const Mesh bore =
+      test::lathe({{0, -5e-3}, {10e-3, -5e-3}, {10e-3, 20e-3}, {4.02e-3, 20e-3}, {4.02e-3, 0}, {0, 0}}, 720);
+  const CheckedPart peg = playOf("peg", {part("bore", bore), part("peg", makeCylinder(4e-3, 20e-3, 720),
+                                                                  Pose::translation(Vec3(0, 0, 10e-3)))});
+  ASSERT_TRUE(peg.play);
+  expectBoth(peg.play->m, 0, 20e-6, kMetre);
+  EXPECT_TRUE(std::isinf(peg.play->m[4]));
+  EXPECT_NEAR(peg.play->m[5], 0, kMetre);
+  EXPECT_NEAR(peg.play->rad[0], 0, kRadian);  // its rim would enter the floor
+  expectFree(peg.play->rad, 2);
+  ASSERT_EQ(peg.ways_out_W.size(), 1U);
+  EXPECT_TRUE(has(peg.ways_out_W, Vec3::UnitZ()));
+}
+
+// A key of 5 x 20 mm between walls as long as it, on a floor 3 um below.
+TEST(CheckPlay, AKeyInASlot) {
+  const double b = 5e-3, l = 20e-3, h = 6e-3, c = 40e-6, below_m = 3e-6;
+  Mesh slot = transformed(makeBox(Vec3(0.03, l, 0.01)), Pose::translation(Vec3(0, 0, -0.005 - below_m)));
+  for (const double side : {-1.0, 1.0})
+    append(slot,
+           transformed(makeBox(Vec3(0.01, l, h + 0.001)),
+                       Pose::translation(Vec3(side * (b + c + 0.01) / 2, 0, (h + 0.001) / 2 - 0.0005))));
+  const CheckedPart key = playOf(
+      "key", {part("slot", slot), part("key", makeBox(Vec3(b, l, h)), Pose::translation(Vec3(0, 0, h / 2)))});
+  ASSERT_TRUE(key.play);
+  expectBoth(key.play->m, 0, c / 2, kMetre);
+  expectFree(key.play->m, 1);
+  EXPECT_TRUE(std::isinf(key.play->m[4]));
+  EXPECT_NEAR(key.play->m[5], below_m, kMetre);
+  expectBoth(key.play->rad, 2, tilt(b / 2, l / 2, (b + c) / 2), kRadian);
+  expectBoth(key.play->rad, 0, tilt(h / 2, l / 2, h / 2 + below_m), kRadian);
+  EXPECT_EQ(key.ways_out_W.size(), 5U);  // along the slot both ways, up, and two of the directions between
+  for (const Vec3& d : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
+    EXPECT_TRUE(has(key.ways_out_W, d)) << d;
+  for (const Vec3& d : key.ways_out_W) EXPECT_NEAR(d.x(), 0, 1e-9);
+}
+
+// A disc between two shoulders that cover it, around a shaft with more clearance than it needs to tilt.
+TEST(CheckPlay, ADiscBetweenShoulders) {
+  const double r = 10e-3, t = 4e-3, c = 30e-6;
+  const Mesh disc = makeTube(r, 5e-3, t, 720);
+  const double s = (t + c) / 2;
+  const Mesh spool = test::lathe({{0, -s - 5e-3},
+                                  {15e-3, -s - 5e-3},
+                                  {15e-3, -s},
+                                  {4.8e-3, -s},
+                                  {4.8e-3, s},
+                                  {15e-3, s},
+                                  {15e-3, s + 5e-3},
+                                  {0, s + 5e-3}},
+                                 720);
+  const CheckedPart found = playOf("disc", {part("disc", disc), part("spool", spool)});
+  ASSERT_TRUE(found.play);
+  expectBoth(found.play->m, 2, c / 2, kMetre);
+  expectBoth(found.play->m, 0, 0.2e-3, kMetre);
+  expectBoth(found.play->rad, 0, tilt(t / 2, r, s), kRadian);
+  expectFree(found.play->rad, 2);
+  EXPECT_TRUE(found.ways_out_W.empty());
+}
+
+TEST(CheckPlay, ABlockOnAPlateLeavesIntoTheHalfSpaceAboveOnly) {
+  const CheckedPart block =
+      playOf("block",
+             {part("plate", makeBox(Vec3(0.1, 0.1, 0.01))),
+              part("block", makeBox(Vec3(0.02, 0.02, 0.02)), Pose::translation(Vec3(0.003, 0.001, 0.015)))});
+  ASSERT_TRUE(block.play);
+  EXPECT_NEAR(block.play->m[5], 0, kMetre);
+  for (const std::size_t i : {0U, 1U, 2U, 3U, 4U}) EXPECT_TRUE(std::isinf(block.play->m[i])) << i;
+  EXPECT_GT(block.ways_out_W.size(), 20U);
+  for (const Vec3& d : block.ways_out_W) EXPECT_GE(d.z(), -1e-9);
+}
+
+// Stacked flush: all side walls are in one plane, and only the faces between them stop the upper block.
+TEST(CheckPlay, EqualBlocksOneOnAnother) {
+  const Mesh block = makeBox(Vec3(0.02, 0.02, 0.02));
+  const CheckedPart upper =
+      playOf("upper", {part("lower", block), part("upper", block, Pose::translation(Vec3(0, 0, 0.02)))});
+  ASSERT_TRUE(upper.play);
+  EXPECT_NEAR(upper.play->m[5], 0, kMetre);
+  EXPECT_TRUE(std::isinf(upper.play->m[4]));
+  EXPECT_TRUE(std::isinf(upper.play->m[0]));
+  expectFree(upper.play->rad, 2);
+}
+
+TEST(CheckPlay, APartInAClosedBoxHasNoWayOut) {
+  Mesh shell = makeBox(Vec3(0.04, 0.04, 0.04)), room = makeBox(Vec3(0.02, 0.02, 0.02));
+  for (auto& t : room.triangles) std::swap(t[0], t[1]);
+  append(shell, room);
+  const CheckedPart cube = playOf("cube", {part("shell", shell), part("cube", makeBox(Vec3(0.01, 0.01, 0.01)),
+                                                                      Pose::translation(Vec3(0.001, 0, 0)))});
+  ASSERT_TRUE(cube.play);
+  EXPECT_NEAR(cube.play->m[0], 0.004, kMetre);
+  EXPECT_NEAR(cube.play->m[1], 0.006, kMetre);
+  expectBoth(cube.play->m, 1, 0.005, kMetre);
+  EXPECT_TRUE(cube.ways_out_W.empty());
+  expectFree(cube.play->rad, 0);  // its diagonal of 7.1 mm turns in 9 mm
+}
+
+TEST(CheckPlay, APartThatClashesHasNone) {
+  const CheckedPart block = playOf(
+      "block", {part("plate", makeBox(Vec3(0.1, 0.1, 0.01))),
+                part("block", makeBox(Vec3(0.02, 0.02, 0.02)), Pose::translation(Vec3(0, 0, 0.0149)))});
+  EXPECT_FALSE(block.play);
+}
+
+TEST(CheckPlay, AnyNumberOfThreadsGivesTheSameBits) {
+  const std::vector<DrawnPart> parts = {
+      part("bore", makeTube(0.01, 4.02e-3, 0.02, 90)), part("peg", makeCylinder(4e-3, 0.02, 60)),
+      part("cap", makeBox(Vec3(0.01, 0.01, 0.01)), Pose::translation(Vec3(0, 0, 0.0151)))};
+  const auto run = [&](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return checkAssembly("test", parts);
+  };
+  const CheckResult one = run(1), four = run(4);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    ASSERT_TRUE(one.parts[i].play && four.parts[i].play);
+    EXPECT_EQ(one.parts[i].play->m, four.parts[i].play->m);
+    EXPECT_EQ(one.parts[i].play->rad, four.parts[i].play->rad);
+    EXPECT_EQ(one.parts[i].ways_out_W, four.parts[i].ways_out_W);
+  }
+}
+
+}  // namespace
+}  // namespace vps::scenes

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check_report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "table.h"
+#include "vps_viewer/csv.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+using scenes::PairState;
+
+std::string um(double m, int digits = 2) {
+  return fixed(1e6 * m, digits);
+}
+
+std::string place(const Vec3& p_W) {
+  return fixed(1e3 * p_W.x(), 2) + ", " + fixed(1e3 * p_W.y(), 2) + ", " + fixed(1e3 * p_W.z(), 2);
+}
+
+std::string pairTable(const scenes::CheckResult& result) {
+  Table table(
+      {"<part", "<and", "<state", "clearance [um]", "overlap [um]", "volume [mm3]", "error [um]", "at [mm]"});
+  for (const scenes::CheckedPair& pair : result.pairs) {
+    const bool is_clash = pair.state == PairState::Clash;
+    const std::string state = toText(pair.state);
+    table.add({pair.a, pair.b, is_clash && pair.is_allowed ? state + " (allowed)" : state,
+               is_clash ? "" : um(pair.clearance_m),
+               pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
+               is_clash ? fixed(1e9 * pair.interference_volume_m3, 4) : "", um(pair.error_m),
+               place(pair.at_W)});
+  }
+  return table.text();
+}
+
+std::string fitTable(const scenes::CheckResult& result) {
+  Table table({"<fit", "<of", "<in", "size [mm]", "clearance [um]", "error [um]", "length [mm]", "<ISO 286"});
+  for (const scenes::CheckedFit& fit : result.fits)
+    table.add({toText(fit.kind), fit.shaft, fit.bore, fixed(1e3 * fit.shaft_m, 3),
+               um(fit.diametral_clearance_m), um(fit.error_m), fixed(1e3 * fit.length_m, 2), fit.iso_286});
+  return table.text();
+}
+
+std::string playCell(double plus, double minus, double scale, int digits) {
+  const auto one = [&](double value) {
+    return std::isinf(value) ? std::string("free") : fixed(scale * value, digits);
+  };
+  return std::string("+").append(one(plus)).append(" -").append(one(minus));
+}
+
+std::string partTable(const scenes::CheckResult& result) {
+  Table table({"<part", "x [um]", "y [um]", "z [um]", "about x [mrad]", "about y", "about z", "<ways out"});
+  for (const scenes::CheckedPart& part : result.parts) {
+    if (!part.play) {
+      table.add({part.name, "clashes"});
+      continue;
+    }
+    std::vector<std::string> cells = {part.name};
+    for (std::size_t i = 0; i < 6; i += 2)
+      cells.push_back(playCell(part.play->m[i], part.play->m[i + 1], 1e6, 1));
+    for (std::size_t i = 0; i < 6; i += 2)
+      cells.push_back(playCell(part.play->rad[i], part.play->rad[i + 1], 1e3, 2));
+    cells.push_back(part.ways_out_W.empty() ? "none" : std::to_string(part.ways_out_W.size()));
+    table.add(cells);
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string checkTables(const scenes::CheckResult& result) {
+  std::string out;
+  if (!result.pairs.empty()) out += pairTable(result) + "\n";
+  if (!result.fits.empty()) out += fitTable(result) + "\n";
+  const bool has_play =
+      std::ranges::any_of(result.parts, [](const scenes::CheckedPart& p) { return p.play.has_value(); });
+  if (has_play) out += partTable(result) + "\n";
+  return out;
+}
+
+std::string checkHeadline(const scenes::CheckResult& result) {
+  const std::string checked = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
+                              std::to_string(result.pairs.size()) + " pairs near each other, ";
+  const std::size_t clashes = result.clashes();
+  if (clashes == 0) return checked + "no clash beyond the error";
+  const scenes::CheckedPair& worst = *result.deepestClash();
+  return checked + std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") +
+         worst.a + " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " +
+         um(worst.error_m) + ")";
+}
+
+std::string checkCsv(const scenes::CheckResult& result) {
+  std::string out = csvLine({"what", "a", "b", "quantity", "value", "error"});
+  const auto add = [&](const char* what, const std::string& a, const std::string& b,
+                       const std::string& quantity, double value, double error) {
+    out += csvLine({what, a, b, quantity, csvNumber(value), csvNumber(error)});
+  };
+  for (const scenes::CheckedPair& pair : result.pairs) {
+    add("pair", pair.a, pair.b, "clearance_m", pair.clearance_m, pair.error_m);
+    add("pair", pair.a, pair.b, "interference_depth_m", pair.interference_depth_m, pair.error_m);
+    add("pair", pair.a, pair.b, "interference_volume_m3", pair.interference_volume_m3, pair.volume_error_m3);
+  }
+  for (const scenes::CheckedFit& fit : result.fits) {
+    add(toText(fit.kind), fit.shaft, fit.bore, "diametral_clearance_m", fit.diametral_clearance_m,
+        fit.error_m);
+    add(toText(fit.kind), fit.shaft, fit.bore, "shaft_m", fit.shaft_m, fit.error_m);
+    add(toText(fit.kind), fit.shaft, fit.bore, "bore_m", fit.bore_m, fit.error_m);
+  }
+  constexpr std::array kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
+  for (const scenes::CheckedPart& part : result.parts)
+    for (std::size_t i = 0; part.play && i < kAxes.size(); ++i) {
+      add("part", part.name, "", std::string("play_m ") + kAxes[i], part.play->m[i], part.play_error_m);
+      add("part", part.name, "", std::string("play_rad ") + kAxes[i], part.play->rad[i], part.play_error_rad);
+    }
+  return out;
+}
+
+}  // namespace vps::viewer::inline v0

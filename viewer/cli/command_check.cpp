@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps check: overlap, clearance, fits and play of an assembly as drawn.
+#include <cstdio>
+#include <memory>
+
+#include "check_report.h"
+#include "command.h"
+#include "file_kind.h"
+#include "json_out.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "scene_arguments.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+#include "vps_scenes/check.h"
+#include "vps_viewer/check_page.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+struct CheckArguments {
+  std::string assembly, units, near, json, csv, html;
+  std::string deflection;
+  bool has_no_play = false;
+};
+
+struct Assembly {
+  std::string name;
+  std::vector<scenes::DrawnPart> parts;
+  std::vector<std::string> read;  ///< files
+};
+
+Assembly readScene(const CheckArguments& given) {
+  if (!given.units.empty() || !given.deflection.empty())
+    throw LoadError(
+        given.assembly, "",
+        "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+  const scenes::Scene scene = scenes::loadScene(given.assembly);
+  for (const std::string& warning : scene.warnings) warn(warning);
+  Assembly assembly{scene.name, scenes::drawnParts(scene), {given.assembly}};
+  for (const scenes::ScenePart& part : scene.parts) assembly.read.push_back(part.file);
+  return assembly;
+}
+
+Assembly readCad(const CheckArguments& given, const Progress& progress) {
+  requireCadFile(given.assembly);
+  scenes::ImportSettings settings;
+  settings.unit_m = unitFrom(given.units);
+  if (!given.deflection.empty())
+    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
+  const scenes::ImportedCad cad = scenes::importCad(given.assembly, settings, progress);
+  for (const std::string& warning : cad.warnings) warn(given.assembly + ": " + warning);
+  return {given.assembly, scenes::drawnParts(cad), {given.assembly}};
+}
+
+int runCheck(const CheckArguments& given) {
+  const std::vector<std::string> inputs = {given.assembly};
+  OutputFile json(given.json, inputs), csv(given.csv, inputs), html(given.html, inputs);
+  scenes::CheckSettings settings;
+  settings.has_play = !given.has_no_play;
+  if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
+  if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
+  ProgressBar bar;
+  const bool is_cad = isCadExtension(lowerExtension(given.assembly));
+  const Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given);
+  for (const std::string& output : {given.json, given.csv, given.html}) requireNotRead(output, assembly.read);
+  const scenes::CheckResult result =
+      scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
+  throwIfStopped();
+  json.write(toJson(result));
+  csv.write(checkCsv(result));
+  html.write(checkPage(result));
+  bar.clear();
+  std::fputs(checkTables(result).c_str(), stdout);
+  std::printf("%s\n", checkHeadline(result).c_str());
+  return result.clashes() == 0 ? kGood : kBad;
+}
+
+}  // namespace
+
+void addCheck(CommandLine& line) {
+  const auto given = std::make_shared<CheckArguments>();
+  CLI::App& command =
+      addCommand(line, "check", "fit of an assembly as drawn: overlap, clearance, fits, play, ways out",
+                 "vps check scenes/bearing_block/bearing_block.step --html check.html",
+                 [given] { return runCheck(*given); });
+  command
+      .add_option("assembly", given->assembly,
+                  "a CAD file, or a scene file (TOML): its parts at their targets")
+      ->required()
+      ->type_name("CAD|SCENE");
+  addUnitsOption(command, given->units);
+  command.add_option("--deflection", given->deflection,
+                     "greatest distance between curved faces and their triangles, with unit (STEP, IGES)");
+  command.add_option("--near", given->near,
+                     "clearance up to which pairs are reported, with unit (default: 1mm)");
+  command.add_flag("--no-play", given->has_no_play, "leave out play and ways out, which take longest");
+  command.add_option("--csv", given->csv, "writes each number with its error on a line")->type_name("FILE");
+  command.add_option("--html", given->html, "writes a page with tables")->type_name("FILE");
+  addJsonOption(command, given->json);
+}
+
+}  // namespace vps::viewer::inline v0

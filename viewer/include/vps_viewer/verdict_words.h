@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict of a run in words, the same on the terminal and in the report.
+#pragma once
+
+#include <string>
+
+#include "vps_scenes/result.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer::inline v0 {
+
+/// "fits", "blocked", "not shown"
+VPS_VIEWER_API const char* words(scenes::Verdict verdict);
+
+/// One sentence: "Yes, the parts go together: all 3 steps fit."
+VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_viewer/check_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/html.h"
+#include "vps_viewer/report.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+using html::Cell;
+using html::format;
+using scenes::PairState;
+
+std::string micrometres(double m) {
+  return format(1e6 * m, "%.2f");
+}
+
+std::string place(const Vec3& p_W) {
+  std::string out;
+  for (int i = 0; i < 3; ++i) out.append(i > 0 ? ", " : "").append(format(1e3 * p_W[i], "%.2f"));
+  return out;
+}
+
+std::string pairs(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPair& pair : result.pairs) {
+    const bool is_clash = pair.state == PairState::Clash;
+    rows.push_back({{escapeHtml(pair.a), ""},
+                    {escapeHtml(pair.b), ""},
+                    {std::string(toText(pair.state)) + (is_clash && pair.is_allowed ? " (allowed)" : ""),
+                     pair.isClash() ? "bad" : ""},
+                    {is_clash ? "" : micrometres(pair.clearance_m), "n"},
+                    {pair.interference_depth_m > 0 ? micrometres(pair.interference_depth_m) : "", "n"},
+                    {is_clash ? format(1e9 * pair.interference_volume_m3, "%.4f") : "", "n"},
+                    {micrometres(pair.error_m), "n"},
+                    {place(pair.at_W), "n"}});
+  }
+  return "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that meet to within the error are in "
+         "contact, "
+         "which is no clash. The error holds the distance of the meshes from the curved faces that they "
+         "stand "
+         "for.</p>\n" +
+         html::table({"part", "and", "state", "clearance [µm]", "overlap [µm]", "volume [mm³]", "error [µm]",
+                      "at [mm]"},
+                     rows);
+}
+
+std::string fits(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedFit& fit : result.fits)
+    rows.push_back({{fit.kind == scenes::FitKind::Shaft ? "round" : "two parallel faces", ""},
+                    {escapeHtml(fit.shaft), ""},
+                    {escapeHtml(fit.bore), ""},
+                    {format(1e3 * fit.shaft_m, "%.4f"), "n"},
+                    {format(1e3 * fit.bore_m, "%.4f"), "n"},
+                    {micrometres(fit.diametral_clearance_m), fit.diametral_clearance_m < 0 ? "n bad" : "n"},
+                    {micrometres(fit.error_m), "n"},
+                    {format(1e3 * fit.length_m, "%.2f"), "n"},
+                    {escapeHtml(fit.iso_286), ""}});
+  return "<h2>Fits</h2>\n<p>Found on the meshes, whose corners lie on the true faces. The last column names "
+         "a "
+         "common fit of ISO 286 in whose zones both sizes lie.</p>\n" +
+         html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
+                      "error [µm]", "length [mm]", "ISO 286"},
+                     rows);
+}
+
+std::string both(double plus, double minus, double scale, const char* form) {
+  const auto one = [&](double value) {
+    return std::isinf(value) ? std::string("free") : format(scale * value, form);
+  };
+  return std::string("+").append(one(plus)).append(" / −").append(one(minus));
+}
+
+std::string play(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPart& part : result.parts) {
+    std::vector<Cell> row = {{escapeHtml(part.name), ""}};
+    for (std::size_t i = 0; i < 12; i += 2) {
+      const bool is_turn = i >= 6;
+      if (!part.play)
+        row.push_back({"", "n"});
+      else if (is_turn)
+        row.push_back({both(part.play->rad[i - 6], part.play->rad[i - 5], 1e3, "%.2f"), "n"});
+      else
+        row.push_back({both(part.play->m[i], part.play->m[i + 1], 1e6, "%.1f"), "n"});
+    }
+    std::string ways = part.play ? "" : "it clashes";
+    for (const Vec3& way : part.ways_out_W)
+      ways += (ways.empty() ? "(" : ", (") + format(way.x(), "%.2f") + ", " + format(way.y(), "%.2f") + ", " +
+              format(way.z(), "%.2f") + ")";
+    row.push_back({part.play && ways.empty() ? "none" : ways, ""});
+    rows.push_back(row);
+  }
+  return "<h2>Play</h2>\n<p>How far each part moves along and turns about its axes before it touches, the "
+         "other "
+         "parts held; free: it moves away, or turns a whole turn. Ways out are directions in which it leaves "
+         "on a "
+         "straight line.</p>\n" +
+         html::table({"part", "x [µm]", "y [µm]", "z [µm]", "about x [mrad]", "about y [mrad]",
+                      "about z [mrad]", "ways out"},
+                     rows);
+}
+
+std::string meshes(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPart& part : result.parts)
+    rows.push_back({{escapeHtml(part.name), ""},
+                    {std::to_string(part.triangles), "n"},
+                    {micrometres(part.chord_error_m), "n"},
+                    {escapeHtml(part.mesh_faults), ""}});
+  return "<h2>Meshes</h2>\n" +
+         html::table({"part", "triangles", "distance from curved faces [µm]", "faults"}, rows);
+}
+
+}  // namespace
+
+std::string checkSection(const scenes::CheckResult& result) {
+  const bool has_play =
+      std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
+  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + (has_play ? play(result) : "") +
+         meshes(result);
+}
+
+std::string checkPage(const scenes::CheckResult& result) {
+  const std::size_t clashes = result.clashes();
+  std::string verdict = "No parts overlap as drawn, beyond the stated errors.";
+  if (clashes > 0) {
+    const scenes::CheckedPair& worst = *result.deepestClash();
+    verdict = (clashes == 1 ? "Two parts overlap as drawn: "
+                            : std::to_string(clashes) + " pairs of parts overlap as drawn, the deepest: ") +
+              escapeHtml(worst.a) + " and " + escapeHtml(worst.b) + " by " +
+              micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + ").";
+  }
+  return html::page("Check of " + result.assembly,
+                    "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
+                        (clashes == 0 ? "good" : "bad") + "\">" + verdict + "</p>\n" + checkSection(result));
+}
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_viewer/verdict_words.h"
+
+#include <algorithm>
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+/// "'a', 'b'": the parts whose steps have a verdict.
+std::string partsWith(const scenes::AssembleResult& result, scenes::Verdict verdict) {
+  std::string names;
+  for (const scenes::StepResult& step : result.steps)
+    if (step.verdict == verdict) names.append(names.empty() ? "'" : ", '").append(step.part).append("'");
+  return names;
+}
+
+}  // namespace
+
+const char* words(scenes::Verdict verdict) {
+  switch (verdict) {
+    case scenes::Verdict::Fits:
+      return "fits";
+    case scenes::Verdict::Blocked:
+      return "blocked";
+    case scenes::Verdict::NotShown:
+      break;
+  }
+  return "not shown";
+}
+
+std::string verdictLine(const scenes::AssembleResult& result) {
+  const auto fit = std::count_if(result.steps.begin(), result.steps.end(),
+                                 [](const scenes::StepResult& s) { return scenes::isGood(s); });
+  const std::string count = std::to_string(fit).append(" of ").append(std::to_string(result.steps.size()));
+  switch (result.verdict) {
+    case scenes::Verdict::Fits:
+      return "Yes, the parts go together: " + count + " steps fit.";
+    case scenes::Verdict::Blocked:
+      return "No, the parts do not go together: blocked at " + partsWith(result, scenes::Verdict::Blocked) +
+             "; " + count + " steps fit.";
+    case scenes::Verdict::NotShown:
+      break;
+  }
+  const std::string parts = partsWith(result, scenes::Verdict::NotShown);
+  return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
+         " was not brought home, and nothing proves that it cannot be; " + count + " steps fit.";
+}
+
+}  // namespace vps::viewer::inline v0
