@@ -327,7 +327,7 @@ TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   EXPECT_GT(worstOfStack(30).sink_m, kGaps_m);  // only sweeps
   const Rest rest = worstOfStack(400);
   EXPECT_LE(rest.sink_m, kGaps_m);
-  EXPECT_LE(rest.speed_m_s, kRest_m_s);
+  EXPECT_LE(rest.speed_m_s, 1e-3 * 9.81 * 1e-3);  // a thousandth of what gravity adds in a step
 }
 
 TEST(Solver, ABodyWithAForceThatIsNotFiniteDoesNotAffectOthers) {

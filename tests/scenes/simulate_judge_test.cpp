@@ -61,6 +61,20 @@ TEST(SimulateJudge, ABlockThatFallsOnAPlateIsWithinTheLimit) {
   EXPECT_TRUE(judged.at_start.empty());
 }
 
+// A thousand times as heavy as the block on the plate, a block falls on it. A solution that has not converged
+// lets it press the light one through the plate.
+TEST(SimulateJudge, AHeavyBlockDoesNotPressALightOneThroughThePlate) {
+  const Mesh cube = makeBox({10 * kMm, 10 * kMm, 10 * kMm});
+  Scene scene = blockOnPlate(0);
+  scene.parts[1] = part("light", cube, {0, 0, 5 * kMm}, false);
+  scene.parts.push_back(part("heavy", cube, {0.5 * kMm, 0.3 * kMm, 15.2 * kMm}, false));
+  scene.parts.back().X_WP.R = rotationFromVector({0, 0, 0.35});
+  scene.parts.back().part.material.density_kg_m3 *= 1000;
+  scene.parts.back().V_WP_W.v = {0, 0, -0.8};
+  const JudgedOverlap judged = *vps::scenes::judged(scene, 0.1).result.overlap;
+  EXPECT_TRUE(judged.isWithinLimit()) << judged.deepest.depth_m;
+}
+
 TEST(SimulateJudge, JudgesEveryFewStepsAndTheLast) {
   EXPECT_EQ(judged(blockOnPlate(1 * kMm), 0.025, 10).result.overlap->poses_judged, 4U);  // 0, 10, 20, 25
   Scene scene = blockOnPlate(1 * kMm);

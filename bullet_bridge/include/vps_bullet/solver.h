@@ -13,7 +13,8 @@ namespace vps::bullet::inline v0 {
 struct SolverSettings {
   double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more
   /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
-  /// sweeps. For penalty contacts: steps of Newton's method. >= 1
+  /// sweeps. Where Newton's method is needed it may take sixty steps, even if that is more. For penalty
+  /// contacts: steps of Newton's method. >= 1
   int iteration_limit = 400;
 };
 
