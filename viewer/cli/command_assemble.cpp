@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps assemble: brings the parts together by contact, and writes report, pictures and data.
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "command.h"
@@ -11,6 +12,7 @@
 #include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
@@ -72,15 +74,25 @@ int runAssemble(const AssembleArguments& given) {
   options.is_real_time = given.is_real_time;
   options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
+  const std::string unfinished = given.out + "/unfinished.json";
+  options.on_step = [&](const scenes::AssembleResult& so_far) {
+    writeWholeFile(unfinished, toJson(so_far));
+  };
   const scenes::AssembleResult result = given.record.empty()
                                             ? scenes::assemble(scene, options)
                                             : scenes::assembleAndRecord(scene, given.record, options);
+  if (stopRequested() && !result.steps.empty()) {
+    bar.clear();
+    printSteps(result);
+    std::printf("stopped; results so far: %s\n", unfinished.c_str());
+  }
   throwIfStopped();
 
   bar.progress()("writing the report", 1);
   const std::vector<std::string> notes =
       fillFolder(out, scene, result, {"vps assemble " + file + " --out " + given.out, given.has_pictures});
   out.commit();
+  std::filesystem::remove(unfinished);
   json.write(toJson(result));
   bar.clear();
 

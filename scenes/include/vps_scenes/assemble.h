@@ -29,6 +29,9 @@ struct AssembleOptions : ModelOptions {
   bool degrades = true;
   /// Called by the physics thread after each step, with the simulated time. May be empty.
   std::function<void(double time_s)> after_step;
+  /// Called after each step of the procedure with the result so far, whose sums are not filled in yet. May be
+  /// empty.
+  std::function<void(const AssembleResult&)> on_step;
   /// The haptic loop computes the part's motion itself between physics steps (vps_device/local_contact.h),
   /// for physics slower than the loop. Such a run cannot be recorded. In real time the loop is paused where a
   /// part is taken and released.

@@ -33,9 +33,11 @@ struct StepResult {
   std::string part;
   Verdict verdict = Verdict::NotShown;
   std::string reason;      ///< of the verdict, in words; empty when it fits
-  std::string blocked_by;  ///< the part that it overlaps at its target, as drawn; empty: none
+  std::string blocked_by;  ///< the part whose geometry proves that it cannot be there; empty: none
   Vec3 blocked_at_W = Vec3::Zero();
   double blocked_depth_m = 0, blocked_error_m = 0;
+  std::string stuck_against;  ///< the part that it touched when the hand gave up; empty: none, or it did not
+  Vec3 stuck_at_W = Vec3::Zero();
   std::string stands_on;   ///< an earlier part that is not where it belongs and was put there; empty: none
   bool completed = false;  ///< the part reached its target by contact, whatever else is wrong
   std::string failure_reason;  ///< empty when completed
@@ -50,7 +52,8 @@ struct StepResult {
   int impacts = 0, slides = 0;
   int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
   std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
-  double final_error_m = 0;             ///< greatest displacement of a point of its surface from the target
+  double tolerance_m = 0;               ///< of final_error_m, as stated or from the fit
+  double final_error_m = 0;             ///< greatest distance of its surface from where it belongs
   double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;

@@ -44,10 +44,12 @@ struct SceneStep {
   Pose X_WP_start;
   Pose X_WP_target;
   std::vector<Pose> way_points;  ///< poses of the part that the operator passes, between start and target
-  double tolerance_m = 0.1e-3;   ///< greatest distance of a point of its surface from the target
-  double tolerance_rad = 0.01;
+  double tolerance_m = 0;        ///< greatest distance of its surface from where it belongs; 0: from its fit
+  double tolerance_rad = 0;      ///< greatest rotation from the target; 0: not judged, the surface is
   double clearance_m = 0;  ///< diametral clearance of the tightest fit, as stated in the file; 0: not stated
   double timeout_s = 20;
+  /// A fixture or the other hand holds it after release, so that it need not stay by itself.
+  bool is_held = false;
 };
 
 /// The virtual operator. Values and sources: vps_device/operator.h.

@@ -78,16 +78,23 @@ inline constexpr auto kStepKeys = std::make_tuple(
     Key{"way_points", "list of poses", "none",
         "poses of the part that the hand passes, from start to target"},
     field("tolerance", &SceneStep::tolerance_m,
-          "greatest displacement of a point of the part's surface from the target",
-          {.quantity = Quantity::Length, .range = kPositive}),
+          "greatest distance of the part's surface from where it belongs",
+          {.quantity = Quantity::Length,
+           .range = kNotNegative,
+           .default_text = "20 um and the clearance of the tightest fit that `vps check` finds there, at "
+                           "most 0.1 mm; 0.5 mm where it finds none, or with `holds`, since sight alone "
+                           "then stops the part"}),
     field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
-          {.quantity = Quantity::Angle, .range = kPositive}),
+          {.quantity = Quantity::Angle, .range = kNotNegative, .default_text = "not judged"}),
     field("clearance", &SceneStep::clearance_m,
           "diametral clearance of the tightest fit that the part enters; the part may penetrate another by a "
           "quarter of it, and by 10 um at most",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "not stated"}),
     field("timeout_s", &SceneStep::timeout_s, "simulated time after which the step has failed",
-          {.range = kPositive, .type = "seconds"}));
+          {.range = kPositive, .type = "seconds"}),
+    field("holds", &SceneStep::is_held,
+          "a fixture or the other hand holds the part after it is let go: it need not stay there by itself",
+          {.since = 4}));
 static_assert(coversAllMembers<SceneStep, 4>(kStepKeys));
 
 /// `[device]`

@@ -7,7 +7,7 @@
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
 #include "procedure/assembly_world.h"
-#include "procedure/blocks.h"
+#include "procedure/drawn_targets.h"
 #include "procedure/run_trace.h"
 #include "procedure/step_run.h"
 #include "procedure/step_verdict.h"
@@ -17,23 +17,23 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& blocks,
+void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& drawn,
               AssembleResult& result) {
   result.completed = true;
   const std::size_t count = world.scene().steps.size();
   std::string not_in_place;
   for (std::size_t i = 0; i < count && !world.isStopped(); ++i) {
-    StepResult known = blocks[i];
+    StepResult known = drawn[i];
     known.stands_on = not_in_place;
     result.steps.push_back(runStep(world, trace, i, std::move(known)));
     const StepResult& step = result.steps.back();
-    if (step.completed) continue;
-    result.completed = false;
-    if (not_in_place.empty()) not_in_place = step.part;
-    if (!world.options().keep_going) break;
+    if (!step.completed && not_in_place.empty()) not_in_place = step.part;
+    result.completed = result.completed && step.completed;
+    result.verdict = verdictOf(result.steps, count);
+    if (world.options().on_step) world.options().on_step(result);
+    if (!step.completed && !world.options().keep_going) break;
   }
   if (result.steps.size() < count) result.completed = false;
-  result.verdict = verdictOf(result.steps, count);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options) {
   AssembleResult result;
   const double begun_s = wallSeconds();
-  const std::vector<StepResult> blocks = blocksAtTargets(scene, options.progress);
+  const std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress);
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);
@@ -70,7 +70,7 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   const double run_begun_s = wallSeconds();
   result.build_wall_s = run_begun_s - begun_s;
 
-  runSteps(world, trace, blocks, result);
+  runSteps(world, trace, drawn, result);
   world.finish();
   result.finished = snapshotOf(world);
   trace.moveTo(result);

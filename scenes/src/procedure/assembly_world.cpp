@@ -138,6 +138,7 @@ void AssemblyWorld::release() {
   // On release the energy in the coupling's springs is dropped: it does not enter the energy balance.
   stored_before_J_ += simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J;
   simulation_.release();
+  if (scene_.steps[static_cast<std::size_t>(state_.step)].is_held) simulation_.hold(state_.moving.part);
   driver_->letGo();
   local_.letGo();
   state_.is_holding = false;

@@ -50,7 +50,7 @@ class AssemblyWorld {
   /// Puts the step's part at its start and couples it to the hand. Throws LoadError where it starts inside
   /// another part.
   void take(std::size_t step);
-  /// Uncouples the part, which stays a dynamic body.
+  /// Uncouples the part, which stays a dynamic body, unless its step says that it is held.
   void release();
   /// Fixes the part at a pose: it is no dynamic body any more, and the judge measures against it.
   void mount(const Pose& X_WP);

@@ -38,15 +38,15 @@ Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
   return tip_P;
 }
 
-device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step) {
+device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, double tolerance_m) {
   const StepPart& moving = world.state().moving;
   device::OperatorTask task;
   task.X_WP_start = step.X_WP_start;
   task.way_points = step.way_points;
   task.X_WP_target = step.X_WP_target;
   task.X_PG = moving.X_PG;
-  task.tolerance_m = step.tolerance_m;
-  task.tolerance_rad = step.tolerance_rad;
+  task.tolerance_m = tolerance_m;
+  if (step.tolerance_rad > 0) task.tolerance_rad = step.tolerance_rad;
   task.timeout_s = step.timeout_s;
   task.weight_W = moving.weight_W;
   task.tip_P = tipOf(world.scene(), step, moving.X_PG);
@@ -73,6 +73,25 @@ void startHaptics(AssemblyWorld& world) {
   world.driver().resume();
 }
 
+/// The part in place that the moving part touches, at the contact that is nearest to a part's surface.
+void noteContact(AssemblyWorld& world, StepResult& result) {
+  std::vector<ContactMark> marks;
+  world.simulation().contactMarks(marks);
+  double nearest_m = std::numeric_limits<double>::infinity();
+  const Scene& scene = world.scene();
+  for (const ContactMark& mark : marks)
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+      const ScenePart& part = scene.parts[i];
+      if (world.state().roles[i] != BodyRole::Mounted || !part.model || !part.model->solid) continue;
+      const double distance_m =
+          std::abs(part.model->solid->signedDistance(world.state().X_WP[i].inverse() * mark.p_W));
+      if (distance_m >= nearest_m) continue;
+      nearest_m = distance_m;
+      result.stuck_against = part.part.name;
+      result.stuck_at_W = mark.p_W;
+    }
+}
+
 /// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
 void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
   startHaptics(world);
@@ -86,7 +105,8 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
   const auto press = [&] { return advanceIn(TracePhase::Press); };
   const ClutchWork clutch(driver, [&world] { return world.handStep_s(); });
   if (!clutch.takeHold(reach)) return;
-  driver.begin(taskOf(world, step), static_cast<std::size_t>(world.state().step), world.state().time_s);
+  driver.begin(taskOf(world, step, result.tolerance_m), static_cast<std::size_t>(world.state().step),
+               world.state().time_s);
   trace.forgetPhase();
   trace.logPhase(world);
   while (isBusy(driver.phase()) && !world.isStopped() && world.advance()) {
@@ -100,15 +120,17 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
     if (!clutch.index(reach)) return;
     trace.logPhase(world);
   }
+  if (driver.phase() == device::OperatorPhase::Failed) noteContact(world, result);
   if (!clutch.comeFree(press)) return;
+  if (step.is_held) return;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
   });
 }
 
-/// The released part is watched for scene.release_s, at least until the empty hand is back where the next
-/// part's path lies around the middle of the workspace.
+/// The released part is watched for scene.release_s unless its step says that it is held, at least until the
+/// empty hand is back where the next part's path lies around the middle of the workspace.
 void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   const Box& box_P = world.state().moving.box_P;
   const Pose X_WP_released = world.movingPose();

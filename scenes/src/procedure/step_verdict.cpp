@@ -2,8 +2,11 @@
 #include "procedure/step_verdict.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
+
+#include "core/length_words.h"
+#include "judge/surface_error.h"
+#include "procedure/way_check.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -11,32 +14,27 @@ namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
 
-std::string number(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-std::string micrometres(double length_m) {
-  return length_m < 1e-3 ? number(1e6 * length_m, 1) + " um" : number(1e3 * length_m, 2) + " mm";
-}
-
-std::string place(const Vec3& p_W) {
-  std::string text = "(";
-  for (int i = 0; i < 3; ++i) text.append(i == 0 ? "" : ", ").append(number(1e3 * p_W[i], 2));
-  return text.append(") mm");
-}
+constexpr const char* kHoldsRemedy =
+    "nothing holds it there; if a fixture or the next part will, say holds = true in its [[step]]";
 
 std::string failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
                           bool is_done) {
   if (world.hasEnded()) return "the recording ends here";
   if (world.isStopped()) return "stopped";
-  const std::string where = "its surface was still up to " + micrometres(result.final_error_m) +
-                            " from its target (tolerance " + micrometres(step.tolerance_m) + ")";
-  if (is_done && !isAtRest(result)) return "it moved off its target after it was let go: " + where;
+  const std::string where = "its surface was up to " + lengthInWords(result.final_error_m) +
+                            " from where it belongs (tolerance " + lengthInWords(result.tolerance_m) + ")";
+  if (is_done && !isAtRest(result))
+    return "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
   if (is_done) return "the hand took it to be in place and let go, but " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
-  return std::string("the hand gave up") + (is_late ? " after its time was over: " : ": ") + where;
+  std::string reason = std::string("the hand gave up") + (is_late ? " after its time was over: " : ": ");
+  reason.append(where);
+  if (!result.stuck_against.empty())
+    reason.append("; it then touched '")
+        .append(result.stuck_against)
+        .append("' at ")
+        .append(placeInWords(result.stuck_at_W));
+  return reason;
 }
 
 }  // namespace
@@ -45,37 +43,39 @@ double penetrationLimit_m(const SceneStep& step) {
   return step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
 }
 
-void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Pose& X_WP,
-                     StepResult& result) {
-  const Mesh& mesh = world.scene().parts[step.part].part.mesh;
-  for (const Vec3& p_P : mesh.vertices)
-    result.final_error_m = std::max(result.final_error_m, (X_WP * p_P - step.X_WP_target * p_P).norm());
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result) {
+  result.final_error_m =
+      surfaceError_m(*world.scene().parts[step.part].model->solid, step.X_WP_target.inverse() * X_WP);
   result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
-  const bool is_on_target =
-      result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
+  const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
-  result.completed = is_done && is_on_target;
-  if (!result.completed) result.failure_reason = failureReason(world, step, result, is_done);
+  result.completed = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
+  if (result.completed) return;
+  result.failure_reason = failureReason(world, step, result, is_done);
+  if (is_done && result.final_error_m <= result.tolerance_m)
+    result.failure_reason.append("; it is turned by ")
+        .append(degreesInWords(result.final_error_rad))
+        .append(" (tolerance ")
+        .append(degreesInWords(step.tolerance_rad))
+        .append(")");
+  if (!is_done && !world.isStopped()) result.failure_reason.append(wallOnTheWay(world, step));
 }
 
 void judgeStep(StepResult& result) {
   if (!result.blocked_by.empty()) {
     result.verdict = Verdict::Blocked;
-    result.reason = "as drawn, it overlaps '" + result.blocked_by + "' by " +
-                    micrometres(result.blocked_depth_m) + " (error " + micrometres(result.blocked_error_m) +
-                    ") at " + place(result.blocked_at_W);
     return;
   }
   result.verdict = Verdict::NotShown;
   if (!result.completed) {
     result.reason = result.failure_reason;
   } else if (!isWithinLimit(result)) {
-    result.reason = "on the way it was " + micrometres(result.max_penetration_m) + " deep in '" +
-                    result.deepest_against + "', more than the " + micrometres(result.penetration_limit_m) +
+    result.reason = "on the way it was " + lengthInWords(result.max_penetration_m) + " deep in '" +
+                    result.deepest_against + "', more than the " + lengthInWords(result.penetration_limit_m) +
                     " that count as contact";
   } else if (!isAtRest(result)) {
-    result.reason = "it did not stay: within " + number(result.rest_s, 1) +
-                    " s after it was let go it moved by " + micrometres(result.rest_drift_m);
+    result.reason =
+        "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
   } else {
     result.verdict = Verdict::Fits;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one place where verdicts are made: whether a step reached its target, whether its part fits, and if not,
-// why.
+// The one place where verdicts are made: whether a step reached its target, whether its part fits, and if
+// not, why.
 #pragma once
 
 #include "procedure/assembly_world.h"
@@ -14,7 +14,7 @@ double penetrationLimit_m(const SceneStep& step);
 /// Sets final_error_m, final_error_rad, completed and failure_reason: the step is completed when the hand
 /// reports that it is done and the part, now at rest, is within the step's tolerances.
 /// @param X_WP  of the part, after its rest
-void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
 
 /// Sets verdict and reason from the rest of a step's result.
 void judgeStep(StepResult& result);

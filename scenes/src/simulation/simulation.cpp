@@ -220,6 +220,15 @@ void Simulation::removeBody(std::size_t part) {
   world_->remove(part);
 }
 
+void Simulation::hold(std::size_t part) {
+  btRigidBody& body = *world_->bodies.at(part).body;
+  world_->world.removeRigidBody(&body);
+  body.setMassProps(0, btVector3(0, 0, 0));
+  body.setLinearVelocity(btVector3(0, 0, 0));
+  body.setAngularVelocity(btVector3(0, 0, 0));
+  world_->world.addRigidBody(&body);
+}
+
 void Simulation::setTwist(std::size_t part, const Twist& V_WP_W) {
   const DynamicBody& b = world_->bodies.at(part);
   const Vec3 p_PB_W = pose(part).R * b.frame.X_PB.p;

@@ -55,6 +55,8 @@ class Simulation {
   /// not positive.
   void addBody(std::size_t part, const Pose& X_WP);
   void removeBody(std::size_t part);
+  /// From now on the body stays where it is, whatever touches it.
+  void hold(std::size_t part);
   /// Velocity of the part's origin, in W.
   void setTwist(std::size_t part, const Twist& V_WP_W);
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/drawn_targets.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "core/length_words.h"
+#include "procedure/closed_room.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+struct InPlace {
+  const ScenePart* part;
+  Pose X_WP;
+};
+
+/// Fixed parts, and those that earlier steps mounted.
+std::vector<InPlace> inPlaceBefore(const Scene& scene, std::size_t step) {
+  std::vector<InPlace> parts;
+  for (const ScenePart& part : scene.parts)
+    if (part.is_fixed) parts.push_back({&part, part.X_WP});
+  for (std::size_t i = 0; i < step; ++i)
+    parts.push_back({&scene.parts[scene.steps[i].part], scene.steps[i].X_WP_target});
+  return parts;
+}
+
+bool contains(const std::vector<InPlace>& parts, const std::string& name) {
+  return std::any_of(parts.begin(), parts.end(), [&](const InPlace& p) { return p.part->part.name == name; });
+}
+
+/// The other part of a pair or fit, if the pair is of this part and one in place; else null.
+const std::string* otherOf(const std::string& part, const std::string& a, const std::string& b,
+                           const std::vector<InPlace>& in_place) {
+  if (a != part && b != part) return nullptr;
+  const std::string& other = a == part ? b : a;
+  return contains(in_place, other) ? &other : nullptr;
+}
+
+void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
+  for (const CheckedPair& pair : checked.pairs) {
+    const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
+    if (other == nullptr || !pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
+    step.blocked_by = *other;
+    step.blocked_at_W = pair.at_W;
+    step.blocked_depth_m = pair.interference_depth_m;
+    step.blocked_error_m = pair.error_m;
+  }
+  if (step.blocked_by.empty()) return;
+  step.reason = "as drawn, it overlaps '" + step.blocked_by + "' by " + lengthInWords(step.blocked_depth_m) +
+                " (error " + lengthInWords(step.blocked_error_m) + ") at " + placeInWords(step.blocked_at_W);
+}
+
+void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vector<InPlace>& in_place,
+                    StepResult& step) {
+  for (const InPlace& other : in_place) {
+    const Mesh& mesh = scene.parts[planned.part].part.mesh;
+    const auto isInside = [&](const Pose& X_WP) {
+      return isInClosedRoom(mesh, other.part->part.mesh, other.X_WP.inverse() * X_WP);
+    };
+    const bool starts_inside = isInside(planned.X_WP_start);
+    if (!starts_inside && !isInside(planned.X_WP_target)) continue;
+    step.blocked_by = other.part->part.name;
+    step.blocked_at_W = (starts_inside ? planned.X_WP_start : planned.X_WP_target) * mesh.vertices.front();
+    step.reason = std::string(starts_inside ? "it starts" : "it belongs") + " in a closed room inside '" +
+                  step.blocked_by + "', into which no way leads";
+    return;
+  }
+}
+
+double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
+                   const std::string& part) {
+  if (planned.tolerance_m > 0) return planned.tolerance_m;
+  if (planned.is_held) return kSightTolerance_m;
+  std::optional<double> clearance_m;
+  if (planned.clearance_m > 0) clearance_m = planned.clearance_m;
+  for (const CheckedFit& fit : checked.fits) {
+    if (planned.clearance_m > 0 || otherOf(part, fit.shaft, fit.bore, in_place) == nullptr) continue;
+    const double found_m = std::max(0.0, fit.diametral_clearance_m);
+    clearance_m = std::min(clearance_m.value_or(found_m), found_m);
+  }
+  return clearance_m ? std::min(kFitTolerance_m, *clearance_m + kContactOnBothSides_m) : kSightTolerance_m;
+}
+
+}  // namespace
+
+std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress) {
+  CheckSettings settings;
+  settings.has_play = false;
+  const CheckResult checked = checkAssembly(scene.name, drawnParts(scene), settings, progress);
+  std::vector<StepResult> steps(scene.steps.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const SceneStep& planned = scene.steps[i];
+    const std::vector<InPlace> in_place = inPlaceBefore(scene, i);
+    steps[i].part = scene.parts[planned.part].part.name;
+    steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
+    findOverlap(checked, in_place, steps[i]);
+    if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
+  }
+  return steps;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/way_check.h"
+
+#include "core/length_words.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr int kPosesPerLeg = 24;
+// A hand's aim is off by more than this, so that a shallower touch does not stop it. assumed
+constexpr double kShallow_m = 0.1e-3;
+
+/// The centre of mass moves on a straight line, and the part turns evenly.
+Pose between(const Pose& a, const Pose& b, const Vec3& center_P, double share) {
+  const Vec3 turn = share * rotationVector(b.R * a.R.transpose());
+  Pose X(Mat3(rotationFromVector(turn) * a.R), Vec3::Zero());
+  X.p = (1 - share) * (a * center_P) + share * (b * center_P) - X.R * center_P;
+  return X;
+}
+
+}  // namespace
+
+std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
+  const OverlapJudge& judge = world.placed().judge();
+  const JudgedBody& body = world.placed().judgedBody(step.part);
+  std::vector<Pose> stops{step.X_WP_start};
+  stops.insert(stops.end(), step.way_points.begin(), step.way_points.end());
+  stops.push_back(step.X_WP_target);
+  Penetration deepest;
+  for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg)
+    for (int i = 0; i < kPosesPerLeg; ++i) {
+      const double share = i / static_cast<double>(kPosesPerLeg);
+      const Pose X_WP = between(stops[leg], stops[leg + 1], world.state().moving.X_PG.p, share);
+      const Penetration here = judge.deepest(body, X_WP);
+      if (here.depth_m > deepest.depth_m) deepest = here;
+    }
+  if (deepest.depth_m < kShallow_m) return {};
+  return "; the way that it was given leads through '" + judge.name(deepest.against) + "', up to " +
+         lengthInWords(deepest.depth_m) + " deep at " + placeInWords(deepest.p_W) +
+         ": give start or way_points that lead around it";
+}
+
+}  // namespace vps::scenes::inline v0

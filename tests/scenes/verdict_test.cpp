@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether the verdict of an assembly is right, on scenes whose answer is known by construction.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "judge/surface_error.h"
+#include "support/lathe.h"
+#include "vps/load_error.h"
+#include "vps/mesh.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+ScenePart partOf(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool is_fixed) {
+  ScenePart out;
+  out.part.name = name;
+  out.part.mesh = mesh;
+  out.X_WP = Pose::translation(p_WP);
+  out.is_fixed = is_fixed;
+  out.file = name + ".stl";
+  return out;
+}
+
+/// The parts, of which the last is brought straight down to its place. The low rates keep a run below a few
+/// seconds.
+Scene sceneOf(std::vector<ScenePart> parts, double from_m) {
+  Scene scene;
+  scene.file = scene.name = "verdict";
+  scene.parts = std::move(parts);
+  SceneStep step;
+  step.part = scene.parts.size() - 1;
+  step.X_WP_target = scene.parts.back().X_WP;
+  step.X_WP_start = step.X_WP_target;
+  step.X_WP_start.p.z() += from_m;
+  step.timeout_s = 10;
+  scene.steps.push_back(step);
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 250;
+  scene.release_s = 0.2;
+  scene.hand.aim_error_m = 0;
+  scene.hand.aim_error_rad = 0;
+  return scene;
+}
+
+constexpr int kFlats = 96;
+constexpr double kRadius_m = 4 * kMm, kBore_m = 4.05 * kMm, kDepth_m = 10 * kMm, kChamfer_m = 0.5 * kMm;
+
+/// 20 mm high from z = -14 mm, with a bore of 10 mm from above.
+Mesh cup() {
+  return test::lathe({{0, -14 * kMm},
+                      {9 * kMm, -14 * kMm},
+                      {9 * kMm, 0},
+                      {kBore_m + kChamfer_m, 0},
+                      {kBore_m, -kChamfer_m},
+                      {kBore_m, -kDepth_m},
+                      {0, -kDepth_m}},
+                     kFlats);
+}
+
+/// Its end is at z = 0.
+Mesh peg(double length_m, double longer_m = 0) {
+  return test::lathe({{0, -longer_m},
+                      {kRadius_m - kChamfer_m, -longer_m},
+                      {kRadius_m, kChamfer_m},
+                      {kRadius_m, length_m},
+                      {0, length_m}},
+                     kFlats);
+}
+
+Scene pegInCup(double longer_m = 0) {
+  return sceneOf({partOf("cup", cup(), Vec3::Zero(), true),
+                  partOf("peg", peg(15 * kMm, longer_m), {0, 0, -kDepth_m}, false)},
+                 11 * kMm);
+}
+
+TEST(Verdict, APegFitsItsHoleWithATolerancesTakenFromTheFit) {
+  Scene scene = pegInCup();
+  const AssembleResult result = assemble(scene);
+  EXPECT_EQ(result.verdict, Verdict::Fits) << result.steps[0].reason;
+  // 0.1 mm of diametral clearance and 20 um exceed the greatest tolerance that is given without asking.
+  EXPECT_DOUBLE_EQ(result.steps[0].tolerance_m, 0.1 * kMm);
+  EXPECT_LE(result.steps[0].final_error_m, 0.1 * kMm);
+}
+
+TEST(Verdict, TheToleranceIsStatedOrTheClearancePlusTwentyMicrometres) {
+  Scene scene = pegInCup();
+  scene.steps[0].clearance_m = 40e-6;
+  scene.steps[0].timeout_s = 0.1;
+  EXPECT_DOUBLE_EQ(assemble(scene).steps[0].tolerance_m, 60e-6);
+  scene.steps[0].tolerance_m = 33e-6;
+  EXPECT_DOUBLE_EQ(assemble(scene).steps[0].tolerance_m, 33e-6);
+}
+
+TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
+  Scene scene = pegInCup(80e-6);
+  const AssembleResult result = assemble(scene);
+  EXPECT_EQ(result.verdict, Verdict::Blocked);
+  const StepResult& step = result.steps[0];
+  EXPECT_EQ(step.blocked_by, "cup");
+  EXPECT_NEAR(step.blocked_depth_m, 80e-6, step.blocked_error_m + 1e-7);
+  EXPECT_NEAR(step.blocked_at_W.z(), -kDepth_m, 0.1 * kMm);
+}
+
+TEST(Verdict, ABlockDrawnInsideAPlateIsBlockedUnlessTheSceneAllowsIt) {
+  const auto scene = [](double deep_m) {
+    return sceneOf({partOf("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+                    partOf("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm - deep_m}, false)},
+                   1 * kMm);
+  };
+  Scene deep = scene(90e-6);
+  const AssembleResult result = assemble(deep);
+  EXPECT_EQ(result.verdict, Verdict::Blocked);
+  EXPECT_EQ(result.steps[0].blocked_by, "plate");
+  EXPECT_NEAR(result.steps[0].blocked_depth_m, 90e-6, 0.3e-6);
+  // A plane face has no chord error, so that even a little overlap is proven.
+  Scene shallow = scene(2e-6);
+  EXPECT_EQ(assemble(shallow).verdict, Verdict::Blocked);
+  Scene touching = scene(0);
+  EXPECT_EQ(assemble(touching).verdict, Verdict::Fits);
+}
+
+Mesh hollowBox() {
+  const Mesh outer = makeBox({30 * kMm, 30 * kMm, 30 * kMm});
+  Mesh both = outer;
+  const Mesh inner = makeBox({24 * kMm, 24 * kMm, 24 * kMm});
+  const auto first = static_cast<std::uint32_t>(both.vertices.size());
+  both.vertices.insert(both.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+  for (const auto& t : inner.triangles) both.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  return both;
+}
+
+TEST(Verdict, NothingGetsIntoASealedBox) {
+  const auto scene = [] {
+    return sceneOf({partOf("box", hollowBox(), Vec3::Zero(), true),
+                    partOf("cube", makeBox({4 * kMm, 4 * kMm, 4 * kMm}), {0, 0, -10 * kMm}, false)},
+                   5 * kMm);
+  };
+  Scene inside = scene();
+  const AssembleResult result = assemble(inside);
+  EXPECT_EQ(result.verdict, Verdict::Blocked);
+  EXPECT_EQ(result.steps[0].blocked_by, "box");
+  EXPECT_NE(result.steps[0].reason.find("starts in a closed room"), std::string::npos);
+  Scene outside = scene();
+  outside.steps[0].X_WP_start = Pose::translation({0, 0, 20 * kMm});
+  outside.steps[0].timeout_s = 1;
+  const AssembleResult from_outside = assemble(outside);
+  EXPECT_EQ(from_outside.verdict, Verdict::Blocked);
+  EXPECT_NE(from_outside.steps[0].reason.find("belongs in a closed room"), std::string::npos);
+}
+
+Scene pegThroughPlate() {
+  const Mesh plate = test::lathe(
+      {{kBore_m, -4 * kMm}, {9 * kMm, -4 * kMm}, {9 * kMm, 0}, {kBore_m, 0}, {kBore_m, -4 * kMm}}, kFlats);
+  return sceneOf(
+      {partOf("plate", plate, Vec3::Zero(), true), partOf("peg", peg(12 * kMm), {0, 0, -8 * kMm}, false)},
+      9 * kMm);
+}
+
+TEST(Verdict, APegThatFallsThroughItsHoleIsNotShownUntilTheSceneSaysThatItIsHeld) {
+  Scene scene = pegThroughPlate();
+  const AssembleResult result = assemble(scene);
+  EXPECT_EQ(result.verdict, Verdict::NotShown);
+  EXPECT_NE(result.steps[0].reason.find("holds = true"), std::string::npos) << result.steps[0].reason;
+  scene.steps[0].is_held = true;
+  const AssembleResult held = assemble(scene);
+  EXPECT_EQ(held.verdict, Verdict::Fits) << held.steps[0].reason;
+  EXPECT_EQ(held.steps[0].rest_drift_m, 0);
+}
+
+TEST(Verdict, AWayThroughAWallNamesTheWallAndWhatHoldsThePart) {
+  Scene scene = sceneOf({partOf("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+                         partOf("shelf", makeBox({30 * kMm, 30 * kMm, 2 * kMm}), {0, 0, 20 * kMm}, true),
+                         partOf("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm}, false)},
+                        30 * kMm);
+  scene.steps[0].timeout_s = 4;
+  const AssembleResult result = assemble(scene);
+  EXPECT_EQ(result.verdict, Verdict::NotShown);
+  EXPECT_EQ(result.steps[0].stuck_against, "shelf");
+  EXPECT_NEAR(result.steps[0].stuck_at_W.z(), 21 * kMm, 0.1 * kMm);
+  EXPECT_NE(result.steps[0].reason.find("leads through 'shelf'"), std::string::npos)
+      << result.steps[0].reason;
+}
+
+TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
+  Scene scene = pegInCup();
+  scene.parts.push_back(partOf("pin", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 6.5 * kMm}, false));
+  scene.steps[0].timeout_s = 0.1;  // too short to arrive
+  SceneStep step;
+  step.part = 2;
+  step.X_WP_target = scene.parts[2].X_WP;
+  step.X_WP_start = Pose::translation({0, 0, 7 * kMm});
+  scene.steps.push_back(step);
+  std::vector<std::size_t> told;
+  AssembleOptions options;
+  options.on_step = [&](const AssembleResult& so_far) { told.push_back(so_far.steps.size()); };
+  const AssembleResult result = assemble(scene, options);
+  EXPECT_EQ(result.verdict, Verdict::NotShown);
+  EXPECT_EQ(result.steps[0].verdict, Verdict::NotShown);
+  EXPECT_TRUE(result.steps[0].stands_on.empty());
+  EXPECT_EQ(result.steps[1].stands_on, "peg");
+  EXPECT_EQ(told, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(Verdict, APartThatNobodyHoldsIsRefusedByName) {
+  Scene scene = pegInCup();
+  scene.parts.push_back(partOf("lid", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 40 * kMm}, false));
+  try {
+    assemble(scene);
+    FAIL() << "accepted";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("'lid'"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("scenery = true"), std::string::npos) << error.what();
+  }
+  scene.parts.back().is_scenery = true;
+  scene.steps[0].timeout_s = 0.1;
+  EXPECT_NO_THROW(assemble(scene));
+}
+
+TEST(SurfaceError, ATurnOfARoundPartAboutItsAxisIsNone) {
+  const Solid solid(peg(15 * kMm));
+  const double chord_m = kRadius_m * (1 - std::cos(std::numbers::pi / kFlats));
+  const Pose turned(rotationFromVector({0, 0, 0.7}), Vec3::Zero());
+  EXPECT_LE(surfaceError_m(solid, turned), chord_m);
+  // Along its axis every point of the ends moves by as much; the walls lie in themselves.
+  EXPECT_NEAR(surfaceError_m(solid, Pose::translation({0, 0, 30e-6})), 30e-6, 1e-9);
+  EXPECT_NEAR(surfaceError_m(solid, Pose::translation({30e-6, 0, 0})), 30e-6, chord_m);
+}
+
+}  // namespace
+}  // namespace vps::scenes
