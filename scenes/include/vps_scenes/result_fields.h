@@ -73,7 +73,7 @@ inline constexpr auto kStrategyFields = std::make_tuple(
     field(
         "strategy", &StrategyUse::strategy,
         "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
-        "press_home or place_by_sight"),
+        "press_home, place_by_sight or turn_search"),
     field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
     field("duration_s", &StrategyUse::duration_s, "how long it took"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
@@ -199,6 +199,6 @@ inline constexpr auto kTraceFields = std::make_tuple(
     field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"),
     field("strategy", &TraceRow::strategy,
           "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
-          "7 press_home, 8 place_by_sight"));
+          "7 press_home, 8 place_by_sight, 9 turn_search"));
 
 }  // namespace vps::scenes::inline v0
