@@ -36,8 +36,12 @@ struct StepResult {
   std::string blocked_by;  ///< the part that it overlaps at its target, as drawn; empty: none
   Vec3 blocked_at_W = Vec3::Zero();
   double blocked_depth_m = 0, blocked_error_m = 0;
-  std::string stands_on;   ///< an earlier part that is not where it belongs and was put there; empty: none
-  bool completed = false;  ///< the part reached its target by contact, whatever else is wrong
+  std::string stands_on;    ///< an earlier part that is not where it belongs and was put there; empty: none
+  bool completed = false;   ///< the part reached its target, whatever else is wrong
+  bool by_contact = false;  ///< completed, and other parts guided it there: isGuided()
+  /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
+  /// it.
+  double guide_force_N = 0;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
   double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
@@ -68,6 +72,12 @@ inline bool isWithinLimit(const StepResult& step) {
 }
 inline bool isAtRest(const StepResult& step) {
   return step.rest_drift_m <= kRestDriftLimit_m;
+}
+/// Guided with less force than this is not guided. Measured (tests/hand, `vps_hand edge`): at most 0.01 N
+/// over a plate with nothing beside the part, at least 0.11 N in a bore.
+inline constexpr double kGuideLeast_N = 0.05;
+inline bool isGuided(const StepResult& step) {
+  return step.guide_force_N >= kGuideLeast_N;
 }
 /// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
 inline bool isGood(const StepResult& step) {

@@ -55,6 +55,7 @@ void judgeCompletion(const AssemblyWorld& world, const SceneStep& step, const Po
       result.final_error_m <= step.tolerance_m && result.final_error_rad <= step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
   result.completed = is_done && is_on_target;
+  result.by_contact = result.completed && isGuided(result);
   if (!result.completed) result.failure_reason = failureReason(world, step, result, is_done);
 }
 

@@ -92,7 +92,7 @@ std::string stepFacts(const scenes::StepResult& s) {
   return html::facts({{"Verdict", scenes::isGood(s) ? "fits"
                                                     : "<b class=\"bad\">" + std::string(words(s.verdict)) +
                                                           "</b>: " + escapeHtml(s.reason)},
-                      {"Brought to its target by contact", s.completed ? "yes" : "no"},
+                      {"Brought to its target by contact", contactWords(s)},
                       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
                       {"Greatest overlap, by exact distance", deepest},
                       {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
@@ -268,6 +268,7 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     const scenes::StepResult& step = result.steps[i];
     const std::string name = "Step " + std::to_string(i + 1) + ", " + step.part + ": ";
     if (!step.reason.empty()) note(name + step.reason + ".");
+    if (step.completed && !step.by_contact) note(name + "by contact: " + contactWords(step) + ".");
     if (!step.stands_on.empty())
       note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
   }

@@ -29,6 +29,13 @@ const char* words(scenes::Verdict verdict) {
   return "not shown";
 }
 
+std::string contactWords(const scenes::StepResult& step) {
+  if (!step.completed) return "no: it did not reach its target";
+  if (step.by_contact) return "yes";
+  return "no: nothing beside its path guided it; the hand placed it by sight alone, so that nothing but the "
+         "tolerance says where it is";
+}
+
 std::string verdictLine(const scenes::AssembleResult& result) {
   const auto fit = std::count_if(result.steps.begin(), result.steps.end(),
                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
