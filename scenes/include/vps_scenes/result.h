@@ -149,12 +149,23 @@ struct RealTimeResult {
   std::uint64_t faults = 0;                   ///< safety faults
 };
 
+/// One of several runs of the same procedure (assembleTries()).
+struct TryResult {
+  std::uint64_t seed = 0;  ///< of the virtual operator
+  Verdict verdict = Verdict::NotShown;
+  double simulated_s = 0;
+  std::string reason;  ///< "part: why", of the first step that does not fit; empty when all fit
+};
+
 struct AssembleResult {
   std::string scene;
   Verdict verdict =
       Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
   bool completed = false;
   std::vector<StepResult> steps;
+  std::vector<TryResult> tries;  ///< in order of their seeds; empty for a single run
+  /// Ease of assembly: the share of the tries in which every part was brought home.
+  std::optional<double> ease_share;
   std::vector<TraceRow> trace;
   std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
   Snapshot finished;

@@ -156,6 +156,13 @@ static_assert(coversAllMembers<RealTimeResult>(kRealTimeHapticFields, kRealTimeP
 
 using LocalContact = decltype(AssembleResult::local_contact);
 
+inline constexpr auto kTryFields = std::make_tuple(
+    field("seed", &TryResult::seed, "seed of the virtual operator"),
+    field("verdict", &TryResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("simulated_s", &TryResult::simulated_s, "simulated time"),
+    field("reason", &TryResult::reason, "of the first step that does not fit; empty when all fit"));
+static_assert(coversAllMembers<TryResult>(kTryFields));
+
 inline constexpr auto kAssembleFields = std::make_tuple(
     field("scene", &AssembleResult::scene, "name of the scene"),
     field("verdict", &AssembleResult::verdict, "`fits`, `blocked` or `not_shown`"),
@@ -164,6 +171,9 @@ inline constexpr auto kAssembleFields = std::make_tuple(
           "near points that found no room in a query; 0 unless a limit was set"),
     field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
     list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
+    list("tries", &AssembleResult::tries, kTryFields),
+    field("ease_of_assembly", &AssembleResult::ease_share,
+          "share of the tries in which every part was brought home; null for a single run"),
     object("haptic",
            std::make_tuple(
                field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
