@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_hand: how many seeds of the virtual operator bring a peg into its hole, and how long they take.
+// vps_hand: how many seeds of the virtual operator bring a peg into its hole, and how long they take; and the
+// table of verdicts at the edge between fit and misfit.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "edge_table.h"
 #include "peg_scenes.h"
 #include "vps_scenes/assemble.h"
 
@@ -18,6 +20,9 @@ int usage() {
       "usage: vps_hand CASE [FIRST [LAST]] [--trace FILE]\n"
       "Runs the seeds FIRST to LAST (default 1 to 100) and prints a line for each, then their share.\n"
       "  --trace  writes time, phase, pose error and force of every 10th physics step of the last seed\n"
+      "       vps_hand edge [--every N] [--from K] [--seed S] [--only WORDS] [--no-wall] [--verbose]\n"
+      "Pegs from 50 um too large to 50 um of clearance; the exit status is 1 if a verdict is wrong.\n"
+      "  --no-wall  takes away the bores' walls; wrong is then what says 'by contact'\n"
       "cases:\n");
   for (const PegScene& scene : vps::hand::pegScenes())
     std::printf("  %-12s %s\n", scene.name, scene.description);
@@ -40,6 +45,29 @@ void writeTrace(const vps::scenes::AssembleResult& result, const vps::Pose& X_ta
   std::fclose(out);
 }
 
+int runEdgeTable(const std::vector<std::string>& words) {
+  vps::hand::EdgeTableSettings settings;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const bool has_value = i + 1 < words.size();
+    const auto number = [&] { return std::strtoull(words[++i].c_str(), nullptr, 10); };
+    if (words[i] == "--no-wall")
+      settings.has_wall = false;
+    else if (words[i] == "--verbose")
+      settings.is_verbose = true;
+    else if (words[i] == "--every" && has_value)
+      settings.every = std::max<std::size_t>(1, number());
+    else if (words[i] == "--from" && has_value)
+      settings.first = number();
+    else if (words[i] == "--seed" && has_value)
+      settings.seed = number();
+    else if (words[i] == "--only" && has_value)
+      settings.only = words[++i];
+    else
+      return usage();
+  }
+  return vps::hand::printEdgeTable(settings) == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,6 +80,7 @@ int main(int argc, char** argv) {
       words.emplace_back(argv[i]);
   }
   if (words.empty()) return usage();
+  if (words[0] == "edge") return runEdgeTable(words);
   const auto& scenes = vps::hand::pegScenes();
   const auto chosen =
       std::find_if(scenes.begin(), scenes.end(), [&](const PegScene& s) { return words[0] == s.name; });

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "support/lathe.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 using Profile = std::vector<std::array<double, 2>>;
 
-constexpr int kFlats = 128;
-
 /// The profile turned into a square tube of the same half widths: its corners stand at 45 degrees.
 Mesh squareLathe(Profile profile) {
   for (auto& [r, z] : profile) r *= std::numbers::sqrt2;
@@ -22,7 +21,50 @@ Mesh squareLathe(Profile profile) {
                      Pose(rotationFromVector(Vec3(0, 0, eighth_rad)), Vec3(Vec3::Zero())));
 }
 
-scenes::Scene scene(const char* name, Mesh hole, Mesh peg, double depth_m, std::uint64_t seed) {
+/// Both halves moved apart along x. Points on the axis stay.
+Mesh stretched(Mesh mesh, double by_m) {
+  for (Vec3& p : mesh.vertices)
+    if (p.x() != 0) p.x() += std::copysign(0.5 * by_m, p.x());
+  return mesh;
+}
+
+Mesh swept(const PegFit& fit, const Profile& profile) {
+  return fit.is_round ? test::lathe(profile, kFlats) : stretched(squareLathe(profile), fit.longer_m);
+}
+
+}  // namespace
+
+double chord_m(const PegFit& fit) {
+  return fit.is_round ? 0.5 * fit.size_m * (1 - std::cos(std::numbers::pi / kFlats)) : 0;
+}
+
+Mesh holeMesh(const PegFit& fit) {
+  const double out = fit.is_round ? 1 / std::cos(std::numbers::pi / kFlats) : 1;
+  const double bore_m = 0.5 * (fit.size_m + fit.clearance_m), bottom_m = 1.5 * fit.depth_m;
+  Profile cup = {{0, -bottom_m}, {fit.outer_m, -bottom_m}};
+  if (fit.has_wall) {
+    cup.push_back({fit.outer_m, 0});
+    if (fit.chamfer_m > 0) cup.push_back({out * (bore_m + fit.chamfer_m), 0});
+    cup.push_back({out * bore_m, -fit.chamfer_m});
+    cup.push_back({out * bore_m, -fit.depth_m});
+  } else {
+    cup.push_back({fit.outer_m, -fit.depth_m});
+  }
+  cup.push_back({0, -fit.depth_m});
+  return transformed(swept(fit, cup),
+                     Pose(rotationFromVector(Vec3(0, 0, fit.hole_turn_rad)), Vec3(Vec3::Zero())));
+}
+
+Mesh pegMesh(const PegFit& fit) {
+  const double half_m = 0.5 * fit.size_m, length_m = 2.5 * fit.depth_m;
+  Profile peg = {{0, 0}, {half_m - fit.chamfer_m, 0}};
+  if (fit.chamfer_m > 0) peg.push_back({half_m, fit.chamfer_m});
+  peg.push_back({half_m, length_m});
+  peg.push_back({0, length_m});
+  return swept(fit, peg);
+}
+
+scenes::Scene pegScene(const std::string& name, Mesh hole, Mesh peg, double depth_m, std::uint64_t seed) {
   scenes::Scene scene;
   scene.file = scene.name = name;
   scene.parts.resize(2);
@@ -39,33 +81,39 @@ scenes::Scene scene(const char* name, Mesh hole, Mesh peg, double depth_m, std::
   return scene;
 }
 
-scenes::Scene roundPeg(std::uint64_t seed) {
-  constexpr double kRadius_m = 4e-3, kBore_m = kRadius_m + 10e-6, kChamfer_m = 0.5e-3, kDepth_m = 10e-3,
-                   kLength_m = 25e-3;
-  // The hole's flats touch its circle from outside, the peg's corners lie on its own: the clearance is 20 um
-  // and never less.
-  const double out = 1 / std::cos(std::numbers::pi / kFlats);
-  const Profile cup = {{0, -15e-3},
-                       {12e-3, -15e-3},
-                       {12e-3, 0},
-                       {out * (kBore_m + kChamfer_m), 0},
-                       {out * kBore_m, -kChamfer_m},
-                       {out * kBore_m, -kDepth_m},
-                       {0, -kDepth_m}};
-  const Profile peg = {
-      {0, 0}, {kRadius_m - kChamfer_m, 0}, {kRadius_m, kChamfer_m}, {kRadius_m, kLength_m}, {0, kLength_m}};
-  scenes::Scene made = scene("round", test::lathe(cup, kFlats), test::lathe(peg, kFlats), kDepth_m, seed);
-  made.steps[0].clearance_m = 20e-6;
+namespace {
+
+scenes::Scene fitScene(const std::string& name, const PegFit& fit, std::uint64_t seed) {
+  scenes::Scene made = pegScene(name, holeMesh(fit), pegMesh(fit), fit.depth_m, seed);
+  made.steps[0].clearance_m = fit.clearance_m;
   return made;
 }
 
+scenes::Scene roundPeg(std::uint64_t seed) {
+  PegFit fit;
+  fit.clearance_m = 20e-6;
+  fit.chamfer_m = 0.5e-3;
+  return fitScene("round", fit, seed);
+}
+
 scenes::Scene rectangularPeg(std::uint64_t seed) {
-  constexpr double kHalf_m = 2e-3, kHole_m = kHalf_m + 50e-6, kDepth_m = 8e-3, kLength_m = 20e-3;
-  const Profile cup = {{0, -12e-3},  {8e-3, -12e-3},       {8e-3, 0},
-                       {kHole_m, 0}, {kHole_m, -kDepth_m}, {0, -kDepth_m}};
-  const Profile peg = {{0, 0}, {kHalf_m, 0}, {kHalf_m, kLength_m}, {0, kLength_m}};
-  scenes::Scene made = scene("rectangular", squareLathe(cup), squareLathe(peg), kDepth_m, seed);
-  made.steps[0].clearance_m = 100e-6;
+  PegFit fit;
+  fit.is_round = false;
+  fit.size_m = 4e-3;
+  fit.clearance_m = 100e-6;
+  fit.depth_m = fit.outer_m = 8e-3;
+  return fitScene("rectangular", fit, seed);
+}
+
+scenes::Scene turnedPeg(std::uint64_t seed) {
+  PegFit fit;
+  fit.is_round = false;
+  fit.size_m = 8e-3;
+  fit.longer_m = 4e-3;
+  fit.clearance_m = 100e-6;
+  scenes::Scene made = fitScene("turned", fit, seed);
+  made.hand.aim_turn_rad = 5 * std::numbers::pi / 180;
+  made.steps[0].timeout_s = 60;
   return made;
 }
 
@@ -74,7 +122,9 @@ scenes::Scene rectangularPeg(std::uint64_t seed) {
 const std::vector<PegScene>& pegScenes() {
   static const std::vector<PegScene> scenes = {
       {"round", "8 mm round peg, 20 um of clearance, chamfered", roundPeg},
-      {"rectangular", "4 mm square peg, 50 um on each side, sharp", rectangularPeg}};
+      {"rectangular", "4 mm square peg, 50 um on each side, sharp", rectangularPeg},
+      {"turned", "8 x 12 mm peg, 50 um on each side, sharp, aimed up to 5 degrees off about its axis",
+       turnedPeg}};
   return scenes;
 }
 

@@ -10,6 +10,31 @@
 
 namespace vps::hand {
 
+/// A peg that stands upright in a blind hole, whose mouth is at z = 0.
+struct PegFit {
+  bool is_round = true;      ///< else rectangular
+  double size_m = 8e-3;      ///< diameter, or the shorter side, of the peg
+  double longer_m = 0;       ///< the longer side of a rectangle less the shorter one
+  double clearance_m = 0;    ///< diametral; negative: the peg is too large
+  double chamfer_m = 0;      ///< at 45 degrees, of peg and hole; 0: sharp edges
+  double depth_m = 10e-3;    ///< of the hole; the peg is 2.5 times as long
+  double outer_m = 12e-3;    ///< from the axis to the outer side of the part with the hole
+  double hole_turn_rad = 0;  ///< of the hole about its axis
+  bool has_wall = true;      ///< false: of the hole only the bottom is left, a plate with nothing beside it
+};
+
+/// Round parts are drawn with this many flats. The hole's flats touch its circle from outside and the peg's
+/// corners lie on its own circle, so that the clearance of the drawn parts is never less than that of the
+/// circles, and equals it where the corners point at the middle of the flats.
+inline constexpr int kFlats = 128;
+/// Distance of the middle of a flat from its circle, at the radius.
+double chord_m(const PegFit& fit);
+
+Mesh holeMesh(const PegFit& fit);
+Mesh pegMesh(const PegFit& fit);
+/// The peg starts 8 mm above the mouth.
+scenes::Scene pegScene(const std::string& name, Mesh hole, Mesh peg, double depth_m, std::uint64_t seed);
+
 struct PegScene {
   const char* name;
   const char* description;

@@ -16,6 +16,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
+#include "vps_scenes/tries.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
@@ -27,6 +28,7 @@ struct AssembleArguments {
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
+  int tries = 1;
   bool has_pictures = true;
   bool stops_at_failure = false;
   bool is_real_time = false;
@@ -75,12 +77,13 @@ int runAssemble(const AssembleArguments& given) {
   options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
   const std::string unfinished = given.out + "/unfinished.json";
-  options.on_step = [&](const scenes::AssembleResult& so_far) {
-    writeWholeFile(unfinished, toJson(so_far));
+  options.on_step = [&](const scenes::AssembleResult& so_far) { writeWholeFile(unfinished, toJson(so_far)); };
+  const auto run = [&] {
+    if (given.tries > 1) return scenes::assembleTries(scene, {given.tries}, options);
+    return given.record.empty() ? scenes::assemble(scene, options)
+                                : scenes::assembleAndRecord(scene, given.record, options);
   };
-  const scenes::AssembleResult result = given.record.empty()
-                                            ? scenes::assemble(scene, options)
-                                            : scenes::assembleAndRecord(scene, given.record, options);
+  const scenes::AssembleResult result = run();
   if (stopRequested() && !result.steps.empty()) {
     bar.clear();
     printSteps(result);
@@ -90,7 +93,10 @@ int runAssemble(const AssembleArguments& given) {
 
   bar.progress()("writing the report", 1);
   const std::vector<std::string> notes =
-      fillFolder(out, scene, result, {"vps assemble " + file + " --out " + given.out, given.has_pictures});
+      fillFolder(out, scene, result,
+                 {"vps assemble " + file + " --out " + given.out +
+                      (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
+                  given.has_pictures});
   out.commit();
   std::filesystem::remove(unfinished);
   json.write(toJson(result));
@@ -103,6 +109,7 @@ int runAssemble(const AssembleArguments& given) {
     std::fputs(describe(result).c_str(), stdout);
   }
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
+  if (const std::string ease = easeWords(result); !ease.empty()) std::printf("%s\n", ease.c_str());
   std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
   switch (result.verdict) {
     case scenes::Verdict::Fits:
@@ -137,6 +144,15 @@ void addAssemble(CommandLine& line) {
       .add_option("--record", given->record,
                   "record the run with its scene and meshes (MCAP), for vps replay")
       ->type_name("FILE");
+  command
+      .add_option("--tries", given->tries,
+                  "run with this many seeds of the virtual operator, in parallel; one success is enough, and "
+                  "the share that succeeds is the ease of assembly")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->excludes("--real-time")
+      ->excludes("--local-contact")
+      ->excludes("--record");
   addJsonOption(command, given->json);
 }
 

@@ -45,6 +45,8 @@ void printSteps(const scenes::AssembleResult& result) {
   for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
     if (!step.reason.empty()) std::printf("%s: %s\n", name, step.reason.c_str());
+    if (step.completed && !step.by_contact)
+      std::printf("%s: by contact: %s\n", name, contactWords(step).c_str());
     if (!step.stands_on.empty())
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());

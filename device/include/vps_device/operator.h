@@ -20,6 +20,9 @@ struct OperatorHabits {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation across the path, each axis
   double aim_error_rad = 0.005;
+  /// Greatest error about the axis of insertion that sight does not correct: how far a hole is turned about
+  /// its axis is hard to see where the part covers it. Drawn evenly, once per task.
+  double aim_turn_rad = 0;
   double speed_m_s = 0.05;    ///< average along the path
   double turn_rad_s = 0.5;    ///< average rotation
   double press_N = 5;         ///< final force at the target
@@ -52,6 +55,7 @@ struct OperatorHabits {
   double tilt_rad = 0.1;      ///< of the tilt with which a corner is put in first. assumed
   double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: below the error of sight
   double search_limit_m = 0.5e-3;  ///< radius of the spiral: five errors of sight
+  double turn_limit_rad = 0.11;    ///< of the search about the axis, to each side. assumed: 6 degrees
   double press_s = 0.3;
   double rest_m_s = 1e-3;   ///< slower counts as held
   double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand releases
@@ -83,6 +87,9 @@ struct OperatorTask {
   Vec3 tip_P = Vec3::Zero();
   /// How far the part stays behind the handle under force, which a person feels as its stiffness [m/N].
   double give_m_per_N = 0;
+  /// The end that goes in first is not round, so that it may have to be turned about the axis to find its
+  /// hole.
+  bool has_corners = false;
 };
 
 /// What the hand senses at one instant.
@@ -111,8 +118,9 @@ enum class OperatorStrategy {
   BackOff,        ///< withdraws, and looks again
   PressHome,      ///< presses against the stop that it felt
   PlaceBySight,   ///< nothing stops the part: holds it where it is seen at its target
+  TurnSearch,     ///< turns the part about its axis, to and fro and farther each time, until it drops
 };
-inline constexpr int kOperatorStrategies = 9;
+inline constexpr int kOperatorStrategies = 10;
 /// "tilt_in"
 VPS_DEVICE_API const char* toText(OperatorStrategy strategy) noexcept;
 

@@ -27,6 +27,8 @@ Strategy& Insertion::present() noexcept {
       return tilt_in_;
     case OperatorStrategy::SpiralSearch:
       return spiral_search_;
+    case OperatorStrategy::TurnSearch:
+      return turn_search_;
     case OperatorStrategy::AlignByTorque:
       return align_;
     case OperatorStrategy::BackOff:
@@ -76,20 +78,33 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
       return afterTouch(feel);
     case OperatorStrategy::TiltIn:
     case OperatorStrategy::SpiralSearch:
+    case OperatorStrategy::TurnSearch:
       return succeeded ? start(OperatorStrategy::AlignByTorque, feel) : backOff(true, feel);
     case OperatorStrategy::AlignByTorque:
       return start(isFree(feel) ? OperatorStrategy::Approach : OperatorStrategy::Touch, feel);
     case OperatorStrategy::BackOff:
       if (!is_whole_) return start(OperatorStrategy::AlignByTorque, feel);
-      if (searches_ % 3 == 0) return start(OperatorStrategy::Approach, feel);
-      return start(searches_ % 3 == 1 && !situation_.corner_W.isZero() ? OperatorStrategy::TiltIn
-                                                                       : OperatorStrategy::SpiralSearch,
-                   feel);
+      return start(nextSearch(), feel);
     case OperatorStrategy::PressHome:
       return press_home_.hasYielded() ? start(OperatorStrategy::PlaceBySight, feel) : backOff(false, feel);
     case OperatorStrategy::PlaceBySight:
     case OperatorStrategy::None:
       return;
+  }
+}
+
+// In turn: tilt in, spiral search, for a part with corners turn search, and straight ahead again.
+OperatorStrategy Insertion::nextSearch() const noexcept {
+  const int count = situation_.has_corners ? 4 : 3;
+  switch (searches_ % count) {
+    case 0:
+      return OperatorStrategy::Approach;
+    case 1:
+      return situation_.corner_W.isZero() ? OperatorStrategy::SpiralSearch : OperatorStrategy::TiltIn;
+    case 2:
+      return OperatorStrategy::SpiralSearch;
+    default:
+      return OperatorStrategy::TurnSearch;
   }
 }
 

@@ -3,7 +3,7 @@
 //
 //   approach -> touch -> seen near the target? -> press home -> done
 //                 |  \-> in the hole already?  -> align by torque -> touch
-//                 \----> align, then tilt in and spiral search in turn, each after backing off
+//                 \----> align, then tilt in, spiral search and turn search in turn, each after backing off
 #pragma once
 
 #include "operator/strategies.h"
@@ -28,6 +28,7 @@ class Insertion {
   void start(OperatorStrategy strategy, const Feel& feel) noexcept;
   void next(bool succeeded, const Feel& feel) noexcept;
   [[nodiscard]] bool isFree(const Feel& feel) const noexcept;
+  [[nodiscard]] OperatorStrategy nextSearch() const noexcept;
   void afterTouch(const Feel& feel) noexcept;
   void backOff(bool is_whole, const Feel& feel) noexcept;
 
@@ -37,6 +38,7 @@ class Insertion {
   Touch touch_;
   TiltIn tilt_in_;
   SpiralSearch spiral_search_;
+  TurnSearch turn_search_;
   AlignByTorque align_;
   BackOff back_off_whole_{true}, back_off_little_{false};
   PressHome press_home_;

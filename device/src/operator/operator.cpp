@@ -45,6 +45,8 @@ const char* toText(OperatorStrategy strategy) noexcept {
       return "press_home";
     case OperatorStrategy::PlaceBySight:
       return "place_by_sight";
+    case OperatorStrategy::TurnSearch:
+      return "turn_search";
   }
   return "unknown";
 }

@@ -38,6 +38,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   tip_m_ = knows_tip ? axis_W_.dot(task.X_WP_target * task.tip_P - path_.back().p) : 0;
   aim_m_ = across(habits_.aim_error_m * random_.normal3());
   aim_rad_ = habits_.aim_error_rad * random_.normal3();
+  misread_rad_ = habits_.aim_turn_rad > 0 ? habits_.aim_turn_rad * (2 * random_.uniform() - 1) * axis_W_
+                                          : Vec3(Vec3::Zero());
   belief_ = {};
   seen_for_s_ = 0;
   serve_m_ = serve_rad_ = Vec3::Zero();
@@ -138,6 +140,7 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
     const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
   }
+  situation.has_corners = task_.has_corners;
   situation.near_m = task_.tolerance_m + kNear * habits_.see_error_m;
   feel_.time_s = view.time_s;
   insertion_.begin(situation, feel_);
@@ -145,9 +148,15 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
 }
 
 void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noexcept {
+  const OperatorStrategy before = insertion_.strategy();
+  const Move last = insertion_.move();
   if (!is_home_ && insertion_.step(feel_, dt_s) == Outcome::Done) {
     is_home_ = true;
     done_s_ = view.time_s;
+  }
+  if (before == OperatorStrategy::TurnSearch && insertion_.strategy() == OperatorStrategy::AlignByTorque) {
+    belief_.across_m += last.across_m;  // that is where the hole was found
+    belief_.turn_rad += last.turn_rad;
   }
   const bool is_last = insertion_.strategy() == OperatorStrategy::PressHome ||
                        insertion_.strategy() == OperatorStrategy::PlaceBySight;
@@ -209,8 +218,8 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
   error_m -= along * along.dot(error_m);
   const double gain = habits_.see_gain_per_s * dt_s;
   belief_.across_m = shortened(belief_.across_m + gain * error_m, habits_.see_limit_m);
-  belief_.turn_rad = shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()),
-                               habits_.see_limit_rad);
+  belief_.turn_rad =
+      shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()), seeLimit_rad());
 }
 
 // The longer it looks, the more it averages: the gain falls as 1/t.
@@ -225,7 +234,7 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   const Mat3 R_path = turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
   belief_.turn_rad += gain * rotationVector(R_path * X_seen.R.transpose());
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
-  belief_.turn_rad = shortened(belief_.turn_rad, habits_.see_limit_rad);
+  belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
 
 // The belief moves to where the hand is pushed, until side force and torque vanish.
@@ -237,7 +246,7 @@ void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   belief_.across_m += share * across(p_hand - X_wanted.p);
   belief_.turn_rad += share * rotationVector(feel_.R_hand * X_wanted.R.transpose());
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
-  belief_.turn_rad = shortened(belief_.turn_rad, habits_.see_limit_rad);
+  belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
   serve_m_ -= share * serve_m_;
   serve_rad_ -= share * serve_rad_;
 }

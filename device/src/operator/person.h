@@ -54,7 +54,11 @@ class VirtualOperator::Person {
   void correctAtTheHole(double dt_s) noexcept;
   void giveWay(double dt_s) noexcept;
   [[nodiscard]] Vec3 across(const Vec3& v) const noexcept { return v - axis_W_ * axis_W_.dot(v); }
-  [[nodiscard]] Pose seenGrasp() const noexcept { return sight_.seen() * task_.X_PG; }
+  [[nodiscard]] Pose seenGrasp() const noexcept {
+    const Pose X = sight_.seen() * task_.X_PG;
+    return {Mat3(rotationFromVector(misread_rad_) * X.R), X.p};
+  }
+  [[nodiscard]] double seeLimit_rad() const noexcept { return habits_.see_limit_rad + habits_.aim_turn_rad; }
 
   // Hand.
   [[nodiscard]] Pose wanted(double now_s) const noexcept;
@@ -81,6 +85,8 @@ class VirtualOperator::Person {
   Vec3 axis_W_ = Vec3::UnitZ();                         // of insertion
   double tip_m_ = 0;                                    // from G along the axis to the end that goes in first
   Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();  // aim error, drawn once per task
+
+  Vec3 misread_rad_ = Vec3::Zero();  // about the axis; sight does not correct it
 
   Belief belief_;
   double seen_for_s_ = 0;

@@ -61,6 +61,20 @@ class SpiralSearch final : public Strategy {
   double angle_rad_ = 0, wait_s_ = 0, level_m_ = 0;
 };
 
+/// Turns about the axis of insertion, to and fro and farther each time, pressed lightly on the surface, until
+/// the part drops.
+class TurnSearch final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  Situation situation_;
+  double start_s_ = 0, settled_s_ = 0, level_m_ = 0;
+  double turn_rad_ = 0, reach_rad_ = 0;  ///< of the present sweep
+  int side_ = 1, first_side_ = 1;
+};
+
 /// Pushes, giving way across and in rotation, with a small wobble against friction, until nothing moves on or
 /// nothing resists.
 class AlignByTorque final : public Strategy {

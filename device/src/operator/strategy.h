@@ -47,6 +47,7 @@ struct Situation {
   double near_m = 0;             ///< seen this close to the target it may be there
   bool has_touched = false;      ///< the hole leads, and sight no longer corrects across
   double mouth_m = 0;            ///< `along` at the first touch
+  bool has_corners = false;      ///< it may have to be turned about the axis
   int attempt = 0;
 };
 

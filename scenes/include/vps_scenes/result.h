@@ -38,8 +38,12 @@ struct StepResult {
   double blocked_depth_m = 0, blocked_error_m = 0;
   std::string stuck_against;  ///< the part that it touched when the hand gave up; empty: none, or it did not
   Vec3 stuck_at_W = Vec3::Zero();
-  std::string stands_on;   ///< an earlier part that is not where it belongs and was put there; empty: none
-  bool completed = false;  ///< the part reached its target by contact, whatever else is wrong
+  std::string stands_on;    ///< an earlier part that is not where it belongs and was put there; empty: none
+  bool completed = false;   ///< the part reached its target, whatever else is wrong
+  bool by_contact = false;  ///< completed, and other parts guided it there: isGuided()
+  /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
+  /// it.
+  double guide_force_N = 0;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
   double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
@@ -71,6 +75,12 @@ inline bool isWithinLimit(const StepResult& step) {
 }
 inline bool isAtRest(const StepResult& step) {
   return step.rest_drift_m <= kRestDriftLimit_m;
+}
+/// Guided with less force than this is not guided. Measured (tests/hand, `vps_hand edge`): at most 0.01 N
+/// over a plate with nothing beside the part, at least 0.11 N in a bore.
+inline constexpr double kGuideLeast_N = 0.05;
+inline bool isGuided(const StepResult& step) {
+  return step.guide_force_N >= kGuideLeast_N;
 }
 /// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
 inline bool isGood(const StepResult& step) {
@@ -142,12 +152,23 @@ struct RealTimeResult {
   std::uint64_t faults = 0;                   ///< safety faults
 };
 
+/// One of several runs of the same procedure (assembleTries()).
+struct TryResult {
+  std::uint64_t seed = 0;  ///< of the virtual operator
+  Verdict verdict = Verdict::NotShown;
+  double simulated_s = 0;
+  std::string reason;  ///< "part: why", of the first step that does not fit; empty when all fit
+};
+
 struct AssembleResult {
   std::string scene;
   Verdict verdict =
       Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
   bool completed = false;
   std::vector<StepResult> steps;
+  std::vector<TryResult> tries;  ///< in order of their seeds; empty for a single run
+  /// Ease of assembly: the share of the tries in which every part was brought home.
+  std::optional<double> ease_share;
   std::vector<TraceRow> trace;
   std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
   Snapshot finished;

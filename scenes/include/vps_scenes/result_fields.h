@@ -48,6 +48,10 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
+    field("by_contact", &StepResult::by_contact,
+          "completed, and other parts guided it across its path; false: by sight alone"),
+    field("guide_force_N", &StepResult::guide_force_N,
+          "greatest force from the sides, against the last leg of its path, while it was in hand"),
     field("failure_reason", &StepResult::failure_reason, "empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
     field("duration_s", &StepResult::duration_s, "simulated time that it took"),
@@ -77,7 +81,7 @@ inline constexpr auto kStrategyFields = std::make_tuple(
     field(
         "strategy", &StrategyUse::strategy,
         "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
-        "press_home or place_by_sight"),
+        "press_home, place_by_sight or turn_search"),
     field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
     field("duration_s", &StrategyUse::duration_s, "how long it took"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
@@ -156,6 +160,13 @@ static_assert(coversAllMembers<RealTimeResult>(kRealTimeHapticFields, kRealTimeP
 
 using LocalContact = decltype(AssembleResult::local_contact);
 
+inline constexpr auto kTryFields = std::make_tuple(
+    field("seed", &TryResult::seed, "seed of the virtual operator"),
+    field("verdict", &TryResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("simulated_s", &TryResult::simulated_s, "simulated time"),
+    field("reason", &TryResult::reason, "of the first step that does not fit; empty when all fit"));
+static_assert(coversAllMembers<TryResult>(kTryFields));
+
 inline constexpr auto kAssembleFields = std::make_tuple(
     field("scene", &AssembleResult::scene, "name of the scene"),
     field("verdict", &AssembleResult::verdict, "`fits`, `blocked` or `not_shown`"),
@@ -164,6 +175,9 @@ inline constexpr auto kAssembleFields = std::make_tuple(
           "near points that found no room in a query; 0 unless a limit was set"),
     field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
     list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
+    list("tries", &AssembleResult::tries, kTryFields),
+    field("ease_of_assembly", &AssembleResult::ease_share,
+          "share of the tries in which every part was brought home; null for a single run"),
     object("haptic",
            std::make_tuple(
                field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
@@ -203,6 +217,6 @@ inline constexpr auto kTraceFields = std::make_tuple(
     field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"),
     field("strategy", &TraceRow::strategy,
           "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
-          "7 press_home, 8 place_by_sight"));
+          "7 press_home, 8 place_by_sight, 9 turn_search"));
 
 }  // namespace vps::scenes::inline v0

@@ -57,6 +57,7 @@ struct OperatorSettings {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation of the aim across the path
   double aim_error_rad = 0.005;
+  double aim_turn_rad = 0;    ///< greatest error about the axis of insertion that sight does not correct
   double speed_m_s = 0.05;    ///< average along the path
   double press_N = 5;         ///< force with which the operator presses a part home
   double force_limit_N = 15;  ///< the operator backs off above this

@@ -21,6 +21,7 @@ device::OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) 
   habits.seed = hand.seed + step;  // a new aim error for each step, whatever the step before took
   habits.aim_error_m = hand.aim_error_m;
   habits.aim_error_rad = hand.aim_error_rad;
+  habits.aim_turn_rad = hand.aim_turn_rad;
   habits.speed_m_s = hand.speed_m_s;
   habits.press_N = hand.press_N;
   habits.force_limit_N = hand.force_limit_N;

@@ -56,9 +56,19 @@ void requireSteps(const Scene& scene) {
 
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options) {
-  AssembleResult result;
   const double begun_s = wallSeconds();
   const std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress);
+  const double checked_s = wallSeconds() - begun_s;
+  AssembleResult result = runProcedure(scene, hand, log, settings, options, drawn);
+  result.build_wall_s += checked_s;
+  return result;
+}
+
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options,
+                            const std::vector<StepResult>& drawn) {
+  AssembleResult result;
+  const double begun_s = wallSeconds();
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
   buildModels(scene, plan, options);
   RunTrace trace(scene, log);

@@ -18,5 +18,9 @@ void requireSteps(const Scene& scene);
 ///             the scene's csv_rate_hz
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options);
+/// With what checkDrawnTargets() has found already.
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options,
+                            const std::vector<StepResult>& drawn);
 
 }  // namespace vps::scenes::inline v0

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "procedure/insertion_axis.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
+
+constexpr double kGuide_s = 0.02;  ///< what pushes across for less than this is a blow and does not guide
 
 device::RunTrace logEntry(const TraceRow& row) {
   device::RunTrace entry;
@@ -46,7 +50,9 @@ RunTrace::RunTrace(const Scene& scene, device::RunLog* log)
 void RunTrace::beginStep(const AssemblyWorld& world) {
   samples_.clear();
   first_row_ = rows_.size();
-  peak_contact_N_ = 0;
+  peak_contact_N_ = guide_N_ = 0;
+  const SceneStep& step = world.scene().steps[static_cast<std::size_t>(world.state().step)];
+  axis_W_ = insertionAxis(step, world.state().moving.X_PG);
   start_.push_back(snapshotOf(world));
   contact_.push_back(start_.back());
 }
@@ -64,6 +70,9 @@ void RunTrace::add(const AssemblyWorld& world, TracePhase phase, StepResult& res
   if (!world.state().is_holding) return;
   result.peak_force_N = std::max(result.peak_force_N, row.F_hand_W.f.norm());
   result.peak_torque_Nm = std::max(result.peak_torque_Nm, row.F_hand_W.tau.norm());
+  guide_N_ += std::min(1.0, world.dt_s() / kGuide_s) * (world.simulation().forceAcross_N(axis_W_) - guide_N_);
+  if (phase == TracePhase::Insert || phase == TracePhase::Press)
+    result.guide_force_N = std::max(result.guide_force_N, guide_N_);
   const bool is_on_the_way = phase == TracePhase::Reach || phase == TracePhase::Insert;
   if (touch.force_N > peak_contact_N_ && is_on_the_way) {
     peak_contact_N_ = touch.force_N;

@@ -48,6 +48,8 @@ class RunTrace {
   std::vector<OverlapSample> samples_;
   std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
   double peak_contact_N_ = 0;                    ///< of the current step
+  Vec3 axis_W_ = Vec3::Zero();                   ///< of insertion
+  double guide_N_ = 0;                           ///< across it, over the last moments
   std::optional<device::OperatorState> logged_state_;
 };
 

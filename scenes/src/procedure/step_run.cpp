@@ -2,12 +2,15 @@
 #include "procedure/step_run.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include "haptics/clutching.h"
 #include "judge/box_motion.h"
+#include "procedure/insertion_axis.h"
 #include "procedure/settling.h"
 #include "procedure/step_verdict.h"
 #include "vps_scenes/contact_episodes.h"
@@ -19,10 +22,8 @@ namespace {
 /// Of the part's end that goes in first, the vertex that is farthest from the axis of insertion through G; in
 /// P. Zero where the path has no last leg.
 Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
-  const Vec3 last_W = step.way_points.empty() ? step.X_WP_start * X_PG.p : step.way_points.back() * X_PG.p;
-  const Vec3 leg_W = step.X_WP_target * X_PG.p - last_W;
-  if (leg_W.norm() < 1e-9) return Vec3::Zero();
-  const Vec3 axis_P = step.X_WP_target.R.transpose() * leg_W.normalized();
+  const Vec3 axis_P = step.X_WP_target.R.transpose() * insertionAxis(step, X_PG);
+  if (axis_P.isZero()) return Vec3::Zero();
   constexpr double kEnd_m = 10e-6;  // facets of one end lie within this
   double lead_m = -std::numeric_limits<double>::infinity(), farthest_m = -1;
   const auto& vertices = scene.parts[step.part].part.mesh.vertices;
@@ -38,6 +39,25 @@ Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
   return tip_P;
 }
 
+/// False if the end that goes in first is round about the axis through G: points of its rim lie all around.
+bool hasCorners(const Scene& scene, const SceneStep& step, const Pose& X_PG, const Vec3& tip_P) {
+  const Vec3 axis_P = step.X_WP_target.R.transpose() * insertionAxis(step, X_PG);
+  if (axis_P.isZero() || tip_P.isZero()) return false;
+  constexpr double kEnd_m = 10e-6, kRim = 0.97;  // of the radius: within the chord of 12 flats
+  constexpr int kSectors = 12;
+  const Vec3 x = axis_P.unitOrthogonal(), y = axis_P.cross(x), tip = tip_P - X_PG.p;
+  const double radius_m = std::hypot(tip.dot(x), tip.dot(y)), lead_m = axis_P.dot(tip_P);
+  std::array<bool, kSectors> has_rim{};
+  for (const Vec3& p : scene.parts[step.part].part.mesh.vertices) {
+    const Vec3 off = p - X_PG.p;
+    const double a_m = off.dot(x), b_m = off.dot(y);
+    if (axis_P.dot(p) < lead_m - kEnd_m || std::hypot(a_m, b_m) < kRim * radius_m) continue;
+    const double turn = std::atan2(b_m, a_m) / (2 * std::numbers::pi) + 0.5;
+    has_rim[std::min<std::size_t>(kSectors - 1, static_cast<std::size_t>(turn * kSectors))] = true;
+  }
+  return !std::all_of(has_rim.begin(), has_rim.end(), [](bool has) { return has; });
+}
+
 device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, double tolerance_m) {
   const StepPart& moving = world.state().moving;
   device::OperatorTask task;
@@ -50,6 +70,7 @@ device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, d
   task.timeout_s = step.timeout_s;
   task.weight_W = moving.weight_W;
   task.tip_P = tipOf(world.scene(), step, moving.X_PG);
+  task.has_corners = hasCorners(world.scene(), step, moving.X_PG, task.tip_P);
   const double k_N_per_m = world.driver().settings().gains.k_N_per_m;
   task.give_m_per_N = k_N_per_m > 0 ? 1 / k_N_per_m : 0;
   return task;

@@ -50,6 +50,7 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
   result.completed = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
+  result.by_contact = result.completed && isGuided(result);
   if (result.completed) return;
   result.failure_reason = failureReason(world, step, result, is_done);
   if (is_done && result.final_error_m <= result.tolerance_m)

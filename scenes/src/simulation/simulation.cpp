@@ -196,7 +196,9 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
   w.remove(part);
   const ScenePart& scene_part = w.scene.parts[part];
   DynamicBody added;
-  const MassProperties mass = massProperties(scene_part.part.mesh);
+  MassProperties mass = massProperties(scene_part.part.mesh);
+  // A mesh that is inside out and not closed either is turned where its inside was found.
+  if (!(mass.volume_m3 > 0) && w.modelOf(part)->solid) mass = massProperties(w.modelOf(part)->solid->mesh());
   if (!(mass.volume_m3 > 0))
     throw LoadError(
         scene_part.file, scene_part.part.name,
@@ -349,6 +351,17 @@ TouchState Simulation::touch() const {
     state.force_N += static_cast<double>(point.getAppliedImpulse()) / world_->dt_s;
   });
   return state;
+}
+
+double Simulation::forceAcross_N(const Vec3& axis_W) const {
+  constexpr double kSide = 0.5;  // sine of 30 degrees
+  double impulse_Ns = 0;
+  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
+    const Vec3 n = bullet::fromBt(point.m_normalWorldOnB);
+    if ((n - axis_W * axis_W.dot(n)).norm() > kSide)
+      impulse_Ns += static_cast<double>(point.getAppliedImpulse());
+  });
+  return impulse_Ns / world_->dt_s;
 }
 
 void Simulation::contactMarks(std::vector<ContactMark>& marks) const {

@@ -89,6 +89,9 @@ class Simulation {
   /// Centre of mass in the part's frame.
   [[nodiscard]] Vec3 centreOfMass(std::size_t part) const;
   [[nodiscard]] TouchState touch() const;
+  /// Sum of the forces of contacts from the sides, which guide a part along a unit axis: whose normal is more
+  /// than 30 degrees off it (of all contacts where it is zero). Without friction.
+  [[nodiscard]] double forceAcross_N(const Vec3& axis_W) const;
   void contactMarks(std::vector<ContactMark>& marks) const;
   /// Number of near points so far that exceeded a query's contact limit.
   [[nodiscard]] std::size_t contactsLeftOut() const;

@@ -12,6 +12,12 @@ namespace vps::viewer::inline v0 {
 /// "fits", "blocked", "not shown"
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
 
+/// Whether a step's part was brought home by contact: "yes", or "no: " and why not.
+VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
+
+/// "Ease of assembly: 7 of 10 tries succeeded"; empty for a single run.
+VPS_VIEWER_API std::string easeWords(const scenes::AssembleResult& result);
+
 /// One sentence: "Yes, the parts go together: all 3 steps fit."
 VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 

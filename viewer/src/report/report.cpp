@@ -92,7 +92,7 @@ std::string stepFacts(const scenes::StepResult& s) {
   return html::facts({{"Verdict", scenes::isGood(s) ? "fits"
                                                     : "<b class=\"bad\">" + std::string(words(s.verdict)) +
                                                           "</b>: " + escapeHtml(s.reason)},
-                      {"Brought to its target by contact", s.completed ? "yes" : "no"},
+                      {"Brought to its target by contact", contactWords(s)},
                       {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
                       {"Greatest overlap, by exact distance", deepest},
                       {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
@@ -258,6 +258,20 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
          format(Material().friction, "%.2f") + ", <i>assumed</i>).</li>\n</ul>\n";
 }
 
+/// Each try with its seed, and the share that succeeded. Empty for a single run.
+std::string tryTable(const scenes::AssembleResult& result) {
+  if (result.tries.empty()) return {};
+  std::vector<std::vector<html::Cell>> rows;
+  for (const scenes::TryResult& one : result.tries)
+    rows.push_back({{std::to_string(one.seed), "n"},
+                    {words(one.verdict), ""},
+                    {format(one.simulated_s, "%.1f"), "n"},
+                    {escapeHtml(one.reason), ""}});
+  return "<h2>Tries</h2>\n<p>" + escapeHtml(easeWords(result)) +
+         " This report shows the first that fits, or else the first.</p>\n" +
+         html::table({"seed of the hand", "verdict", "time [s]", "why"}, rows);
+}
+
 /// The answer, with the reasons for the steps that failed and for what is missing in the report.
 std::string summary(const scenes::AssembleResult& result, const std::vector<std::string>& notes) {
   std::string out = headline(result);
@@ -268,11 +282,12 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     const scenes::StepResult& step = result.steps[i];
     const std::string name = "Step " + std::to_string(i + 1) + ", " + step.part + ": ";
     if (!step.reason.empty()) note(name + step.reason + ".");
+    if (step.completed && !step.by_contact) note(name + "by contact: " + contactWords(step) + ".");
     if (!step.stands_on.empty())
       note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
   }
   for (const std::string& text : notes) note(text);
-  return out;
+  return out + tryTable(result);
 }
 
 std::string howToRepeat(const std::string& command) {

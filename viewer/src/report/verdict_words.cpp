@@ -29,6 +29,26 @@ const char* words(scenes::Verdict verdict) {
   return "not shown";
 }
 
+std::string contactWords(const scenes::StepResult& step) {
+  if (!step.completed) return "no: it did not reach its target";
+  if (step.by_contact) return "yes";
+  return "no: nothing beside its path guided it; the hand placed it by sight alone, so that nothing but the "
+         "tolerance says where it is";
+}
+
+std::string easeWords(const scenes::AssembleResult& result) {
+  if (result.tries.empty()) return {};
+  const auto good = std::count_if(result.tries.begin(), result.tries.end(), [](const scenes::TryResult& one) {
+    return one.verdict == scenes::Verdict::Fits;
+  });
+  return std::string("Ease of assembly: ")
+      .append(std::to_string(good))
+      .append(" of ")
+      .append(std::to_string(result.tries.size()))
+      .append(result.tries.size() == 1 ? " try" : " tries")
+      .append(" brought every part home.");
+}
+
 std::string verdictLine(const scenes::AssembleResult& result) {
   const auto fit = std::count_if(result.steps.begin(), result.steps.end(),
                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
