@@ -103,6 +103,12 @@ CheckedSection sectionOf(const CheckedPair& pair, const PlacedSurface& a, const 
     section.right_W = depth_W;
     section.up_W = acrossOf(depth_W, {2, 0, 1});
   }
+  // The deepest point is often on a face: the plane passes a little towards the middle of what
+  // both share, so that it does not graze the face.
+  constexpr double kInwards = 0.02;
+  const Vec3 middle_W = 0.5 * (a.box_W.min.cwiseMax(b.box_W.min) + a.box_W.max.cwiseMin(b.box_W.max));
+  const Vec3 n_W = section.right_W.cross(section.up_W);
+  section.at_W += kInwards * n_W.dot(middle_W - pair.at_W) * n_W;
   return section;
 }
 

@@ -62,7 +62,7 @@ class Cutter {
       const std::uint32_t a = t[k], b = t[(k + 1) % 3];
       if (is_front[k] == is_front[(k + 1) % 3]) continue;
       const auto [low, high] = std::minmax(a, b);
-      (is_front[k] ? cut.to : cut.from) = {low, high};
+      (is_front[k] ? cut.from : cut.to) = {low, high};
       ++crossings;
     }
     if (crossings == 2) out.push_back(cut);
