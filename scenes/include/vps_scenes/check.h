@@ -164,7 +164,7 @@ struct CheckResult {
   std::vector<CheckedSection> sections;  ///< if asked for: of each fit and of each overlap
   double near_m = 0;                     ///< as the settings say
   std::vector<ClearanceMap> maps;        ///< if asked for: of the parts that are near others
-  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, play_wall_s = 0;
+  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0;
   [[nodiscard]] std::size_t clashes() const;
   /// Pairs of which it cannot be told whether they overlap.
   [[nodiscard]] std::size_t uncertain() const;

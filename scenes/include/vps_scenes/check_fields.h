@@ -85,6 +85,7 @@ inline constexpr auto kCheckWallFields =
     std::make_tuple(field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),
                     field("pairs_s", &CheckResult::pairs_wall_s, "time for the pairs"),
                     field("fits_s", &CheckResult::fits_wall_s, "time for the fits"),
+                    field("pictures_s", &CheckResult::pictures_wall_s, "time for sections and maps"),
                     field("play_s", &CheckResult::play_wall_s, "time for play and ways out"));
 
 }  // namespace vps::scenes::inline v0

@@ -146,6 +146,7 @@ CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>&
   result.fits_wall_s = lap_s();
   if (settings.has_sections) result.sections = checkSections(placed, result, progress);
   if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
+  result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
   if (settings.has_play) checkPlay(placed, result, progress);
   result.play_wall_s = lap_s();

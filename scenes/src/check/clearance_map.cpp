@@ -78,14 +78,19 @@ ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurf
   while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others_W)) {
   }
   map.distance_m.assign(map.mesh_W.vertices.size(), near_m);
-  for (std::size_t i = 0; i < map.distance_m.size(); ++i)
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      const Vec3& p_W = map.mesh_W.vertices[i];
-      if ((p_W.array() < others_W[k].min.array()).any() || (p_W.array() > others_W[k].max.array()).any())
-        continue;
-      const Vec3 p = others[k]->X_WP.inverse() * p_W;
-      map.distance_m[i] = std::min(map.distance_m[i], others[k]->surface->solid().signedDistance(p, near_m));
+  for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
+    const Vec3& p_W = map.mesh_W.vertices[i];
+    double& least_m = map.distance_m[i];
+    for (const PlacedSurface* other : others) {
+      const Vec3 out = (other->box_W.min - p_W).cwiseMax(p_W - other->box_W.max).cwiseMax(0);
+      const double apart_m = out.norm();
+      if (apart_m >= std::max(least_m, 1e-300)) continue;
+      // Nothing outside its box is inside a part; within the box a far surface can still be around the point.
+      const double most_m = apart_m > 0 ? least_m : near_m;
+      const Vec3 p = other->X_WP.inverse() * p_W;
+      least_m = std::min(least_m, other->surface->solid().signedDistance(p, most_m));
     }
+  }
   return map;
 }
 
