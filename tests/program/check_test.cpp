@@ -56,6 +56,27 @@ TEST_F(Check, AnAllowedOverlapIsNoClash) {
   EXPECT_NE(ran.out.find("clash (allowed)"), std::string::npos) << ran.out;
 }
 
+TEST_F(Check, ADeclaredPressFitIsNoClashAndAGreaterOverlapIs) {
+  write("drawn.toml", scene(-0.02, "press_fit = '25um'\n"));
+  Ran ran = run("check drawn.toml --json check.json --html check.html");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("press fit"), std::string::npos) << ran.out;
+  const json found = json::parse(slurp(folder_ / "check.json"));
+  const std::string page = slurp(folder_ / "check.html");
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_NE(page.find("<b>plate</b> and <b>pin</b> overlap by 19.9"), std::string::npos);
+  EXPECT_EQ(found["pairs"][0]["state"], "press fit");
+  EXPECT_NEAR(found["pairs"][0]["press_fit_m"], 25e-6, 1e-12);
+  write("drawn.toml", scene(-0.03, "press_fit = '25um'\n"));
+  EXPECT_EQ(run("check drawn.toml").status, 1);
+  write("drawn.toml", scene(0.03, "press_fit = '25um'\n"));
+  ran = run("check drawn.toml");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_NE(ran.out.find("25.00 um of press fit are declared, but the parts are drawn without"),
+            std::string::npos)
+      << ran.out;
+}
+
 TEST_F(Check, WritesCsvAndAPageAndRepeatsByteForByte) {
   write("drawn.toml", scene(0.02));
   ASSERT_EQ(run("check drawn.toml --json a.json --csv a.csv --html a.html").status, 0);
@@ -69,6 +90,7 @@ TEST_F(Check, WritesCsvAndAPageAndRepeatsByteForByte) {
   EXPECT_TRUE(
       slurp(folder_ / "a.csv").starts_with("what,a,b,quantity,value,error\npair,plate,pin,clearance_m,"));
   EXPECT_NE(slurp(folder_ / "a.html").find("No parts overlap as drawn"), std::string::npos);
+  EXPECT_NE(slurp(folder_ / "a.html").find("Clearance on the surfaces"), std::string::npos);
   // Sideways and up the pin is free, down it has the gap.
   const json& pin = a["parts"][1];
   EXPECT_TRUE(pin["play_m"][4].is_null());
@@ -83,6 +105,16 @@ TEST_F(Check, ACadFileNeedsItsUnitAndASceneDoesNotTakeOne) {
   expectRefused("check drawn.toml --units mm", "leave out --units");
   expectRefused("check drawn.toml --near 2", "--near");
   expectRefused("check plate.stl --units um --json plate.stl", "plate.stl");
+}
+
+// The pin stands on a sheet of two facets, of which nobody knows which side is inside.
+TEST_F(Check, ASheetInAPartIsNotShownAndSaysWhy) {
+  write("sheet.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3\nf 1 3 4\n");
+  write("drawn.toml", "unit = 'mm'\n[[part]]\nfile = 'sheet.obj'\n[[part]]\nfile = 'pin.stl'\n");
+  const Ran ran = run("check drawn.toml --no-play");
+  EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("it cannot be told whether sheet and pin overlap"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("2 of 2 facets belong to surfaces without an inside"), std::string::npos) << ran.out;
 }
 
 TEST_F(Check, PartsOfTheWrongUnitAreNamed) {

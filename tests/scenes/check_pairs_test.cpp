@@ -142,6 +142,52 @@ TEST(CheckPairs, ATurnedBlockInABlockSharesAnOctagon) {
   EXPECT_LT(result.pairs[0].volume_error_m3, 1e-9);  // 17 cm2 by 0.1 um would be 0.17 mm3
 }
 
+// Each bar's edges are 2 mm inside the other one's faces, and what they share is 6 mm thick.
+TEST(CheckPairs, BarsThatCrossAreAsDeepAsWhatTheyShareIsThick) {
+  const CheckResult result = check(
+      {block("along", {0.1, 0.01, 0.01}, at(0, 0, 0)), block("across", {0.006, 0.1, 0.006}, at(0, 0, 0))});
+  ASSERT_EQ(result.pairs.size(), 1U);
+  EXPECT_NEAR(result.pairs[0].interference_depth_m, 6e-3, 1e-6);
+  EXPECT_NEAR(result.pairs[0].interference_volume_m3, 6e-3 * 6e-3 * 10e-3, result.pairs[0].volume_error_m3);
+}
+
+TEST(CheckPairs, AnAssemblyWithASurfaceThatHasNoInsideGetsNoVerdict) {
+  Mesh sheet{{Vec3(-0.02, -0.02, 0), Vec3(0.02, -0.02, 0), Vec3(0.02, 0.02, 0), Vec3(-0.02, 0.02, 0)},
+             {{0, 1, 2}, {0, 2, 3}}};
+  const DrawnPart cube = block("cube", {0.01, 0.01, 0.01}, at(0, 0, 0));
+  for (const Mesh& thin : {sheet, makeBox(Vec3(0.04, 0.04, 0.1e-6))}) {
+    const CheckResult result = check({cube, part("sheet", thin)});
+    ASSERT_EQ(result.pairs.size(), 1U);
+    EXPECT_TRUE(result.pairs[0].is_uncertain);
+    EXPECT_EQ(result.clashes(), 0U);
+    EXPECT_EQ(result.uncertain(), 1U);
+    EXPECT_FALSE(result.parts[1].no_inside.empty());
+    EXPECT_TRUE(result.parts[0].no_inside.empty());
+    // Beside the part nothing is uncertain.
+    const CheckResult beside = check({cube, part("sheet", thin, at(0, 0, 5.1e-3))});
+    EXPECT_EQ(beside.uncertain(), 0U);
+    EXPECT_EQ(beside.pairs.at(0).state, PairState::Apart);
+  }
+}
+
+// Two of three facets of a ball are missing: what is inside cannot be told.
+TEST(CheckPairs, ASurfaceTornToPiecesGetsNoVerdict) {
+  Mesh torn = makeSphere(0.02, 2);
+  Mesh pieces;
+  for (std::size_t i = 0; i < torn.triangles.size(); i += 3)
+    for (const std::uint32_t v : torn.triangles[i]) {
+      if (pieces.vertices.size() % 3 == 0) {
+        const auto n = static_cast<std::uint32_t>(pieces.vertices.size());
+        pieces.triangles.push_back({n, n + 1, n + 2});
+      }
+      pieces.vertices.push_back(torn.vertices[v]);
+    }
+  const CheckResult result = check({part("torn", pieces), block("cube", {0.01, 0.01, 0.01}, at(0, 0, 0))});
+  EXPECT_EQ(result.clashes(), 0U);
+  EXPECT_EQ(result.uncertain(), 1U);
+  EXPECT_FALSE(result.parts[0].no_inside.empty()) << result.parts[0].mesh_faults;
+}
+
 TEST(CheckPairs, APartDrawnTwiceIsAClashOfItsWholeVolume) {
   const Mesh tube = makeTube(0.02, 0.01, 0.03, 64);
   const CheckResult result = check({part("tube", tube, at(0.1, 0, 0)), part("tube_2", tube, at(0.1, 0, 0))});

@@ -26,13 +26,13 @@ std::string pairTable(const scenes::CheckResult& result) {
   Table table(
       {"<part", "<and", "<state", "clearance [um]", "overlap [um]", "volume [mm3]", "error [um]", "at [mm]"});
   for (const scenes::CheckedPair& pair : result.pairs) {
-    const bool is_clash = pair.state == PairState::Clash;
-    const std::string state = toText(pair.state);
-    table.add({pair.a, pair.b, is_clash && pair.is_allowed ? state + " (allowed)" : state,
-               is_clash ? "" : um(pair.clearance_m),
-               pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
-               is_clash ? fixed(1e9 * pair.interference_volume_m3, 4) : "", um(pair.error_m),
-               place(pair.at_W)});
+    const bool is_clash = pair.state >= PairState::PressFit;
+    const std::string state = pair.is_uncertain ? "not known" : toText(pair.state);
+    table.add(
+        {pair.a, pair.b, pair.state == PairState::Clash && pair.is_allowed ? state + " (allowed)" : state,
+         is_clash ? "" : um(pair.clearance_m),
+         pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
+         is_clash ? fixed(1e9 * pair.interference_volume_m3, 4) : "", um(pair.error_m), place(pair.at_W)});
   }
   return table.text();
 }
@@ -42,6 +42,24 @@ std::string fitTable(const scenes::CheckResult& result) {
   for (const scenes::CheckedFit& fit : result.fits)
     table.add({toText(fit.kind), fit.shaft, fit.bore, fixed(1e3 * fit.shaft_m, 3),
                um(fit.diametral_clearance_m), um(fit.error_m), fixed(1e3 * fit.length_m, 2), fit.iso_286});
+  return table.text();
+}
+
+std::string pressTable(const scenes::CheckResult& result) {
+  Table table({"<pressed in", "<of", "<in", "drawn [um]", "declared [um]", "hub [mm]", "hole [mm]",
+               "pressure [MPa]", "stress [MPa]", "force [N]", "declared [N]"});
+  for (const scenes::CheckedFit& fit : result.fits) {
+    if (!fit.press) continue;
+    const scenes::CheckedPress& press = *fit.press;
+    const auto pair = std::ranges::find_if(result.pairs, [&](const scenes::CheckedPair& p) {
+      return (p.a == fit.shaft && p.b == fit.bore) || (p.b == fit.shaft && p.a == fit.bore);
+    });
+    table.add({toText(fit.kind), fit.shaft, fit.bore, um(-fit.diametral_clearance_m), um(pair->press_fit_m),
+               std::isfinite(press.hub_m) ? fixed(1e3 * press.hub_m, 2) : "endless",
+               fixed(1e3 * press.hole_m, 2), fixed(1e-6 * press.pressure_Pa, 1),
+               fixed(1e-6 * press.hub_stress_Pa, 0), fixed(press.force_N, 0),
+               fixed(press.declared_force_N, 0)});
+  }
   return table.text();
 }
 
@@ -56,7 +74,7 @@ std::string partTable(const scenes::CheckResult& result) {
   Table table({"<part", "x [um]", "y [um]", "z [um]", "about x [mrad]", "about y", "about z", "<ways out"});
   for (const scenes::CheckedPart& part : result.parts) {
     if (!part.play) {
-      table.add({part.name, "clashes"});
+      table.add({part.name, "overlaps"});
       continue;
     }
     std::vector<std::string> cells = {part.name};
@@ -72,20 +90,57 @@ std::string partTable(const scenes::CheckResult& result) {
 
 }  // namespace
 
+namespace {
+
+/// Press fits that are declared and not drawn.
+std::string undrawnPressFits(const scenes::CheckResult& result) {
+  std::string out;
+  for (const scenes::CheckedPair& pair : result.pairs)
+    if (pair.press_fit_m > 0 && pair.state < PairState::PressFit)
+      out += pair.a + " and " + pair.b + ": " + um(pair.press_fit_m) +
+             " um of press fit are declared, but the parts are drawn without an overlap\n";
+  return out;
+}
+
+}  // namespace
+
 std::string checkTables(const scenes::CheckResult& result) {
   std::string out;
   if (!result.pairs.empty()) out += pairTable(result) + "\n";
   if (!result.fits.empty()) out += fitTable(result) + "\n";
+  const bool is_pressed =
+      std::ranges::any_of(result.fits, [](const scenes::CheckedFit& fit) { return fit.press.has_value(); });
+  if (is_pressed) out += pressTable(result) + "\n";
+  out += undrawnPressFits(result);
   const bool has_play =
       std::ranges::any_of(result.parts, [](const scenes::CheckedPart& p) { return p.play.has_value(); });
   if (has_play) out += partTable(result) + "\n";
   return out;
 }
 
+namespace {
+
+std::string whyUncertain(const scenes::CheckResult& result, const scenes::CheckedPair& pair) {
+  for (const scenes::CheckedPart& part : result.parts)
+    if ((part.name == pair.a || part.name == pair.b) && !part.no_inside.empty())
+      return "because of " + part.name + ": " + part.no_inside;
+  return {};
+}
+
+}  // namespace
+
 std::string checkHeadline(const scenes::CheckResult& result) {
   const std::string checked = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
                               std::to_string(result.pairs.size()) + " pairs near each other, ";
   const std::size_t clashes = result.clashes();
+  if (clashes == 0 && result.uncertain() > 0) {
+    const scenes::CheckedPair& first =
+        *std::ranges::find(result.pairs, true, &scenes::CheckedPair::is_uncertain);
+    return checked + "not shown: it cannot be told whether " + first.a + " and " + first.b + " overlap, " +
+           whyUncertain(result, first) +
+           (result.uncertain() > 1 ? "; so are " + std::to_string(result.uncertain() - 1) + " other pairs"
+                                   : "");
+  }
   if (clashes == 0) return checked + "no clash beyond the error";
   const scenes::CheckedPair& worst = *result.deepestClash();
   return checked + std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") +
@@ -107,6 +162,11 @@ std::string checkCsv(const scenes::CheckResult& result) {
   for (const scenes::CheckedFit& fit : result.fits) {
     add(toText(fit.kind), fit.shaft, fit.bore, "diametral_clearance_m", fit.diametral_clearance_m,
         fit.error_m);
+    if (fit.press) {
+      add("press", fit.shaft, fit.bore, "pressure_Pa", fit.press->pressure_Pa, NAN);
+      add("press", fit.shaft, fit.bore, "force_N", fit.press->force_N, NAN);
+      add("press", fit.shaft, fit.bore, "declared_force_N", fit.press->declared_force_N, NAN);
+    }
     add(toText(fit.kind), fit.shaft, fit.bore, "shaft_m", fit.shaft_m, fit.error_m);
     add(toText(fit.kind), fit.shaft, fit.bore, "bore_m", fit.bore_m, fit.error_m);
   }

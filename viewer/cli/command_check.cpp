@@ -59,6 +59,7 @@ int runCheck(const CheckArguments& given) {
   OutputFile json(given.json, inputs), csv(given.csv, inputs), html(given.html, inputs);
   scenes::CheckSettings settings;
   settings.has_play = !given.has_no_play;
+  settings.has_sections = settings.has_maps = !given.html.empty();
   if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
   ProgressBar bar;
@@ -74,7 +75,8 @@ int runCheck(const CheckArguments& given) {
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
-  return result.clashes() == 0 ? kGood : kBad;
+  if (result.clashes() > 0) return kBad;
+  return result.uncertain() > 0 ? kNotShown : kGood;
 }
 
 }  // namespace

@@ -246,6 +246,7 @@ std::string toJson(const scenes::CheckResult& result) {
   return text({{"wall", toObject(result, scenes::kCheckWallFields)},
                {"assembly", result.assembly},
                {"clashes", result.clashes()},
+               {"uncertain", result.uncertain()},
                {"pairs", pairs},
                {"fits", fits},
                {"parts", parts}});

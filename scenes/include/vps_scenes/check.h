@@ -25,7 +25,11 @@ struct DrawnPart {
   /// Greatest distance of the mesh from the curved faces that it stands for, where the file format says it;
   /// empty: it is estimated from the angles between facets.
   std::optional<double> chord_m;
-  bool allow_overlap = false;  ///< of an interference fit: its overlap is reported and is no clash
+  bool allow_overlap = false;  ///< its overlap is reported and is no clash
+  double press_fit_m = 0;      ///< see ScenePart, as are those that follow
+  double youngs_modulus_Pa = 210e9;
+  double poissons_ratio = 0.3;
+  double friction = 0.15;
 };
 
 /// The parts of a CAD file at their poses.
@@ -37,12 +41,15 @@ struct CheckSettings {
   double near_m = 1e-3;  ///< pairs with more clearance are not reported
   bool has_fits = true;
   bool has_play = true;  ///< with the ways out
+  bool has_sections = false;
+  bool has_maps = false;
 };
 
 enum class PairState {
-  Apart,    ///< the clearance is more than its error
-  Contact,  ///< the surfaces meet to within the error; coincident faces are contact
-  Clash,    ///< the parts overlap by more than the error
+  Apart,     ///< the clearance is more than its error
+  Contact,   ///< the surfaces meet to within the error; coincident faces are contact
+  PressFit,  ///< the parts overlap by more than the error, and by no more than a declared press fit
+  Clash,     ///< the parts overlap by more than the error, and by more than is declared
 };
 VPS_SCENES_API const char* toText(PairState state);
 
@@ -58,6 +65,10 @@ struct CheckedPair {
   double error_m = 0;        ///< of clearance and depth
   Vec3 at_W = Vec3::Zero();  ///< of the deepest overlap, or between the nearest points
   bool is_allowed = false;   ///< an overlap that the scene allows
+  /// It cannot be told whether they overlap: a surface without an inside is there, see
+  /// CheckedPart::no_inside. `state` is then that of the surfaces alone.
+  bool is_uncertain = false;
+  double press_fit_m = 0;  ///< declared interference, the greater of both parts'; 0: none
   [[nodiscard]] bool isClash() const { return state == PairState::Clash && !is_allowed; }
 };
 
@@ -67,17 +78,33 @@ enum class FitKind {
 };
 VPS_SCENES_API const char* toText(FitKind kind);
 
+/// What it takes to press a shaft into a bore that is smaller, by Lame's formula for elastic thick-walled
+/// cylinders: the hub is the largest ring around the bore that has only material in it, over the middle half
+/// of the fit, and the shaft has the largest hole that is around its axis there.
+struct CheckedPress {
+  double hub_m = 0, hole_m = 0;  ///< diameters: outside of the hub, hole of the shaft
+  double pressure_Pa = 0;        ///< in the joint, for the interference as drawn
+  double hub_stress_Pa = 0;      ///< greatest equivalent stress (Tresca), at the bore
+  double force_N = 0;            ///< to press the shaft along the fit's whole length, or out again
+  double declared_force_N = 0;   ///< the same for the declared interference
+  double shaft_modulus_Pa = 0, hub_modulus_Pa = 0;  ///< Young's moduli that were used
+  double friction = 0;                              ///< that was used: geometric mean of both parts'
+};
+
 /// A part that fits into another: found from facets that lie on a common cylinder or plane.
 struct CheckedFit {
   FitKind kind = FitKind::Shaft;
-  std::string shaft, bore;         ///< the inner and the outer part
-  Vec3 axis_W = Vec3::UnitZ();     ///< of the cylinders; of a key across its faces. Unit
-  Vec3 at_W = Vec3::Zero();        ///< on the axis, in the middle of the length
-  double shaft_m = 0, bore_m = 0;  ///< diameters, or widths, as drawn
-  double length_m = 0;  ///< over which both are found, along the axis; of a key the overlap's longer side
-  double diametral_clearance_m = 0;  ///< negative: interference
-  double error_m = 0;                ///< of the clearance
-  std::string iso_286;               ///< "H7/g6" if both sizes lie in the zones of a common fit, else empty
+  std::string shaft, bore;            ///< the inner and the outer part
+  Vec3 axis_W = Vec3::UnitZ();        ///< of the cylinders; of a key across its faces. Unit
+  Vec3 at_W = Vec3::Zero();           ///< on the axis, in the middle of the length
+  double shaft_m = 0, bore_m = 0;     ///< diameters, or widths, as drawn
+  Vec3 along_W = Vec3::UnitZ();       ///< of a shaft the axis, of a key the overlap's longer side. Unit
+  double length_m = 0;                ///< over which both are found, in this direction
+  double diametral_clearance_m = 0;   ///< negative: interference
+  double offset_m = 0;                ///< greatest distance of the axes over the length; 0 for a key
+  double error_m = 0;                 ///< of the clearance
+  std::string iso_286;                ///< "H7/g6" if both sizes lie in the zones of a common fit, else empty
+  std::optional<CheckedPress> press;  ///< of a shaft with interference, if a press fit is declared
 };
 
 /// How far a part moves along or turns about an axis before it touches, the other parts held. Infinite where
@@ -92,6 +119,7 @@ struct CheckedPart {
   std::size_t triangles = 0;
   double chord_error_m = 0;             ///< greatest distance of the mesh from its curved faces
   std::string mesh_faults;              ///< in words; empty for a closed mesh
+  std::string no_inside;                ///< why it has no inside, or parts of it; empty: it has one
   std::optional<Play> play;             ///< none for a part that clashes, and if not asked for
   Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`
   Vec3 play_center_W = Vec3::Zero();    ///< through which the axes of rotation go
@@ -99,13 +127,47 @@ struct CheckedPart {
   std::vector<Vec3> ways_out_W;  ///< unit directions in which it leaves the others on a straight line
 };
 
+/// The outlines of a part in a plane, each a closed chain of points (right, up) [m]. The inside is where an
+/// odd number of chains is around a point.
+struct SectionOutline {
+  std::string part;
+  std::vector<std::vector<std::array<double, 2>>> chains;
+  bool is_open = false;  ///< the surface has holes there; their chains are closed by a straight line
+};
+
+/// A cut through the parts by a plane, at a fit or a clash.
+struct CheckedSection {
+  std::size_t of = 0;        ///< index of the fit, or of the pair
+  bool is_fit = false;       ///< else a pair
+  Vec3 at_W = Vec3::Zero();  ///< the point (0, 0) of the picture
+  Vec3 right_W = Vec3::UnitX(), up_W = Vec3::UnitY();
+  double half_m = 0;                  ///< the picture shows this far from the middle to each side
+  std::array<double, 2> near_m{};     ///< the place to look at closely, in the picture
+  double near_half_m = 0;             ///< and how far around it
+  std::vector<SectionOutline> parts;  ///< those whose outlines are in the picture; the two concerned first
+};
+
+/// The distance of a part's surface from the other parts, at the corners of facets that are divided where
+/// others are near.
+struct ClearanceMap {
+  std::string part;
+  Mesh mesh_W;
+  std::vector<double>
+      distance_m;  ///< by vertex: to the nearest other part, at most near_m; negative inside it
+};
+
 struct CheckResult {
   std::string assembly;
   std::vector<CheckedPair> pairs;  ///< clashes first, the deepest first; then by clearance
   std::vector<CheckedFit> fits;
   std::vector<CheckedPart> parts;
-  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, play_wall_s = 0;
+  std::vector<CheckedSection> sections;  ///< if asked for: of each fit and of each overlap
+  double near_m = 0;                     ///< as the settings say
+  std::vector<ClearanceMap> maps;        ///< if asked for: of the parts that are near others
+  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0;
   [[nodiscard]] std::size_t clashes() const;
+  /// Pairs of which it cannot be told whether they overlap.
+  [[nodiscard]] std::size_t uncertain() const;
   /// The deepest overlap that is not allowed; null if there is none.
   [[nodiscard]] const CheckedPair* deepestClash() const;
 };

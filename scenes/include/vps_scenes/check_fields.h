@@ -12,7 +12,8 @@ namespace vps::scenes::inline v0 {
 inline constexpr auto kCheckedPairFields = std::make_tuple(
     field("a", &CheckedPair::a, "name of one part"), field("b", &CheckedPair::b, "name of the other"),
     field("state", &CheckedPair::state,
-          "`apart`, `contact` (within the error) or `clash` (an overlap beyond it)"),
+          "`apart`, `contact` (within the error), `press fit` (an overlap as declared) or `clash` (another "
+          "one)"),
     field("clearance_m", &CheckedPair::clearance_m,
           "least distance of the surfaces; 0 where the meshes overlap"),
     field("interference_depth_m", &CheckedPair::interference_depth_m, "how deep the meshes overlap"),
@@ -21,8 +22,25 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
     field("error_m", &CheckedPair::error_m,
           "bound of the error of clearance and depth: chords of the meshes, rounding, search"),
     field("at_m", &CheckedPair::at_W, "the deepest point, or the middle of the nearest points, in the world"),
-    field("is_allowed", &CheckedPair::is_allowed, "the scene allows the overlap (`allow_overlap`)"));
+    field("is_allowed", &CheckedPair::is_allowed, "the scene allows the overlap (`allow_overlap`)"),
+    field("is_uncertain", &CheckedPair::is_uncertain,
+          "it cannot be told whether they overlap, because a part has no inside there (`no_inside`)"),
+    field("press_fit_m", &CheckedPair::press_fit_m, "declared interference (`press_fit`); 0: none"));
 static_assert(coversAllMembers<CheckedPair>(kCheckedPairFields));
+
+inline constexpr auto kPressFields = std::make_tuple(
+    field("hub_m", &CheckedPress::hub_m, "outer diameter of the largest ring of material around the bore"),
+    field("hole_m", &CheckedPress::hole_m, "diameter of the shaft's hole; 0: it has none"),
+    field("pressure_Pa", &CheckedPress::pressure_Pa, "pressure in the joint, for the interference as drawn"),
+    field("hub_stress_Pa", &CheckedPress::hub_stress_Pa, "greatest equivalent stress in the hub (Tresca)"),
+    field("force_N", &CheckedPress::force_N, "to press the shaft in along the fit's length, or out again"),
+    field("declared_force_N", &CheckedPress::declared_force_N, "the same for the declared interference"),
+    field("shaft_modulus_Pa", &CheckedPress::shaft_modulus_Pa,
+          "Young's modulus of the shaft, from the scene or assumed"),
+    field("hub_modulus_Pa", &CheckedPress::hub_modulus_Pa,
+          "Young's modulus of the hub, from the scene or assumed"),
+    field("friction", &CheckedPress::friction, "friction in the joint, from the scene or assumed"));
+static_assert(coversAllMembers<CheckedPress>(kPressFields));
 
 inline constexpr auto kCheckedFitFields = std::make_tuple(
     field("kind", &CheckedFit::kind, "`shaft` in a bore, or `key`: two parallel faces between two others"),
@@ -32,12 +50,15 @@ inline constexpr auto kCheckedFitFields = std::make_tuple(
     field("at_m", &CheckedFit::at_W, "the middle of the fit, in the world"),
     field("shaft_m", &CheckedFit::shaft_m, "diameter of the shaft, or width of the key"),
     field("bore_m", &CheckedFit::bore_m, "diameter of the bore, or width of the slot"),
+    field("along", &CheckedFit::along_W, "direction of the length, in the world"),
     field("length_m", &CheckedFit::length_m, "length over which both fit"),
     field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
           "bore less shaft; negative: interference"),
+    field("offset_m", &CheckedFit::offset_m, "greatest distance of the axes of shaft and bore"),
     field("error_m", &CheckedFit::error_m,
           "bound of the clearance's error, from the corners' distance to the faces"),
-    field("iso_286", &CheckedFit::iso_286, "a common fit whose zones hold both sizes; empty: none"));
+    field("iso_286", &CheckedFit::iso_286, "a common fit whose zones hold both sizes; empty: none"),
+    group("press", &CheckedFit::press, kPressFields));
 static_assert(coversAllMembers<CheckedFit>(kCheckedFitFields));
 
 inline constexpr auto kPlayFields = std::make_tuple(
@@ -54,6 +75,7 @@ inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("chord_error_m", &CheckedPart::chord_error_m,
           "greatest distance of the mesh from its curved faces"),
     field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: it is closed"),
+    field("no_inside", &CheckedPart::no_inside, "why it has no inside, or parts of it; empty: it has one"),
     group("", &CheckedPart::play, kPlayFields),
     field("play_error_m", &CheckedPart::play_error_m, "bound of the error of `play_m`"),
     field("play_error_rad", &CheckedPart::play_error_rad, "bound of the error of `play_rad`"),
@@ -63,6 +85,7 @@ inline constexpr auto kCheckWallFields =
     std::make_tuple(field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),
                     field("pairs_s", &CheckResult::pairs_wall_s, "time for the pairs"),
                     field("fits_s", &CheckResult::fits_wall_s, "time for the fits"),
+                    field("pictures_s", &CheckResult::pictures_wall_s, "time for sections and maps"),
                     field("play_s", &CheckResult::play_wall_s, "time for play and ways out"));
 
 }  // namespace vps::scenes::inline v0

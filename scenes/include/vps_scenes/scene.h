@@ -31,7 +31,12 @@ struct ScenePart {
   bool is_fixed = false;       ///< never moves; in place from the start
   bool allow_overlap = false;  ///< may start inside another part (interference fits)
   bool is_scenery = false;     ///< of assemble(): nothing collides with it
-  std::string file;            ///< file that the mesh was read from, for messages
+  /// Of an interference fit, as declared: by how much the part may be larger than where it is pressed in. In
+  /// diameter or width for a fit that check finds, else in depth; 0: none.
+  double press_fit_m = 0;
+  double youngs_modulus_Pa = 210e9;  ///< of steel, and Poisson's ratio: EN 1993-1-1, 3.2.6
+  double poissons_ratio = 0.3;
+  std::string file;                    ///< file that the mesh was read from, for messages
   std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;

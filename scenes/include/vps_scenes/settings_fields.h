@@ -65,6 +65,15 @@ inline constexpr auto kPartKeys = std::make_tuple(
     Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "sRGB"},
     field("allow_overlap", &ScenePart::allow_overlap,
           "the part may start inside another one (interference fits)"),
+    field("press_fit", &ScenePart::press_fit_m,
+          "declared interference of a part that is pressed in, in diameter or width: `vps check` judges an "
+          "overlap by it and computes the force",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "none"}),
+    field("youngs_modulus", &ScenePart::youngs_modulus_Pa,
+          "Young's modulus, for the force of a press fit; assumed: steel",
+          {.range = kPositive, .type = "Pa"}),
+    field("poissons_ratio", &ScenePart::poissons_ratio,
+          "Poisson's ratio, for the force of a press fit; assumed: steel", {.range = {.min = 0, .max = 0.5}}),
     field("scenery", &ScenePart::is_scenery,
           "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
           "it"));

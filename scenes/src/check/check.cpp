@@ -5,8 +5,11 @@
 
 #include "check/check_pair.h"
 #include "check/check_play.h"
+#include "check/clearance_map.h"
 #include "check/fits.h"
 #include "check/on_cores.h"
+#include "check/press_fit.h"
+#include "check/section.h"
 #include "core/wall_clock.h"
 #include "vps/mesh_repair.h"
 
@@ -18,6 +21,8 @@ const char* toText(PairState state) {
       return "apart";
     case PairState::Contact:
       return "contact";
+    case PairState::PressFit:
+      return "press fit";
     case PairState::Clash:
       return "clash";
   }
@@ -31,6 +36,10 @@ const char* toText(FitKind kind) {
 std::size_t CheckResult::clashes() const {
   return static_cast<std::size_t>(
       std::count_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); }));
+}
+
+std::size_t CheckResult::uncertain() const {
+  return static_cast<std::size_t>(std::ranges::count(pairs, true, &CheckedPair::is_uncertain));
 }
 
 const CheckedPair* CheckResult::deepestClash() const {
@@ -51,21 +60,39 @@ std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, dou
   std::vector<CheckedPair> pairs;
   for (std::optional<CheckedPair>& pair : found)
     if (pair) pairs.push_back(std::move(*pair));
+  return pairs;
+}
+
+void sortPairs(std::vector<CheckedPair>& pairs) {
   std::stable_sort(pairs.begin(), pairs.end(), [](const CheckedPair& a, const CheckedPair& b) {
     if (a.state != b.state) return a.state > b.state;
     if (a.interference_depth_m != b.interference_depth_m)
       return a.interference_depth_m > b.interference_depth_m;
     return a.clearance_m < b.clearance_m;
   });
-  return pairs;
 }
 
-std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, double near_m,
+using PartPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// The pairs of which fits are needed to judge the overlap.
+PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
+  const auto indexOf = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(parts, name, &PlacedSurface::name) - parts.begin());
+  };
+  PartPairs out;
+  for (const CheckedPair& pair : pairs)
+    if (needsFit(pair)) out.emplace_back(indexOf(pair.a), indexOf(pair.b));
+  return out;
+}
+
+std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const PartPairs& near,
                                   const Progress& progress) {
+  std::vector<bool> is_near(parts.size());
+  for (const auto& [a, b] : near) is_near[a] = is_near[b] = true;
   std::vector<FitFaces> faces(parts.size());
-  forEachOnCores(parts.size(), progress, "finding round and flat faces",
-                 [&](std::size_t i) { faces[i] = fitFaces(*parts[i].surface); });
-  const auto near = nearPairs(parts, near_m);
+  forEachOnCores(parts.size(), progress, "finding round and flat faces", [&](std::size_t i) {
+    if (is_near[i]) faces[i] = fitFaces(*parts[i].surface);
+  });
   std::vector<std::vector<CheckedFit>> found(near.size());
   forEachOnCores(near.size(), progress, "finding fits", [&](std::size_t i) {
     const auto [a, b] = near[i];
@@ -87,6 +114,7 @@ CheckedPart describePart(const PlacedSurface& part) {
   for (std::uint32_t i = 0; i < out.triangles; ++i)
     out.chord_error_m = std::max(out.chord_error_m, part.surface->chord_m(i));
   const MeshReport& report = part.surface->solid().report();
+  out.no_inside = part.surface->noInside();
   if (!report.isClosed() || part.surface->solid().isByWinding()) out.mesh_faults = describe(report);
   return out;
 }
@@ -97,6 +125,7 @@ CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>&
                           const CheckSettings& settings, const Progress& progress) {
   CheckResult result;
   result.assembly = name;
+  result.near_m = settings.near_m;
   double begun_s = wallSeconds();
   const auto lap_s = [&] {
     const double before_s = begun_s;
@@ -107,8 +136,17 @@ CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>&
   result.prepare_wall_s = lap_s();
   result.pairs = checkPairs(placed, settings.near_m, progress);
   result.pairs_wall_s = lap_s();
-  if (settings.has_fits) result.fits = checkFits(placed, settings.near_m, progress);
+  result.fits = checkFits(
+      placed, settings.has_fits ? nearPairs(placed, settings.near_m) : pairsToJudge(placed, result.pairs),
+      progress);
+  removeFalseFits(result);
+  judgeByFits(placed, result);
+  sortPairs(result.pairs);
+  if (!settings.has_fits) result.fits.clear();
   result.fits_wall_s = lap_s();
+  if (settings.has_sections) result.sections = checkSections(placed, result, progress);
+  if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
+  result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
   if (settings.has_play) checkPlay(placed, result, progress);
   result.play_wall_s = lap_s();

@@ -49,10 +49,46 @@ Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
   return deepest;
 }
 
+/// Twice the radius of a ball in both parts: how thick the shared region is. Bars that cross each other share
+/// more than their edges show, which pass near the other's faces. A search from points of a grid, so the
+/// greatest ball may be larger.
+Overlap sharedBall(const PlacedSurface& a, const PlacedSurface& b, const Box& both_W) {
+  constexpr int kGrid = 12;
+  constexpr int kRounds = 60;
+  const Pose X_AW = a.X_WP.inverse(), X_BW = b.X_WP.inverse();
+  const auto radiusAt = [&](const Vec3& p_W) {
+    const double in_a_m = -a.surface->solid().signedDistance(X_AW * p_W);
+    return in_a_m > 0 ? std::min(in_a_m, -b.surface->solid().signedDistance(X_BW * p_W)) : in_a_m;
+  };
+  const Vec3 cell = both_W.size() / kGrid;
+  Overlap best;
+  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
+    const Vec3 at(i % kGrid + 0.5, i / kGrid % kGrid + 0.5, i / kGrid / kGrid + 0.5);
+    const Vec3 p_W = both_W.min + at.cwiseProduct(cell);
+    if (const double radius_m = radiusAt(p_W); radius_m > best.depth_m) best = {radius_m, p_W};
+  }
+  if (best.depth_m == 0) return best;
+  // A step to one of the 26 neighbours while that helps, then half of it. Steps along the axes alone end at
+  // the ridges between faces.
+  Vec3 step = 0.5 * cell;
+  for (int round = 0; round < kRounds; ++round) {
+    const Vec3 from_W = best.p_W;
+    for (int k = 0; k < 27; ++k) {
+      const Vec3 p_W = from_W + step.cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      if (const double radius_m = radiusAt(p_W); radius_m > best.depth_m) best = {radius_m, p_W};
+    }
+    if (best.p_W == from_W) step *= 0.5;
+  }
+  return {2 * best.depth_m, best.p_W};
+}
+
 Overlap deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m) {
   const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
-  if (found.depth_m > error_m) return found;
   const Box both{a.box_W.min.cwiseMax(b.box_W.min), a.box_W.max.cwiseMin(b.box_W.max)};
+  if (found.depth_m > error_m) {
+    const Overlap thick = sharedBall(a, b, both);
+    return thick.depth_m > found.depth_m + error_m ? thick : found;
+  }
   if (both.isEmpty() || both.size().minCoeff() <= error_m) return found;
   for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
     if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m) return flush;
@@ -61,9 +97,12 @@ Overlap deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m
 
 }  // namespace
 
-std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+namespace {
+
+std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   CheckedPair pair{.a = a.name, .b = b.name};
-  pair.is_allowed = a.allow_overlap || b.allow_overlap;
+  pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
+  pair.press_fit_m = std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
   const double chord_m = chordError(a, b, near_m), round_m = roundingOf(a) + roundingOf(b);
   pair.error_m = chord_m + round_m;
   const Overlap overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m);
@@ -84,6 +123,17 @@ std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface
   pair.clearance_m = gap.distance_m;
   pair.at_W = a.X_WP * (0.5 * (gap.p_A + gap.p_B));
   pair.state = gap.distance_m > pair.error_m ? PairState::Apart : PairState::Contact;
+  return pair;
+}
+
+}  // namespace
+
+std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  std::optional<CheckedPair> pair = measured(a, b, near_m);
+  const bool have_inside = a.surface->noInside().empty() && b.surface->noInside().empty();
+  if (have_inside || !overlap(a.box_W, b.box_W) || (pair && pair->state == PairState::Clash)) return pair;
+  if (!pair) pair = CheckedPair{.a = a.name, .b = b.name, .clearance_m = near_m};
+  pair->is_uncertain = true;
   return pair;
 }
 

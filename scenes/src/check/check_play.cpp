@@ -25,7 +25,7 @@ bool isOf(const CheckedPair& pair, const std::string& name) {
   return pair.a == name || pair.b == name;
 }
 
-/// Empty for a part that clashes: what overlaps cannot be moved apart by it.
+/// Empty for a part that clashes or is pressed in: what overlaps cannot be moved apart by it.
 PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const CheckResult& result) {
   PartTask task;
   const std::string& name = parts[part].name;
@@ -37,7 +37,7 @@ PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const
     crossing_m.push_back(0);
     for (const CheckedPair& pair : result.pairs) {
       if (!isOf(pair, name) || !isOf(pair, parts[i].name)) continue;
-      if (pair.state == PairState::Clash) return task;
+      if (pair.state >= PairState::PressFit) return task;
       crossing_m.back() = pair.error_m;
       task.error_m = std::max(task.error_m, pair.error_m);
     }

@@ -14,7 +14,9 @@ std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
 std::vector<DrawnPart> drawnParts(const Scene& scene) {
   std::vector<DrawnPart> parts;
   for (const ScenePart& part : scene.parts)
-    parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap});
+    parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
+                     part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
+                     part.part.material.friction});
   for (const SceneStep& step : scene.steps) parts[step.part].X_WP = step.X_WP_target;
   return parts;
 }

@@ -176,7 +176,9 @@ bool fitOf(const Contact& one, const Contact& two, CheckedFit& fit) {
   fit.at_W = middle.x() * u + middle.y() * v + (n.dot(one.key.box_W.center()) - 0.5 * key_m) * n;
   fit.shaft_m = key_m;
   fit.bore_m = key_m + clearance_m;
-  fit.length_m = (on_one.max - on_one.min).maxCoeff();
+  const Vec2 sides_m = on_one.max - on_one.min;
+  fit.along_W = sides_m.x() > sides_m.y() ? u : v;
+  fit.length_m = sides_m.maxCoeff();
   fit.diametral_clearance_m = clearance_m;
   const double corners_m = one.key.box_W.min.norm() + one.key.box_W.max.norm();
   fit.error_m = 1e-15 * corners_m;

@@ -62,6 +62,21 @@ PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<doubl
   estimateChords(chord_m);
   findPlanes();
   gatherNormals();
+  tellInside();
+}
+
+// A depth is measured in both parts, so in a plate of thickness t none is above t / 2.
+void PartSurface::tellInside() {
+  constexpr double kThinnest_m = 10 * kOverlapCertain_m;
+  const std::size_t sheets = solid().report().sheet_facets;
+  const double thickness_m = 2 * massProperties(mesh()).volume_m3 / area(mesh());
+  if (sheets > 0)
+    no_inside_ = std::to_string(sheets)
+                     .append(" of ")
+                     .append(std::to_string(mesh().triangles.size()))
+                     .append(" facets belong to surfaces without an inside");
+  else if (!(thickness_m > kThinnest_m))
+    no_inside_ = "it is thinner than 1 um";
 }
 
 void PartSurface::gatherNormals() {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "check/triangle_gap.h"
@@ -52,6 +53,9 @@ class PartSurface {
   };
   [[nodiscard]] const std::vector<NodePlane>& planes() const { return planes_; }
 
+  /// Why the surface, or parts of it, has no inside; empty: it has one.
+  [[nodiscard]] const std::string& noInside() const { return no_inside_; }
+
   /// Greatest distance of a facet from the curved face that it stands for.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }
   /// The greatest of the facets whose boxes meet this one.
@@ -60,12 +64,14 @@ class PartSurface {
  private:
   void estimateChords(std::optional<double> most_m);
   void findPlanes();
+  void tellInside();
   void gatherNormals();
   OverlapMesh overlap_;
   TriangleTree tree_;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
   std::vector<double> chord_m_;
   std::vector<NodePlane> planes_;
+  std::string no_inside_;
   std::vector<Vec3> around_;
   std::vector<std::uint32_t> first_around_;  // by vertex, and the end
 };

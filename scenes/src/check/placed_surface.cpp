@@ -55,7 +55,7 @@ std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, c
     part.name = parts[i].name;
     part.surface = placed[source[i]].surface;
     part.X_WP = parts[i].X_WP;
-    part.allow_overlap = parts[i].allow_overlap;
+    part.drawn = &parts[i];
     for (const Vec3& p : part.surface->mesh().vertices) part.box_W.add(part.X_WP * p);
   }
   return placed;

@@ -16,11 +16,11 @@ struct PlacedSurface {
   std::string name;
   std::shared_ptr<const PartSurface> surface;  ///< parts of equal geometry share it
   Pose X_WP;
-  bool allow_overlap = false;
-  Box box_W;  ///< of the vertices themselves
+  const DrawnPart* drawn = nullptr;  ///< for what the scene says of it
+  Box box_W;                         ///< of the vertices themselves
 };
 
-/// On all cores. Throws LoadError; see checkAssembly().
+/// On all cores; they point to the parts. Throws LoadError; see checkAssembly().
 std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress);
 
 /// Pairs of parts whose boxes are nearer than near_m, in ascending order.

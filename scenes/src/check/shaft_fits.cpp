@@ -26,18 +26,22 @@ bool fitOf(const RoundFace& shaft, const RoundFace& bore, CheckedFit& fit) {
                to_m = std::min(shaft.to_m, std::max(end_m, other_end_m));
   const double length_m = to_m - from_m;
   if (!(length_m > kLeastLength * d_m)) return false;
+  double offset_m = 0;
   for (const double along_m : {from_m, to_m}) {
     const Vec3 p = shaft.p + along_m * shaft.axis, r = p - bore.p;
     const double off_m = (r - bore.axis.dot(r) * bore.axis).norm();
     if (off_m > kMostOffset * d_m + 0.5 * std::abs(clearance_m)) return false;
+    offset_m = std::max(offset_m, off_m);
   }
   fit.kind = FitKind::Shaft;
   fit.axis_W = shaft.axis;
   fit.at_W = shaft.p + 0.5 * (from_m + to_m) * shaft.axis;
   fit.shaft_m = d_m;
   fit.bore_m = 2 * bore.radius_m;
+  fit.along_W = shaft.axis;
   fit.length_m = length_m;
   fit.diametral_clearance_m = clearance_m;
+  fit.offset_m = offset_m;
   fit.error_m = 2 * (shaft.residual_m + bore.residual_m);
   fit.iso_286 = isoFit(fit.bore_m, fit.shaft_m);
   return true;

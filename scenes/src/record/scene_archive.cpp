@@ -171,10 +171,10 @@ void fields(Archive& archive, T& x) {
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
   // The model is built again; velocities are for simulate(), which is not recorded. The deflection says how
-  // the mesh was made and changes no run. A recorded scene was complete, so it does not matter which parts are
-  // scenery.
-  [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, file, deflection_m, model,
-                          is_cropped] = x;
+  // the mesh was made and changes no run. A recorded scene was complete, so it does not matter which parts
+  // are scenery. Press fits are of the check, which is not recorded.
+  [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
+                          youngs_modulus_Pa, poissons_ratio, file, deflection_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>

@@ -24,9 +24,8 @@ VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::str
 VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::string& key, const Pose*);
 inline void addColumns(std::vector<std::string>& columns, const std::string& key, const void*) {
   columns.push_back(key);
-  VPS_VIEWER_API
 }
-void addCells(std::vector<std::string>& cells, const Vec3& v);
+VPS_VIEWER_API void addCells(std::vector<std::string>& cells, const Vec3& v);
 VPS_VIEWER_API void addCells(std::vector<std::string>& cells, const Pose& X);
 template <class T>
 void addCells(std::vector<std::string>& cells, const T& x) {

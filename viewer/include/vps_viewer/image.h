@@ -23,6 +23,10 @@ struct VPS_VIEWER_API Image {
   [[nodiscard]] std::uint8_t* at(int x, int y) { return &rgb[3 * (std::size_t(y) * width + x)]; }
 };
 
+/// The image as a PNG file has it; the same image gives the same bytes. Throws std::runtime_error when rgb
+/// has the wrong size.
+VPS_VIEWER_API std::string pngBytes(const Image& image);
+
 /// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The folder
 /// must exist. Throws LoadError when it cannot be written, std::runtime_error when rgb has the wrong size.
 VPS_VIEWER_API void savePng(const Image& image, const std::string& file);

@@ -28,6 +28,8 @@ struct DrawnMesh {
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
   bool is_fixed = false;                              ///< drawn at X_WP even if the snapshot does not list it
   Pose X_WP = {};
+  /// Linear RGB by vertex, by which `color` is multiplied; null: white. Lives as long as the mesh.
+  const std::vector<std::array<float, 3>>* vertex_colors = nullptr;
 };
 using RenderScene = std::vector<DrawnMesh>;
 

@@ -31,7 +31,7 @@ struct Renderer::Impl {
     gl = std::make_unique<GpuResources>();
     for (const DrawnMesh& part : scene) {
       std::unique_ptr<GpuMesh>& mesh = gl->meshes[part.mesh];
-      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh);
+      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors);
       part_meshes.push_back(mesh.get());
       part_colors.emplace_back(Eigen::Map<const Vector3f>(part.color.data()));
     }

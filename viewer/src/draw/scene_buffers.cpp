@@ -13,16 +13,30 @@ GpuLines::GpuLines(std::span<const ShadingEdge> segments)
   gl::addAttribute(array, buffer, 1, 3, offsetof(ShadingEdge, b), sizeof(ShadingEdge), 1);
 }
 
-GpuMesh::GpuMesh(const Mesh& mesh)
+namespace {
+
+std::vector<std::array<float, 3>> colorsOf(const ShadingMesh& shading,
+                                           const std::vector<std::array<float, 3>>* by_vertex) {
+  std::vector<std::array<float, 3>> out(shading.sources.size(), {1, 1, 1});
+  if (by_vertex == nullptr) return out;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = by_vertex->at(shading.sources[i]);
+  return out;
+}
+
+}  // namespace
+
+GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors)
     : bounds_P(bounds(mesh)),
       shading(buildShadingMesh(mesh)),
       vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
+      colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, vertex_colors)))),
       indices(gl::makeBuffer(std::span<const std::uint32_t>(shading.indices))),
       array(gl::makeVertexArray()),
       sharp_edges(shading.sharp_edges),
       index_count(static_cast<GLsizei>(shading.indices.size())) {
   gl::addAttribute(array, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
   gl::addAttribute(array, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
+  gl::addAttribute(array, colors, 2, 3, 0, sizeof(std::array<float, 3>));
   glVertexArrayElementBuffer(array.id(), indices.id());
 }
 

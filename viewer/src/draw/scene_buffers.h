@@ -22,11 +22,11 @@ struct GpuLines {
 struct GpuMesh {
   Box bounds_P;         ///< in the part's frame
   ShadingMesh shading;  ///< kept, because outlines and sections are computed on the CPU for each picture
-  gl::Buffer vertices, indices;
+  gl::Buffer vertices, colors, indices;
   gl::VertexArray array;
   GpuLines sharp_edges;
   GLsizei index_count = 0;
-  explicit GpuMesh(const Mesh& mesh);
+  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors);
   void draw() const;
 };
 

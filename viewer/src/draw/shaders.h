@@ -10,10 +10,12 @@ namespace vps::viewer::inline v0::glsl {
 inline constexpr const char* kMeshVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 vertex_color;
 uniform mat4 X_CP, projection;
 uniform vec4 cut_C;  // keeps n.p <= w
-out vec3 p_C, n_C;
+out vec3 p_C, n_C, tint;
 void main() {
+  tint = vertex_color;
   vec4 p = X_CP * vec4(position, 1);
   p_C = p.xyz;
   n_C = mat3(X_CP) * normal;
@@ -56,12 +58,12 @@ vec3 studio(vec3 p_C, vec3 n, vec3 albedo) {
 )";
 
 inline constexpr const char* kMeshFragment = R"(
-in vec3 p_C, n_C;
+in vec3 p_C, n_C, tint;
 uniform vec3 color;
 out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? n_C : -n_C);
-  result = vec4(studio(p_C, n, color), 1);
+  result = vec4(studio(p_C, n, color * tint), 1);
 }
 )";
 

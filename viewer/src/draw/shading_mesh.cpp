@@ -70,7 +70,10 @@ void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, double crea
       const std::array<float, 3> n = toFloat(sum);
       std::size_t i = group_start;
       while (i < out.vertices.size() && out.vertices[i].n != n) ++i;
-      if (i == out.vertices.size()) out.vertices.push_back({toFloat(mesh.vertices[v] - out.center), n});
+      if (i == out.vertices.size()) {
+        out.vertices.push_back({toFloat(mesh.vertices[v] - out.center), n});
+        out.sources.push_back(v);
+      }
       out.indices[*c] = static_cast<std::uint32_t>(i);
     }
   }

@@ -30,6 +30,7 @@ struct SmoothEdge {
 struct ShadingMesh {
   Vec3 center = Vec3::Zero();  ///< in the part's frame; separate, so that floats keep their precision far out
   std::vector<ShadingVertex> vertices;
+  std::vector<std::uint32_t> sources;  ///< by shading vertex: that of the mesh
   std::vector<std::uint32_t> indices;
   std::vector<ShadingEdge> sharp_edges;  ///< dihedral angle beyond the crease angle, and open borders
   std::vector<SmoothEdge> smooth_edges;

@@ -26,10 +26,10 @@ png_image newPngImage() {
 
 }  // namespace
 
-void savePng(const Image& image, const std::string& file) {
+std::string pngBytes(const Image& image) {
   if (image.width <= 0 || image.height <= 0 ||
       image.rgb.size() != std::size_t(3) * image.width * image.height)
-    throw std::runtime_error(file + ": cannot save an image of " + std::to_string(image.width) + " x " +
+    throw std::runtime_error("cannot save an image of " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " pixels with " +
                              std::to_string(image.rgb.size()) + " bytes");
   png_image png = newPngImage();
@@ -39,9 +39,19 @@ void savePng(const Image& image, const std::string& file) {
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))
-    throw std::runtime_error(file + ": cannot be encoded as PNG: " + png.message);
+    throw std::runtime_error(std::string("cannot be encoded as PNG: ") + png.message);
   bytes.resize(size);
-  writeWholeFile(file, bytes);
+  return bytes;
+}
+
+void savePng(const Image& image, const std::string& file) {
+  try {
+    writeWholeFile(file, pngBytes(image));
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file + ": " + error.what());
+  }
 }
 
 Image loadPng(const std::string& file) {

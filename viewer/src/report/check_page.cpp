@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "report/clearance_pictures.h"
 #include "report/html.h"
+#include "report/section_svg.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer::inline v0 {
@@ -29,10 +31,11 @@ std::string place(const Vec3& p_W) {
 std::string pairs(const scenes::CheckResult& result) {
   std::vector<std::vector<Cell>> rows;
   for (const scenes::CheckedPair& pair : result.pairs) {
-    const bool is_clash = pair.state == PairState::Clash;
+    const bool is_clash = pair.state >= PairState::PressFit;
     rows.push_back({{escapeHtml(pair.a), ""},
                     {escapeHtml(pair.b), ""},
-                    {std::string(toText(pair.state)) + (is_clash && pair.is_allowed ? " (allowed)" : ""),
+                    {std::string(pair.is_uncertain ? "not known" : toText(pair.state)) +
+                         (pair.state == PairState::Clash && pair.is_allowed ? " (allowed)" : ""),
                      pair.isClash() ? "bad" : ""},
                     {is_clash ? "" : micrometres(pair.clearance_m), "n"},
                     {pair.interference_depth_m > 0 ? micrometres(pair.interference_depth_m) : "", "n"},
@@ -70,6 +73,43 @@ std::string fits(const scenes::CheckResult& result) {
                      rows);
 }
 
+std::string pressFits(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedFit& fit : result.fits) {
+    if (!fit.press) continue;
+    const scenes::CheckedPress& press = *fit.press;
+    const auto pair = std::ranges::find_if(result.pairs, [&](const scenes::CheckedPair& p) {
+      return (p.a == fit.shaft && p.b == fit.bore) || (p.b == fit.shaft && p.a == fit.bore);
+    });
+    const bool is_clash = pair->isClash();
+    rows.push_back(
+        {{escapeHtml(fit.shaft), ""},
+         {escapeHtml(fit.bore), ""},
+         {micrometres(-fit.diametral_clearance_m), is_clash ? "n bad" : "n"},
+         {micrometres(pair->press_fit_m), "n"},
+         {std::isfinite(press.hub_m) ? format(1e3 * press.hub_m, "%.2f") : "endless", "n"},
+         {format(1e3 * press.hole_m, "%.2f"), "n"},
+         {format(1e-9 * press.shaft_modulus_Pa, "%.0f") + " / " + format(1e-9 * press.hub_modulus_Pa, "%.0f"),
+          "n"},
+         {format(press.friction, "%.2f"), "n"},
+         {format(1e-6 * press.pressure_Pa, "%.1f"), "n"},
+         {format(1e-6 * press.hub_stress_Pa, "%.0f"), "n"},
+         {format(press.force_N, "%.0f"), "n"},
+         {format(press.declared_force_N, "%.0f"), "n"}});
+  }
+  if (rows.empty()) return "";
+  return "<h2>Press fits</h2>\n<p>The interference as drawn, in diameter, against the declared one. Pressure "
+         "and stress follow from Lamé's formula for elastic thick-walled cylinders; the hub is the largest "
+         "ring of material around the bore over the middle half of the fit. The force moves the shaft along "
+         "the fit's whole length. Young's modulus (210 GPa), Poisson's ratio (0.3: steel, EN 1993-1-1) and "
+         "friction (0.15) are assumed where the scene does not state them. Where the stress is above the "
+         "material's yield point, the formula does not hold and the force is less.</p>\n" +
+         html::table({"inner part", "outer part", "drawn [µm]", "declared [µm]", "hub [mm]", "hole [mm]",
+                      "E inner / outer [GPa]", "friction", "pressure [MPa]", "hub stress [MPa]", "force [N]",
+                      "force if as declared [N]"},
+                     rows);
+}
+
 std::string both(double plus, double minus, double scale, const char* form) {
   const auto one = [&](double value) {
     return std::isinf(value) ? std::string("free") : format(scale * value, form);
@@ -90,7 +130,7 @@ std::string play(const scenes::CheckResult& result) {
       else
         row.push_back({both(part.play->m[i], part.play->m[i + 1], 1e6, "%.1f"), "n"});
     }
-    std::string ways = part.play ? "" : "it clashes";
+    std::string ways = part.play ? "" : "it overlaps another part";
     for (const Vec3& way : part.ways_out_W)
       ways += (ways.empty() ? "(" : ", (") + format(way.x(), "%.2f") + ", " + format(way.y(), "%.2f") + ", " +
               format(way.z(), "%.2f") + ")";
@@ -113,9 +153,10 @@ std::string meshes(const scenes::CheckResult& result) {
     rows.push_back({{escapeHtml(part.name), ""},
                     {std::to_string(part.triangles), "n"},
                     {micrometres(part.chord_error_m), "n"},
-                    {escapeHtml(part.mesh_faults), ""}});
+                    {escapeHtml(part.mesh_faults), ""},
+                    {escapeHtml(part.no_inside), part.no_inside.empty() ? "" : "bad"}});
   return "<h2>Meshes</h2>\n" +
-         html::table({"part", "triangles", "distance from curved faces [µm]", "faults"}, rows);
+         html::table({"part", "triangles", "distance from curved faces [µm]", "faults", "no inside"}, rows);
 }
 
 }  // namespace
@@ -123,13 +164,18 @@ std::string meshes(const scenes::CheckResult& result) {
 std::string checkSection(const scenes::CheckResult& result) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
-  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + (has_play ? play(result) : "") +
+  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
+         sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
          meshes(result);
 }
 
 std::string checkPage(const scenes::CheckResult& result) {
   const std::size_t clashes = result.clashes();
   std::string verdict = "No parts overlap as drawn, beyond the stated errors.";
+  if (result.uncertain() > 0)
+    verdict =
+        format(static_cast<double>(result.uncertain()), "Not shown: of %.0f ") +
+        "pairs it cannot be told whether they overlap, because a part has no inside; see the last table.";
   if (clashes > 0) {
     const scenes::CheckedPair& worst = *result.deepestClash();
     verdict = (clashes == 1 ? "Two parts overlap as drawn: "
@@ -137,9 +183,12 @@ std::string checkPage(const scenes::CheckResult& result) {
               escapeHtml(worst.a) + " and " + escapeHtml(worst.b) + " by " +
               micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + ").";
   }
-  return html::page("Check of " + result.assembly,
-                    "<h1>Check of " + escapeHtml(result.assembly) + "</h1>\n<p class=\"verdict " +
-                        (clashes == 0 ? "good" : "bad") + "\">" + verdict + "</p>\n" + checkSection(result));
+  return html::page("Check of " + result.assembly, "<h1>Check of " + escapeHtml(result.assembly) +
+                                                       "</h1>\n<p class=\"verdict " +
+                                                       (clashes > 0              ? "bad"
+                                                        : result.uncertain() > 0 ? "unsure"
+                                                                                 : "good") +
+                                                       "\">" + verdict + "</p>\n" + checkSection(result));
 }
 
 }  // namespace vps::viewer::inline v0

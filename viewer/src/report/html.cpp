@@ -45,7 +45,7 @@ h1 { font-size: 26px; margin: 0 0 4px; } h2 { font-size: 20px; margin: 44px 0 10
        padding-bottom: 4px; } h3 { font-size: 17px; margin: 30px 0 8px; }
 p { max-width: 76ch; } .quiet { color: #666; } .good { color: #1b6e3c; } .bad { color: #b00020; }
 .verdict { font-size: 19px; font-weight: 600; padding: 12px 16px; border-radius: 6px; margin: 16px 0; }
-.verdict.good { background: #e8f4ec; } .verdict.bad { background: #fbe9eb; }
+.verdict.good { background: #e8f4ec; } .verdict.bad { background: #fbe9eb; } .verdict.unsure { background: #fff6df; }
 .note { background: #fff6df; border-left: 4px solid #e2a400; padding: 8px 14px; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; margin: 10px 0; font-variant-numeric: tabular-nums; }
@@ -55,6 +55,7 @@ th { font-weight: 600; color: #444; border-bottom: 2px solid #ccc; } td.n, th.n 
 .pictures { display: grid; grid-template-columns: repeat(3, 1fr); gap: 12px; }
 .pictures.two { grid-template-columns: repeat(2, 1fr); }
 figure { margin: 0; } figure img { width: 100%; border: 1px solid #e0e0e0; border-radius: 4px; display: block; }
+figure.section { margin: 18px 0 26px; } figure.section svg { width: 100%; max-width: 912px; display: block; }
 figcaption { color: #555; font-size: 13px; margin-top: 4px; }
 code, pre { font: 13px/1.5 "DejaVu Sans Mono", monospace; background: #f4f4f4; border-radius: 4px; }
 code { padding: 1px 4px; } pre { padding: 10px 14px; overflow-x: auto; }

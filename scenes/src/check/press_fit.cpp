@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/press_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// Sizes of the same face in files of six digits differ by so much of the size.
+constexpr double kRounding = 2e-6;
+
+bool isOf(const CheckedFit& fit, const CheckedPair& pair) {
+  return (fit.shaft == pair.a && fit.bore == pair.b) || (fit.shaft == pair.b && fit.bore == pair.a);
+}
+
+double interferenceOf(const CheckedFit& fit) {
+  const double beyond_m = fit.error_m + kRounding * fit.shaft_m + kOverlapCertain_m;
+  return fit.diametral_clearance_m < -beyond_m ? -fit.diametral_clearance_m : 0;
+}
+
+/// The corners of a triangle that is cut off at from_m and to_m along the axis, as distances from it.
+class NearAxis {
+ public:
+  NearAxis(const CheckedFit& fit, const PlacedSurface& of, double half_length_m)
+      : of_(of),
+        axis_(fit.axis_W),
+        at_(fit.at_W),
+        u_(axis_.unitOrthogonal()),
+        v_(axis_.cross(u_)),
+        half_m_(half_length_m) {}
+
+  /// Calls visit(least, greatest distance from the axis, radial part of the normal) for facets in the slab.
+  template <class Visit>
+  void forEachFacet(Visit visit) const {
+    for (std::uint32_t i = 0; i < of_.surface->mesh().triangles.size(); ++i) {
+      const std::vector<Vec3> polygon = clipped(of_.surface->triangle(i));
+      if (polygon.size() < 3) continue;
+      double least_m = std::numeric_limits<double>::max(), most_m = 0;
+      Vec3 middle = Vec3::Zero();
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        least_m = std::min(least_m, toAxis(polygon[k], polygon[(k + 1) % polygon.size()]));
+        most_m = std::max(most_m, polygon[k].head<2>().norm());
+        middle += polygon[k] / static_cast<double>(polygon.size());
+      }
+      const Vec3 n = of_.X_WP.R * of_.surface->normal(i);
+      const Vec3 out = (middle.x() * u_ + middle.y() * v_).normalized();
+      visit(least_m, most_m, n.dot(out));
+    }
+  }
+
+ private:
+  /// In coordinates along u, v and the axis.
+  [[nodiscard]] std::vector<Vec3> clipped(const Triangle& t) const {
+    std::vector<Vec3> polygon;
+    for (const Vec3& p : t) {
+      const Vec3 r = of_.X_WP * p - at_;
+      polygon.emplace_back(u_.dot(r), v_.dot(r), axis_.dot(r));
+    }
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<Vec3> kept;
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        const double in_a = half_m_ - sign * a.z(), in_b = half_m_ - sign * b.z();
+        if (in_a >= 0) kept.push_back(a);
+        if ((in_a >= 0) != (in_b >= 0)) kept.emplace_back(a + in_a / (in_a - in_b) * (b - a));
+      }
+      polygon = std::move(kept);
+    }
+    return polygon;
+  }
+
+  static double toAxis(const Vec3& a, const Vec3& b) {
+    const Eigen::Vector2d from = a.head<2>(), along = b.head<2>() - from;
+    const double t =
+        along.squaredNorm() > 0 ? std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
+    return (from + t * along).norm();
+  }
+
+  const PlacedSurface& of_;
+  Vec3 axis_, at_, u_, v_;
+  double half_m_;
+};
+
+constexpr double kMiddle = 0.25;    // of the length, to each side: chamfers at the ends do not count
+constexpr double kFacingOut = 0.1;  // radial part of a facet's normal, from which it bounds the ring
+
+double hubOf(const CheckedFit& fit, const PlacedSurface& hub) {
+  double least_m = std::numeric_limits<double>::max();
+  NearAxis(fit, hub, kMiddle * fit.length_m).forEachFacet([&](double from_m, double, double outward) {
+    if (outward > kFacingOut && from_m > 0.5 * fit.bore_m) least_m = std::min(least_m, from_m);
+  });
+  return 2 * least_m;
+}
+
+double holeOf(const CheckedFit& fit, const PlacedSurface& shaft) {
+  double most_m = 0;
+  NearAxis(fit, shaft, kMiddle * fit.length_m).forEachFacet([&](double, double to_m, double outward) {
+    if (outward < -kFacingOut && to_m < 0.5 * fit.shaft_m) most_m = std::max(most_m, to_m);
+  });
+  return 2 * most_m;
+}
+
+CheckedPress pressOf(const CheckedFit& fit, const PlacedSurface& shaft, const PlacedSurface& hub,
+                     double declared_m) {
+  PressedRing ring{fit.shaft_m,
+                   hubOf(fit, hub),
+                   holeOf(fit, shaft),
+                   fit.length_m,
+                   std::sqrt(shaft.drawn->friction * hub.drawn->friction),
+                   shaft.drawn->youngs_modulus_Pa,
+                   shaft.drawn->poissons_ratio,
+                   hub.drawn->youngs_modulus_Pa,
+                   hub.drawn->poissons_ratio};
+  CheckedPress press;
+  press.hub_m = ring.hub_m;
+  press.hole_m = ring.hole_m;
+  press.shaft_modulus_Pa = ring.shaft_modulus_Pa;
+  press.hub_modulus_Pa = ring.hub_modulus_Pa;
+  press.friction = ring.friction;
+  const double area_m2 = std::numbers::pi * ring.joint_m * ring.length_m;
+  press.pressure_Pa = jointPressure(ring, -fit.diametral_clearance_m);
+  press.force_N = press.pressure_Pa * area_m2 * ring.friction;
+  press.declared_force_N = jointPressure(ring, declared_m) * area_m2 * ring.friction;
+  // At the bore: hoop stress p (D2 + d2) / (D2 - d2), radial stress -p.
+  const double share = std::pow(ring.joint_m / ring.hub_m, 2);
+  press.hub_stress_Pa = press.pressure_Pa * 2 / (1 - share);
+  return press;
+}
+
+const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name) {
+  return *std::ranges::find(parts, name, &PlacedSurface::name);
+}
+
+void judge(const std::vector<PlacedSurface>& parts, CheckedPair& pair, std::vector<CheckedFit>& fits) {
+  const bool is_contact = pair.state == PairState::Contact;
+  bool is_declared = true;
+  double hidden_m = 0;  // of an interference that the facets hide
+  double depth_limit_m = pair.press_fit_m;
+  for (CheckedFit& fit : fits) {
+    const double of_fit_m = interferenceOf(fit);
+    if (of_fit_m == 0 || !isOf(fit, pair)) continue;
+    depth_limit_m = 0.5 * pair.press_fit_m;  // in diameter or width, so half to each side
+    is_declared = is_declared && of_fit_m - fit.error_m <= pair.press_fit_m;
+    if (is_contact && fit.kind == FitKind::Shaft && fit.offset_m < 0.5 * of_fit_m &&
+        0.5 * of_fit_m > hidden_m) {
+      hidden_m = pair.interference_depth_m = 0.5 * of_fit_m;
+      pair.error_m = 0.5 * fit.error_m + fit.offset_m;
+      pair.clearance_m = 0;
+      pair.at_W = fit.at_W + 0.5 * fit.shaft_m * fit.axis_W.unitOrthogonal();
+    }
+    if (pair.press_fit_m > 0 && fit.kind == FitKind::Shaft)
+      fit.press = pressOf(fit, named(parts, fit.shaft), named(parts, fit.bore), pair.press_fit_m);
+  }
+  if (is_contact && hidden_m == 0) return;
+  pair.state =
+      pair.press_fit_m > 0 && is_declared && pair.interference_depth_m - pair.error_m <= depth_limit_m
+          ? PairState::PressFit
+          : PairState::Clash;
+}
+
+}  // namespace
+
+double jointPressure(const PressedRing& ring, double interference_m) {
+  const auto ratio = [](double outer_m, double inner_m) {
+    const double share = std::pow(inner_m / outer_m, 2);
+    return (1 + share) / (1 - share);
+  };
+  const double give = (ratio(ring.hub_m, ring.joint_m) + ring.hub_ratio) / ring.hub_modulus_Pa +
+                      (ratio(ring.joint_m, ring.hole_m) - ring.shaft_ratio) / ring.shaft_modulus_Pa;
+  return interference_m / (ring.joint_m * give);
+}
+
+bool needsFit(const CheckedPair& pair) {
+  return pair.state == PairState::Contact ? pair.error_m > kOverlapCertain_m
+                                          : pair.state == PairState::Clash && pair.press_fit_m > 0;
+}
+
+void removeFalseFits(CheckResult& result) {
+  std::erase_if(result.fits, [&](const CheckedFit& fit) {
+    const double interference_m = interferenceOf(fit);
+    if (interference_m == 0) return false;
+    const auto pair = std::ranges::find_if(result.pairs, [&](const CheckedPair& p) { return isOf(fit, p); });
+    return pair == result.pairs.end() ||
+           0.5 * interference_m > pair->interference_depth_m + pair->error_m + fit.error_m;
+  });
+}
+
+void judgeByFits(const std::vector<PlacedSurface>& parts, CheckResult& result) {
+  for (CheckedPair& pair : result.pairs)
+    if (needsFit(pair)) judge(parts, pair, result.fits);
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sections and clearance maps of parts whose outlines and gaps are known by construction.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/lathe.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes {
+namespace {
+
+CheckSettings pictures() {
+  return {.has_play = false, .has_sections = true, .has_maps = true};
+}
+DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
+  return {name, mesh, X_WP, {}, false};
+}
+
+/// Of all chains, those around holes negative.
+double areaOf(const SectionOutline& outline) {
+  double sum_m2 = 0;
+  for (const auto& chain : outline.chains)
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const auto &a = chain[i], &b = chain[(i + 1) % chain.size()];
+      sum_m2 += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+    }
+  return sum_m2;
+}
+
+// The shaft is shorter than the bushing, and the picture ends within the bushing.
+TEST(CheckSection, AShaftInABushingIsCutThroughItsAxis) {
+  const int segments = 360;
+  const Pose X(rotationFromVector(Vec3(0.3, 0.2, 0.1)), Vec3(0.1, 0.2, 0.3));
+  const CheckResult result = checkAssembly(
+      "test",
+      {part("bushing", makeTube(20e-3, 10.05e-3, 30e-3, segments), X),
+       part("shaft", test::lathe({{0, -12e-3}, {10e-3, -12e-3}, {10e-3, 12e-3}, {0, 12e-3}}, segments), X)},
+      pictures());
+  ASSERT_EQ(result.sections.size(), 1U);
+  const CheckedSection& section = result.sections[0];
+  EXPECT_TRUE(section.is_fit);
+  EXPECT_NEAR(std::abs(section.right_W.cross(section.up_W).dot(X.R * Vec3::UnitZ())), 0, 1e-9);
+  ASSERT_EQ(section.parts.size(), 2U);
+  EXPECT_EQ(section.parts[0].part, "shaft");
+  EXPECT_EQ(section.parts[1].part, "bushing");
+  EXPECT_FALSE(section.parts[0].is_open);
+  EXPECT_FALSE(section.parts[1].is_open);
+  // Facets are inside by 1 - cos(pi / 360): 4e-5.
+  EXPECT_NEAR(areaOf(section.parts[0]), 20e-3 * 24e-3, 1e-4 * 20e-3 * 24e-3);
+  // The picture shows 1.1 bores to each side, and a tenth more is kept.
+  const double side_m = std::min(20e-3, 1.1 * section.half_m) - 10.05e-3;
+  EXPECT_NEAR(areaOf(section.parts[1]), 2 * side_m * 30e-3, 3e-4 * 2 * side_m * 30e-3);
+  EXPECT_EQ(section.parts[1].chains.size(), 2U);
+}
+
+// A box whose corners lie in the plane: they count as in front of it, and the outline closes.
+TEST(CheckSection, AnOverlapIsCutWhereItIsDeepestAlongItsDepth) {
+  const CheckResult result = checkAssembly(
+      "test",
+      {part("plate", transformed(makeBox(Vec3(0.1, 0.1, 0.02)), Pose::translation(Vec3(0, 0, -0.01)))),
+       part("block", makeBox(Vec3(0.01, 0.01, 0.03)), Pose::translation(Vec3(0, 0, 0.015 - 90e-6)))},
+      pictures());
+  ASSERT_EQ(result.sections.size(), 1U);
+  const CheckedSection& section = result.sections[0];
+  EXPECT_FALSE(section.is_fit);
+  EXPECT_NEAR(std::abs(section.up_W.z()), 1, 1e-9);
+  for (const SectionOutline& outline : section.parts) EXPECT_FALSE(outline.is_open) << outline.part;
+  ASSERT_EQ(section.parts[1].part, "block");
+  EXPECT_EQ(section.parts[1].chains.size(), 1U);
+  // The picture shows 18 mm to each side of the lower edge of the block, and a tenth more is kept.
+  EXPECT_NEAR(areaOf(section.parts[1]), 10e-3 * 1.1 * section.half_m, 1e-9);
+}
+
+TEST(CheckSection, AnOutlineOfASurfaceWithAHoleIsClosedAndSaysSo) {
+  Mesh open = makeTube(20e-3, 10.05e-3, 30e-3, 90);
+  // Without a strip of the outside.
+  std::erase_if(open.triangles, [&](const auto& t) {
+    const Vec3 p = (open.vertices[t[0]] + open.vertices[t[1]] + open.vertices[t[2]]) / 3;
+    return p.head<2>().norm() > 19e-3 && std::abs(p.z()) < 14e-3;
+  });
+  const CheckResult result =
+      checkAssembly("test", {part("open", open), part("shaft", makeCylinder(10e-3, 50e-3, 90))}, pictures());
+  ASSERT_EQ(result.sections.size(), 1U);
+  ASSERT_EQ(result.sections[0].parts.size(), 2U);
+  EXPECT_FALSE(result.sections[0].parts[0].is_open);
+  EXPECT_TRUE(result.sections[0].parts[1].is_open);
+}
+
+TEST(CheckSection, AMapHasTheGapAtEachPointOfTheSurface) {
+  const double gap_m = 0.2e-3;
+  const CheckResult result = checkAssembly(
+      "test",
+      {part("plate", makeBox(Vec3(0.1, 0.1, 0.02)), Pose::translation(Vec3(0, 0, -0.01))),
+       part("block", makeBox(Vec3(0.03, 0.02, 0.01)), Pose::translation(Vec3(0, 0, 0.005 + gap_m)))},
+      pictures());
+  ASSERT_EQ(result.maps.size(), 2U);
+  for (const ClearanceMap& map : result.maps) {
+    ASSERT_EQ(map.distance_m.size(), map.mesh_W.vertices.size());
+    EXPECT_TRUE(checkMesh(map.mesh_W).isClosed()) << map.part;
+    for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
+      const Vec3& p = map.mesh_W.vertices[i];
+      double expected_m = p.z() - 0;  // of the block, above the plate
+      if (map.part == "plate") {
+        const Vec3 out = (p.cwiseAbs() - Vec3(0.015, 0.01, 0)).cwiseMax(0);
+        expected_m = Vec3(out.x(), out.y(), gap_m - p.z()).norm();
+      }
+      EXPECT_NEAR(map.distance_m[i], std::min(expected_m, 1e-3), 1e-12) << map.part << " " << p.transpose();
+    }
+  }
+  EXPECT_EQ(result.maps[0].part, "plate");
+  EXPECT_GT(result.maps[0].mesh_W.vertices.size(), 500U);  // the plate of 8 corners is divided
+}
+
+}  // namespace
+}  // namespace vps::scenes
