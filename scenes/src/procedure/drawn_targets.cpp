@@ -13,9 +13,6 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-/// Numbers of a file are rounded: to 0.1 um where a metre has seven digits.
-constexpr double kFitCertain_m = 0.2e-6;
-
 struct InPlace {
   const ScenePart* part;
   Pose X_WP;
@@ -43,43 +40,14 @@ const std::string* otherOf(const std::string& part, const std::string& a, const 
   return contains(in_place, other) ? &other : nullptr;
 }
 
-/// Of two parts whose meshes overlap by no more than their error: the fit of a shaft and a bore between them,
-/// which knows no error of the mesh, if it says that the shaft is too large by no more than that error. A
-/// greater interference is none of the surfaces that meet, such as the crests of a thread.
-const CheckedFit* interferenceOf(const CheckedPair& pair, const std::vector<CheckedFit>& fits) {
-  if (pair.state != PairState::Contact || pair.is_allowed || !(pair.interference_depth_m > 0)) return nullptr;
-  const auto isIt = [&](const CheckedFit& fit) {
-    const bool is_pair =
-        (fit.shaft == pair.a && fit.bore == pair.b) || (fit.shaft == pair.b && fit.bore == pair.a);
-    const double too_large_m = -fit.diametral_clearance_m;
-    return is_pair && fit.kind == FitKind::Shaft && too_large_m > fit.error_m + kFitCertain_m &&
-           too_large_m <= 2 * pair.error_m;
-  };
-  const auto found = std::find_if(fits.begin(), fits.end(), isIt);
-  return found == fits.end() ? nullptr : &*found;
-}
-
-struct ProvenOverlap {
-  double depth_m = 0, error_m = 0;  ///< 0: none
-};
-
-/// Of the meshes, or else of the fit.
-ProvenOverlap overlapOf(const CheckedPair& pair, const std::vector<CheckedFit>& fits) {
-  if (pair.isClash()) return {pair.interference_depth_m, pair.error_m};
-  if (const CheckedFit* fit = interferenceOf(pair, fits))
-    return {-0.5 * fit->diametral_clearance_m, 0.5 * (fit->error_m + kFitCertain_m)};
-  return {};
-}
-
 void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
   for (const CheckedPair& pair : checked.pairs) {
     const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
-    const ProvenOverlap overlap = overlapOf(pair, checked.fits);
-    if (other == nullptr || overlap.depth_m <= step.blocked_depth_m) continue;
+    if (other == nullptr || !pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
     step.blocked_by = *other;
     step.blocked_at_W = pair.at_W;
-    step.blocked_depth_m = overlap.depth_m;
-    step.blocked_error_m = overlap.error_m;
+    step.blocked_depth_m = pair.interference_depth_m;
+    step.blocked_error_m = pair.error_m;
   }
   if (step.blocked_by.empty()) return;
   step.reason = "as drawn, it overlaps '" + step.blocked_by + "' by " + lengthInWords(step.blocked_depth_m) +
