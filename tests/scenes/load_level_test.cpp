@@ -101,6 +101,7 @@ TEST(LoadLevel, AnOverloadedRunReducesPointsThenRateAndStopsWhereItFits) {
 TEST(LoadLevel, AfterTheLoadEndsAllLevelsAreRestoredInReverseOrder) {
   Scene scene = twoPins();
   scene.steps.resize(1);
+  scene.parts[2].is_scenery = true;
   scene.release_s = 9;
   scene.steps[0].X_WP_start.p.z() += 40 * kMm;
   scene.steps[0].timeout_s = 60;

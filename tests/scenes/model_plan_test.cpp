@@ -35,6 +35,7 @@ Scene pinsOnPlate() {
                  part("shelf", makeBox({9 * kMm, 9 * kMm, 9 * kMm}), {100 * kMm, 0, 0}, true),
                  part("label", makeBox({3 * kMm, 3 * kMm, 1 * kMm}), {0, 0, 50 * kMm}, false),
                  part("pin", pin, {0, 0, 2 * kMm}, false), part("twin", pin, {10 * kMm, 0, 2 * kMm}, false)};
+  scene.parts[2].is_scenery = true;
   for (const std::size_t i : {3u, 4u}) {
     SceneStep step;
     step.part = i;
@@ -151,6 +152,7 @@ TEST(ModelPlan, AReducedAssemblyEqualsTheWholeOneToTheBitWithLessMemory) {
 TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheOtherFixedPartsAsWell) {
   Scene scene = pinsOnPlate();
   scene.steps.resize(1);
+  scene.parts[4].is_scenery = true;
   scene.steps[0].X_WP_start = Pose::translation({0, 0, 12.2 * kMm});
   scene.steps[0].X_WP_target = Pose::translation({0, 0, 12 * kMm});
   EXPECT_EQ(useOf(makeModelPlan(scene, ModelPurpose::Assemble), 0, 0), PartUse::LeftOut);

@@ -153,12 +153,21 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   Scene scene = pinOnPlate();
   scene.fidelity.contact_method = ContactMethod::Penalty;
   scene.device.has_indexing = false;
-  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-3\n";
+  scene.steps[0].is_held = true;
+  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-4\n";
   ASSERT_TRUE(bytes.starts_with(magic));
-  // Version 2 brought the contact method, a byte, and version 3 indexing, a byte; each stands at the end.
-  const std::string second = "vps-scene-2\n" + bytes.substr(magic.size(), bytes.size() - magic.size() - 1);
-  const std::string first = "vps-scene-1\n" + second.substr(magic.size(), second.size() - magic.size() - 1);
-  EXPECT_FALSE(sceneFromBytes(bytes, "x").device.has_indexing);
+  // Version 2 brought the contact method, a byte, version 3 indexing, a byte, and version 4 `holds`, a byte,
+  // a number of the operator, and for each of the two parts two bytes and two numbers. Each stands at the
+  // end.
+  const auto before = [&](const std::string& later, int version, std::size_t added) {
+    return "vps-scene-" + std::to_string(version) + "\n" +
+           later.substr(magic.size(), later.size() - magic.size() - added);
+  };
+  const std::string third = before(bytes, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
+                    first = before(second, 1, 1);
+  EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].is_held);
+  EXPECT_FALSE(sceneFromBytes(third, "x").steps[0].is_held);
+  EXPECT_FALSE(sceneFromBytes(third, "x").device.has_indexing);
   EXPECT_TRUE(sceneFromBytes(second, "x").device.has_indexing);
   EXPECT_EQ(sceneFromBytes(second, "x").fidelity.contact_method, ContactMethod::Penalty);
   EXPECT_EQ(sceneFromBytes(first, "x").fidelity.contact_method, ContactMethod::Constraint);

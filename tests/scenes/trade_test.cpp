@@ -95,8 +95,8 @@ TEST(Trade, FinerPointsGiveAMoreAccurateForce) {
 
 TEST(Trade, MorePointsTakeMoreTime) {
   // An eighth of the spacing gives 64 times the points. The tree reads far fewer of them; an exhaustive query
-  // takes 64 times as long, less its fixed cost. A quarter of that, and the least of three measurements, leave
-  // room for the load of other programs.
+  // takes 64 times as long, less its fixed cost. A quarter of that, and the least of three measurements,
+  // leave room for the load of other programs.
   double few_us = 1e9, many_us = 1e9;
   for (int i = 0; i < 3; ++i) {
     const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);

@@ -76,9 +76,9 @@ inline bool isWithinLimit(const StepResult& step) {
 inline bool isAtRest(const StepResult& step) {
   return step.rest_drift_m <= kRestDriftLimit_m;
 }
-/// Guided with less force than this is not guided. Measured (tests/hand, `vps_hand edge`): at most 0.01 N
-/// over a plate with nothing beside the part, at least 0.11 N in a bore.
-inline constexpr double kGuideLeast_N = 0.05;
+/// Guided with less force than this is not guided. Measured (tests/hand): at most 0.01 N over a plate with
+/// nothing beside the part, at least 0.036 N in a bore.
+inline constexpr double kGuideLeast_N = 0.02;
 inline bool isGuided(const StepResult& step) {
   return step.guide_force_N >= kGuideLeast_N;
 }

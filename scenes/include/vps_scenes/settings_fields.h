@@ -130,7 +130,7 @@ inline constexpr auto kOperatorFields = std::make_tuple(
           {.quantity = Quantity::Angle, .range = kNotNegative}),
     field("aim_turn_deg", &OperatorSettings::aim_turn_rad,
           "greatest error about the axis of insertion, which the operator does not see",
-          {.quantity = Quantity::Angle, .range = kNotNegative}),
+          {.quantity = Quantity::Angle, .range = kNotNegative, .since = 4}),
     field("speed_m_s", &OperatorSettings::speed_m_s, "average speed along the path", {.range = kPositive}),
     field("press_N", &OperatorSettings::press_N, "force with which the operator presses a part home",
           {.range = kNotNegative}),

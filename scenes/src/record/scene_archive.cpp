@@ -170,9 +170,8 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  // The model is built again; velocities are for simulate(), which is not recorded. The deflection says how
-  // the mesh was made and changes no run. A recorded scene was complete, so it does not matter which parts
-  // are scenery. Press fits are of the check, which is not recorded.
+  // The model is built again; velocities are for simulate(), which is not recorded, and forces of press fits
+  // for the check.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
                           youngs_modulus_Pa, poissons_ratio, file, deflection_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
@@ -205,10 +204,18 @@ void fields(Archive& archive, T& x) {
   archive(release_s);
 }
 
+/// What a part got with version 4, and what has no table.
+template <typename Archive, Either<ScenePart> T>
+void partFields4(Archive& archive, T& part) {
+  archive(part.is_scenery, part.press_fit_m, part.deflection_m);
+}
+
 /// What came with a version after the first.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
   for (auto& part : x.parts) settings(archive, part.part.material, kMaterialFields, version);
+  if (version == 4)
+    for (auto& part : x.parts) partFields4(archive, part);
   for (auto& step : x.steps) settings(archive, step, kStepKeys, version);
   settings(archive, x.fidelity, kFidelityFields, version);
   settings(archive, x.coupling, kCouplingFields, version);
