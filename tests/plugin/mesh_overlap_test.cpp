@@ -80,12 +80,26 @@ TEST(MeshOverlap, AFlatContactNeedsFewPieces) {
   EXPECT_LE(found.depth_m, 2e-9 + 1e-16);
 }
 
+double sampledOnFacets_m(const OverlapMesh& in, const OverlapMesh& of, const Pose& X) {
+  double sampled_m = 0;
+  constexpr int kSteps = 60;
+  for (const auto& t : of.mesh().triangles)
+    for (int i = 0; i <= kSteps; ++i)
+      for (int k = 0; i + k <= kSteps; ++k) {
+        const auto& v = of.mesh().vertices;
+        const Vec3 p =
+            v[t[0]] + double(i) / kSteps * (v[t[1]] - v[t[0]]) + double(k) / kSteps * (v[t[2]] - v[t[0]]);
+        sampled_m = std::max(sampled_m, -in.solid().signedDistance(X * p));
+      }
+  return sampled_m;
+}
+
 // Points of both surfaces, far more of them than edges need: none may be deeper in the other mesh, but for
 // the interior of faces, where the other's edges stand for them.
 TEST(MeshOverlap, NoPointOfAnEdgeIsDeeper) {
   test::RandomPoints random(5);
   const OverlapMesh a = box(0.2, 0.15, 0.1), b = overlapMesh(makeTube(0.1, 0.06, 0.15, 8));
-  int overlapping = 0;
+  int overlapping = 0, deeper_on_facets = 0;
   for (int i = 0; i < 200; ++i) {
     const Pose X_AB = random.pose(0.15);
     const double depth_m = deepestOverlap(a, Pose(), b, X_AB).depth_m;
@@ -102,10 +116,101 @@ TEST(MeshOverlap, NoPointOfAnEdgeIsDeeper) {
     sample(b, a, X_AB.inverse());
     overlapping += sampled_m > 0;
     EXPECT_GE(depth_m, sampled_m - kOverlapCertain_m) << i;
+    if (depth_m > 0 && sampled_m < depth_m - 0.004) {
+      sampled_m = std::max(sampledOnFacets_m(a, b, X_AB), sampledOnFacets_m(b, a, X_AB.inverse()));
+      ++deeper_on_facets;
+    }
     // Half the spacing of the samples.
     EXPECT_TRUE(depth_m == 0 || sampled_m >= depth_m - 0.004) << i << ": " << depth_m << ", " << sampled_m;
   }
   EXPECT_GT(overlapping, 50);
+  EXPECT_LT(deeper_on_facets, overlapping / 10);
+}
+
+// Two equal boxes, moved along one axis: their sides stay flush, so that all edges lie in the other surface.
+TEST(MeshOverlap, FlushBoxesHaveTheDepthOfTheFaceBetweenThem) {
+  const OverlapMesh cube = box(0.01, 0.01, 0.01);
+  const Mat3 turned = rotationFromVector(Vec3(0.3, -0.5, 0.2));
+  for (const double depth_m : {1e-6, 20e-6, 1e-3, 3e-3, 5e-3})
+    for (int axis = 0; axis < 3; ++axis)
+      for (const Mat3& R : {Mat3(Mat3::Identity()), turned}) {
+        const Pose X_WA(R, Vec3(0.1, 0.2, 0)), X_AB = Pose::translation((0.01 - depth_m) * Vec3::Unit(axis));
+        for (const double found_m : {deepestOverlap(cube, X_WA, cube, X_WA * X_AB).depth_m,
+                                     deepestOverlap(cube, X_WA * X_AB, cube, X_WA).depth_m}) {
+          EXPECT_LE(found_m, depth_m + 1e-12) << axis;
+          EXPECT_GE(found_m, depth_m * 0.9 - 1e-12) << axis;  // 80 probes for a facet find 0.93 at least
+        }
+      }
+}
+
+// A point inside both is at most 5 mm deep; the probes find one of at least half of that.
+TEST(MeshOverlap, EqualBodiesInOnePlaceOverlap) {
+  const OverlapMesh cube = box(0.01, 0.01, 0.01), tube = overlapMesh(makeTube(0.02, 0.01, 0.03, 32));
+  const Mat3 quarter = rotationFromVector(Vec3(0, 0, M_PI / 2));
+  for (const Pose& X : {Pose(), Pose(quarter, Vec3::Zero())}) {
+    const double found_m = deepestOverlap(cube, Pose(), cube, X).depth_m;
+    EXPECT_GE(found_m, 2.5e-3);
+    EXPECT_LE(found_m, 5e-3 + 1e-12);
+  }
+  // Its walls are 10 mm thick.
+  const double in_tube_m = deepestOverlap(tube, Pose(), tube, Pose()).depth_m;
+  EXPECT_GE(in_tube_m, 2.5e-3);
+  EXPECT_LE(in_tube_m, 5e-3 + 1e-12);
+}
+
+TEST(MeshOverlap, ABoxFlushInALargerOneOverlaps) {
+  const OverlapMesh large = box(0.01, 0.01, 0.01), small = box(4e-3, 4e-3, 4e-3), bar = box(0.03, 0.01, 0.01);
+  // In the corner: the inner corner of the small box is 4 mm below three faces.
+  EXPECT_NEAR(deepestOverlap(large, Pose(), small, Pose::translation(Vec3::Constant(3e-3))).depth_m, 4e-3,
+              kOverlapCertain_m);
+  // Between four sides of the bar, in its middle: the ends of the cube are 5 mm below all four.
+  const double in_bar_m = deepestOverlap(bar, Pose(), large, Pose()).depth_m;
+  EXPECT_GE(in_bar_m, 5e-3 * 0.9);
+  EXPECT_LE(in_bar_m, 5e-3 + 1e-12);
+  // Crossed bars, flush above and below: each one's sides are 5 mm below the other's.
+  const Mat3 across = rotationFromVector(Vec3(0, 0, M_PI / 2));
+  for (const double along_m : {0.0, 0.008}) {
+    const double crossed_m = deepestOverlap(bar, Pose(), bar, Pose(across, Vec3(along_m, 0, 0))).depth_m;
+    EXPECT_GE(crossed_m, 5e-3 * 0.9) << along_m;
+    EXPECT_LE(crossed_m, 5e-3 + 1e-12) << along_m;
+  }
+}
+
+TEST(MeshOverlap, EqualCylindersOnOneAxisHaveTheDepthOfTheirEnds) {
+  const OverlapMesh cylinder = overlapMesh(makeCylinder(0.005, 0.02, 48));
+  for (const double depth_m : {20e-6, 1e-3}) {
+    const double found_m =
+        deepestOverlap(cylinder, Pose(), cylinder, Pose::translation(Vec3(0, 0, 0.02 - depth_m))).depth_m;
+    EXPECT_LE(found_m, depth_m + 1e-12);
+    EXPECT_GE(found_m, depth_m * 0.9);
+  }
+}
+
+// The depth of edges is continuous; flush faces that are out of line by less than edges are measured to must
+// give the same.
+TEST(MeshOverlap, NearlyFlushBoxesHaveTheDepthOfTheFaceBetweenThem) {
+  const OverlapMesh cube = box(0.01, 0.01, 0.01);
+  for (const double off_m : {1e-15, 1e-12, 1e-9, -1e-9, 1e-7, 1e-6}) {
+    const Pose X(rotationFromVector(Vec3(0, 0, off_m)), Vec3(7e-3, off_m, 0.5 * off_m));
+    const double found_m = deepestOverlap(cube, Pose(), cube, X).depth_m;
+    EXPECT_LE(found_m, 3e-3 + 1e-8) << off_m;
+    EXPECT_GE(found_m, 3e-3 * 0.9) << off_m;
+  }
+}
+
+TEST(MeshOverlap, FacesInContactDoNotOverlap) {
+  const OverlapMesh cube = box(0.01, 0.01, 0.01), plate = box(0.1, 0.1, 0.002);
+  const OverlapMesh cylinder = overlapMesh(makeCylinder(0.005, 0.02, 48));
+  const OverlapMesh tube = overlapMesh(makeTube(0.02, 0.005, 0.02, 48));
+  for (const Vec3& p : {Vec3(0.01, 0, 0), Vec3(0.01, 0.003, 0), Vec3(0.01, 0.003, -0.004),
+                        Vec3(0, 0.01, 0.01), Vec3(0, 0, -0.01)})
+    EXPECT_LE(deepestOverlap(cube, Pose(), cube, Pose::translation(p)).depth_m, 1e-16);
+  EXPECT_LE(deepestOverlap(plate, Pose(), cube, Pose::translation(Vec3(0.01, 0.02, 0.006))).depth_m, 1e-16);
+  // Flush with two sides of the plate too.
+  EXPECT_LE(deepestOverlap(plate, Pose(), cube, Pose::translation(Vec3(0.045, 0.045, 0.006))).depth_m, 1e-16);
+  EXPECT_LE(deepestOverlap(cylinder, Pose(), cylinder, Pose::translation(Vec3(0, 0, 0.02))).depth_m, 1e-16);
+  // A pin that fills a bore.
+  EXPECT_LE(deepestOverlap(tube, Pose(), cylinder, Pose()).depth_m, 1e-16);
 }
 
 }  // namespace

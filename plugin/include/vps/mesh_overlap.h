@@ -27,6 +27,10 @@ class VPS_API OverlapMesh {
   /// Vertex pairs of all edges between faces that are not in one plane, and of all that do not have exactly
   /// two faces.
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
+  /// For each of edges(), the first and the last of its triangles.
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& trianglesAtEdges() const {
+    return triangles_at_edges_;
+  }
   /// Appends where segment ab crosses the surface, as fractions of the segment, not sorted. A crossing at the
   /// border of two triangles may appear twice.
   void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
@@ -35,7 +39,7 @@ class VPS_API OverlapMesh {
   struct Triangles;
   std::shared_ptr<const Solid> solid_;
   Box box_;
-  std::vector<std::array<std::uint32_t, 2>> edges_;
+  std::vector<std::array<std::uint32_t, 2>> edges_, triangles_at_edges_;
   std::unique_ptr<const Triangles> triangles_;
 };
 
@@ -49,7 +53,11 @@ inline constexpr double kOverlapCertain_m = 0.1e-6;
 
 /// The deepest point of the edges of each mesh in the other one. Surfaces that intersect do so at an edge of
 /// one of them, so no overlap is missed; the point of a face that is deepest in the other mesh is represented
-/// by the other's edges there. O(edges near the other mesh x log triangles). Allocates. Thread-safe.
+/// by the other's edges there. Where faces are flush, edges may lie in the other surface while bodies
+/// overlap: so triangles at edges that are not clearly outside are probed between their edges too, up to 80
+/// times each. A depth found there counts if it is at least twice that of the edges; it is a lower bound, as
+/// the depth of two equal bodies in one place is. O(edges near the other mesh x log triangles). Allocates.
+/// Thread-safe.
 VPS_API Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b,
                                const Pose& X_WB);
 

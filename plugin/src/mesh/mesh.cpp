@@ -208,7 +208,10 @@ void requireUsable(const Mesh& mesh, const std::string& file, const std::string&
   if (mesh.triangles.empty()) throw LoadError(file, part, "has no triangles; export it as a triangle mesh");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!mesh.vertices[i].allFinite())
-      throw LoadError(file, part, "vertex " + std::to_string(i) + " is not a number; export it again");
+      throw LoadError(file, part,
+                      "vertex " + std::to_string(i) +
+                          (mesh.vertices[i].hasNaN() ? " is not a number" : " is infinite") +
+                          "; export it again");
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i])
       if (v >= mesh.vertices.size())

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "mesh/box_tree.h"
+#include "mesh/facet_overlap.h"
+#include "mesh/mesh_edges.h"
 #include "vps/sharp_edges.h"
 
 namespace vps::inline v0 {
@@ -21,6 +23,20 @@ std::vector<Box> boxesOf(const Mesh& mesh) {
   return boxes;
 }
 
+/// The first and the last triangle at each of some edges, which are in ascending order.
+std::vector<std::array<std::uint32_t, 2>> trianglesAt(const std::vector<std::array<std::uint32_t, 2>>& edges,
+                                                      const Mesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> triangles;
+  triangles.reserve(edges.size());
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> sides) {
+    if (triangles.size() == edges.size()) return;
+    const auto& [low, high] = edges[triangles.size()];
+    if (sides[0].low == low && sides[0].high == high)
+      triangles.push_back({sides.front().triangle, sides.back().triangle});
+  });
+  return triangles;
+}
+
 Box boxOf(const Vec3& a, const Vec3& b) {
   Box box;
   box.add(a);
@@ -34,6 +50,7 @@ Vec3 at(const Vec3& a, const Vec3& b, double fraction) {
 
 /// An edge of one solid in the frame of the other, and where it crosses the other's surface.
 struct CrossedEdge {
+  std::size_t index;  ///< among the edges of its solid
   Vec3 a, b;
   std::vector<double> crossings;
 };
@@ -41,8 +58,9 @@ struct CrossedEdge {
 std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   std::vector<CrossedEdge> near;
   const std::vector<Vec3>& vertices = other.mesh().vertices;
-  for (const auto& [from, to] : other.edges()) {
-    CrossedEdge edge{X_SO * vertices[from], X_SO * vertices[to], {}};
+  for (std::size_t i = 0; i < other.edges().size(); ++i) {
+    const auto& [from, to] = other.edges()[i];
+    CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
     if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
     in.appendCrossings(edge.a, edge.b, edge.crossings);
     near.push_back(std::move(edge));
@@ -56,15 +74,11 @@ double distanceToTriangle(const OverlapMesh& in, std::uint32_t triangle, const V
   return (closestOnTriangle(p, v[t[0]], v[t[1]], v[t[2]]).q - p).norm();
 }
 
-struct Deepest {
-  double depth_m = 0;
-  Vec3 p_S = Vec3::Zero();
-};
-
 /// Deepest point of segment ab, which is wholly inside or wholly outside. The depth is the distance to the
 /// nearest triangle, so it is at most that to any one triangle, which is convex along the segment: at most
 /// that of the farther end. A segment that lies along a face needs one or two triangles, however long it is.
-void searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest& deepest) {
+/// Returns false if the segment is outside and does not touch the surface.
+bool searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest& deepest) {
   struct Piece {
     Vec3 a, b;
   };
@@ -75,37 +89,56 @@ void searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest&
     stack.pop_back();
     const Vec3 middle = 0.5 * (piece.a + piece.b);
     const Solid::Closest nearest = in.solid().closest(middle);
+    if (is_first && nearest.normal.dot(middle - nearest.q) > 0)
+      return nearest.distance_m <= kOverlapCertain_m;
+    is_first = false;
     const double farther_end_m = std::max(distanceToTriangle(in, nearest.triangle, piece.a),
                                           distanceToTriangle(in, nearest.triangle, piece.b));
     const double half_m = 0.5 * (piece.b - piece.a).norm();
     if (std::min(farther_end_m, nearest.distance_m + half_m) <= deepest.depth_m + kOverlapCertain_m) continue;
-    if (is_first && nearest.normal.dot(middle - nearest.q) > 0) return;  // outside
-    is_first = false;
     if (nearest.distance_m > deepest.depth_m) deepest = {nearest.distance_m, middle};
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }
+  return true;
 }
 
-void searchEdges(const OverlapMesh& in, std::vector<CrossedEdge>& edges, Deepest& deepest) {
+/// Returns those edges, by index, that are not wholly outside of the surface.
+std::vector<std::size_t> searchEdges(const OverlapMesh& in, std::vector<CrossedEdge>& edges,
+                                     Deepest& deepest) {
+  std::vector<std::size_t> touching;
   for (CrossedEdge& edge : edges) {
     std::sort(edge.crossings.begin(), edge.crossings.end());
     edge.crossings.push_back(1);
     double from = 0;
+    bool may_touch = false;
     for (const double to : edge.crossings) {
-      if (to > from) searchSegment(in, at(edge.a, edge.b, from), at(edge.a, edge.b, to), deepest);
+      if (to > from)
+        may_touch |= searchSegment(in, at(edge.a, edge.b, from), at(edge.a, edge.b, to), deepest);
       from = to;
     }
+    if (may_touch) touching.push_back(edge.index);
   }
+  return touching;
+}
+
+std::vector<std::uint32_t> trianglesAt(const OverlapMesh& mesh, const std::vector<std::size_t>& edges) {
+  std::vector<std::uint32_t> triangles;
+  for (const std::size_t edge : edges)
+    for (const std::uint32_t triangle : mesh.trianglesAtEdges()[edge]) triangles.push_back(triangle);
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
 }
 
 bool isAnyCrossed(const std::vector<CrossedEdge>& edges) {
   return std::any_of(edges.begin(), edges.end(), [](const CrossedEdge& e) { return !e.crossings.empty(); });
 }
 
-bool isWithinSolid(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
+/// True if the first vertex is outside and does not touch the surface.
+bool isClearlyOutside(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
-  return meet(boxOf(p, p), in.box()) && in.solid().signedDistance(p) < 0;
+  return !meet(boxOf(p, p), in.box()) || in.solid().signedDistance(p) > kOverlapCertain_m;
 }
 
 }  // namespace
@@ -120,6 +153,7 @@ OverlapMesh::OverlapMesh(std::shared_ptr<const Solid> solid)
     : solid_(std::move(solid)),
       box_(bounds(solid_->mesh())),
       edges_(sharpEdges(solid_->mesh(), kFlat_rad)),
+      triangles_at_edges_(trianglesAt(edges_, solid_->mesh())),
       triangles_(std::make_unique<const Triangles>(solid_->mesh())) {}
 
 OverlapMesh::~OverlapMesh() = default;
@@ -148,14 +182,29 @@ Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh
   const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();
   if (!meet(moved(b.box(), X_AB), a.box()) || !meet(moved(a.box(), X_BA), b.box())) return {};
   std::vector<CrossedEdge> of_b = edgesNear(a, b, X_AB), of_a = edgesNear(b, a, X_BA);
-  if (!isAnyCrossed(of_b) && !isAnyCrossed(of_a) && !isWithinSolid(a, b, X_AB) && !isWithinSolid(b, a, X_BA))
+  if (!isAnyCrossed(of_b) && !isAnyCrossed(of_a) && isClearlyOutside(a, b, X_AB) &&
+      isClearlyOutside(b, a, X_BA))
     return {};
   Deepest in_a, in_b;
-  searchEdges(a, of_b, in_a);
+  const std::vector<std::size_t> edges_b = searchEdges(a, of_b, in_a);
   in_b.depth_m = in_a.depth_m;
-  searchEdges(b, of_a, in_b);
-  if (in_b.depth_m > in_a.depth_m) return {in_b.depth_m, X_WB * in_b.p_S};
-  return {in_a.depth_m, X_WA * in_a.p_S};
+  const std::vector<std::size_t> edges_a = searchEdges(b, of_a, in_b);
+  Overlap deepest = in_b.depth_m > in_a.depth_m ? Overlap{in_b.depth_m, X_WB * in_b.p_S}
+                                                : Overlap{in_a.depth_m, X_WA * in_a.p_S};
+  // Between edges: first all facets, then below those that are flush.
+  bool is_between_edges = false;
+  const auto keep = [&](const Pose& X_WS, const auto& search) {
+    Deepest found{deepest.depth_m, Vec3::Zero(), is_between_edges};
+    search(found);
+    if (found.depth_m > deepest.depth_m) deepest = {found.depth_m, X_WS * found.p_S};
+    is_between_edges = found.is_between_edges;
+  };
+  std::vector<FlushPoint> flush_b, flush_a;
+  keep(X_WA, [&](Deepest& found) { flush_b = searchFacets(a, b, X_AB, trianglesAt(b, edges_b), found); });
+  keep(X_WB, [&](Deepest& found) { flush_a = searchFacets(b, a, X_BA, trianglesAt(a, edges_a), found); });
+  keep(X_WA, [&](Deepest& found) { searchBelow(a, b, X_AB, flush_b, found); });
+  keep(X_WB, [&](Deepest& found) { searchBelow(b, a, X_BA, flush_a, found); });
+  return deepest;
 }
 
 }  // namespace vps::inline v0
