@@ -10,8 +10,10 @@ std::string lengthInWords(double length_m) {
   char text[64];
   if (length_m < 1e-3)
     std::snprintf(text, sizeof text, "%.1f um", 1e6 * length_m);
-  else
+  else if (length_m < 1)
     std::snprintf(text, sizeof text, "%.2f mm", 1e3 * length_m);
+  else
+    std::snprintf(text, sizeof text, "%.2f m", length_m);
   return text;
 }
 

@@ -8,7 +8,7 @@
 
 namespace vps::scenes::inline v0 {
 
-/// "12.3 um" below a millimetre, "1.23 mm" above.
+/// "12.3 um" below a millimetre, "1.23 mm" below a metre, "1.23 m" above.
 std::string lengthInWords(double length_m);
 
 /// "1.2 degrees"
