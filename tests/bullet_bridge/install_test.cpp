@@ -66,7 +66,11 @@ TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
     return stats(world.dispatcher);
   };
   EXPECT_EQ(startAt(0.0105).overlapping_starts, 0u);
+  testing::internal::CaptureStderr();
   const Stats stats = startAt(0.010 - kOverlap_m);
+  const std::string words = testing::internal::GetCapturedStderr();
+  EXPECT_NE(words.find("begin at least 1 mm inside each other"), std::string::npos) << words;
+  EXPECT_NE(words.find("(0, 0, 0.009) m"), std::string::npos) << words;  // where one of the bodies is
   EXPECT_EQ(stats.overlapping_starts, 1u);
   EXPECT_NEAR(stats.deepest_start_m, kOverlap_m,
               1e-7);  // the distance of faces is exact except for float rounding

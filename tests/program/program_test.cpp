@@ -296,10 +296,22 @@ TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
   write("inside.toml", scene("") + "pose = {position = [0, 0, 8.5]}\n");
   const Ran inside = run("simulate inside.toml --seconds 0.05 --judge-every 1 --json inside.json");
   EXPECT_EQ(inside.status, 0) << inside.out << inside.err;
-  EXPECT_NE(inside.err.find("'plate' starts "), std::string::npos) << inside.err;
+  EXPECT_NE(inside.err.find("'pin' starts "), std::string::npos) << inside.err;
   const json starts = json::parse(slurp(folder_ / "inside.json"))["overlap"]["at_start"];
   ASSERT_EQ(starts.size(), 1U);
   EXPECT_NEAR(starts[0]["depth_m"].get<double>(), 0.5e-3, 1e-6);
+
+  // Apart by 0.05 m/s: 0.5 mm take 10 ms.
+  const Ran stuck = run("simulate inside.toml --seconds 0.004 --judge-every 1 --json stuck.json");
+  EXPECT_EQ(stuck.status, 1) << stuck.out << stuck.err;
+  EXPECT_NE(stuck.err.find("they did not come apart"), std::string::npos) << stuck.err;
+  EXPECT_NE(stuck.out.find("not within the limit: 1 pair of bodies overlapped from start to end"),
+            std::string::npos)
+      << stuck.out;
+  const json never = json::parse(slurp(folder_ / "stuck.json"));
+  EXPECT_FALSE(never["overlap"]["is_within_limit"]);
+  EXPECT_GT(never["overlap"]["at_start"][0]["end_depth_m"].get<double>(), 10e-6);
+  EXPECT_EQ(never["shortened_steps"], 0);
 
   expectRefused("simulate hard.toml --judge-every 1 --real-time", "real time");
   expectRefused("simulate hard.toml --judge-every 0", "--judge-every");

@@ -295,6 +295,11 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
       {"[fidelity]\nauto = true\ntolerance = -1\n", "11", "key 'tolerance' is -1; expected more than 0"},
       {"[fidelity]\ntolerance = 1\n", "10", "key 'tolerance' has an effect with 'auto = true' only"},
       {"[fidelity]\nauto = true\nvoxel = 1\n", "11", "key 'voxel' cannot be combined with 'auto = true'"},
+      {"[fidelity]\ncontact_limit = 3\n", "10", "key 'contact_limit' is 3; expected at least 4"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nvelocity_m_s = [1, 0, 0]\nfixed = true\n", "12",
+       "key 'velocity_m_s' has no effect on a fixed part"},
+      {"[[part]]\nname = 'x'\nfile = 'pin.stl'\nfixed = true\nangular_velocity_rad_s = [1, 0, 0]\n", "13",
+       "key 'angular_velocity_rad_s' has no effect on a fixed part"},
       {"[record]\ncsv_rate_hz = 0\n", "10", "key 'csv_rate_hz' is 0"},
       {"clearance = \n", "9", "not valid TOML"},
       {"part = 'pin'\n", "9", "not valid TOML"},
@@ -315,6 +320,19 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
     const std::string words = messageOf(is_alone ? mistake.text.substr(1) : kStep + mistake.text);
     EXPECT_TRUE(words.starts_with("scene.toml:" + mistake.line + ": ")) << mistake.text << "-> " << words;
     EXPECT_NE(words.find(mistake.words), std::string::npos) << mistake.text << "-> " << words;
+  }
+}
+
+TEST_F(SceneFile, PartsFartherAwayThan1000KmAreRefused) {
+  const std::string pin = kPin + "pose = {position = [0, ";
+  EXPECT_EQ(messageOf(pin + "0.99e9, 0]}\n"), "");
+  for (const char* far_mm : {"1.01e9", "-1.01e9", "1e300"}) {
+    EXPECT_EQ(
+        messageOf(pin + far_mm + ", 0]}\n"),
+        "scene.toml: part 'pin': is more than 1000 km from the origin; check its unit, its pose and those "
+        "of its steps");
+    EXPECT_NE(messageOf(kStep + "target = {position = [" + far_mm + ", 0, 0]}\n").find("more than 1000 km"),
+              std::string::npos);
   }
 }
 

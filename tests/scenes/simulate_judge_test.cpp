@@ -99,7 +99,7 @@ TEST(BodyOverlaps, FindsTheDeepestPairWithItsPlaceAndTime) {
   const JudgedOverlap judged = overlaps.result();
   EXPECT_FALSE(judged.isWithinLimit());
   EXPECT_NEAR(judged.deepest.depth_m, 200 * kUm, kOverlapCertain_m);
-  EXPECT_EQ(judged.deepest.a + judged.deepest.b, "plateblock");
+  EXPECT_EQ(judged.deepest.a + judged.deepest.b, "blockplate");
   EXPECT_EQ(judged.deepest.time_s, 200 * kUm);
   EXPECT_NEAR(judged.deepest.at_W.z(), -100 * kUm, 101 * kUm);
   EXPECT_EQ(judged.poses_judged, 4U);
@@ -125,7 +125,13 @@ TEST(BodyOverlaps, APairThatStartsOverlappedCountsWhereItBecomesDeeperOrOverlaps
   EXPECT_EQ(parted.at_start[0].apart_s, 4.0);
   EXPECT_FALSE(deepestAfter({0.52 * kMm}).isWithinLimit());
   EXPECT_FALSE(deepestAfter({0.3 * kMm, 0, 20 * kUm}).isWithinLimit());
-  EXPECT_FALSE(deepestAfter({0.3 * kMm}).at_start[0].apart_s.has_value());
+  EXPECT_EQ(parted.neverApart(), 0U);
+  const JudgedOverlap stuck = deepestAfter({0.3 * kMm, 0.2 * kMm});
+  EXPECT_FALSE(stuck.at_start[0].apart_s.has_value());
+  EXPECT_NEAR(stuck.at_start[0].end_depth_m, 0.2 * kMm, kOverlapCertain_m);
+  EXPECT_EQ(stuck.deepest.depth_m, 0);
+  EXPECT_EQ(stuck.neverApart(), 1U);
+  EXPECT_FALSE(stuck.isWithinLimit());
 }
 
 TEST(SimulateJudge, StartsWithTheVelocityOfTheScene) {

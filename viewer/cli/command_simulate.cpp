@@ -49,9 +49,10 @@ std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies
 /// What overlaps, by exact distance. Returns false if more does than the scene's limit.
 bool printOverlap(const scenes::JudgedOverlap& judged) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2); };
-  for (const auto& [start, apart_s] : judged.at_start)
+  for (const auto& [start, apart_s, end_depth_m] : judged.at_start)
     warn("'" + start.a + "' starts " + um(start.depth_m) + " um inside '" + start.b + "'; " +
-         (apart_s ? "they were apart after " + fixed(*apart_s, 3) + " s" : "they did not come apart"));
+         (apart_s ? "they were apart after " + fixed(*apart_s, 3) + " s"
+                  : "they did not come apart, and end " + um(end_depth_m) + " um inside each other"));
   const scenes::PairOverlap& deepest = judged.deepest;
   std::printf("deepest by exact distance %s um (limit %s um)", um(deepest.depth_m).c_str(),
               um(judged.limit_m).c_str());
@@ -59,6 +60,9 @@ bool printOverlap(const scenes::JudgedOverlap& judged) {
     std::printf(", '%s' in '%s' at %s s", deepest.a.c_str(), deepest.b.c_str(),
                 fixed(deepest.time_s, 4).c_str());
   std::printf("; judged at %zu instants\n", judged.poses_judged);
+  if (judged.neverApart() > 0)
+    std::printf("not within the limit: %zu %s overlapped from start to end\n", judged.neverApart(),
+                judged.neverApart() == 1 ? "pair of bodies" : "pairs of bodies");
   return judged.isWithinLimit();
 }
 
@@ -97,6 +101,10 @@ int runSimulate(const SimulateArguments& given) {
   std::printf("deepest %s um, kinetic energy %.3g J; time per step %s us (median), %s us (longest)\n",
               fixed(result.max_penetration_m * 1e6, 2).c_str(), result.kinetic_energy_J,
               fixed(result.step.p50_us, 0).c_str(), fixed(result.step.max_us, 0).c_str());
+  if (result.shortened_steps > 0)
+    std::printf(
+        "steps shortened: bodies in contact were stopped within a step %zu times, which takes energy\n",
+        result.shortened_steps);
   const bool is_good = !result.overlap || printOverlap(*result.overlap);
   if (!result.real_time) return is_good ? kGood : kBad;
   for (const std::string& words : result.real_time->warnings) warn(words);

@@ -39,6 +39,7 @@ Json overlap(const scenes::JudgedOverlap& judged) {
   for (const scenes::OverlappingStart& start : judged.at_start) {
     starts.push_back(pairOverlap(start.start));
     starts.back()["apart_s"] = toValue(start.apart_s);
+    starts.back()["end_depth_m"] = start.end_depth_m;
   }
   const bool has_any = judged.deepest.depth_m > 0;
   return {{"max_depth_m", judged.deepest.depth_m},
@@ -82,6 +83,7 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                {"bodies", bodies},
                {"max_penetration_m", result.max_penetration_m},
                {"kinetic_energy_J", result.kinetic_energy_J},
+               {"shortened_steps", result.shortened_steps},
                {"modelled", modelled(result.modelled)}};
   if (result.overlap) json["overlap"] = overlap(*result.overlap);
   return text(json);

@@ -158,7 +158,7 @@ inline constexpr auto kFidelityFields = std::make_tuple(
           "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
     field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
     field("contact_limit", &Fidelity::contact_limit, "contacts given to the solver for each pair of parts",
-          {.range = kCount}),
+          {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
     field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",

@@ -33,16 +33,24 @@ struct PairOverlap {
 struct OverlappingStart {
   PairOverlap start;
   std::optional<double> apart_s;  ///< when they first overlapped by the limit or less; empty: never
+  double end_depth_m = 0;         ///< when they were judged last
 };
 
 struct JudgedOverlap {
   double limit_m = 0;
   std::size_t poses_judged = 0;
   /// Of all pairs and judged steps, but for pairs that overlapped at the start: as long as they have not come
-  /// apart, they count only where they are deeper than then, by the limit or more.
+  /// apart, they count only where they are deeper than then, by the limit or more. The part that moves is
+  /// named first.
   PairOverlap deepest;
   std::vector<OverlappingStart> at_start;
-  [[nodiscard]] bool isWithinLimit() const { return deepest.depth_m <= limit_m; }
+  /// Pairs that overlapped at the start and have not come apart since. They overlap by more than the limit.
+  [[nodiscard]] std::size_t neverApart() const {
+    std::size_t count = 0;
+    for (const OverlappingStart& start : at_start) count += !start.apart_s;
+    return count;
+  }
+  [[nodiscard]] bool isWithinLimit() const { return deepest.depth_m <= limit_m && neverApart() == 0; }
 };
 
 struct SimulateOptions : ModelOptions {
@@ -60,7 +68,10 @@ struct SimulateResult {
   std::vector<BodyState> bodies;
   double max_penetration_m = 0;  ///< deepest contact of the run, by the voxmaps
   std::optional<JudgedOverlap> overlap;
-  double kinetic_energy_J = 0;   ///< at the end
+  double kinetic_energy_J = 0;  ///< at the end
+  /// How often bodies in contact were stopped within a step, because no contact force was found that keeps
+  /// their sharp edges and corners apart for the whole step. Each takes energy.
+  std::size_t shortened_steps = 0;
   TickTimes step, contact_step;  ///< of all steps; of those with contact
   ModelledCost modelled;
   double build_wall_s = 0;

@@ -126,6 +126,7 @@ class SceneReader {
     for (const toml::table* table : top_.tables("part")) readPart(*table);
     if (scene_.parts.empty()) top_.failWhole(R"(has no part; name one in [[part]] with file = "part.stl")");
     for (const toml::table* table : top_.tables("step")) readStep(*table);
+    requireNearOrigin();
     readDevice();
     readTable("operator", scene_.hand, kOperatorFields);
     readTable("coupling", scene_.coupling, kCouplingFields);
@@ -206,6 +207,9 @@ class SceneReader {
     keys.numbers("velocity_m_s", 3, part.V_WP_W.v.data());
     keys.numbers("angular_velocity_rad_s", 3, part.V_WP_W.w.data());
     readFields(keys, part, kPartKeys);
+    for (const char* key : {"velocity_m_s", "angular_velocity_rad_s"})
+      if (part.is_fixed && keys.has(key))
+        keys.fail(key, "has no effect on a fixed part; leave one of them out");
     readColor(keys, part.part.color);
   }
 
@@ -291,6 +295,21 @@ class SceneReader {
     Box box;
     for (const Vec3& p_P : mesh.vertices) box.add(X_WP * p_P);
     return box;
+  }
+
+  /// At 1000 km a coordinate rounds to 1e-10 m, which is far below every tolerance.
+  void requireNearOrigin() const {
+    constexpr double kFarthest_m = 1e6;
+    const auto require = [&](const ScenePart& part, const Pose& X_WP) {
+      const Box box = boundsAt(part.part.mesh, X_WP);
+      if (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() <= kFarthest_m) return;
+      throw LoadError(
+          scene_.file, part.part.name,
+          "is more than 1000 km from the origin; check its unit, its pose and those of its steps");
+    };
+    for (const ScenePart& part : scene_.parts) require(part, part.X_WP);
+    for (const SceneStep& step : scene_.steps)
+      for (const Pose& X_WP : {step.X_WP_start, step.X_WP_target}) require(scene_.parts[step.part], X_WP);
   }
 
   void readDevice() {

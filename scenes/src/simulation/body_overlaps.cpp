@@ -43,13 +43,15 @@ void BodyOverlaps::forEachOverlap(Visit visit) const {
 
 PairOverlap BodyOverlaps::describe(const Pair& pair, const Overlap& overlap, double time_s) const {
   const auto name = [&](std::size_t part) { return scene_.parts[part].part.name; };
-  return {name(pair.first), name(pair.second), overlap.depth_m, overlap.p_W, time_s};
+  const bool is_second_first = scene_.parts[pair.first].is_fixed;  // the part that moves
+  return {name(is_second_first ? pair.second : pair.first), name(is_second_first ? pair.first : pair.second),
+          overlap.depth_m, overlap.p_W, time_s};
 }
 
 void BodyOverlaps::judgeStart() {
   ++judged_.poses_judged;
   forEachOverlap([&](const Pair& pair, const Overlap& found) {
-    if (found.depth_m > judged_.limit_m) starts_[pair] = {describe(pair, found, 0), {}};
+    if (found.depth_m > judged_.limit_m) starts_[pair] = {describe(pair, found, 0), {}, found.depth_m};
   });
 }
 
@@ -65,8 +67,8 @@ void BodyOverlaps::judge(double time_s) {
   });
   for (auto& [pair, start] : starts_) {
     const auto depth = depths_m.find(pair);
-    if (!start.apart_s && (depth == depths_m.end() || depth->second <= judged_.limit_m))
-      start.apart_s = time_s;
+    start.end_depth_m = depth == depths_m.end() ? 0 : depth->second;
+    if (!start.apart_s && start.end_depth_m <= judged_.limit_m) start.apart_s = time_s;
   }
 }
 

@@ -118,6 +118,7 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   result.bodies = states();
   if (overlaps) result.overlap = overlaps->result();
   result.kinetic_energy_J = simulation.kineticEnergy();
+  result.shortened_steps = simulation.shortenedSteps();
   result.step = all.summary();
   result.contact_step = in_contact.summary();
   result.modelled = modelledCost(scene);

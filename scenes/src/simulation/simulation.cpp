@@ -377,6 +377,10 @@ std::size_t Simulation::contactsLeftOut() const {
   return bullet::stats(world_->dispatcher).left_out;
 }
 
+std::size_t Simulation::shortenedSteps() const {
+  return world_->solver.shortenedSteps();
+}
+
 void Simulation::addField(ModelledCost& cost) const {
   if (!hasFixed()) return;
   std::vector<std::shared_ptr<const VoxMap>> own;

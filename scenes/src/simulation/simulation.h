@@ -95,6 +95,8 @@ class Simulation {
   void contactMarks(std::vector<ContactMark>& marks) const;
   /// Number of near points so far that exceeded a query's contact limit.
   [[nodiscard]] std::size_t contactsLeftOut() const;
+  /// How often bodies were stopped within a step so far, see bullet::Solver.
+  [[nodiscard]] std::size_t shortenedSteps() const;
   /// Adds the field's map and points, without what it shares with the parts' own models.
   void addField(ModelledCost& cost) const;
 
