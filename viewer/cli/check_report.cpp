@@ -14,10 +14,6 @@ namespace {
 
 using scenes::PairState;
 
-std::string um(double m, int digits = 2) {
-  return fixed(1e6 * m, digits);
-}
-
 std::string place(const Vec3& p_W) {
   return fixed(1e3 * p_W.x(), 2) + ", " + fixed(1e3 * p_W.y(), 2) + ", " + fixed(1e3 * p_W.z(), 2);
 }

@@ -23,4 +23,9 @@ class Table {
 /// A number with this many digits after the decimal point; "-" if it is not finite.
 std::string fixed(double value, int digits);
 
+/// A length in micrometres, without unit.
+inline std::string um(double length_m, int digits = 2) {
+  return fixed(1e6 * length_m, digits);
+}
+
 }  // namespace vps::viewer::inline v0

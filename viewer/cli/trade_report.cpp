@@ -11,10 +11,6 @@ namespace vps::viewer::inline v0 {
 
 namespace {
 
-std::string um(double m) {
-  return fixed(m * 1e6, 2);
-}
-
 /// The series of the plot that a row belongs to.
 std::string family(scenes::TradeKnob knob) {
   switch (knob) {

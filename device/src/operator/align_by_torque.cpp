@@ -8,7 +8,7 @@ namespace vps::device::inline v0 {
 
 namespace {
 constexpr double kRate_N_per_s = 6;  // growth of the push
-constexpr double kCreep_m_s = 25e-3;
+constexpr double kAlignByTorqueCreep_m_s = 25e-3;
 constexpr double kFree_s = 0.1;
 constexpr double kWobble_rad = 3e-3;  // about the error of sight in rotation
 constexpr double kWobble_rad_s = 20;  // three turns a second
@@ -20,7 +20,7 @@ void AlignByTorque::start(const Situation& situation, const Feel& feel) noexcept
   free_.reset();
   progress_.start(feel.along_m, feel.time_s);
   move_ = {};
-  move_.speed_m_s = kCreep_m_s;
+  move_.speed_m_s = kAlignByTorqueCreep_m_s;
   move_.push_N = situation.habits.search_N;
   move_.gives_way = true;
 }

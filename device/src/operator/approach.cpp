@@ -7,12 +7,13 @@
 namespace vps::device::inline v0 {
 
 namespace {
-constexpr double kHover_s = 1;      // three fixations
-constexpr double kNear_m = 1.5e-3;  // from here on slowly, so that sight can follow: ten of its errors
-constexpr double kCare = 0.6;       // of the speed of insertion, as an edge may be met at any time
+constexpr double kHover_s = 1;  // three fixations
+constexpr double kApproachNear_m =
+    1.5e-3;                    // from here on slowly, so that sight can follow: ten of its errors
+constexpr double kCare = 0.6;  // of the speed of insertion, as an edge may be met at any time
 constexpr double kSlow_m_s = 3e-3;
-constexpr double kTouch_s = 0.02;  // shorter than a tap, longer than a jerk of the start
-constexpr double kOvershoot = 4;   // errors of sight beyond the target: nothing stops it
+constexpr double kApproachTouch_s = 0.02;  // shorter than a tap, longer than a jerk of the start
+constexpr double kOvershoot = 4;           // errors of sight beyond the target: nothing stops it
 }  // namespace
 
 void Approach::start(const Situation& situation, const Feel& feel) noexcept {
@@ -26,11 +27,11 @@ void Approach::start(const Situation& situation, const Feel& feel) noexcept {
 
 Outcome Approach::step(const Feel& feel, double dt_s) noexcept {
   const OperatorHabits& habits = situation_.habits;
-  const bool is_near = std::min(feel.seen_short_m, -feel.along_m) < kNear_m;
+  const bool is_near = std::min(feel.seen_short_m, -feel.along_m) < kApproachNear_m;
   move_.speed_m_s = !situation_.has_touched && feel.time_s < start_s_ + kHover_s ? 0
                     : is_near                                                    ? kSlow_m_s
                               : kCare * habits.insert_share * habits.speed_m_s;
-  if (touch_.step(feel.resist_N > habits.touch_N, dt_s) > kTouch_s) return Outcome::Done;
+  if (touch_.step(feel.resist_N > habits.touch_N, dt_s) > kApproachTouch_s) return Outcome::Done;
   const bool is_beyond = feel.seen_short_m < -kOvershoot * habits.see_error_m;
   return is_beyond ? Outcome::Failed : Outcome::GoingOn;
 }

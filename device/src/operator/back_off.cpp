@@ -7,10 +7,10 @@
 namespace vps::device::inline v0 {
 
 namespace {
-constexpr double kSpeed_m_s = 15e-3;
-constexpr double kLongest_s = 4;
-constexpr double kLook_s = 0.6;  // two fixations
-constexpr double kNear_m = 0.1e-3;
+constexpr double kBackOffSpeed_m_s = 15e-3;
+constexpr double kBackOffLongest_s = 4;
+constexpr double kBackOffLook_s = 0.6;  // two fixations
+constexpr double kBackOffNear_m = 0.1e-3;
 }  // namespace
 
 void BackOff::start(const Situation& situation, const Feel& feel) noexcept {
@@ -20,19 +20,19 @@ void BackOff::start(const Situation& situation, const Feel& feel) noexcept {
   const double from_m = is_whole_ ? std::min(feel.along_m, situation.mouth_m) : feel.along_m;
   goal_m_ = from_m - situation.habits.back_off_m;
   move_ = {};
-  move_.speed_m_s = -kSpeed_m_s;
+  move_.speed_m_s = -kBackOffSpeed_m_s;
   move_.gives_way = true;
 }
 
 Outcome BackOff::step(const Feel& feel, double dt_s) noexcept {
-  if (feel.time_s > start_s_ + kLongest_s) return Outcome::Done;
-  if (looked_s_ == 0 && feel.along_m > goal_m_ + kNear_m) return Outcome::GoingOn;
+  if (feel.time_s > start_s_ + kBackOffLongest_s) return Outcome::Done;
+  if (looked_s_ == 0 && feel.along_m > goal_m_ + kBackOffNear_m) return Outcome::GoingOn;
   move_.speed_m_s = 0;
   if (!is_whole_) return Outcome::Done;
   move_.gives_way = false;
   move_.looks = true;
   looked_s_ += dt_s;
-  return looked_s_ > kLook_s ? Outcome::Done : Outcome::GoingOn;
+  return looked_s_ > kBackOffLook_s ? Outcome::Done : Outcome::GoingOn;
 }
 
 }  // namespace vps::device::inline v0

@@ -9,9 +9,9 @@ namespace vps::device::inline v0 {
 namespace {
 constexpr double kRamp_s = 0.2;          // of the press, up and down
 constexpr double kResidualShare = 0.15;  // of the press, kept until release so that the part stays seated
-constexpr double kCreep_m_s =
+constexpr double kPressHomeCreep_m_s =
     80e-3;  // the reach grows to the press within its ramp; the push is what limits it
-constexpr double kLook_s = 0.6;
+constexpr double kPressHomeLook_s = 0.6;
 constexpr double kYields = 4;  // errors of sight
 }  // namespace
 
@@ -21,7 +21,7 @@ void PressHome::start(const Situation& situation, const Feel& feel) noexcept {
   start_m_ = feel.along_m;
   has_yielded_ = false;
   move_ = {};
-  move_.speed_m_s = kCreep_m_s;
+  move_.speed_m_s = kPressHomeCreep_m_s;
   move_.push_N = situation.habits.search_N;
   move_.gives_way = true;
 }
@@ -35,7 +35,7 @@ Outcome PressHome::step(const Feel& feel, double) noexcept {
     has_yielded_ = true;
     return Outcome::Failed;
   }
-  if (t_s < down_s + kRamp_s + habits.see_delay_s + kLook_s) return Outcome::GoingOn;
+  if (t_s < down_s + kRamp_s + habits.see_delay_s + kPressHomeLook_s) return Outcome::GoingOn;
   return std::abs(feel.seen_short_m) < situation_.near_m ? Outcome::Done : Outcome::Failed;
 }
 

@@ -7,11 +7,11 @@
 namespace vps::device::inline v0 {
 
 namespace {
-constexpr double kSpeed_m_s = 2.5e-3;   // along the spiral
-constexpr double kTurnMost_rad_s = 12;  // near its centre: two turns a second
-constexpr double kCreep_m_s = 10e-3;
-constexpr double kSettle_s = 0.3;
-constexpr double kDropped_m = 0.15e-3;
+constexpr double kSpiralSearchSpeed_m_s = 2.5e-3;  // along the spiral
+constexpr double kTurnMost_rad_s = 12;             // near its centre: two turns a second
+constexpr double kSpiralSearchCreep_m_s = 10e-3;
+constexpr double kSpiralSearchSettle_s = 0.3;
+constexpr double kSpiralSearchDropped_m = 0.15e-3;
 }  // namespace
 
 void SpiralSearch::start(const Situation& situation, const Feel& feel) noexcept {
@@ -19,7 +19,7 @@ void SpiralSearch::start(const Situation& situation, const Feel& feel) noexcept 
   angle_rad_ = wait_s_ = 0;
   level_m_ = feel.along_m;
   move_ = {};
-  move_.speed_m_s = kCreep_m_s;
+  move_.speed_m_s = kSpiralSearchCreep_m_s;
   move_.push_N = situation.habits.search_N;
 }
 
@@ -30,14 +30,14 @@ Outcome SpiralSearch::step(const Feel& feel, double dt_s) noexcept {
     level_m_ = feel.along_m;
     return Outcome::GoingOn;
   }
-  if (wait_s_ < kSettle_s) {
+  if (wait_s_ < kSpiralSearchSettle_s) {
     level_m_ = feel.along_m;
     return Outcome::GoingOn;
   }
-  if (feel.along_m > level_m_ + kDropped_m) return Outcome::Done;
+  if (feel.along_m > level_m_ + kSpiralSearchDropped_m) return Outcome::Done;
   const double pitch_m = situation_.habits.search_m, radius_m = pitch_m * angle_rad_ / kTurn_rad;
   if (radius_m > situation_.habits.search_limit_m) return Outcome::Failed;
-  angle_rad_ += dt_s * std::min(kTurnMost_rad_s, kSpeed_m_s / std::max(radius_m, 1e-9));
+  angle_rad_ += dt_s * std::min(kTurnMost_rad_s, kSpiralSearchSpeed_m_s / std::max(radius_m, 1e-9));
   const Vec3 x = situation_.axis_W.unitOrthogonal(), y = situation_.axis_W.cross(x);
   move_.across_m = radius_m * (std::cos(angle_rad_) * x + std::sin(angle_rad_) * y);
   return Outcome::GoingOn;

@@ -7,15 +7,15 @@
 namespace vps::device::inline v0 {
 
 namespace {
-constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3, kLower_s = 2;
+constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3, kTiltInLower_s = 2;
 constexpr double kLower_m_s = 10e-3;
-constexpr double kTouch_s = 0.02;
+constexpr double kTiltInTouch_s = 0.02;
 constexpr double kShift_m = 0.35e-3;  // of the corner into the hole: three errors of sight
 constexpr double kSlide_m = 1e-3;     // farther than the corner can be from its wall
 constexpr double kSlide_m_s = 2.5e-3;
-constexpr double kCaught_N = 0.9;      // beyond friction of the push
-constexpr double kPreload_m = 0.3e-3;  // keeps the corner at its walls while the part is turned upright
-constexpr double kDropped_m = 0.3e-3;  // deeper than the rounding of an edge
+constexpr double kCaught_N = 0.9;            // beyond friction of the push
+constexpr double kPreload_m = 0.3e-3;        // keeps the corner at its walls while the part is turned upright
+constexpr double kTiltInDropped_m = 0.3e-3;  // deeper than the rounding of an edge
 }  // namespace
 
 void TiltIn::start(const Situation& situation, const Feel& feel) noexcept {
@@ -46,9 +46,9 @@ Outcome TiltIn::step(const Feel& feel, double dt_s) noexcept {
     case Stage::Lower:
       move_.speed_m_s = kLower_m_s;
       move_.push_N = habits.search_N;
-      if (touch_.step(feel.resist_N > 0.7 * habits.touch_N, dt_s) > kTouch_s)
+      if (touch_.step(feel.resist_N > 0.7 * habits.touch_N, dt_s) > kTiltInTouch_s)
         enter(Stage::Slide, feel.time_s);
-      else if (t_s > kLower_s)
+      else if (t_s > kTiltInLower_s)
         return Outcome::Failed;
       break;
     case Stage::Slide:
@@ -69,7 +69,7 @@ Outcome TiltIn::step(const Feel& feel, double dt_s) noexcept {
     case Stage::Drop:
       move_.gives_way = true;
       if (t_s > kDrop_s)
-        return feel.along_m > situation_.mouth_m + kDropped_m ? Outcome::Done : Outcome::Failed;
+        return feel.along_m > situation_.mouth_m + kTiltInDropped_m ? Outcome::Done : Outcome::Failed;
       break;
   }
   return Outcome::GoingOn;

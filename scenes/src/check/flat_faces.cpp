@@ -9,8 +9,8 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 /// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
-constexpr double kRounding = 2e-6;
-constexpr double kParallel = 1e-3;  // of the normals of facets whose corners decide more precisely
+constexpr double kFlatFacesRounding = 2e-6;
+constexpr double kFlatFacesParallel = 1e-3;  // of the normals of facets whose corners decide more precisely
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<Ro
     for (const std::uint32_t i : face.facets) is_taken[i] = true;
   double tolerance_m = 0;
   for (const Vec3& v : mesh.vertices)
-    tolerance_m = std::max(tolerance_m, kRounding * v.cwiseAbs().maxCoeff());
+    tolerance_m = std::max(tolerance_m, kFlatFacesRounding * v.cwiseAbs().maxCoeff());
   // The largest facets give the best normals.
   std::vector<std::pair<double, std::uint32_t>> seeds;
   const auto areaOf = [&](std::uint32_t i) {
@@ -40,7 +40,7 @@ std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<Ro
     for (std::size_t next = 0; next < face.facets.size(); ++next) {
       face.area_m2 += areaOf(face.facets[next]);
       for (const std::uint32_t k : surface.neighbours()[face.facets[next]]) {
-        if (k == kNoFacet || is_taken[k] || surface.normal(k).dot(face.n) < 1 - kParallel) continue;
+        if (k == kNoFacet || is_taken[k] || surface.normal(k).dot(face.n) < 1 - kFlatFacesParallel) continue;
         double off_m = 0;
         for (const Vec3& x : surface.triangle(k))
           off_m = std::max(off_m, std::abs(face.n.dot(x) - face.offset_m));

@@ -10,8 +10,8 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kLeastFacing = 0.3;  // of the smaller of two faces, that the other one covers
-constexpr double kParallel = 1e-4;    // rad
+constexpr double kLeastFacing = 0.3;       // of the smaller of two faces, that the other one covers
+constexpr double kKeyFitsParallel = 1e-4;  // rad
 
 using Vec2 = Eigen::Vector2d;
 using Polygon = std::vector<Vec2>;
@@ -60,14 +60,14 @@ Seen seen(const FlatFace& face, const PlacedSurface& part) {
 }
 
 /// The facets of a face as seen along a key's normal.
-struct Flat {
+struct FlatPatch {
   std::vector<std::array<Vec2, 3>> triangles;  // counter-clockwise
   std::vector<std::array<Vec2, 2>> boxes;
   Vec2 min = Vec2::Constant(1e300), max = Vec2::Constant(-1e300);
 };
 
-Flat projected(const Seen& of, const Vec3& u, const Vec3& v) {
-  Flat flat;
+FlatPatch projected(const Seen& of, const Vec3& u, const Vec3& v) {
+  FlatPatch flat;
   for (const std::uint32_t i : of.face->facets) {
     const Triangle t = of.part->surface->triangle(i);
     std::array<Vec2, 3> p;
@@ -91,7 +91,7 @@ struct Facing {
   Vec2 min = Vec2::Constant(1e300), max = Vec2::Constant(-1e300);
 };
 
-Facing facing(const Flat& a, const Flat& b) {
+Facing facing(const FlatPatch& a, const FlatPatch& b) {
   Facing out;
   if ((a.max.array() <= b.min.array()).any() || (b.max.array() <= a.min.array()).any()) return out;
   for (std::size_t i = 0; i < a.triangles.size(); ++i) {
@@ -120,7 +120,7 @@ struct Contact {
   Seen key, slot;
   double gap_m = 0;
   [[nodiscard]] bool isOpposite(const Contact& other) const {
-    return key.n_W.dot(other.key.n_W) < 0 && key.n_W.cross(other.key.n_W).norm() < kParallel;
+    return key.n_W.dot(other.key.n_W) < 0 && key.n_W.cross(other.key.n_W).norm() < kKeyFitsParallel;
   }
 };
 
@@ -131,7 +131,7 @@ std::vector<Contact> contacts(const FittedPart& key, const FittedPart& slot, dou
   for (const FlatFace& face : key.faces.flat) {
     const Seen of_key = seen(face, key.part);
     for (const Seen& other : of_slot) {
-      if (of_key.n_W.dot(other.n_W) > 0 || of_key.n_W.cross(other.n_W).norm() > kParallel) continue;
+      if (of_key.n_W.dot(other.n_W) > 0 || of_key.n_W.cross(other.n_W).norm() > kKeyFitsParallel) continue;
       const double gap_m = other.above(of_key.box_W.center());
       if (std::abs(gap_m) <= most_m && distance2(of_key.box_W, other.box_W) <= 1.01 * gap_m * gap_m + 1e-18)
         out.push_back({of_key, other, gap_m});
@@ -150,7 +150,7 @@ Vec3 alongOf(const Seen& of) {
     const Triangle t = of.part->surface->triangle(facets[i]);
     for (int e = 0; e < 3; ++e) {
       const Vec3 u = (of.part->X_WP.R * (t[(e + 1) % 3] - t[e])).normalized();
-      const Flat flat = projected(of, u, of.n_W.cross(u));
+      const FlatPatch flat = projected(of, u, of.n_W.cross(u));
       const double area_m2 = (flat.max - flat.min).prod();
       if (area_m2 >= least_m2 * (1 - 1e-9)) continue;
       least_m2 = area_m2;

@@ -7,7 +7,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kMotionSearchForever = std::numeric_limits<double>::infinity();
 /// A step of less than this stops the motion: a tenth of the rest depth.
 constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
 constexpr int kMostSteps = 400;
@@ -28,11 +28,11 @@ double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& 
 
 /// When a box that moves along d reaches another one; forever if it passes by.
 double entry(const Box& moving, const Box& held, const Vec3& d) {
-  double first = 0, last = kForever;
+  double first = 0, last = kMotionSearchForever;
   for (int axis = 0; axis < 3; ++axis) {
     const double before = held.min[axis] - moving.max[axis], behind = held.max[axis] - moving.min[axis];
     if (d[axis] == 0) {
-      if (before > 0 || behind < 0) return kForever;
+      if (before > 0 || behind < 0) return kMotionSearchForever;
       continue;
     }
     const double from = (d[axis] > 0 ? before : behind) / d[axis],
@@ -40,7 +40,7 @@ double entry(const Box& moving, const Box& held, const Vec3& d) {
     first = std::max(first, from);
     last = std::min(last, to);
   }
-  return first <= last ? first : kForever;
+  return first <= last ? first : kMotionSearchForever;
 }
 
 std::array<Vec3, 8> cornersOf(const Box& box) {
@@ -62,7 +62,7 @@ double greatestSpeed(const Motion& motion, const Box& box) {
 double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double least_m) {
   const double lowest_m = n.dot(box.center()) - 0.5 * n.cwiseAbs().dot(box.size());
   if (lowest_m < least_m) return 0;
-  double s = kForever;
+  double s = kMotionSearchForever;
   for (const Vec3& corner : cornersOf(box)) s = std::min(s, motion.staysAbove(n, corner, least_m));
   return s;
 }
@@ -142,19 +142,21 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   };
   const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
   const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
-    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m)) return kForever;
+    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m))
+      return kMotionSearchForever;
     const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
     const Box box = moved(tree_M[i].box, X_HM);
     const double bound = reaches(box, tree[k].box, radius_m);
     if (!(bound < best)) return bound;
     // As safeStep() does for two facets: the plane of a flat node parts all of both.
     if (const PartSurface::NodePlane& plane = fixed.planes()[k]; plane.isFlat())
-      if (staysAbove(motion_H, box, plane.n, plane.highest_m - held.rest_m) >= best) return kForever;
+      if (staysAbove(motion_H, box, plane.n, plane.highest_m - held.rest_m) >= best)
+        return kMotionSearchForever;
     if (const PartSurface::NodePlane& plane = moving.planes()[i]; plane.isFlat()) {
       const Vec3 n = X_HM.R * plane.n;
       if (staysAbove(motion_H.reversed(), tree[k].box, n, plane.highest_m + n.dot(X_HM.p) - held.rest_m) >=
           best)
-        return kForever;
+        return kMotionSearchForever;
     }
     return bound;
   };

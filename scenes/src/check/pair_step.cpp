@@ -5,7 +5,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kPairStepForever = std::numeric_limits<double>::infinity();
 /// Below this distance the direction between nearest points is rounding.
 constexpr double kDirection_m = 1e-9;
 
@@ -28,7 +28,7 @@ class Step {
   double longest() {
     tryHeld(pair_.held.normal(held_), -pair_.rest_m);
     tryMoving(pair_.X_HM.R * pair_.moving.normal(moving_), -pair_.rest_m);
-    if (best_ == kForever) return best_;
+    if (best_ == kPairStepForever) return best_;
     gap_ = triangleGap(a_, b_);
     const Vec3 between = gap_.p_a - gap_.p_b;
     if (gap_.distance_m > 2 * pair_.rest_m) {
@@ -50,7 +50,7 @@ class Step {
   double depth() {
     gap_ = triangleGap(a_, b_);
     if (gap_.distance_m > 0) return 0;
-    double least_m = kForever;
+    double least_m = kPairStepForever;
     const auto keep = [&](const Vec3& n) { least_m = std::min(least_m, highest(n, b_) - lowest(n, a_)); };
     keep(pair_.held.normal(held_));
     keep(-(pair_.X_HM.R * pair_.moving.normal(moving_)));
@@ -63,7 +63,7 @@ class Step {
   void tryHeld(const Vec3& n, double least_m) {
     const double above_m = highest(n, b_) + least_m;
     if (lowest(n, a_) < above_m) return;
-    double s = kForever;
+    double s = kPairStepForever;
     for (const Vec3& p : a_) s = std::min(s, pair_.motion.staysAbove(n, p, above_m));
     best_ = std::max(best_, s);
   }
@@ -72,7 +72,7 @@ class Step {
     const double above_m = highest(n, a_) + least_m;
     if (lowest(n, b_) < above_m) return;
     const Motion motion = pair_.motion.reversed();
-    double s = kForever;
+    double s = kPairStepForever;
     for (const Vec3& p : b_) s = std::min(s, motion.staysAbove(n, p, above_m));
     best_ = std::max(best_, s);
   }

@@ -12,7 +12,7 @@ namespace {
 
 /// Rounding turns the diagonal of a flat face by about 1e-8; curved faces turn by more than 1e-3.
 constexpr double kFlat_rad = 1e-6;
-constexpr double kParallel = 1e-12;  // 1 - cosine
+constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine
 
 double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -88,8 +88,9 @@ void PartSurface::gatherNormals() {
     first_around_.push_back(static_cast<std::uint32_t>(first));
     for (const std::uint32_t i : of_vertex) {
       const Vec3 n = normal(i);
-      const bool is_known = std::any_of(around_.begin() + static_cast<std::ptrdiff_t>(first), around_.end(),
-                                        [&](const Vec3& other) { return other.dot(n) > 1 - kParallel; });
+      const bool is_known =
+          std::any_of(around_.begin() + static_cast<std::ptrdiff_t>(first), around_.end(),
+                      [&](const Vec3& other) { return other.dot(n) > 1 - kPartSurfaceParallel; });
       if (!is_known) around_.push_back(n);
     }
   }
@@ -102,7 +103,8 @@ void PartSurface::findPlanes() {
     const std::uint32_t first = tree_.nodes()[node].first, end = tree_.nodes()[node].end;
     const auto facets = std::span(tree_.order()).subspan(first, end - first);
     const Vec3 n = normal(facets[0]);
-    if (!std::ranges::all_of(facets, [&](std::uint32_t i) { return normal(i).dot(n) > 1 - kParallel; }))
+    if (!std::ranges::all_of(facets,
+                             [&](std::uint32_t i) { return normal(i).dot(n) > 1 - kPartSurfaceParallel; }))
       continue;
     NodePlane& plane = planes_[node];
     plane = {n, -1e300};

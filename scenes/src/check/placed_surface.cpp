@@ -2,6 +2,7 @@
 #include "check/placed_surface.h"
 
 #include <tbb/parallel_for.h>
+#include <algorithm>
 
 #include <cmath>
 
@@ -68,6 +69,10 @@ std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<Pla
     for (std::size_t b = a + 1; b < parts.size(); ++b)
       if (distance2(parts[a].box_W, parts[b].box_W) <= near_m * near_m) pairs.emplace_back(a, b);
   return pairs;
+}
+
+const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name) {
+  return *std::ranges::find(parts, name, &PlacedSurface::name);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -23,6 +23,9 @@ struct PlacedSurface {
 /// On all cores; they point to the parts. Throws LoadError; see checkAssembly().
 std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress);
 
+/// The part of this name, which is among them.
+const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name);
+
 /// Pairs of parts whose boxes are nearer than near_m, in ascending order.
 std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
                                                            double near_m);

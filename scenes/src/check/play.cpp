@@ -9,7 +9,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kPlayForever = std::numeric_limits<double>::infinity();
 constexpr double kSame = 1e-9;  // of directions: their squared distance
 
 bool isOf(const CheckedFit& fit, const PlacedSurface& part) {
@@ -59,7 +59,7 @@ std::array<double, 2> playAlong(const MotionSearch& search, const PlayFrame& fra
   const Motion motion{frame.axes_W.col(axis % 3), frame.center_W, axis >= 3};
   const std::array<Reach, 2> reach =
       search.reachBoth(motion, motion.is_turn ? 2 * std::numbers::pi : leave_m);
-  return {reach[0].is_stopped ? reach[0].s : kForever, reach[1].is_stopped ? reach[1].s : kForever};
+  return {reach[0].is_stopped ? reach[0].s : kPlayForever, reach[1].is_stopped ? reach[1].s : kPlayForever};
 }
 
 std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,

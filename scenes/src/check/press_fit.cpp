@@ -11,14 +11,14 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 /// Sizes of the same face in files of six digits differ by so much of the size.
-constexpr double kRounding = 2e-6;
+constexpr double kPressFitRounding = 2e-6;
 
 bool isOf(const CheckedFit& fit, const CheckedPair& pair) {
   return (fit.shaft == pair.a && fit.bore == pair.b) || (fit.shaft == pair.b && fit.bore == pair.a);
 }
 
 double interferenceOf(const CheckedFit& fit) {
-  const double beyond_m = fit.error_m + kRounding * fit.shaft_m + kOverlapCertain_m;
+  const double beyond_m = fit.error_m + kPressFitRounding * fit.shaft_m + kOverlapCertain_m;
   return fit.diametral_clearance_m < -beyond_m ? -fit.diametral_clearance_m : 0;
 }
 
@@ -129,10 +129,6 @@ CheckedPress pressOf(const CheckedFit& fit, const PlacedSurface& shaft, const Pl
   const double share = std::pow(ring.joint_m / ring.hub_m, 2);
   press.hub_stress_Pa = press.pressure_Pa * 2 / (1 - share);
   return press;
-}
-
-const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name) {
-  return *std::ranges::find(parts, name, &PlacedSurface::name);
 }
 
 void judge(const std::vector<PlacedSurface>& parts, CheckedPair& pair, std::vector<CheckedFit>& fits) {

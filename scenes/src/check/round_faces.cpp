@@ -13,7 +13,7 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 /// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
-constexpr double kRounding = 2e-6;
+constexpr double kRoundFacesRounding = 2e-6;
 /// In the radius: 1 um at 4 mm, what coordinates in metres with six decimals need.
 constexpr double kCoarse = 2.5e-4;
 constexpr double kLeastTurn = 0.3;
@@ -39,7 +39,7 @@ class Finder {
   explicit Finder(const PartSurface& surface)
       : surface_(surface), mesh_(surface.mesh()), is_taken_(mesh_.triangles.size()), seen_(is_taken_.size()) {
     for (const Vec3& v : mesh_.vertices) tolerance_m_ = std::max(tolerance_m_, v.cwiseAbs().maxCoeff());
-    tolerance_m_ *= kRounding;
+    tolerance_m_ *= kRoundFacesRounding;
     is_corner_.assign(mesh_.vertices.size(), false);
     for (std::uint32_t i = 0; i < is_taken_.size(); ++i)
       for (int e = 0; e < 3; ++e)

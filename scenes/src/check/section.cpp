@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::size_t kMost = 60;  // assumed: more pictures than anybody looks at
 
-const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name) {
-  return *std::ranges::find(parts, name, &PlacedSurface::name);
-}
-
 /// The unit vector square to a direction that is nearest to an axis of the world.
 Vec3 acrossOf(const Vec3& axis_W, const std::array<int, 3>& order = {0, 1, 2}) {
   Vec3 best = axis_W.unitOrthogonal();

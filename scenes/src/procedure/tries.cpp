@@ -18,7 +18,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{50};  // assumed: no delay that a person notices
+constexpr std::chrono::milliseconds kTriesPoll{50};  // assumed: no delay that a person notices
 
 TryResult summary(std::uint64_t seed, const AssembleResult& result) {
   TryResult made{seed, result.verdict, result.simulated_s, {}};
@@ -48,7 +48,7 @@ class Tries {
   /// Tells the progress on the caller's thread, which may throw.
   void wait(unsigned threads) {
     while (finished_ < threads) {
-      std::this_thread::sleep_for(kPoll);
+      std::this_thread::sleep_for(kTriesPoll);
       if (options_.stop != nullptr && *options_.stop) stop_ = true;
       if (!options_.progress) continue;
       double share = 0;

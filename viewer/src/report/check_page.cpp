@@ -7,6 +7,7 @@
 
 #include "report/clearance_pictures.h"
 #include "report/html.h"
+#include "report/length_text.h"
 #include "report/section_svg.h"
 #include "vps_viewer/report.h"
 
@@ -17,10 +18,6 @@ namespace {
 using html::Cell;
 using html::format;
 using scenes::PairState;
-
-std::string micrometres(double m) {
-  return format(1e6 * m, "%.2f");
-}
 
 std::string place(const Vec3& p_W) {
   std::string out;

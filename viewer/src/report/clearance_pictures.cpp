@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "report/html.h"
+#include "report/length_text.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/report.h"
@@ -42,12 +43,6 @@ std::string base64(const std::string& bytes) {
       out += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return out;
-}
-
-std::string lengthText(double m) {
-  return m >= 1e-3   ? format(1e3 * m, "%g mm")
-         : m >= 1e-6 ? format(1e6 * m, "%g µm")
-                     : format(1e9 * m, "%g nm");
 }
 
 std::string legend(double near_m) {

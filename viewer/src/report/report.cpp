@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "report/html.h"
+#include "report/length_text.h"
 #include "report/pictures.h"
 #include "report/run_plot.h"
 #include "vps/load_error.h"
@@ -18,10 +19,6 @@ namespace {
 
 using html::Cell;
 using html::format;
-
-std::string micrometres(double length_m, const char* form = "%.2f") {
-  return format(1e6 * length_m, form);
-}
 
 /// The first row of every period 1 / rate_hz.
 std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report/html.h"
+#include "report/length_text.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer::inline v0 {
@@ -64,13 +65,6 @@ std::string pathOf(const scenes::SectionOutline& outline, const Window& window) 
     if (!is_first) out += "Z";
   }
   return out;
-}
-
-std::string lengthText(double m) {
-  if (m >= 1) return format(m, "%g m");
-  if (m >= 1e-3) return format(1e3 * m, "%g mm");
-  if (m >= 1e-6) return format(1e6 * m, "%g µm");
-  return format(1e9 * m, "%g nm");
 }
 
 /// 1, 2 or 5 times a power of ten, at most a third of the window.
@@ -132,10 +126,6 @@ std::string key(double x, double y, const char* fill, const std::string& words) 
          text(x + 18, y, words);
 }
 
-std::string micrometres(double m) {
-  return format(1e6 * m, "%.2f") + " µm";
-}
-
 std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSection& section) {
   std::string out;
   if (section.is_fit) {
@@ -145,14 +135,14 @@ std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSe
           "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
           format(1e3 * fit.bore_m, "%.4f") + " mm, " +
           (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
-          micrometres(std::abs(fit.diametral_clearance_m)) + " ± " + micrometres(fit.error_m) +
+          micrometres(std::abs(fit.diametral_clearance_m)) + " µm ± " + micrometres(fit.error_m) + " µm" +
           (is_shaft ? " in diameter, so half of it to each side if centred" : " both sides together") +
           (fit.iso_286.empty() ? "" : "; " + fit.iso_286);
     out += is_shaft ? ". Section through the axis" : ". Section across the length";
   } else {
     const scenes::CheckedPair& pair = result.pairs[section.of];
     out = "<b>" + escapeHtml(pair.a) + "</b> and <b>" + escapeHtml(pair.b) + "</b> overlap by " +
-          micrometres(pair.interference_depth_m) + " ± " + micrometres(pair.error_m) + " (" +
+          micrometres(pair.interference_depth_m) + " µm ± " + micrometres(pair.error_m) + " µm (" +
           toText(pair.state) + "). Section through the deepest place, along the depth";
   }
   out += "; the right picture shows the small square " +
