@@ -6,7 +6,8 @@ namespace vps::scenes::inline v0 {
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m) {
   SurfaceGap best{most_m, {}, {}};
   visitPairs(
-      a.tree(), b.tree(), [&](const Box& box) { return moved(box, X_AB); }, distance2,
+      a.tree(), b.tree(), [&](const Box& box) { return moved(box, X_AB); },
+      [](const Box& of_a, const Box& of_b) { return distance2(of_a, of_b); },
       [&] { return best.distance_m * best.distance_m; },
       [&](std::uint32_t i, std::uint32_t k) {
         const Triangle of_a = a.triangle(i), of_b = b.triangle(k);
