@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scenes/scene_part.h"
 #include "vps/box.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/explain.h"
@@ -15,26 +16,17 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-ScenePart part(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool is_fixed) {
-  ScenePart out;
-  out.part.name = name;
-  out.part.mesh = mesh;
-  out.X_WP = Pose::translation(p_WP);
-  out.is_fixed = is_fixed;
-  out.file = name + ".stl";
-  return out;
-}
-
 /// A pin that is set down on a plate of 40 mm; a shelf 100 mm away that nothing comes near; a label that no
 /// step moves; a twin of the pin for the second step. The low rates keep a run below a second.
 Scene pinsOnPlate() {
   Scene scene;
   scene.file = scene.name = "pins";
   const Mesh pin = makeBox({2 * kMm, 2 * kMm, 2 * kMm});
-  scene.parts = {part("plate", makeBox({40 * kMm, 40 * kMm, 2 * kMm}), Vec3::Zero(), true),
-                 part("shelf", makeBox({9 * kMm, 9 * kMm, 9 * kMm}), {100 * kMm, 0, 0}, true),
-                 part("label", makeBox({3 * kMm, 3 * kMm, 1 * kMm}), {0, 0, 50 * kMm}, false),
-                 part("pin", pin, {0, 0, 2 * kMm}, false), part("twin", pin, {10 * kMm, 0, 2 * kMm}, false)};
+  scene.parts = {scenePart("plate", makeBox({40 * kMm, 40 * kMm, 2 * kMm}), Vec3::Zero(), true),
+                 scenePart("shelf", makeBox({9 * kMm, 9 * kMm, 9 * kMm}), {100 * kMm, 0, 0}, true),
+                 scenePart("label", makeBox({3 * kMm, 3 * kMm, 1 * kMm}), {0, 0, 50 * kMm}, false),
+                 scenePart("pin", pin, {0, 0, 2 * kMm}, false),
+                 scenePart("twin", pin, {10 * kMm, 0, 2 * kMm}, false)};
   scene.parts[2].is_scenery = true;
   for (const std::size_t i : {3u, 4u}) {
     SceneStep step;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
 #include "vps/load_error.h"
 #include "vps_scenes/simulate.h"
@@ -14,16 +15,6 @@ namespace {
 
 constexpr double kMm = 1e-3, kUm = 1e-6;
 
-ScenePart part(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool is_fixed) {
-  ScenePart out;
-  out.part.name = name;
-  out.part.mesh = mesh;
-  out.X_WP = Pose::translation(p_WP);
-  out.is_fixed = is_fixed;
-  out.file = name + ".stl";
-  return out;
-}
-
 Mesh blockMesh() {
   return makeBox({10 * kMm, 8 * kMm, 6 * kMm});
 }
@@ -32,8 +23,8 @@ Mesh blockMesh() {
 Scene blockOnPlate(double gap_m, double plate_m = 5 * kMm) {
   Scene scene;
   scene.file = scene.name = "block";
-  scene.parts = {part("plate", makeBox({40 * kMm, 40 * kMm, plate_m}), {0, 0, -plate_m / 2}, true),
-                 part("block", blockMesh(), {0, 0, 3 * kMm + gap_m}, false)};
+  scene.parts = {scenePart("plate", makeBox({40 * kMm, 40 * kMm, plate_m}), {0, 0, -plate_m / 2}, true),
+                 scenePart("block", blockMesh(), {0, 0, 3 * kMm + gap_m}, false)};
   return scene;
 }
 
@@ -66,8 +57,8 @@ TEST(SimulateJudge, ABlockThatFallsOnAPlateIsWithinTheLimit) {
 TEST(SimulateJudge, AHeavyBlockDoesNotPressALightOneThroughThePlate) {
   const Mesh cube = makeBox({10 * kMm, 10 * kMm, 10 * kMm});
   Scene scene = blockOnPlate(0);
-  scene.parts[1] = part("light", cube, {0, 0, 5 * kMm}, false);
-  scene.parts.push_back(part("heavy", cube, {0.5 * kMm, 0.3 * kMm, 15.2 * kMm}, false));
+  scene.parts[1] = scenePart("light", cube, {0, 0, 5 * kMm}, false);
+  scene.parts.push_back(scenePart("heavy", cube, {0.5 * kMm, 0.3 * kMm, 15.2 * kMm}, false));
   scene.parts.back().X_WP.R = rotationFromVector({0, 0, 0.35});
   scene.parts.back().part.material.density_kg_m3 *= 1000;
   scene.parts.back().V_WP_W.v = {0, 0, -0.8};
@@ -165,7 +156,7 @@ TEST(SimulateJudge, ASheetHoldsABlockAndIsRefusedAsABody) {
       {-20 * kMm, -20 * kMm, 0}, {20 * kMm, -20 * kMm, 0}, {20 * kMm, 20 * kMm, 0}, {-20 * kMm, 20 * kMm, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
   Scene scene = blockOnPlate(1 * kMm);
-  scene.parts[0] = part("sheet", sheet, Vec3::Zero(), true);
+  scene.parts[0] = scenePart("sheet", sheet, Vec3::Zero(), true);
   const BodyState block = judged(scene, 0.2).result.bodies.front();
   EXPECT_NEAR(block.X_WP.p.z(), 3 * kMm, 10 * kUm);
   EXPECT_LT(block.V_WP_W.v.norm(), 1e-3);
@@ -186,7 +177,7 @@ TEST(SimulateJudge, PointsAreRefusedWithTheirName) {
   for (const Mesh& mesh : {none, point})
     for (const bool is_fixed : {false, true}) {
       Scene scene = blockOnPlate(1 * kMm);
-      scene.parts.push_back(part("dust", mesh, Vec3(0, 0, 20 * kMm), is_fixed));
+      scene.parts.push_back(scenePart("dust", mesh, Vec3(0, 0, 20 * kMm), is_fixed));
       try {
         simulate(scene, 0.01);
         FAIL() << "a point has no surface";
@@ -210,8 +201,8 @@ TEST(SimulateJudge, APlateThinnerThanAVoxelHoldsABlock) {
 TEST(SimulateJudge, APlateThinnerThanAVoxelFallsOnABlock) {
   Scene scene;
   scene.file = scene.name = "thin";
-  scene.parts = {part("block", blockMesh(), {0, 0, -3 * kMm}, true),
-                 part("plate", makeBox({30 * kMm, 30 * kMm, 0.1 * kMm}), {1 * kMm, 0, 2 * kMm}, false)};
+  scene.parts = {scenePart("block", blockMesh(), {0, 0, -3 * kMm}, true),
+                 scenePart("plate", makeBox({30 * kMm, 30 * kMm, 0.1 * kMm}), {1 * kMm, 0, 2 * kMm}, false)};
   const Watched watched = judged(scene, 0.2);
   EXPECT_NEAR(watched.result.bodies.front().X_WP.p.z(), 0.05 * kMm, 10 * kUm);
   EXPECT_TRUE(watched.result.overlap->isWithinLimit()) << watched.result.overlap->deepest.depth_m;

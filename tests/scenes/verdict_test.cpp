@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "judge/surface_error.h"
+#include "scenes/scene_part.h"
 #include "support/lathe.h"
 #include "vps/load_error.h"
 #include "vps/mesh.h"
@@ -14,16 +15,6 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kMm = 1e-3;
-
-ScenePart partOf(const std::string& name, const Mesh& mesh, const Vec3& p_WP, bool is_fixed) {
-  ScenePart out;
-  out.part.name = name;
-  out.part.mesh = mesh;
-  out.X_WP = Pose::translation(p_WP);
-  out.is_fixed = is_fixed;
-  out.file = name + ".stl";
-  return out;
-}
 
 /// The parts, of which the last is brought straight down to its place. The low rates keep a run below a few
 /// seconds.
@@ -71,8 +62,8 @@ Mesh peg(double length_m, double longer_m = 0) {
 }
 
 Scene pegInCup(double longer_m = 0) {
-  return sceneOf({partOf("cup", cup(), Vec3::Zero(), true),
-                  partOf("peg", peg(15 * kMm, longer_m), {0, 0, -kDepth_m}, false)},
+  return sceneOf({scenePart("cup", cup(), Vec3::Zero(), true),
+                  scenePart("peg", peg(15 * kMm, longer_m), {0, 0, -kDepth_m}, false)},
                  11 * kMm);
 }
 
@@ -106,9 +97,10 @@ TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
 
 TEST(Verdict, ABlockDrawnInsideAPlateIsBlockedUnlessTheSceneAllowsIt) {
   const auto scene = [](double deep_m) {
-    return sceneOf({partOf("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
-                    partOf("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm - deep_m}, false)},
-                   1 * kMm);
+    return sceneOf(
+        {scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+         scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm - deep_m}, false)},
+        1 * kMm);
   };
   Scene deep = scene(90e-6);
   const AssembleResult result = assemble(deep);
@@ -134,8 +126,8 @@ Mesh hollowBox() {
 
 TEST(Verdict, NothingGetsIntoASealedBox) {
   const auto scene = [] {
-    return sceneOf({partOf("box", hollowBox(), Vec3::Zero(), true),
-                    partOf("cube", makeBox({4 * kMm, 4 * kMm, 4 * kMm}), {0, 0, -10 * kMm}, false)},
+    return sceneOf({scenePart("box", hollowBox(), Vec3::Zero(), true),
+                    scenePart("cube", makeBox({4 * kMm, 4 * kMm, 4 * kMm}), {0, 0, -10 * kMm}, false)},
                    5 * kMm);
   };
   Scene inside = scene();
@@ -154,9 +146,9 @@ TEST(Verdict, NothingGetsIntoASealedBox) {
 Scene pegThroughPlate() {
   const Mesh plate = test::lathe(
       {{kBore_m, -4 * kMm}, {9 * kMm, -4 * kMm}, {9 * kMm, 0}, {kBore_m, 0}, {kBore_m, -4 * kMm}}, kFlats);
-  return sceneOf(
-      {partOf("plate", plate, Vec3::Zero(), true), partOf("peg", peg(12 * kMm), {0, 0, -8 * kMm}, false)},
-      9 * kMm);
+  return sceneOf({scenePart("plate", plate, Vec3::Zero(), true),
+                  scenePart("peg", peg(12 * kMm), {0, 0, -8 * kMm}, false)},
+                 9 * kMm);
 }
 
 TEST(Verdict, APegThatFallsThroughItsHoleIsNotShownUntilTheSceneSaysThatItIsHeld) {
@@ -171,9 +163,9 @@ TEST(Verdict, APegThatFallsThroughItsHoleIsNotShownUntilTheSceneSaysThatItIsHeld
 }
 
 TEST(Verdict, AWayThroughAWallNamesTheWallAndWhatHoldsThePart) {
-  Scene scene = sceneOf({partOf("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
-                         partOf("shelf", makeBox({30 * kMm, 30 * kMm, 2 * kMm}), {0, 0, 20 * kMm}, true),
-                         partOf("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm}, false)},
+  Scene scene = sceneOf({scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+                         scenePart("shelf", makeBox({30 * kMm, 30 * kMm, 2 * kMm}), {0, 0, 20 * kMm}, true),
+                         scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm}, false)},
                         30 * kMm);
   scene.steps[0].timeout_s = 4;
   const AssembleResult result = assemble(scene);
@@ -186,7 +178,7 @@ TEST(Verdict, AWayThroughAWallNamesTheWallAndWhatHoldsThePart) {
 
 TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
   Scene scene = pegInCup();
-  scene.parts.push_back(partOf("pin", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 6.5 * kMm}, false));
+  scene.parts.push_back(scenePart("pin", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 6.5 * kMm}, false));
   scene.steps[0].timeout_s = 0.1;  // too short to arrive
   SceneStep step;
   step.part = 2;
@@ -206,7 +198,7 @@ TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
 
 TEST(Verdict, APartThatNobodyHoldsIsRefusedByName) {
   Scene scene = pegInCup();
-  scene.parts.push_back(partOf("lid", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 40 * kMm}, false));
+  scene.parts.push_back(scenePart("lid", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 40 * kMm}, false));
   try {
     assemble(scene);
     FAIL() << "accepted";

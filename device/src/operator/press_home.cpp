@@ -18,7 +18,6 @@ constexpr double kYields = 4;  // errors of sight
 void PressHome::start(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
   start_s_ = feel.time_s;
-  start_m_ = feel.along_m;
   has_yielded_ = false;
   move_ = {};
   move_.speed_m_s = kPressHomeCreep_m_s;

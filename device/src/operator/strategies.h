@@ -14,8 +14,6 @@ class Approach final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
-  double start_s_ = 0;
   Held touch_;
 };
 
@@ -26,8 +24,6 @@ class Touch final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
-  double start_s_ = 0;
   Progress progress_;
 };
 
@@ -42,7 +38,6 @@ class TiltIn final : public Strategy {
   enum class Stage { Lean, Lower, Slide, Upright, Drop };
   void enter(Stage stage, double now_s) noexcept;
 
-  Situation situation_;
   Stage stage_ = Stage::Lean;
   double stage_s_ = 0;
   Vec3 corner_W_ = Vec3::Zero();
@@ -57,7 +52,6 @@ class SpiralSearch final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
   double angle_rad_ = 0, wait_s_ = 0, level_m_ = 0;
 };
 
@@ -69,8 +63,7 @@ class TurnSearch final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
-  double start_s_ = 0, settled_s_ = 0, level_m_ = 0;
+  double settled_s_ = 0, level_m_ = 0;
   double turn_rad_ = 0, reach_rad_ = 0;  ///< of the present sweep
   int side_ = 1, first_side_ = 1;
 };
@@ -83,8 +76,6 @@ class AlignByTorque final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
-  double start_s_ = 0;
   Progress progress_;
   Held free_;
 };
@@ -97,9 +88,8 @@ class BackOff final : public Strategy {
   Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
-  Situation situation_;
   bool is_whole_;
-  double start_s_ = 0, goal_m_ = 0, looked_s_ = 0;
+  double goal_m_ = 0, looked_s_ = 0;
 };
 
 /// Presses the part against its stop, and relaxes. Failed: it yields, or it is seen elsewhere.
@@ -111,8 +101,6 @@ class PressHome final : public Strategy {
   [[nodiscard]] bool hasYielded() const noexcept { return has_yielded_; }
 
  private:
-  Situation situation_;
-  double start_s_ = 0, start_m_ = 0;
   bool has_yielded_ = false;
 };
 
@@ -121,10 +109,6 @@ class PlaceBySight final : public Strategy {
  public:
   void start(const Situation& situation, const Feel& feel) noexcept override;
   Outcome step(const Feel& feel, double dt_s) noexcept override;
-
- private:
-  Situation situation_;
-  double start_s_ = 0;
 };
 
 }  // namespace vps::device::inline v0

@@ -59,6 +59,8 @@ class Strategy {
   [[nodiscard]] const Move& move() const noexcept { return move_; }
 
  protected:
+  Situation situation_;
+  double start_s_ = 0;
   Move move_;
 };
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "check/section.h"
+#include "vps_scenes/outline_clip.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -102,24 +103,6 @@ bool closeChains(std::vector<Chain>& open, std::vector<Chain>& closed, double sa
   return has_gap;
 }
 
-/// Sutherland and Hodgman 1974, for a square around the middle.
-Chain clipped(Chain chain, double half_m) {
-  for (const std::size_t axis : {0U, 1U})
-    for (const double sign : {1.0, -1.0}) {
-      Chain kept;
-      for (std::size_t k = 0; k < chain.size(); ++k) {
-        const Point &a = chain[k], &b = chain[(k + 1) % chain.size()];
-        const double in_a = half_m - sign * a[axis], in_b = half_m - sign * b[axis];
-        if (in_a >= 0) kept.push_back(a);
-        if ((in_a >= 0) == (in_b >= 0)) continue;
-        const double share = in_a / (in_a - in_b);
-        kept.push_back({a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])});
-      }
-      chain = std::move(kept);
-    }
-  return chain;
-}
-
 }  // namespace
 
 SectionOutline outlineOf(const PlacedSurface& part, const CheckedSection& section) {
@@ -157,7 +140,7 @@ SectionOutline outlineOf(const PlacedSurface& part, const CheckedSection& sectio
   SectionOutline out{part.name, {}, false};
   out.is_open = closeChains(open, closed, 1e-6 * part.surface->box().size().norm());
   for (const Chain& chain : closed)
-    if (Chain kept = clipped(chain, 1.1 * section.half_m); kept.size() > 2)
+    if (Chain kept = clippedToSquare(chain, {}, 1.1 * section.half_m); kept.size() > 2)
       out.chains.push_back(std::move(kept));
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "report/html.h"
 #include "report/length_text.h"
+#include "vps_scenes/outline_clip.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer::inline v0 {
@@ -30,32 +31,14 @@ struct Window {
   }
 };
 
-/// Cuts a chain off a little outside of the window (Sutherland and Hodgman 1974), so that numbers stay small.
-Chain clipped(Chain chain, const Window& window) {
-  for (const std::size_t axis : {0U, 1U})
-    for (const double sign : {1.0, -1.0}) {
-      Chain kept;
-      for (std::size_t k = 0; k < chain.size(); ++k) {
-        const Point &a = chain[k], &b = chain[(k + 1) % chain.size()];
-        const double in_a = 1.1 * window.half_m - sign * (a[axis] - window.middle_m[axis]),
-                     in_b = 1.1 * window.half_m - sign * (b[axis] - window.middle_m[axis]);
-        if (in_a >= 0) kept.push_back(a);
-        if ((in_a >= 0) == (in_b >= 0)) continue;
-        const double share = in_a / (in_a - in_b);
-        kept.push_back({a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])});
-      }
-      chain = std::move(kept);
-    }
-  return chain;
-}
-
 /// Points nearer than a third of a pixel to the one before are left out.
 std::string pathOf(const scenes::SectionOutline& outline, const Window& window) {
   std::string out;
   for (const Chain& chain : outline.chains) {
     Point last{-1e9, -1e9};
     bool is_first = true;
-    for (const Point& p : clipped(chain, window)) {
+    // A little beyond the window, so that numbers stay small.
+    for (const Point& p : scenes::clippedToSquare(chain, window.middle_m, 1.1 * window.half_m)) {
       const Point at = window.toPixel(p);
       if (!is_first && std::hypot(at[0] - last[0], at[1] - last[1]) < 0.3) continue;
       out.append(is_first ? "M" : "L").append(format(at[0], "%.1f ")).append(format(at[1], "%.1f"));
