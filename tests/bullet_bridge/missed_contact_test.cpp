@@ -3,7 +3,9 @@
 // after each step of 1 ms. Each test is a way in which a contact was once missed.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -159,6 +161,40 @@ TEST(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
     scene.addMoving(tetrahedron, Pose(rotationFromVector({0, 0, -0.3}), Vec3(6e-3, side_m, 0)), {0.3, 0, 0});
     EXPECT_LE(scene.deepestOf(60), kBound_m) << side_m;
   }
+}
+
+Mesh lyingPrism(const Polygon& section, double length_m) {
+  return centered(transformed(search::makePrism(section, {}, 0, length_m),
+                              Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero())));
+}
+
+// The edges between sides of a coarse cylinder turn by 15 degrees, and were met at sampled points only.
+TEST(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
+  Polygon section;
+  for (int i = 0; i < 24; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * i / 24;
+    section.push_back({40e-3 * std::cos(angle_rad), 40e-3 * std::sin(angle_rad)});
+  }
+  const Mesh cylinder = lyingPrism(section, 60e-3);
+  Measured scene;
+  scene.add(cylinder, Pose::translation({0, 0, -40e-3}), true);
+  scene.addMoving(cylinder,
+                  Pose(rotationFromVector({0, 0, std::numbers::pi / 2}), Vec3(0.3e-3, 0.2e-3, 40.5e-3)),
+                  {0.1, 0, -0.5}, {0, 0, 20});
+  EXPECT_LE(scene.deepestOf(40), kBound_m);
+}
+
+// A roof of 5 degrees was taken for a curved surface, whose edges are left to sampled points.
+TEST(MissedContact, OfTwoFlatRoofsThatCross) {
+  const double rise_m = 10e-3 * std::tan(2.5 * std::numbers::pi / 180);
+  const Mesh roof =
+      lyingPrism({{0, -10e-3}, {rise_m, 0}, {0, 10e-3}, {-5e-3, 10e-3}, {-5e-3, -10e-3}}, 20e-3);
+  const double top_m = -lowest_m(roof, Mat3::Identity());
+  Measured scene;
+  scene.add(roof, Pose(rotationFromVector({std::numbers::pi, 0, 0}), Vec3(0, 0, -top_m)), true);
+  scene.addMoving(roof, Pose(rotationFromVector({0, 0, 1}), Vec3(0.3e-3, 0.2e-3, top_m + 0.2e-3)),
+                  {0, 0, -0.5}, {0, 0, 20});
+  EXPECT_LE(scene.deepestOf(30), kBound_m);
 }
 
 // Sharp bodies fall into a corner of three parts, fast and turning. All causes meet here: points on a fast

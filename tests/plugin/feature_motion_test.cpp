@@ -69,6 +69,60 @@ TEST(FeatureSet, HasTheCornersAndEdgesOfABox) {
   for (std::uint32_t i = 0; i < 12; ++i) EXPECT_FALSE(a.features.isCurved(i));
 }
 
+/// A prism over the polygon that has its corners at these angles of a circle.
+Mesh prism(const std::vector<double>& angles_rad) {
+  const auto count = static_cast<int>(angles_rad.size());
+  Mesh mesh = makeCylinder(10e-3, 8e-3, count);
+  for (Vec3& v : mesh.vertices) {
+    const double radius_m = std::hypot(v.x(), v.y()),
+                 turns = std::atan2(v.y(), v.x()) / (2 * std::numbers::pi);
+    const auto i = static_cast<std::size_t>((std::lround(turns * count) + count) % count);
+    v.x() = radius_m * std::cos(angles_rad[i]);
+    v.y() = radius_m * std::sin(angles_rad[i]);
+  }
+  return mesh;
+}
+
+std::vector<double> evenly(int count) {
+  std::vector<double> angles_rad;
+  for (int i = 0; i < count; ++i) angles_rad.push_back(2 * std::numbers::pi * i / count);
+  return angles_rad;
+}
+
+std::size_t curvedFacets(const FeatureSet& features) {
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < features.facets().size(); ++i)
+    if (features.isCurved(i)) ++count;
+  return count;
+}
+
+// Edges of both rims, and those between the sides if these are sharp.
+TEST(FeatureSet, SidesThatTurnByLessThanEightDegreesAreACurve) {
+  const Body coarse(prism(evenly(40))), fine(prism(evenly(48)));  // 9 and 7.5 degrees
+  EXPECT_EQ(coarse.features.edges().size(), 3 * 40u);
+  EXPECT_EQ(curvedFacets(coarse.features), 0u);
+  EXPECT_EQ(fine.features.edges().size(), 2 * 48u);
+  EXPECT_EQ(curvedFacets(fine.features), 2 * 48u);
+}
+
+// Chords of a circle turn by half the sum of the angles that they span.
+TEST(FeatureSet, ALoneKinkIsASharpEdge) {
+  for (const double kink_rad : {0.02, 0.1, 0.2, 0.3}) {
+    std::vector<double> angles_rad = evenly(6);
+    // Two short sides of kink_rad each after the corner at 0.
+    angles_rad.insert(angles_rad.begin() + 1, {kink_rad, 2 * kink_rad});
+    const Body body(prism(angles_rad));
+    EXPECT_EQ(body.features.edges().size(), 3 * 8u) << kink_rad;
+    EXPECT_EQ(curvedFacets(body.features), 0u) << kink_rad;
+  }
+  // Three of them are a curve: its two inner edges are smooth, and its three sides of two triangles curved.
+  std::vector<double> angles_rad = evenly(6);
+  angles_rad.insert(angles_rad.begin() + 1, {0.1, 0.2, 0.3});
+  const Body body(prism(angles_rad));
+  EXPECT_EQ(body.features.edges().size(), 3 * 9u - 2);
+  EXPECT_EQ(curvedFacets(body.features), 6u);
+}
+
 // A corner at height h that falls by d > h meets the face after the share (h - least) / d of its way.
 TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));

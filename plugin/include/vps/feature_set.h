@@ -15,7 +15,8 @@ namespace vps::inline v0 {
 
 enum class FeatureKind : std::uint8_t { Corner, Edge, Facet };
 
-/// A sharp edge that is not a groove, or an edge that does not have exactly two facets.
+/// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
+/// turn by 8 degrees or more, and lone kinks between two planes.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
@@ -43,7 +44,8 @@ class VPS_API FeatureSet {
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
-  /// True if a neighbour turns by less than 8 degrees: the facet stands for a curved surface.
+  /// True if the facet stands for a curved surface: it is one of three or more in a row that turn by less than
+  /// 8 degrees each.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
   /// The same of a triangle of a mesh, numbered as they were added; false for triangles without area.
   [[nodiscard]] bool isCurved(std::size_t mesh, std::uint32_t triangle) const {

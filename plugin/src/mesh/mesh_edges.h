@@ -118,11 +118,11 @@ void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Vis
 
 /// Calls visit with the half-edges of each edge in turn.
 template <typename Visit>
-void forEachEdge(const std::vector<HalfEdge>& edges, Visit visit) {
+void forEachEdge(std::span<const HalfEdge> edges, Visit visit) {
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t end = i + 1;
     while (end < edges.size() && edges[end].low == edges[i].low && edges[end].high == edges[i].high) ++end;
-    visit(std::span<const HalfEdge>(edges).subspan(i, end - i));
+    visit(edges.subspan(i, end - i));
     i = end;
   }
 }

@@ -7,6 +7,7 @@
 #include "mesh/box_tree.h"
 #include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
+#include "query/curved_facets.h"
 #include "query/edge_joints.h"
 #include "query/feature_angles.h"
 
@@ -43,8 +44,18 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
   }
   const std::size_t first_edge = edges_.size();
   std::vector<std::uint32_t> facets_beside;  // two for each edge
-  Groups planes(mesh.triangles.size());
-  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+  const std::vector<HalfEdge> half_edges = sortedHalfEdges(mesh);
+  std::vector<Vec3> normals(mesh.triangles.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (facet_of[i] == kNone) continue;
+    const auto& [a, b, c] = facets_[facet_of[i]];
+    normals[i] = (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]).normalized();
+  }
+  std::vector<std::uint8_t> is_curved(mesh.triangles.size(), 0);
+  if (!is_sheet) is_curved = findCurvedFacets(half_edges, normals);
+  for (std::size_t i = 0; i < is_curved.size(); ++i)
+    if (is_curved[i] != 0 && facet_of[i] != kNone) facet_flags_[facet_of[i]] |= kCurved;
+  forEachEdge(half_edges, [&](std::span<const HalfEdge> same) {
     if (same.size() == 2)
       for (const std::size_t i : {0U, 1U})
         if (const std::uint32_t facet = facet_of[same[i].triangle]; facet != kNone)
@@ -56,27 +67,21 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (!(way.squaredNorm() > 0)) return;
     const Vec3 along = way.normalized();
     edge.has_faces = same.size() == 2 && same[0].is_forward != same[1].is_forward && !is_sheet;
-    Vec3(&normal)[2] = edge.normal;
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i) {
-      const auto& t = mesh.triangles[same[i].triangle];
-      const Vec3 &a = vertex(t[0]), &b = vertex(t[1]), &c = vertex(t[2]);
-      if (!hasArea(a, b, c)) {
+      const std::uint32_t triangle = same[i].triangle;
+      if (facet_of[triangle] == kNone) {
         edge.has_faces = false;
         continue;
       }
-      normal[i] = (b - a).cross(c - a).normalized();
-      const Vec3 into = vertex(t[(same[i].side + 2U) % 3]) - vertices_[edge.from];
+      edge.normal[i] = normals[triangle];
+      const Vec3 into = vertex(mesh.triangles[triangle][(same[i].side + 2U) % 3]) - vertices_[edge.from];
       edge.into[i] = (into - along * along.dot(into)).normalized();
     }
-    if (edge.has_faces && normal[0].dot(normal[1]) >= kCosSharp) {
-      const double sine = normal[0].cross(normal[1]).norm();
-      if (sine > kFlat && normal[0].dot(normal[1]) > kCosCurved)
-        for (const HalfEdge& e : same) facet_flags_[facet_of[e.triangle]] |= kCurved;
-      else if (sine <= kFlat)
-        planes.join(same[0].triangle, same[1].triangle);
-      return;
+    if (edge.has_faces) {
+      const bool is_one_curved = is_curved[same[0].triangle] != 0 || is_curved[same[1].triangle] != 0;
+      if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved)) return;
+      if (!(edge.normal[0].dot(edge.into[1]) < 0)) return;  // a groove
     }
-    if (edge.has_faces && !(normal[0].dot(edge.into[1]) < 0)) return;  // a groove
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i)
       facets_beside.push_back(facet_of[same[i].triangle]);
     facets_beside.resize(2 * (edges_.size() + 1 - first_edge), kNone);
@@ -85,12 +90,6 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     corners_.push_back(edge.to);
   });
   markCurvedEdges(first_edge);
-  // Triangles of one plane are one facet.
-  std::vector<std::uint8_t> is_curved(mesh.triangles.size(), 0);
-  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
-    if (facet_of[i] != kNone && isCurved(facet_of[i])) is_curved[planes.find(i)] = 1;
-  for (std::uint32_t i = 0; i < facet_of.size(); ++i)
-    if (facet_of[i] != kNone && is_curved[planes.find(i)] != 0) facet_flags_[facet_of[i]] |= kCurved;
   for (std::size_t i = 0; i < facets_beside.size(); ++i)
     edges_[first_edge + i / 2].has_curved_face[i % 2] =
         facets_beside[i] != kNone && isCurved(facets_beside[i]);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which facets of a mesh stand for a curved surface.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh_edges.h"
+#include "vps/pose.h"
+
+namespace vps::inline v0 {
+
+/// Facets that meet at less than 8 degrees belong to one curved surface if one of them has such a neighbour
+/// on another side, too. Where neither has, the edge is a lone kink between two planes.
+/// Triangles of one plane are one facet. O(n) after the edges are sorted.
+/// @param edges    sortedHalfEdges()
+/// @param normals  one for each triangle, unit; zero for triangles without area
+/// @return for each triangle whether it stands for a curved surface
+std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std::span<const Vec3> normals);
+
+/// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved one.
+bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved);
+
+}  // namespace vps::inline v0
