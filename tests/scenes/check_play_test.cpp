@@ -38,6 +38,16 @@ bool has(const std::vector<Vec3>& ways, const Vec3& d) {
   return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) { return (way - d).norm() < 1e-6; });
 }
 
+// A round peg in a bore of its own size, the corners of one beside those of the other: their facets cross.
+TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
+  const CheckedPart peg =
+      playOf("peg", {part("bore", makeTube(0.01, 4e-3, 0.02, 100)),
+                     part("peg", transformed(makeCylinder(4e-3, 0.02, 100),
+                                             Pose(rotationFromVector({0, 0, 0.03}), {0, 0, 0})))});
+  ASSERT_TRUE(peg.play);
+  EXPECT_FALSE(peg.is_play_certain);
+}
+
 // A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends
 // touch.
 TEST(CheckPlay, APegInAThroughBore) {
@@ -57,6 +67,7 @@ TEST(CheckPlay, APegInAThroughBore) {
     EXPECT_TRUE(has(peg.ways_out_W, Vec3::UnitZ()));
     EXPECT_TRUE(has(peg.ways_out_W, -Vec3::UnitZ()));
     EXPECT_LT(peg.play_error_m, kMetre);
+    EXPECT_TRUE(peg.is_play_certain);
   }
 }
 

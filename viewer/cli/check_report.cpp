@@ -66,6 +66,11 @@ std::string playCell(double plus, double minus, double scale, int digits) {
   return std::string("+").append(one(plus)).append(" -").append(one(minus));
 }
 
+std::string waysText(const scenes::CheckedPart& part) {
+  if (!part.ways_out_W.empty()) return std::to_string(part.ways_out_W.size());
+  return part.is_play_certain ? "none" : "not known ~";
+}
+
 std::string partTable(const scenes::CheckResult& result) {
   Table table({"<part", "x [um]", "y [um]", "z [um]", "about x [mrad]", "about y", "about z", "<ways out"});
   for (const scenes::CheckedPart& part : result.parts) {
@@ -78,10 +83,16 @@ std::string partTable(const scenes::CheckResult& result) {
       cells.push_back(playCell(part.play->m[i], part.play->m[i + 1], 1e6, 1));
     for (std::size_t i = 0; i < 6; i += 2)
       cells.push_back(playCell(part.play->rad[i], part.play->rad[i + 1], 1e3, 2));
-    cells.push_back(part.ways_out_W.empty() ? "none" : std::to_string(part.ways_out_W.size()));
+    cells.push_back(waysText(part));
     table.add(cells);
   }
-  return table.text();
+  std::string text = table.text();
+  if (std::ranges::any_of(result.parts, [](const auto& part) { return part.play && !part.is_play_certain; }))
+    text.append(
+        "~: round faces of equal size touch, and their meshes can stop a motion that the faces allow; the "
+        "part "
+        "may\nhave more play and other ways out\n");
+  return text;
 }
 
 }  // namespace

@@ -125,6 +125,9 @@ struct CheckedPart {
   Vec3 play_center_W = Vec3::Zero();    ///< through which the axes of rotation go
   double play_error_m = 0, play_error_rad = 0;
   std::vector<Vec3> ways_out_W;  ///< unit directions in which it leaves the others on a straight line
+  /// False: a shaft and its bore have the same size, or facets of curved faces cross as drawn. The mesh can
+  /// then stop a motion that the faces allow, so `play` is at least what it says and ways out may be missing.
+  bool is_play_certain = true;
 };
 
 /// The outlines of a part in a plane, each a closed chain of points (right, up) [m]. The inside is where an

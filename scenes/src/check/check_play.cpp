@@ -2,6 +2,7 @@
 #include "check/check_play.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "check/on_cores.h"
@@ -50,6 +51,14 @@ PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const
   return task;
 }
 
+bool hasFlushFaces(const PartTask& task) {
+  constexpr double kEqual_m = 0.1e-6;  // assumed: rounding of sizes in CAD files, far below any tolerance
+  return task.search->rest_m() > 2 * MotionSearch::kRest_m ||
+         std::ranges::any_of(task.fits, [](const CheckedFit& fit) {
+           return fit.kind == FitKind::Shaft && std::abs(fit.diametral_clearance_m) <= fit.error_m + kEqual_m;
+         });
+}
+
 }  // namespace
 
 void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const Progress& progress) {
@@ -83,6 +92,7 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
     part.play_axes_W = tasks[i].frame.axes_W;
     part.play_center_W = tasks[i].frame.center_W;
     part.play_error_m = tasks[i].error_m;
+    part.is_play_certain = !hasFlushFaces(tasks[i]);
     // A contact at half the part's least size from the axis; farther out the error is less.
     part.play_error_rad = tasks[i].error_m / (0.5 * parts[i].surface->box().size().minCoeff());
   }

@@ -131,7 +131,11 @@ std::string play(const scenes::CheckResult& result) {
     for (const Vec3& way : part.ways_out_W)
       ways += (ways.empty() ? "(" : ", (") + format(way.x(), "%.2f") + ", " + format(way.y(), "%.2f") + ", " +
               format(way.z(), "%.2f") + ")";
-    row.push_back({part.play && ways.empty() ? "none" : ways, ""});
+    if (ways.empty())
+      ways = part.is_play_certain ? "none"
+                                  : "not known: round faces of equal size touch, and their meshes can "
+                                    "stop a motion that the faces allow";
+    row.push_back({ways, ""});
     rows.push_back(row);
   }
   return "<h2>Play</h2>\n<p>How far each part moves along and turns about its axes before it touches, the "
