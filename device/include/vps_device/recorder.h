@@ -40,7 +40,7 @@ class VPS_DEVICE_API Recorder final : public RunLog {
 
   /// Counts entries that were lost before they could be added: the recording then ends there. Called by the
   /// thread that adds.
-  void lose(std::uint64_t count) noexcept;
+  void lose(std::uint64_t count) noexcept override;
 
   /// For lockstep, where waiting is allowed: returns once half of the ring is free. Never on a haptic path.
   void waitForRoom() const;

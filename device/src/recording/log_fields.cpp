@@ -65,7 +65,7 @@ class CdrWriter {
   CdrWriter() : out_(kLittleEndianCdr) {}
   template <typename Field>
   void operator()(const char* name, const Field& field) {
-    scalars(name, field, [this](const std::string&, const auto& x) { put(x); });
+    scalars(name, field, [this](const std::string&, const auto& x) { this->put(x); });
   }
   std::string out_;
 
@@ -98,7 +98,7 @@ class CdrReader {
   }
   template <typename Field>
   void operator()(const char* name, Field& field) {
-    scalars(name, field, [this](const std::string&, auto& x) { get(x); });
+    scalars(name, field, [this](const std::string&, auto& x) { this->get(x); });
   }
   [[nodiscard]] bool isAllRead() const { return is_good_ && in_.isGood() && in_.left() == 0; }
 

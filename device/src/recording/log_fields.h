@@ -84,8 +84,8 @@ inline constexpr const char* kAbout[kKinds] = {
     "# On the hand about H's origin, in D, as it went to the device.",
     "# kind: 0 takes a part, 1 another phase, 2 lets go, 3 a note. phase: of the hand.",
     "# Part P and proxy in the world W. phase: 0 reach, 1 insert, 2 press, 3 rest.",
-    "# Loop and physics by the clock. kind: 0 a tick with that snapshot, 1 a step with that tick's proxy, "
-    "..."};
+    ("# Loop and physics by the clock. kind: 0 a tick with that snapshot, 1 a step with that tick's proxy, "
+     "...")};
 
 /// An entry of a kind, with its defaults.
 LogEntry blank(std::size_t kind);

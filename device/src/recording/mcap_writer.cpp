@@ -169,11 +169,11 @@ void McapWriter::flush() {
                           w.text<std::uint64_t>(chunk_);
                         }));
   place.length = at_ - place.at;
-  for (const auto& [channel, entries] : chunk_index_)
-    place.index_at[channel] = emitRecord(kMessageIndex, built([&](ByteWriter& w) {
-                                           w.put(channel);
-                                           w.text(entries);
-                                         }));
+  for (const auto& index : chunk_index_)
+    place.index_at[index.first] = emitRecord(kMessageIndex, built([&](ByteWriter& w) {
+                                               w.put(index.first);
+                                               w.text(index.second);
+                                             }));
   place.index_length = at_ - place.at - place.length;
   chunks_.push_back(std::move(place));
   chunk_.clear();

@@ -65,7 +65,8 @@ inline __m256i twoLanes(const std::int16_t* p, const std::int16_t* q) {
 template <int kY>
 inline __m256i fourLanes(const std::int16_t* a, const std::int16_t* b, const std::int16_t* c,
                          const std::int16_t* d) {
-  return _mm256_blend_epi32(twoLanes<kY, false>(a, b), twoLanes<kY, true>(c, d), 0xf0);
+  const __m256i low = twoLanes<kY, false>(a, b), high = twoLanes<kY, true>(c, d);
+  return _mm256_blend_epi32(low, high, 0xf0);  // a macro in some compilers, which would split a<b, c>()
 }
 
 /// The node at(i) of each lane i and the next; the same kY further, kX further, and both.

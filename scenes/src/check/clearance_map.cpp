@@ -55,9 +55,9 @@ bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) 
     } else {
       // Turned so that edge 0 is divided and edge 2 is not.
       while (!is_divided[0] || is_divided[2]) {
-        std::ranges::rotate(t, t.begin() + 1);
-        std::ranges::rotate(m, m.begin() + 1);
-        std::ranges::rotate(is_divided, is_divided.begin() + 1);
+        std::rotate(t.begin(), t.begin() + 1, t.end());
+        std::rotate(m.begin(), m.begin() + 1, m.end());
+        std::rotate(is_divided.begin(), is_divided.begin() + 1, is_divided.end());
       }
       if (count == 1)
         out.insert(out.end(), {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}});

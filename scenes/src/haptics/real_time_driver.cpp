@@ -70,7 +70,7 @@ class RealTimeDriver final : public ClockedDriver {
     clock_.wait();
     countFaults();
     const device::HapticState& view = port_.haptic.read();
-    known_state_ = state_.load(std::memory_order_acquire);
+    known_state_ = device::stateFromByte(state_.load(std::memory_order_acquire));
     haptic_log_.passUpTo(view.tick);
     haptic_log_.addFromPhysics({view.report.time_s, view.tick, 1, 0, device::SyncEventKind::Step});
     setView(view);
@@ -99,7 +99,7 @@ class RealTimeDriver final : public ClockedDriver {
     loop_.call(static_cast<std::int32_t>(what));  // one at a time: the ring has room
     while (loop_.hasOpenRequests() && loop_.isRunning()) std::this_thread::sleep_for(kCommandPoll);
     if (!loop_.isRunning()) loop_.handleRequests();
-    known_state_ = state_.load(std::memory_order_acquire);
+    known_state_ = device::stateFromByte(state_.load(std::memory_order_acquire));
     haptic_log_.passUntil(what);
   }
   void store(const device::PhysicsState& state) override { port_.physics.write(state); }
@@ -113,7 +113,7 @@ class RealTimeDriver final : public ClockedDriver {
   void carryOutAndLog(device::HapticLoop& loop, device::SyncEventKind what) {
     carryOut(loop, what);
     logEvent(loop, what);
-    state_.store(hand_.state(), std::memory_order_release);
+    state_.store(device::toByte(hand_.state()), std::memory_order_release);
   }
   void logTick(const device::HapticLoop& loop, std::int64_t periods) {
     const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
@@ -142,7 +142,7 @@ class RealTimeDriver final : public ClockedDriver {
     const double period_s = loop.settings().period_s;
     const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUpPeriods)));
     for (int i = 0; i < steps; ++i) hand_.step(loop.received().held, loop, period_s);
-    state_.store(hand_.state(), std::memory_order_release);
+    state_.store(device::toByte(hand_.state()), std::memory_order_release);
   }
 
   // The physics thread.
@@ -156,7 +156,8 @@ class RealTimeDriver final : public ClockedDriver {
   device::DeviceEventQueue events_;
   HapticLog haptic_log_;
   device::TappedDevice tapped_;
-  std::atomic<device::OperatorState> state_{device::OperatorState{}};  ///< of the hand, by its thread
+  std::atomic<std::uint8_t> state_{device::toByte({})};  ///< of the hand, by its thread
+  static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "the haptic thread must not wait for a lock");
   /// As of the last advance() or command, so that it stays the same within a physics step.
   device::OperatorState known_state_;
   RealTimeResult result_;
