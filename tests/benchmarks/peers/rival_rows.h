@@ -13,6 +13,11 @@ void ringRow(const Options& options, Table& table);
 /// many minutes.
 void hullRow(const Options& options, Table& table);
 
+/// The peg in its bore by each kind of shape that Bullet has for it: time to build, memory, step, depth,
+/// rays. btSdfCollisionShape is not there: it reads a file that another program writes, which is not
+/// packaged.
+void shapesRow(const Options& options, Table& table);
+
 /// M16 nut on a bolt at poses in contact: milliseconds for a query, by VPS and others.
 void queryRow(const Options& options, Table& table);
 

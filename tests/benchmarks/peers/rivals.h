@@ -15,6 +15,11 @@ namespace vps::bench {
 /// Bullet's own mesh against mesh. @param margin_m  of every shape
 dynamics::Engine gimpactEngine(double margin_m);
 
+/// The convex hull of each part, without margin.
+dynamics::Engine hullEngine();
+/// btBvhTriangleMeshShape for fixed parts, the convex hull for others; without margin.
+dynamics::Engine bvhEngine();
+
 /// Compounds of convex hulls from HACD; empty if its library is not installed. Decomposing a mesh takes
 /// seconds to minutes; results are cached as long as the engine exists.
 /// @param concavity_m  allowed deviation of the hulls, HACD's main setting

@@ -251,7 +251,8 @@ const std::vector<Case>& allCases() {
       {"nut", nutRow},           {"lock", nutFrictionRow},     {"massrest", massRestRow},
       {"impact", massImpactRow}, {"gears", gearRow},           {"heap", heapRow},
       {"longrest", longRestRow}, {"inside", createdInsideRow}, {"proxy", proxyRow},
-      {"wall", wallRow},         {"query", queryRow},          {"hulls", hullRow, true}};
+      {"wall", wallRow},         {"query", queryRow},          {"shapes", shapesRow},
+      {"hulls", hullRow, true}};
   return cases;
 }
 
