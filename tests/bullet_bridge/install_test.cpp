@@ -228,21 +228,47 @@ TEST(Uninstall, RestoresTheDispatcher) {
   EXPECT_EQ(Tables::of(dispatcher), before);
 }
 
-TEST(Install, AgainReplacesGImpactThatRegisteredAfterIt) {
-  World world;
-  btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
-  install(world.dispatcher);
+TEST(Install, ComesBeforeOrAfterGImpactsRegistration) {
   btTriangleMesh mesh;
   for (const auto& t : cube().mesh.triangles)
     mesh.addTriangle(toBt(cube().mesh.vertices[t[0]]), toBt(cube().mesh.vertices[t[1]]),
                      toBt(cube().mesh.vertices[t[2]]));
   btGImpactMeshShape gimpact(&mesh);
   gimpact.updateBound();
-  world.addShape(gimpact, 0, Vec3::Zero(), Pose());
-  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
+  for (const bool is_again : {false, true}) {
+    World world;  // installs
+    btGImpactCollisionAlgorithm::registerAlgorithm(&world.dispatcher);
+    if (is_again) install(world.dispatcher);
+    world.addShape(gimpact, 0, Vec3::Zero(), Pose());
+    btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
+    world.step(200);
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010,
+                1e-6);  // GImpact's own contact is wrong by 100 um
+  }
+}
+
+TEST(Install, WhileBodiesTouchGivesTheirPairsContact) {
+  World world;
+  uninstall(world.dispatcher);
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  world.addShape(plane, 0, Vec3::Zero(), Pose());
+  btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.0055)));
+  world.step(3);
+  install(world.dispatcher);
   world.step(200);
-  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010,
-              1e-6);  // GImpact's own contact is wrong by 100 um
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
+}
+
+TEST(Install, OfTwoDispatchersIsIndependent) {
+  World first, second;
+  uninstall(first.dispatcher);
+  EXPECT_FALSE(isInstalled(first.dispatcher));
+  EXPECT_TRUE(isInstalled(second.dispatcher));
+  second.add(cube(), Pose(), true);
+  btRigidBody& body = second.add(cube(), Pose::translation(Vec3(0, 0, 0.0101)));
+  second.step(100);
+  EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.010, 5e-6);
+  EXPECT_EQ(stats(first.dispatcher).pair_updates, 0u);
 }
 
 TEST(Install, ADispatcherAtTheAddressOfADestroyedOneStartsWithoutIt) {

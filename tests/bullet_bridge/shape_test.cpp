@@ -121,16 +121,6 @@ TEST(Shape, RefusesAMassThatIsNegativeOrNotFinite) {
   EXPECT_EQ(inertia, btVector3(0, 0, 0)) << "fixed";
 }
 
-TEST(Shape, RefusesToBeWrittenInBulletsFormat) {
-  World world;
-  Shape shape(boxMesh());
-  world.addShape(shape, 0, Vec3::Zero(), Pose());
-  btDefaultSerializer serializer;
-  EXPECT_NE(refusalOf([&] { world.world->serialize(&serializer); }).find("Bullet's format"),
-            std::string::npos);
-  serializer.finishSerialization();  // Bullet's serializer frees nothing of a broken off run otherwise
-}
-
 TEST(Shape, RefusesScalesThatAreNotOnePositiveNumber) {
   Built box = test::build(makeBox(Vec3::Constant(0.01)), 7850, 0.5e-3, 1e-3);
   const auto is_refused = [&](double x, double y, double z) {

@@ -5,18 +5,9 @@
 #include <LinearMath/btTransform.h>
 
 #include "vps/pose.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet::inline v0 {
-
-// A program that mixes Bullet's precisions crashes without a message; this makes it a compile error. The
-// define comes with the imported target vps_external::bullet (plugin/cmake/FindVpsBullet.cmake).
-#ifdef VPS_BULLET_DOUBLE
-static_assert(sizeof(btScalar) == 8,
-              "vps was configured for double-precision Bullet; these headers are float");
-#else
-static_assert(sizeof(btScalar) == 4,
-              "vps was configured for float Bullet; these headers are double-precision");
-#endif
 
 inline btScalar toBt(double x) {
   return static_cast<btScalar>(x);

@@ -7,6 +7,7 @@
 
 #include "vps/coupling_law.h"
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 
 class btConstraintSolver;
 class btRigidBody;

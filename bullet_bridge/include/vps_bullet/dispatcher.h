@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet::inline v0 {
 

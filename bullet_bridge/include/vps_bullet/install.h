@@ -3,6 +3,7 @@
 #pragma once
 
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 #include "vps_bullet/settings.h"
 #include "vps_bullet/tune.h"
 
@@ -12,13 +13,13 @@ namespace vps::bullet::inline v0 {
 
 /// Makes every bullet::Shape collide in worlds that use this dispatcher: with each other and with Bullet's
 /// own shapes, in contact and closest-point queries, in both orders, for every shape type (README.md lists
-/// them). Installing again replaces the settings. Call it before bodies come near each other: an existing
-/// pair keeps its algorithm. See tuneWorld for the parameters of the world itself. Throws
-/// std::invalid_argument for settings out of range.
+/// them); existing pairs too. Installing again replaces the settings. Sets a near callback, which calls the
+/// host's. See tuneWorld for the parameters of the world. Throws std::invalid_argument for settings out of
+/// range, Bullet in another precision, and btCollisionDispatcherMt with several threads.
 VPS_BULLET_API void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
 
 /// Restores the functions that were registered before, except where others have been registered since.
-/// Existing pairs keep VPS contact until their bodies separate or are removed; a message on stderr says so.
+/// Existing pairs keep VPS contact until their bodies separate or are removed; a message (log.h) says so.
 /// Does nothing without an installation. A dispatcher may also be destroyed without this call; another
 /// dispatcher created later at the same address starts without an installation.
 VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);

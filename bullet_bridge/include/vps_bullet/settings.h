@@ -5,12 +5,13 @@
 #include <cstddef>
 
 #include "vps/fidelity.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet::inline v0 {
 
 struct Settings {
   /// Penalty needs bullet::Solver. Any other solver takes the contacts as rigid, as with Constraint; a
-  /// message on stderr then says so, once. Penalty contact has no restitution.
+  /// message (log.h) then says so, once. Penalty contact has no restitution.
   ContactMethod contact_method = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< of penalty contact, per area; assumed: steel, 0.2 m thick
   int contact_limit = 64;            ///< contacts given to the solver for each pair, >= 4
@@ -37,7 +38,7 @@ struct Stats {
   std::size_t contacts = 0;  ///< candidates that were given to the solver
   std::size_t left_out = 0;  ///< candidates beyond candidate_limit: raise it
   /// Pairs that overlapped at their first query by more than their motion explains. They separate at 0.05
-  /// m/s. The first such pair is named on stderr.
+  /// m/s. The first such pair is named (log.h).
   std::size_t overlapping_starts = 0;
   double deepest_start_m = 0;  ///< the deepest of these overlaps
 };

@@ -14,6 +14,7 @@
 #include "vps/feature_set.h"
 #include "vps/part_model.h"
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -77,8 +78,9 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// The models in use, scaled.
   [[nodiscard]] const ShapeModels& models() const { return models_; }
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
-  /// Increases with every change of the models; point ids are valid for one revision.
-  [[nodiscard]] unsigned revision() const { return revision_; }
+  /// Changes with the models, and no two Shapes of a process ever have the same; point ids are valid for one
+  /// revision.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
   /// True for a shell point on a sharp edge or corner of the surfaces, where the part has no unique normal.
   /// False for all points if there are no surfaces.
   [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
@@ -124,23 +126,27 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// without surfaces or a mesh; the shape is then unchanged.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override { return scaling_; }
-  /// Has no effect, since contact is at the part's surface; a margin other than 0 is reported once on stderr.
+  /// Has no effect, since contact is at the part's surface; a margin other than 0 is reported once.
   /// Throws std::invalid_argument for a margin that is negative or not a number.
   void setMargin(btScalar margin) override;
   btScalar getMargin() const override { return 0; }
   const char* getName() const override { return "Shape"; }
-  /// Throws std::invalid_argument: Bullet's importer cannot read a voxmap.
+  /// Bullet's file format has no voxmap, so a Shape is written as a compound of one mesh, that of its
+  /// triangles, with the resolution of its models in its name. Bullet's importer reads the mesh; that of
+  /// world_importer.h makes a Shape of it again.
   [[nodiscard]] int calculateSerializeBufferSize() const override;
+  const char* serialize(void* data, btSerializer* serializer) const override;
 
  private:
   class TriangleTree;
+  struct Saved;
   void use(ShapeModels models, const Pose& X_SM);
 
   ShapeModels unscaled_, models_;
   Pose X_SM_unscaled_, X_SM_;
   btVector3 scaling_;
   Box bounds_S_;
-  unsigned revision_ = 0;
+  std::uint64_t revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;  // by point
@@ -148,6 +154,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   FeatureSet features_;
   std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]
   std::unique_ptr<const TriangleTree> triangles_;
+  mutable std::shared_ptr<Saved> saved_;  // a serializer refers to it
 };
 
 }  // namespace vps::bullet::inline v0

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 
 class btDiscreteDynamicsWorld;
 class btRigidBody;

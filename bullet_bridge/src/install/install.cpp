@@ -9,22 +9,25 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <mutex>
 #include <new>
 #include <set>
 #include <stdexcept>
 
+#include "install/probe.h"
+#include "log/report.h"
 #include "narrowphase/contact_algorithm.h"
 #include "narrowphase/context.h"
 #include "narrowphase/native_shape_algorithm.h"
+#include "narrowphase/pair_renewal.h"
+#include "narrowphase/simple_pairs.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
+#include "shape/forgotten_install.h"
 #include "solver/dispatch_table.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
@@ -61,10 +64,11 @@ btCollisionAlgorithm* make(btCollisionAlgorithmConstructionInfo& info, Arguments
   }
 }
 
-// Called for every pair of a Shape with another shape, except compounds: Bullet passes their children one by
+// Called for every pair of a Shape with another shape. Of a compound Bullet then passes the children one by
 // one.
 struct CreateFunction : ContactCreateFunction {
   std::shared_ptr<Context> context;
+  btNearCallback next_near_callback = &btCollisionDispatcher::defaultNearCallback;
 
   btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                  const btCollisionObjectWrapper* body0,
@@ -72,6 +76,11 @@ struct CreateFunction : ContactCreateFunction {
     const btCollisionObjectWrapper* const bodies[] = {body0, body1};
     for (const btCollisionObjectWrapper* body : bodies)
       if (shapeOf(*body)) warnOfSleep(*body->getCollisionObject());
+    for (const btCollisionObjectWrapper* body : bodies) {
+      if (body->getCollisionShape()->isCompound()) return make<CompoundPair>(info, body0, body1);
+      if (body->getCollisionShape()->getShapeType() == EMPTY_SHAPE_PROXYTYPE)
+        return make<EmptyPair>(info, body0, body1);
+    }
     try {
       for (const int side : {0, 1})
         if (!shapeOf(*bodies[side])) return withNativeShape(info, bodies, side);
@@ -80,7 +89,7 @@ struct CreateFunction : ContactCreateFunction {
       return make<ContactAlgorithm>(info, body0, body1, context);
     } catch (const std::exception& error) {  // Bullet's dispatch is not exception-safe
       warnOnce(error.what());
-      return make<btEmptyAlgorithm>(info);
+      return make<EmptyPair>(info, body0, body1);
     }
   }
 
@@ -114,11 +123,18 @@ struct CreateFunction : ContactCreateFunction {
   // Once for each message, since pairs are created and destroyed often.
   void warnOnce(const std::string& message) {
     const std::lock_guard lock(mutex_);
-    if (reported_.insert(message).second) std::fprintf(stderr, "vps: %s\n", message.c_str());
+    if (reported_.insert(message).second) report(LogLevel::Warning, message);
   }
   std::mutex mutex_;
   std::set<std::string> reported_;
 };
+
+// Bullet calls it for each pair near each other in each step.
+void nearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  renewIfSwapped(pair, dispatcher);
+  const auto* ours = dynamic_cast<const CreateFunction*>(contactFunctionOf(&dispatcher));
+  (ours ? ours->next_near_callback : &btCollisionDispatcher::defaultNearCallback)(pair, dispatcher, info);
+}
 
 struct Installation {
   std::shared_ptr<Context> context = std::make_shared<Context>();
@@ -153,9 +169,7 @@ Installation* find(const btCollisionDispatcher& dispatcher) {
 template <typename Visit>
 void forEachPair(const Visit& visit) {
   for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
-    // An empty shape has no contact, Bullet splits compounds, and soft bodies use Bullet's own algorithm.
-    if (type == EMPTY_SHAPE_PROXYTYPE || type == COMPOUND_SHAPE_PROXYTYPE || type == SOFTBODY_SHAPE_PROXYTYPE)
-      continue;
+    if (type == SOFTBODY_SHAPE_PROXYTYPE) continue;  // Bullet's own algorithm
     visit(kShapeType, type);
     if (type != kShapeType) visit(type, kShapeType);
   }
@@ -181,6 +195,9 @@ void requireUsable(const Settings& s) {
 
 void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
   requireUsable(settings);
+  requireSamePrecision(dispatcher);
+  requireOneThread(dispatcher);
+  setContactInstalled();
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
   if (!installation) {
@@ -189,6 +206,9 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
     installations()[&dispatcher] = std::move(fresh);
   }
   installation->context->settings = settings;
+  if (dispatcher.getNearCallback() != &nearCallback)
+    installation->create.next_near_callback = dispatcher.getNearCallback();
+  dispatcher.setNearCallback(&nearCallback);
   btCollisionAlgorithmCreateFunc* create = &installation->create;
   forEachPair([&](int a, int b) {
     auto* contact = DispatchTable::contact(dispatcher)[a][b];
@@ -203,8 +223,10 @@ void uninstall(btCollisionDispatcher& dispatcher) {
   Installation* installation = find(dispatcher);
   constexpr long kOurs = 2;  // references of the installation and its create function; others belong to pairs
   if (installation && installation->context.use_count() > kOurs)
-    std::fprintf(
-        stderr, "vps: uninstalled while pairs of bodies with a bullet::Shape exist; they keep VPS contact\n");
+    report(LogLevel::Warning,
+           "uninstalled while pairs of bodies with a bullet::Shape exist; they keep VPS contact");
+  if (installation && dispatcher.getNearCallback() == &nearCallback)
+    dispatcher.setNearCallback(installation->create.next_near_callback);
   if (installation)
     for (const auto& [types, functions] : installation->before)
       if (DispatchTable::contact(dispatcher)[types.first][types.second] == &installation->create)

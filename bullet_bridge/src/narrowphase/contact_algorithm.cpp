@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <cstring>
 #include <typeinfo>
 #include <utility>
 
+#include "log/report.h"
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/pair_check.h"
+#include "native_shapes/primitive.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
 
@@ -25,14 +28,14 @@ namespace {
 // Point ids are valid for one set of models only.
 void resetIfModelsChanged(PairState& state, const PairView& pair) {
   for (int i = 0; i < 2; ++i) {
-    const unsigned revision = pair.shape[i] ? pair.shape[i]->revision() : 0;
+    const std::uint64_t revision = pair.shape[i] ? pair.shape[i]->revision() : 0;
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
-    state.selection.is_valid = false;
-    state.selection.contacts.clear();
+    state.selection = {};
     state.penalty.points.clear();
     state.features.reset();
     for (auto& query_state : state.query_state) query_state.reset();
+    for (auto& ids : state.always) ids.clear();
     state.writer->invalidateIds();
   }
 }
@@ -51,22 +54,50 @@ void countInitialOverlap(const PairView& pair, PairState& state) {
   if (context.overlapping_starts++ > 0) return;
   const Vec3 at = pair.center_W();
   const Vec3 body[2] = {pair.X_WS[0].p, pair.X_WS[1].p};
-  std::fprintf(
-      stderr,
-      "vps: the bodies at (%.4g, %.4g, %.4g) m and (%.4g, %.4g, %.4g) m begin at least %.3g mm inside "
-      "each other, near (%.4g, %.4g, %.4g) m; a voxmap measures no deeper than its band. They are "
-      "moved apart at 0.05 m/s. Further pairs that begin so are not reported.\n",
-      body[0].x(), body[0].y(), body[0].z(), body[1].x(), body[1].y(), body[1].z(), 1e3 * overlap_m, at.x(),
-      at.y(), at.z());
+  char words[400];
+  std::snprintf(words, sizeof words,
+                "the bodies at (%.4g, %.4g, %.4g) m and (%.4g, %.4g, %.4g) m begin at least %.3g mm inside "
+                "each other, near (%.4g, %.4g, %.4g) m; a voxmap measures no deeper than its band. They are "
+                "moved apart at 0.05 m/s. Further pairs that begin so are not reported.",
+                body[0].x(), body[0].y(), body[0].z(), body[1].x(), body[1].y(), body[1].z(), 1e3 * overlap_m,
+                at.x(), at.y(), at.z());
+  report(LogLevel::Warning, words);
+}
+
+// A contactTest passes a result of its own type, which the library does not export. A host may also pass one
+// of its own: with a distance for a query, without one for a step.
+bool isQuery(const btManifoldResult& result) {
+  if (typeid(result) == typeid(btManifoldResult)) return false;
+  return result.m_closestPointDistanceThreshold > 0 ||
+         std::strstr(typeid(result).name(), "btBridgedManifoldResult") != nullptr;
+}
+
+// Beyond the band of the fields only the exact surfaces know distances.
+void findFarPoints(const PairView& pair, double distance_m, Context& context, std::vector<Candidate>& out) {
+  std::size_t tested = 0;
+  for (int i = 0; i < 2; ++i) {
+    const int j = 1 - i;
+    if (!queriesPoints(pair, i, context.settings.sides)) continue;
+    const btCollisionShape& theirs = *pair.wrapper[j]->getCollisionShape();
+    if (isPrimitive(theirs))
+      findPrimitiveCandidates(pair.side(i), theirs, pair.X_WS[j], distance_m, context.settings, out, tested);
+    else if (pair.shape[j])
+      findSurfaceCandidates(pair.side(i), pair.side(j), distance_m, context.settings, out, tested);
+  }
+  context.points_tested += tested;
 }
 
 // Reports the points that are near now, rather than contacts for a step.
 void reportClosestPoints(const PairView& pair, Context& context, btManifoldResult& result) {
+  const double wanted_m = std::max<double>(result.m_closestPointDistanceThreshold, 0);
   RelativeMotion still;
-  still.contact_margin_m =
-      std::min<double>(std::max<double>(result.m_closestPointDistanceThreshold, 0), queryRange_m(pair));
   std::vector<Candidate> candidates;
+  still.contact_margin_m = std::min(wanted_m, queryRange_m(pair));
   findCandidates(pair, still.contact_margin_m, context, candidates);
+  if (candidates.empty() && wanted_m > still.contact_margin_m) {
+    still.contact_margin_m = wanted_m;
+    findFarPoints(pair, wanted_m, context, candidates);
+  }
   selectContacts(pair, still, context.settings, nullptr, candidates);
   reportContacts(candidates, pair.wrapper, result);
 }
@@ -75,10 +106,9 @@ void reportClosestPoints(const PairView& pair, Context& context, btManifoldResul
 void warnWithoutSolver() {
   static std::atomic_flag was_reported;
   if (!was_reported.test_and_set())
-    std::fprintf(
-        stderr,
-        "vps: contact_method is Penalty, but the world is not solved by bullet::Solver: its contacts "
-        "are taken as rigid\n");
+    report(LogLevel::Warning,
+           "contact_method is Penalty, but the world is not solved by bullet::Solver: its contacts are taken "
+           "as rigid");
 }
 
 // Pairs without penalty points, as all pairs of constraint contact, leave nothing for the solver.
@@ -140,6 +170,8 @@ void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCo
   state.contacts.clear();
   state.motion = {};
   state.is_prepared = true;
+  // A child of a compound that was replaced by another compound: Bullet does not renew its algorithm.
+  if (!isFor(body0->getCollisionShape(), body1->getCollisionShape())) return;
   resetIfModelsChanged(state, pair);
   const Settings& settings = state.context->settings;
   const bool is_penalty = settings.contact_method == ContactMethod::Penalty;
@@ -158,8 +190,14 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
                                         btManifoldResult* result) {
   Context& context = *state_->context;
   const PairView pair(body0, body1);
-  // A contactTest passes a result of its own type.
-  if (typeid(*result) != typeid(btManifoldResult)) {
+  if (!isFor(body0->getCollisionShape(), body1->getCollisionShape())) {
+    state_->selection = {};
+    state_->penalty.points.clear();
+    state_->writer->write({}, pair.wrapper, {}, false);
+    passToSolver(*state_);
+    return;
+  }
+  if (isQuery(*result)) {
     if (pair.X_WS[0].isFinite() && pair.X_WS[1].isFinite()) reportClosestPoints(pair, context, *result);
     return;
   }

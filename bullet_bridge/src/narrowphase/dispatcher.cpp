@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "narrowphase/pair_algorithm.h"
+#include "narrowphase/pair_renewal.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -35,6 +36,7 @@ void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const 
   arena_->pairs.clear();
   for (int i = 0; i < pairs->getNumOverlappingPairs(); ++i) {
     btBroadphasePair& pair = pairs->getOverlappingPairArrayPtr()[i];
+    renewIfSwapped(pair, *this);
     if (dynamic_cast<PairAlgorithm*>(pair.m_algorithm) == nullptr) continue;
     if (needsCollision(objectOf(pair.m_pProxy0), objectOf(pair.m_pProxy1))) arena_->pairs.push_back(&pair);
   }

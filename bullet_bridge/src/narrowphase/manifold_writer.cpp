@@ -5,6 +5,7 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "vps_bullet/convert.h"
 
@@ -13,6 +14,10 @@ namespace vps::bullet::inline v0 {
 namespace {
 
 constexpr int kPerManifold = MANIFOLD_CACHE_SIZE;
+
+// Bits of m_contactPointFlags far above Bullet's own: the point was given to gContactAddedCallback, which set
+// friction directions, or a normal, of its own.
+constexpr int kWasAdded = 1 << 25, kOwnDirections = 1 << 26, kOwnNormal = 1 << 27;
 
 // Positions on both bodies: the shell point on its own side, its foot on the other's surface.
 void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
@@ -92,6 +97,38 @@ void copyImpulses(btManifoldPoint& point, const btManifoldPoint& old) {
   point.m_userPersistentData = old.m_userPersistentData;
 }
 
+// A point that is not added again keeps what the user's callback has set.
+void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old) {
+  constexpr int kSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
+                        BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  if ((old.m_contactPointFlags & kSoft) != 0) {
+    point.m_contactPointFlags = old.m_contactPointFlags;
+    point.m_contactCFM = old.m_contactCFM;
+    point.m_contactERP = old.m_contactERP;
+  } else {
+    point.m_contactPointFlags |=
+        old.m_contactPointFlags & (kOwnDirections | kOwnNormal | BT_CONTACT_FLAG_FRICTION_ANCHOR);
+  }
+  point.m_frictionCFM = old.m_frictionCFM;
+  point.m_combinedFriction = old.m_combinedFriction;
+  point.m_combinedRollingFriction = old.m_combinedRollingFriction;
+  point.m_combinedSpinningFriction = old.m_combinedSpinningFriction;
+  point.m_combinedRestitution = old.m_combinedRestitution;
+  point.m_contactMotion1 = old.m_contactMotion1;
+  point.m_contactMotion2 = old.m_contactMotion2;
+  if ((old.m_contactPointFlags & kOwnNormal) != 0) point.m_normalWorldOnB = old.m_normalWorldOnB;
+  if ((old.m_contactPointFlags & kOwnDirections) == 0) return;
+  point.m_lateralFrictionDir1 = old.m_lateralFrictionDir1;
+  point.m_lateralFrictionDir2 = old.m_lateralFrictionDir2;
+  point.m_appliedImpulseLateral1 = old.m_appliedImpulseLateral1;
+  point.m_appliedImpulseLateral2 = old.m_appliedImpulseLateral2;
+}
+
+bool wantsAdded(const btCollisionObject* a, const btCollisionObject* b) {
+  const int flags = a->getCollisionFlags() | b->getCollisionFlags();
+  return gContactAddedCallback && (flags & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK) != 0;
+}
+
 }  // namespace
 
 ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
@@ -99,6 +136,13 @@ ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject
     : dispatcher_(dispatcher), objects_{object0, object1} {}
 
 ManifoldWriter::~ManifoldWriter() {
+  // Bullet would report the end of contact for each manifold.
+  for (btPersistentManifold* manifold : manifolds_) {
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      manifold->clearUserCache(manifold->getContactPoint(i));
+    manifold->setNumContacts(0);
+  }
+  end();
   for (btPersistentManifold* manifold : manifolds_) dispatcher_.releaseManifold(manifold);
 }
 
@@ -149,7 +193,10 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
     if (!manifold) break;  // the pool is full and may not grow
     manifolds_.push_back(manifold);
   }
-  const bool had_contacts = !old_.empty();
+  const bool is_custom = wantsAdded(objects_[0], objects_[1]);
+  // Bullet's own algorithms add up to four points again in each step, and keep what others have: so do we,
+  // one manifold after the other.
+  const std::size_t added_again = used > 0 ? turn_++ % used : 0;
   std::vector<Old>::iterator old = old_.begin();
   for (std::size_t m = 0; m < manifolds_.size(); ++m) {
     btPersistentManifold& manifold = *manifolds_[m];
@@ -157,26 +204,53 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
     const int count = first < contacts.size()
                           ? static_cast<int>(std::min<std::size_t>(kPerManifold, contacts.size() - first))
                           : 0;
-    manifold.setNumContacts(count);
+    manifold.setNumContacts(0);
     for (int i = 0; i < count; ++i) {
+      manifold.setNumContacts(i + 1);
       const Candidate& c = contacts[first + static_cast<std::size_t>(i)];
       btManifoldPoint& point = manifold.getContactPoint(i);
       point = makePoint(c, bodies, motion);
       while (old != old_.end() && old->key < c.key()) ++old;  // both are ascending by key
+      bool is_kept = false;
       if (old != old_.end() && old->key == c.key()) {
         copyImpulses(point, old->point);
+        is_kept = m != added_again && (old->point.m_contactPointFlags & kWasAdded) != 0;
+        if (is_custom && is_kept) keepMaterial(point, old->point);
         old->point.m_userPersistentData = nullptr;
       }
-      const int flags = objects_[0]->getCollisionFlags() | objects_[1]->getCollisionFlags();
-      if (gContactAddedCallback && (flags & btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK))
-        gContactAddedCallback(point, bodies[0], point.m_partId0, point.m_index0, bodies[1], point.m_partId1,
-                              point.m_index1);
+      if (is_custom && !is_kept) callAdded(point, bodies);
+      point.m_contactPointFlags |= kWasAdded;
+      if (!std::exchange(has_started_, true) && gContactStartedCallback) gContactStartedCallback(&manifold);
     }
   }
   for (Old& gone : old_)
     if (gone.point.m_userPersistentData && gContactDestroyedCallback)
       gContactDestroyedCallback(gone.point.m_userPersistentData);
-  if (had_contacts && contacts.empty() && gContactEndedCallback && !manifolds_.empty())
+  if (contacts.empty()) end();
+  callProcessed();
+}
+
+void ManifoldWriter::callAdded(btManifoldPoint& point,
+                               const btCollisionObjectWrapper* const (&bodies)[2]) const {
+  const btVector3 normal = point.m_normalWorldOnB;
+  const btVector3 directions[2] = {point.m_lateralFrictionDir1, point.m_lateralFrictionDir2};
+  gContactAddedCallback(point, bodies[0], point.m_partId0, point.m_index0, bodies[1], point.m_partId1,
+                        point.m_index1);
+  if (point.m_normalWorldOnB != normal) point.m_contactPointFlags |= kOwnNormal;
+  if (point.m_lateralFrictionDir1 != directions[0] || point.m_lateralFrictionDir2 != directions[1])
+    point.m_contactPointFlags |= kOwnDirections;
+}
+
+void ManifoldWriter::callProcessed() const {
+  if (!gContactProcessedCallback) return;
+  for (btPersistentManifold* manifold : manifolds_)
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      gContactProcessedCallback(manifold->getContactPoint(i), const_cast<btCollisionObject*>(objects_[0]),
+                                const_cast<btCollisionObject*>(objects_[1]));
+}
+
+void ManifoldWriter::end() {
+  if (std::exchange(has_started_, false) && gContactEndedCallback && !manifolds_.empty())
     gContactEndedCallback(manifolds_.front());
 }
 

@@ -27,7 +27,8 @@ class ManifoldWriter {
 
   /// Marks the candidates that are contacts in the manifolds as they are now, with their impulses.
   void markExistingContacts(std::vector<Candidate>& candidates);
-  /// Replaces all contacts. Points that stay keep impulses, lifetime and user data.
+  /// Replaces all contacts. Points that stay keep impulses, lifetime and user data. Bullet's callbacks are
+  /// called as Bullet does for a pair with one manifold (README.md, "Callbacks").
   /// @param keeps_spare  more manifolds than needed, so that the solver can add contacts
   void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
              const RelativeMotion& motion, bool keeps_spare);
@@ -46,11 +47,16 @@ class ManifoldWriter {
     btManifoldPoint point;
   };
   void readManifolds();
+  void callAdded(btManifoldPoint& point, const btCollisionObjectWrapper* const (&bodies)[2]) const;
+  void callProcessed() const;
+  void end();
 
   btDispatcher& dispatcher_;
   const btCollisionObject* objects_[2];
   std::vector<btPersistentManifold*> manifolds_;
-  std::vector<Old> old_;  // last step's points, ascending by key
+  std::vector<Old> old_;      // last step's points, ascending by key
+  bool has_started_ = false;  // gContactStartedCallback was due, and gContactEndedCallback is not yet
+  std::size_t turn_ = 0;      // of the manifold whose points are added again in this step
 };
 
 /// Passes contacts to a contactTest's result, one by one.

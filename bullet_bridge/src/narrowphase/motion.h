@@ -9,8 +9,8 @@ class btCollisionObject;
 namespace vps::bullet::inline v0 {
 
 /// Velocity about the world's origin, in W, that the object would reach by the end of the step without
-/// contact: its own, plus external forces, plus (with_couplings) the pull of its CouplingConstraints. Zero
-/// for static objects.
+/// contact: its own, plus external forces, plus (with_couplings) the pull of its CouplingConstraints. A link
+/// of a btMultiBody has the velocity that its joints give it. Zero for static objects.
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
 
 }  // namespace vps::bullet::inline v0

@@ -4,9 +4,9 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
 
-#include <cstdio>
 #include <stdexcept>
 
+#include "log/report.h"
 #include "narrowphase/contact_algorithm.h"
 #include "narrowphase/context.h"
 #include "native_shapes/native_shape_adapter.h"
@@ -49,8 +49,9 @@ struct NativeShapeAlgorithm::State {
     key = keyOf(shape);
     inner.reset();
     adapter = context->native_shapes->get(shape);
+    const AdaptedBodies adapted(*adapter, native_side, bodies[0], bodies[1]);
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
-    inner = std::make_unique<ContactAlgorithm>(info, bodies[0], bodies[1], context);
+    inner = std::make_unique<ContactAlgorithm>(info, adapted.wrapper[0], adapted.wrapper[1], context);
   }
   // Bullet's step is not exception-safe.
   void renewOrReport(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
@@ -59,7 +60,7 @@ struct NativeShapeAlgorithm::State {
       renew(dispatcher, bodies);
     } catch (const std::exception& error) {
       adapter.reset();
-      std::fprintf(stderr, "vps: %s\n", error.what());
+      report(LogLevel::Error, error.what());
     }
   }
 };

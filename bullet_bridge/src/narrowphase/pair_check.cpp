@@ -171,16 +171,28 @@ struct PairCheck::Motion {
 };
 
 void PairCheck::setBodies(const PairView& pair) {
+  is_of_this_step_ = true;
   for (int i = 0; i < 2; ++i) {
     object_[i] = pair.wrapper[i]->getCollisionObject();
     shape_[i] = pair.wrapper[i]->getCollisionShape();
+    root_[i] = object_[i]->getCollisionShape();
     X_BS_[i] = fromBt(object_[i]->getWorldTransform()).inverse() * pair.X_WS[i];
   }
 }
 
+bool PairCheck::isValid() const {
+  if (!is_of_this_step_ || !state_.selection.is_valid) return false;
+  for (int i = 0; i < 2; ++i) {
+    if (object_[i]->getCollisionShape() != root_[i]) return false;
+    const auto* shape = dynamic_cast<const Shape*>(shape_[i]);
+    if (shape && shape->revision() != state_.revision[i]) return false;
+  }
+  return true;
+}
+
 void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
   const Selection& selection = state_.selection;
-  if (!selection.is_valid || !object_[0]) return;
+  if (!isValid()) return;
   Motion m;
   m.tolerated_m = kToleratedShare * state_.context->settings.contact_margin_m;
   const Pose selected[2] = {selection.X_W0, selection.X_W0 * selection.X_01};
@@ -228,7 +240,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
 }
 
 double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
-  if (!state_.selection.is_valid || !object_[0]) return 1;
+  if (!isValid()) return 1;
   const Pose start[2] = {fromBt(object_[0]->getWorldTransform()) * X_BS_[0],
                          fromBt(object_[1]->getWorldTransform()) * X_BS_[1]};
   const EndPoses end = {{X_WB_end[0] * X_BS_[0], X_WB_end[1] * X_BS_[1]}};

@@ -32,9 +32,12 @@ class PairCheck final : public StepCheck {
 
   /// To be called in each step before it is solved, since Bullet's wrappers live for one call.
   void setBodies(const PairView& pair);
+  /// False in a pair that Bullet did not process in this step: its shapes may be others by now, or gone.
+  [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
+  void endStep() override { is_of_this_step_ = false; }
 
  private:
   struct Placed;
@@ -45,8 +48,10 @@ class PairCheck final : public StepCheck {
   void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);
 
   PairState& state_;
+  bool is_of_this_step_ = false;
   const btCollisionObject* object_[2] = {nullptr, nullptr};
   const btCollisionShape* shape_[2] = {nullptr, nullptr};
+  const btCollisionShape* root_[2] = {nullptr, nullptr};  ///< of the bodies; shape_ may be a child
   Pose X_BS_[2];
 };
 

@@ -2,6 +2,8 @@
 #include "native_shapes/shape_key.h"
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleMeshShape.h>
 #include <LinearMath/btTransform.h>
 
 namespace vps::bullet::inline v0 {
@@ -9,6 +11,11 @@ namespace vps::bullet::inline v0 {
 ShapeKey keyOf(const btCollisionShape& shape) {
   ShapeKey key;
   key.type = shape.getShapeType();
+  key.shape = &shape;
+  if (const auto* hull = dynamic_cast<const btConvexHullShape*>(&shape))
+    key.vertices = hull->getUnscaledPoints();
+  if (const auto* mesh = dynamic_cast<const btTriangleMeshShape*>(&shape))
+    key.vertices = mesh->getMeshInterface();
   btVector3 low, high;
   shape.getAabb(btTransform::getIdentity(), low, high);
   const btVector3& scale = shape.getLocalScaling();

@@ -6,9 +6,11 @@ class btCollisionShape;
 
 namespace vps::bullet::inline v0 {
 
-/// A few numbers that change when a shape is scaled, resized or refitted.
+/// A few numbers that change when a shape is scaled, resized, refitted or replaced by another.
 struct ShapeKey {
   int type = -1;
+  const void* shape = nullptr;
+  const void* vertices = nullptr;  ///< of a hull, or the mesh that a mesh shape reads
   double numbers[9] = {};
   bool operator==(const ShapeKey&) const = default;
 };

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/shape.h"
 
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "log/report.h"
+#include "shape/forgotten_install.h"
 #include "shape/scaled_models.h"
+#include "shape/triangle_tree.h"
 #include "vps/feature_motion.h"
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
@@ -24,7 +23,12 @@ namespace {
 
 // For calls without effect that do no harm.
 void warnOnce(std::atomic_flag& was_reported, const char* message) {
-  if (!was_reported.test_and_set()) std::fprintf(stderr, "vps: %s\n", message);
+  if (!was_reported.test_and_set()) report(LogLevel::Warning, message);
+}
+
+std::uint64_t nextRevision() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 Mat3 inertiaAboutCom(const MassProperties& unit_density, double density) {
@@ -120,89 +124,6 @@ ShapeModels makeModels(const PartModel& part) {
   return models;
 }
 
-/// Boxes over the mesh's triangles, in the shape's frame. Split at the median of the longest axis, four to a
-/// leaf.
-class Shape::TriangleTree {
- public:
-  TriangleTree(const Mesh& mesh, const Pose& X_SM) : triangles_(mesh.triangles) {
-    vertices_.reserve(mesh.vertices.size());
-    for (const Vec3& p : mesh.vertices) vertices_.push_back(X_SM * p);
-    order_.resize(triangles_.size());
-    std::iota(order_.begin(), order_.end(), 0u);
-    nodes_.reserve(triangles_.size());
-    if (!order_.empty()) build(0, order_.size());
-  }
-
-  void visit(const Box& box, btTriangleCallback& callback) const {
-    for (std::size_t i = 0; i < nodes_.size();) {
-      const Node& node = nodes_[i];
-      if (!overlap(node.box, box)) {
-        i = node.skip;
-        continue;
-      }
-      for (std::uint32_t k = node.first; k < node.first + node.count; ++k) report(order_[k], box, callback);
-      ++i;
-    }
-  }
-
- private:
-  struct Node {
-    Box box;
-    std::uint32_t first = 0, count = 0;  // count 0: inner node
-    std::uint32_t skip = 0;              // next node in depth-first order if this one is skipped
-  };
-
-  static bool overlap(const Box& a, const Box& b) {
-    return (a.min.array() <= b.max.array()).all() && (b.min.array() <= a.max.array()).all();
-  }
-
-  Box boxOf(std::uint32_t triangle) const {
-    Box box;
-    for (const std::uint32_t v : triangles_[triangle]) box.add(vertices_[v]);
-    return box;
-  }
-
-  void build(std::size_t begin, std::size_t end) {
-    const std::size_t index = nodes_.size();
-    nodes_.emplace_back();
-    Box box;
-    for (std::size_t k = begin; k < end; ++k) {
-      const Box b = boxOf(order_[k]);
-      box.add(b.min);
-      box.add(b.max);
-    }
-    nodes_[index].box = box;
-    if (end - begin <= 4) {
-      nodes_[index].first = static_cast<std::uint32_t>(begin);
-      nodes_[index].count = static_cast<std::uint32_t>(end - begin);
-    } else {
-      int axis = 0;
-      box.size().maxCoeff(&axis);
-      const std::size_t middle = begin + (end - begin) / 2;
-      const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
-      std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-        const double ca = boxOf(a).center()[axis], cb = boxOf(b).center()[axis];
-        return ca != cb ? ca < cb : a < b;
-      });
-      build(begin, middle);
-      build(middle, end);
-    }
-    nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
-  }
-
-  void report(std::uint32_t triangle, const Box& box, btTriangleCallback& callback) const {
-    if (!overlap(boxOf(triangle), box)) return;
-    btVector3 corners[3];
-    for (std::size_t v = 0; v < 3; ++v) corners[v] = toBt(vertices_[triangles_[triangle][v]]);
-    callback.processTriangle(corners, 0, static_cast<int>(triangle));
-  }
-
-  std::vector<Vec3> vertices_;  // in S
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
-};
-
 Shape::Shape(ShapeModels models, const Pose& X_SM) : X_SM_unscaled_(X_SM), scaling_(1, 1, 1) {
   m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
   m_collisionMargin = 0;
@@ -223,7 +144,7 @@ void Shape::setModels(ShapeModels models) {
 void Shape::use(ShapeModels models, const Pose& X_SM) {
   models_ = std::move(models);
   X_SM_ = X_SM;
-  ++revision_;
+  revision_ = nextRevision();
   PointNormals normals = findNormals(models_);
   is_edge_point_ = std::move(normals.is_edge);
   smooth_inward_ = std::move(normals.smooth_inward);
@@ -261,6 +182,7 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
 }
 
 void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {
+  if (!isContactInstalled()) warnOfForgottenInstall();
   const Pose X = fromBt(X_WS);
   const Vec3 center = X * bounds_S_.center();
   // btCompoundShape's algorithm tests only children whose boxes overlap; parts that rest on each other have a
@@ -294,7 +216,7 @@ void Shape::processAllTriangles(btTriangleCallback* callback, const btVector3& m
   Box box;
   box.min = fromBt(min);
   box.max = fromBt(max);
-  triangles_->visit(box, *callback);
+  if (!triangles_->visitCast(box, *callback)) triangles_->visit(box, *callback);
 }
 
 void Shape::setLocalScaling(const btVector3& scaling) {
@@ -316,13 +238,6 @@ void Shape::setMargin(btScalar margin) {
   static std::atomic_flag was_reported;
   if (margin != 0)
     warnOnce(was_reported, "Shape has no margin: its contact distance is that of the part's surface");
-}
-
-int Shape::calculateSerializeBufferSize() const {
-  throw std::invalid_argument(
-      "Shape cannot be written in Bullet's format, whose importer could not read it; save the part's "
-      "mesh, "
-      "map (saveVdb) and shell (savePly) instead");
 }
 
 }  // namespace vps::bullet::inline v0

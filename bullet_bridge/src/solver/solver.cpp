@@ -300,6 +300,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
+  for (StepCheck* check : work.checks) check->endStep();
   if (work.is_penalty) {
     work.penalty.finish();
     work.joints.finish(dt_s);

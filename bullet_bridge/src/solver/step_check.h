@@ -46,6 +46,9 @@ class StepCheck {
   virtual void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) = 0;
   /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
   virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
+  /// The step is solved: until the narrow phase visits the pair again, there is nothing to check. It may not
+  /// do so, where the user made the bodies ignore each other.
+  virtual void endStep() = 0;
 };
 
 /// The check behind the first manifold of each pair, for the pairs of one installation.

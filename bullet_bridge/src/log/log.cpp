@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_bullet/log.h"
+
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <utility>
+
+#include "log/report.h"
+
+namespace vps::bullet::inline v0 {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Log {
+  std::mutex mutex;
+  LogHook hook;
+  LogLevel least = LogLevel::Warning;
+  Clock::time_point second_began;
+  int passed = 0;  ///< in the second that began then
+  int dropped = 0;
+};
+
+Log& theLog() {
+  static Log log;
+  return log;
+}
+
+/// False: too many. Otherwise `dropped` tells how many there were before this one.
+bool mayPass(Log& log, int& dropped) {
+  const Clock::time_point now = Clock::now();
+  if (now - log.second_began >= std::chrono::seconds(1)) {
+    log.second_began = now;
+    log.passed = 0;
+  }
+  if (log.passed >= kLogLimit) {
+    ++log.dropped;
+    return false;
+  }
+  ++log.passed;
+  dropped = std::exchange(log.dropped, 0);
+  return true;
+}
+
+}  // namespace
+
+void setLogHook(LogHook hook) {
+  Log& log = theLog();
+  const std::lock_guard lock(log.mutex);
+  log.hook = std::move(hook);
+  log.passed = log.dropped = 0;
+}
+
+void setLogLevel(LogLevel least) {
+  Log& log = theLog();
+  const std::lock_guard lock(log.mutex);
+  log.least = least;
+}
+
+void report(LogLevel level, const std::string& message) noexcept {
+  try {
+    Log& log = theLog();
+    LogHook hook;
+    int dropped = 0;
+    {
+      const std::lock_guard lock(log.mutex);
+      if (level < log.least || !mayPass(log, dropped)) return;
+      hook = log.hook;
+    }
+    std::string words = message;
+    if (dropped > 0)
+      words.append(" (").append(std::to_string(dropped)).append(" messages before this one were left out)");
+    if (hook)
+      hook(level, words);
+    else
+      std::fprintf(stderr, "vps: %s\n", words.c_str());
+  } catch (...) {  // no memory, or a hook that throws: a step must go on
+  }
+}
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shape/triangle_tree.h"
+
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "vps_bullet/convert.h"
+
+namespace vps::bullet::inline v0 {
+
+/// A box of half extents `half` that moves from `from` by `way`.
+struct Shape::TriangleTree::Path {
+  Vec3 from, way, half;
+
+  /// True if it meets the box within this share of its way.
+  [[nodiscard]] bool meets(const Box& box, double share) const {
+    double enter = 0, leave = share;
+    for (int k = 0; k < 3; ++k) {
+      const double low = box.min[k] - half[k] - from[k], high = box.max[k] + half[k] - from[k];
+      if (way[k] == 0) {
+        if (low > 0 || high < 0) return false;
+        continue;
+      }
+      const double a = low / way[k], b = high / way[k];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    return enter <= leave;
+  }
+};
+
+Shape::TriangleTree::TriangleTree(const Mesh& mesh, const Pose& X_SM) : triangles_(mesh.triangles) {
+  vertices_.reserve(mesh.vertices.size());
+  for (const Vec3& p : mesh.vertices) vertices_.push_back(X_SM * p);
+  order_.resize(triangles_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  nodes_.reserve(triangles_.size());
+  if (!order_.empty()) build(0, order_.size());
+}
+
+void Shape::TriangleTree::visit(const Box& box, btTriangleCallback& callback) const {
+  for (std::size_t i = 0; i < nodes_.size();) {
+    const Node& node = nodes_[i];
+    if (!overlap(node.box, box)) {
+      i = node.skip;
+      continue;
+    }
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+      if (overlap(boxOf(order_[k]), box)) report(order_[k], callback);
+    ++i;
+  }
+}
+
+bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback) const {
+  // Bullet's box is larger than the path by what it takes for rounding, which is more than 1e-6 of its size.
+  const double rounding_m = 1e-6 * box.size().norm();
+  if (auto* ray = dynamic_cast<btTriangleRaycastCallback*>(&callback)) {
+    const Vec3 from = fromBt(ray->m_from);
+    visitPath({from, fromBt(ray->m_to) - from, Vec3(Vec3::Constant(rounding_m))}, ray->m_hitFraction,
+              callback);
+    return true;
+  }
+  const auto* cast = dynamic_cast<btTriangleConvexcastCallback*>(&callback);
+  if (!cast) return false;
+  const btTransform to_shape = cast->m_triangleToWorld.inverse();
+  const btTransform ends[2] = {to_shape * cast->m_convexShapeFrom, to_shape * cast->m_convexShapeTo};
+  Vec3 center[2], half[2];
+  for (int i = 0; i < 2; ++i) {
+    btVector3 low, high;
+    cast->m_convexShape->getAabb(ends[i], low, high);
+    center[i] = 0.5 * (fromBt(low) + fromBt(high));
+    half[i] = 0.5 * (fromBt(high) - fromBt(low));
+  }
+  // One that turns on its way may be larger between the ends: the box is then Bullet's answer.
+  if ((half[0] - half[1]).norm() > rounding_m) return false;
+  const Vec3 margin = Vec3::Constant(rounding_m + cast->m_triangleCollisionMargin);
+  visitPath({center[0], center[1] - center[0], half[0] + margin}, cast->m_hitFraction, callback);
+  return true;
+}
+
+void Shape::TriangleTree::visitPath(const Path& path, const btScalar& share,
+                                    btTriangleCallback& callback) const {
+  for (std::size_t i = 0; i < nodes_.size();) {
+    const Node& node = nodes_[i];
+    if (!path.meets(node.box, share)) {
+      i = node.skip;
+      continue;
+    }
+    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+      if (path.meets(boxOf(order_[k]), share)) report(order_[k], callback);
+    ++i;
+  }
+}
+
+Box Shape::TriangleTree::boxOf(std::uint32_t triangle) const {
+  Box box;
+  for (const std::uint32_t v : triangles_[triangle]) box.add(vertices_[v]);
+  return box;
+}
+
+void Shape::TriangleTree::build(std::size_t begin, std::size_t end) {
+  const std::size_t index = nodes_.size();
+  nodes_.emplace_back();
+  Box box;
+  for (std::size_t k = begin; k < end; ++k) {
+    const Box b = boxOf(order_[k]);
+    box.add(b.min);
+    box.add(b.max);
+  }
+  nodes_[index].box = box;
+  if (end - begin <= 4) {
+    nodes_[index].first = static_cast<std::uint32_t>(begin);
+    nodes_[index].count = static_cast<std::uint32_t>(end - begin);
+  } else {
+    int axis = 0;
+    box.size().maxCoeff(&axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+      const double ca = boxOf(a).center()[axis], cb = boxOf(b).center()[axis];
+      return ca != cb ? ca < cb : a < b;
+    });
+    build(begin, middle);
+    build(middle, end);
+  }
+  nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
+}
+
+void Shape::TriangleTree::report(std::uint32_t triangle, btTriangleCallback& callback) const {
+  btVector3 corners[3];
+  for (std::size_t v = 0; v < 3; ++v) corners[v] = toBt(vertices_[triangles_[triangle][v]]);
+  callback.processTriangle(corners, 0, static_cast<int>(triangle));
+}
+
+}  // namespace vps::bullet::inline v0
