@@ -68,6 +68,14 @@ VPS_DEVICE_API double handDamping(const OperatorHabits& habits, double k, double
 /// A hand with equal stiffness in every direction, about the identity.
 VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 
+/// A part that is screwed on: it is turned about the axis of insertion, through G, and pushed lightly.
+struct ScrewTask {
+  /// Way of the part in one turn; positive: a right-hand thread. 0: the part is not screwed.
+  double pitch_m = 0;
+  double torque_Nm = 0;   ///< tight at this torque; 0: it is turned until it is seen at its target
+  double handle_rad = 0;  ///< how far the handle turns to each side before it is re-grasped; 0: no limit
+};
+
 /// One step of a procedure. The hand holds the part at the grasp frame G, fixed in the part P. G is best at
 /// the part's centre of mass, where the hand carries the weight without torque.
 struct OperatorTask {
@@ -90,6 +98,7 @@ struct OperatorTask {
   /// The end that goes in first is not round, so that it may have to be turned about the axis to find its
   /// hole.
   bool has_corners = false;
+  ScrewTask screw;
 };
 
 /// What the hand senses at one instant.
@@ -103,7 +112,8 @@ struct OperatorView {
   Wrench F_hand_W;  ///< felt: wrench of the device on the hand
 };
 
-/// Regrasp: indexing. The hand stopped at a way point of OperatorTask::index_points and waits for goOn().
+/// Regrasp: indexing. The hand stopped at a way point of OperatorTask::index_points, or where the handle
+/// turns no farther, and waits for goOn().
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 
@@ -119,8 +129,10 @@ enum class OperatorStrategy {
   PressHome,      ///< presses against the stop that it felt
   PlaceBySight,   ///< nothing stops the part: holds it where it is seen at its target
   TurnSearch,     ///< turns the part about its axis, to and fro and farther each time, until it drops
+  TurnBack,       ///< turns the part against its thread until it drops into the other thread
+  ScrewOn,        ///< turns the part onto the thread
 };
-inline constexpr int kOperatorStrategies = 10;
+inline constexpr int kOperatorStrategies = 12;
 /// "tilt_in"
 VPS_DEVICE_API const char* toText(OperatorStrategy strategy) noexcept;
 
@@ -159,8 +171,11 @@ class VPS_DEVICE_API VirtualOperator {
   /// is not finite it returns the last result without feed-forward.
   HandForce step(const OperatorView& view, double dt_s) noexcept;
 
-  /// Continues from Regrasp to the next way point, with the hand elsewhere and the part unmoved. Never throws
-  /// or allocates.
+  /// In Regrasp while it screws: the turn about W's axes, from the middle of its range, with which the handle
+  /// is to be grasped again. Zero otherwise.
+  [[nodiscard]] Vec3 regraspTurn_rad() const noexcept;
+  /// Continues from Regrasp to the next way point or turn, with the hand elsewhere and the part unmoved.
+  /// Never throws or allocates.
   void goOn() noexcept;
 
   [[nodiscard]] OperatorPhase phase() const noexcept;

@@ -40,6 +40,8 @@ Strategy& Insertion::present() noexcept {
       return place_by_sight_;
     case OperatorStrategy::None:
     case OperatorStrategy::Approach:
+    case OperatorStrategy::TurnBack:
+    case OperatorStrategy::ScrewOn:
       break;
   }
   return approach_;
@@ -88,6 +90,8 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
     case OperatorStrategy::PressHome:
       return press_home_.hasYielded() ? start(OperatorStrategy::PlaceBySight, feel) : backOff(false, feel);
     case OperatorStrategy::PlaceBySight:
+    case OperatorStrategy::TurnBack:
+    case OperatorStrategy::ScrewOn:
     case OperatorStrategy::None:
       return;
   }

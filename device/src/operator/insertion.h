@@ -6,23 +6,18 @@
 //                 \----> align, then tilt in, spiral search and turn search in turn, each after backing off
 #pragma once
 
-#include "operator/strategies.h"
+#include "operator/sequence.h"
 
 namespace vps::device::inline v0 {
 
-class Insertion {
+class Insertion final : public Sequence {
  public:
-  void begin(const Situation& situation, const Feel& feel) noexcept;
-  /// Done when the part is home. Never fails by itself: the operator gives up at its timeout.
-  Outcome step(const Feel& feel, double dt_s) noexcept;
-
-  [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }
-  [[nodiscard]] const Move& move() const noexcept { return present().move(); }
-  [[nodiscard]] int retries() const noexcept { return retries_; }
+  void begin(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
 
  private:
   [[nodiscard]] Strategy& present() noexcept;
-  [[nodiscard]] const Strategy& present() const noexcept {
+  [[nodiscard]] const Strategy& present() const noexcept override {
     return const_cast<Insertion*>(this)->present();  // NOLINT
   }
   void start(OperatorStrategy strategy, const Feel& feel) noexcept;
@@ -33,7 +28,6 @@ class Insertion {
   void backOff(bool is_whole, const Feel& feel) noexcept;
 
   Situation situation_;
-  OperatorStrategy strategy_ = OperatorStrategy::None;
   Approach approach_;
   Touch touch_;
   TiltIn tilt_in_;
@@ -44,7 +38,7 @@ class Insertion {
   PressHome press_home_;
   PlaceBySight place_by_sight_;
   bool has_aligned_ = false, is_whole_ = true;
-  int retries_ = 0, stuck_inside_ = 0, searches_ = 0;
+  int stuck_inside_ = 0, searches_ = 0;
 };
 
 }  // namespace vps::device::inline v0

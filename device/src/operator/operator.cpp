@@ -47,6 +47,10 @@ const char* toText(OperatorStrategy strategy) noexcept {
       return "place_by_sight";
     case OperatorStrategy::TurnSearch:
       return "turn_search";
+    case OperatorStrategy::TurnBack:
+      return "turn_back";
+    case OperatorStrategy::ScrewOn:
+      return "screw_on";
   }
   return "unknown";
 }
@@ -86,6 +90,9 @@ void VirtualOperator::begin(const OperatorTask& task, double now_s) {
 }
 HandForce VirtualOperator::step(const OperatorView& view, double dt_s) noexcept {
   return person_->step(view, dt_s);
+}
+Vec3 VirtualOperator::regraspTurn_rad() const noexcept {
+  return person_->regraspTurn_rad();
 }
 void VirtualOperator::goOn() noexcept {
   person_->goOn();

@@ -44,6 +44,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   seen_for_s_ = 0;
   serve_m_ = serve_rad_ = Vec3::Zero();
   has_view_ = is_home_ = false;  // the next view gives the hand's start
+  is_regrasping_ = false;
+  spin_rad_ = handle_rad_ = handle_goal_rad_ = 0;
   begin_s_ = now_s;
   next_ = 1;
   phase_ = OperatorPhase::Reach;
@@ -65,7 +67,10 @@ HandForce VirtualOperator::Person::step(const OperatorView& view, double dt_s) n
     has_view_ = true;
     X_eq_ = X_rest_ = view.X_WG_hand;
     V_eq_ = {};
-    feel_ = {};
+    if (!isInserting()) {
+      feel_ = {};
+      R_felt_ = view.X_WG_hand.R;
+    }
     if (phase_ == OperatorPhase::Reach) startSegment(X_eq_, path_[next_], view.time_s);
   }
   sense(view, dt_s);
@@ -89,7 +94,18 @@ HandForce VirtualOperator::Person::step(const OperatorView& view, double dt_s) n
 void VirtualOperator::Person::goOn() noexcept {
   if (phase_ != OperatorPhase::Regrasp) return;
   has_view_ = false;
-  phase_ = OperatorPhase::Reach;
+  phase_ = is_regrasping_ ? OperatorPhase::Insert : OperatorPhase::Reach;
+  if (!is_regrasping_) return;
+  is_regrasping_ = false;
+  handle_rad_ = handle_goal_rad_;
+  spin_rad_ = feel_.spin_rad;
+  serve_rad_ = Vec3::Zero();
+  ++feel_.grips;
+}
+
+Vec3 VirtualOperator::Person::regraspTurn_rad() const noexcept {
+  const bool is_screwing = phase_ == OperatorPhase::Regrasp && is_regrasping_;
+  return is_screwing ? Vec3(handle_goal_rad_ * axis_W_) : Vec3(Vec3::Zero());
 }
 
 // --- Plan
@@ -141,28 +157,30 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
   }
   situation.has_corners = task_.has_corners;
+  situation.screw = task_.screw;
   situation.near_m = task_.tolerance_m + kNear * habits_.see_error_m;
   feel_.time_s = view.time_s;
-  insertion_.begin(situation, feel_);
+  feel_.spin_rad = spin_rad_ = handle_rad_ = 0;
+  sequence().begin(situation, feel_);
   enter(OperatorPhase::Insert, view.time_s);
 }
 
 void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noexcept {
-  const OperatorStrategy before = insertion_.strategy();
-  const Move last = insertion_.move();
-  if (!is_home_ && insertion_.step(feel_, dt_s) == Outcome::Done) {
+  const OperatorStrategy before = sequence().strategy();
+  const Move last = sequence().move();
+  if (!is_home_ && sequence().step(feel_, dt_s) == Outcome::Done) {
     is_home_ = true;
     done_s_ = view.time_s;
   }
-  if (before == OperatorStrategy::TurnSearch && insertion_.strategy() == OperatorStrategy::AlignByTorque) {
+  if (before == OperatorStrategy::TurnSearch && sequence().strategy() == OperatorStrategy::AlignByTorque) {
     belief_.across_m += last.across_m;  // that is where the hole was found
     belief_.turn_rad += last.turn_rad;
   }
-  const bool is_last = insertion_.strategy() == OperatorStrategy::PressHome ||
-                       insertion_.strategy() == OperatorStrategy::PlaceBySight;
+  const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
+                       sequence().strategy() == OperatorStrategy::PlaceBySight;
   if (is_last != (phase_ == OperatorPhase::Press))
     enter(is_last ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
-  const Move& move = insertion_.move();
+  const Move& move = sequence().move();
   if (move.looks) correctAtTheHole(dt_s);
   if (!move.looks) seen_for_s_ = 0;
   if (move.gives_way) giveWay(dt_s);
@@ -171,10 +189,26 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   reach_m_ += dt_s * move.speed_m_s;
   reach_m_ = std::min(reach_m_, hand_m + move.push_N / habits_.k_N_per_m);
   reach_m_ = std::max(reach_m_, hand_m - habits_.force_limit_N / habits_.k_N_per_m);
+  if (isScrew()) turn(view, is_home_ ? 0 : move.spin_rad_s, dt_s);
   if (!is_home_) return;
   const bool is_still =
       view.V_WG_hand.v.norm() < habits_.still_m_s && view.V_WG_hand.w.norm() < habits_.still_rad_s;
   if (is_still || view.time_s > done_s_ + kRestWait_s) finish(OperatorPhase::Done, view);
+}
+
+// The wanted turn leads the hand by its torque at most. Where the handle turns no farther it is grasped
+// again, at the other end of its range.
+void VirtualOperator::Person::turn(const OperatorView& view, double spin_rad_s, double dt_s) noexcept {
+  const double lead_rad = habits_.torque_limit_Nm / habits_.k_Nm_per_rad;
+  spin_rad_ = std::clamp(spin_rad_ + dt_s * spin_rad_s, feel_.spin_rad - lead_rad, feel_.spin_rad + lead_rad);
+  if (task_.screw.handle_rad <= 0 || spin_rad_s == 0) return;
+  const double side = spin_rad_s > 0 ? 1 : -1;
+  if (side * handle_rad_ < task_.screw.handle_rad) return;
+  is_regrasping_ = true;
+  handle_goal_rad_ = -side * task_.screw.handle_rad;
+  X_rest_ = view.X_WG_hand;
+  serve_m_ = Vec3::Zero();
+  enter(OperatorPhase::Regrasp, view.time_s);
 }
 
 // --- Senses
@@ -193,6 +227,15 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
   feel_.along_m = axis_W_.dot(p_m);
   feel_.across_m = across(p_m);
   feel_.R_hand = view.X_WG_hand.R;
+  const double turned_rad = axis_W_.dot(rotationVector(view.X_WG_hand.R * R_felt_.transpose()));
+  R_felt_ = view.X_WG_hand.R;
+  feel_.twist_Nm += share * (axis_W_.dot(F.tau) - feel_.twist_Nm);
+  if (isScrew() && isInserting()) {
+    feel_.spin_rad += turned_rad;
+    handle_rad_ += turned_rad;
+    feel_.lean_rad =
+        across(rotationVector(view.X_WG_hand.R * X_target.R.transpose() * spun(feel_.spin_rad).transpose()));
+  }
   if (sight_.hasSeen()) {
     const double short_m = axis_W_.dot(X_target.p - seenGrasp().p);
     if (feel_.seen_for_s == 0) feel_.seen_short_m = short_m;
@@ -231,8 +274,8 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   const Pose X_seen = seenGrasp(), &X_to = path_.back();
   const Vec3 tip_m = (X_seen.p - X_to.p) + tip_m_ * (X_seen.R * X_to.R.transpose() * axis_W_ - axis_W_);
   belief_.across_m -= gain * across(tip_m);
-  const Mat3 R_path = turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
-  belief_.turn_rad += gain * rotationVector(R_path * X_seen.R.transpose());
+  const Mat3 R_path = spun(feel_.spin_rad) * turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
+  belief_.turn_rad += gain * tiltOf(rotationVector(R_path * X_seen.R.transpose()));
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
@@ -244,7 +287,7 @@ void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   const Pose X_wanted = wantedAtTheHole();
   const Vec3 p_hand = X_to.p + feel_.across_m;
   belief_.across_m += share * across(p_hand - X_wanted.p);
-  belief_.turn_rad += share * rotationVector(feel_.R_hand * X_wanted.R.transpose());
+  belief_.turn_rad += share * tiltOf(rotationVector(feel_.R_hand * X_wanted.R.transpose()));
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
   serve_m_ -= share * serve_m_;
@@ -276,20 +319,20 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
 
 // Turned about the tip, so that a lean does not move the tip.
 Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
-  const Move& move = insertion_.move();
+  const Move& move = sequence().move();
   const Pose& X_to = path_.back();
   const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad);
   const Vec3 tip = tip_m_ * axis_W_;
   Vec3 p = X_to.p + belief_.across_m + move.across_m + tip - turn * tip;
   p += axis_W_ * (reach_m_ - axis_W_.dot(p - X_to.p));
-  return {Mat3(turn * turnAtTheHole(reach_m_)), p};
+  return {Mat3(turn * spun(spin_rad_) * turnAtTheHole(reach_m_)), p};
 }
 
 // Integral action of the hand on its own position, against friction of the device.
 void VirtualOperator::Person::serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept {
   constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.02;
   if (!isInserting() || is_home_) return;
-  if (insertion_.move().gives_way) return;
+  if (sequence().move().gives_way) return;
   serve_m_ = shortened(serve_m_ + kGain_per_s * dt_s * across(X_wanted.p - X_hand.p), kLimit_m);
   serve_rad_ = shortened(serve_rad_ + kGain_per_s * dt_s * rotationVector(X_wanted.R * X_hand.R.transpose()),
                          kLimit_rad);

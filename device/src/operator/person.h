@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "operator/insertion.h"
+#include "operator/screwing.h"
 #include "operator/sight.h"
 #include "vps_device/operator.h"
 #include "vps_device/random.h"
@@ -26,12 +27,13 @@ class VirtualOperator::Person {
   void begin(const OperatorTask& task, double now_s);
   HandForce step(const OperatorView& view, double dt_s) noexcept;
   void goOn() noexcept;
+  [[nodiscard]] Vec3 regraspTurn_rad() const noexcept;
 
   [[nodiscard]] OperatorPhase phase() const noexcept { return phase_; }
   [[nodiscard]] OperatorStrategy strategy() const noexcept {
-    return isInserting() ? insertion_.strategy() : OperatorStrategy::None;
+    return isInserting() || is_regrasping_ ? sequence().strategy() : OperatorStrategy::None;
   }
-  [[nodiscard]] int retries() const noexcept { return insertion_.retries(); }
+  [[nodiscard]] int retries() const noexcept { return sequence().retries(); }
   [[nodiscard]] const OperatorHabits& habits() const noexcept { return habits_; }
 
  private:
@@ -47,6 +49,16 @@ class VirtualOperator::Person {
   void insert(const OperatorView& view, double dt_s) noexcept;
   void enter(OperatorPhase phase, double now_s) noexcept;
   void finish(OperatorPhase phase, const OperatorView& view) noexcept;
+
+  [[nodiscard]] bool isScrew() const noexcept { return task_.screw.pitch_m != 0; }
+  [[nodiscard]] Sequence& sequence() noexcept {
+    if (isScrew()) return screwing_;
+    return insertion_;
+  }
+  [[nodiscard]] const Sequence& sequence() const noexcept {
+    return const_cast<Person*>(this)->sequence();  // NOLINT
+  }
+  void turn(const OperatorView& view, double spin_rad_s, double dt_s) noexcept;
 
   // Senses.
   void sense(const OperatorView& view, double dt_s) noexcept;
@@ -71,6 +83,9 @@ class VirtualOperator::Person {
   [[nodiscard]] bool isInserting() const noexcept {
     return phase_ == OperatorPhase::Insert || phase_ == OperatorPhase::Press;
   }
+  /// Of a part that is screwed, only what tilts it: the turn about the axis is the hand's own.
+  [[nodiscard]] Vec3 tiltOf(const Vec3& turn) const noexcept { return isScrew() ? across(turn) : turn; }
+  [[nodiscard]] Mat3 spun(double spin_rad) const noexcept { return rotationFromVector(spin_rad * axis_W_); }
 
   OperatorHabits habits_;
   Random random_;
@@ -92,7 +107,13 @@ class VirtualOperator::Person {
   double seen_for_s_ = 0;
   Feel feel_;
   Insertion insertion_;
-  double reach_m_ = 0;  // of the hand along the axis, beyond the target
+  Screwing screwing_;
+  double spin_rad_ = 0;             // wanted, about the axis
+  double handle_rad_ = 0;           // of the handle about the axis, from the middle of its range
+  double handle_goal_rad_ = 0;      // where it is grasped again
+  Mat3 R_felt_ = Mat3::Identity();  // of the hand, one step ago
+  bool is_regrasping_ = false;      // while it screws
+  double reach_m_ = 0;              // of the hand along the axis, beyond the target
   bool is_home_ = false;
 
   bool has_view_ = false;

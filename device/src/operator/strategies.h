@@ -104,6 +104,39 @@ class PressHome final : public Strategy {
   bool has_yielded_ = false;
 };
 
+/// Turns against the thread, pressed lightly on the mouth of the other one, until the part drops: the ends of
+/// both threads have passed each other. Failed: it did not drop.
+class TurnBack final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  double settled_s_ = 0, from_rad_ = 0, top_m_ = 0;
+  int grips_ = 0;
+  bool has_dropped_ = false;
+  Progress sinking_;
+};
+
+/// Turns the part onto the thread, and compares its way along the axis with the pitch. Done: it is seen at
+/// its target, or it is tight. Failed: it does not follow the thread, leans, or is stuck.
+class ScrewOn final : public Strategy {
+ public:
+  void start(const Situation& situation, const Feel& feel) noexcept override;
+  Outcome step(const Feel& feel, double dt_s) noexcept override;
+  /// How far it was turned on.
+  [[nodiscard]] double turned_rad() const noexcept { return turned_rad_; }
+
+ private:
+  [[nodiscard]] bool followsThread(const Feel& feel) noexcept;
+
+  double from_rad_ = 0, turned_rad_ = 0, mark_rad_ = 0, mark_m_ = 0, along_m_ = 0, short_m_ = 0;
+  Vec3 lean_rad_ = Vec3::Zero();
+  int grips_ = 0;
+  bool has_caught_ = false;
+  Progress turning_;
+};
+
 /// Holds the part where it is seen at its target, as nothing else tells where that is.
 class PlaceBySight final : public Strategy {
  public:

@@ -15,6 +15,10 @@ struct Feel {
   double along_m = 0;              ///< beyond the target along a; negative before it
   Vec3 across_m = Vec3::Zero();    ///< from the line through the target
   Mat3 R_hand = Mat3::Identity();  ///< of the hand, in W
+  double spin_rad = 0;             ///< turn of the hand about a since the insertion began; beyond a turn too
+  Vec3 lean_rad = Vec3::Zero();    ///< of the hand's own axis from a
+  double twist_Nm = 0;             ///< on the hand, about a
+  int grips = 0;                   ///< how often it re-grasped
   double resist_N = 0;             ///< against a
   Vec3 side_N = Vec3::Zero();      ///< on the hand, across a
   double speed_m_s = 0;            ///< of the hand along a
@@ -28,6 +32,7 @@ struct Move {
   Vec3 turn_rad = Vec3::Zero();  ///< about the tip
   double speed_m_s = 0;          ///< along a; negative: back
   double push_N = 0;             ///< greatest push along a
+  double spin_rad_s = 0;         ///< about a
   bool looks = false;            ///< sight corrects the belief
   bool gives_way = false;        ///< the felt side force and torque correct the belief
 };
@@ -49,7 +54,14 @@ struct Situation {
   double mouth_m = 0;            ///< `along` at the first touch
   bool has_corners = false;      ///< it may have to be turned about the axis
   int attempt = 0;
+  ScrewTask screw;
+  double back_rad = 0;  ///< how far it turns against the thread at most
 };
+
+/// The turn that moves a part on: about a by the right-hand rule, or against it.
+inline double turnsOn(const ScrewTask& screw) noexcept {
+  return screw.pitch_m < 0 ? -1 : 1;
+}
 
 class Strategy {
  public:

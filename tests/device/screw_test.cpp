@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The virtual operator screws a part on, in a world of springs: no device, no friction, and a thread by
+// formula.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "vps_device/operator.h"
+
+namespace vps::device {
+namespace {
+
+constexpr double kTurn_rad = 2 * std::numbers::pi;
+
+/// A nut above a bolt whose mouth is at z = 0. Turned back, the nut rides up a ramp; where the threads' ends
+/// meet it drops onto the thread. `s` is the nut's turn in the direction that screws it on.
+struct ThreadWorld {
+  double pitch_m = 2e-3;
+  double drop_m = 0.5e-3;       ///< 0: nothing to feel
+  double ends_meet_rad = -2.5;  ///< and every turn from there
+  double along_share = 1;       ///< of the pitch, which the nut moves on by in a turn; 0: it does not catch
+  double play_m = 0.2e-3;
+  double target_m = -3e-3;  ///< height
+  bool is_on = false;
+  double s_rad = 0, on_rad = 0;
+
+  /// The nut's lowest height.
+  double floor_m(double s_now_rad) {
+    const auto turnsBack = [this](double s) { return (ends_meet_rad - s) / kTurn_rad; };
+    const bool passes = std::floor(turnsBack(s_now_rad)) > std::floor(turnsBack(s_rad));
+    if (!is_on && passes && along_share > 0) {
+      is_on = true;
+      on_rad = s_now_rad;
+    }
+    // Turned back by more than the play allows, it comes off again.
+    if (is_on && (on_rad - s_now_rad) / kTurn_rad * pitch_m > play_m) is_on = false;
+    s_rad = s_now_rad;
+    if (is_on) return -along_share * pitch_m * (s_now_rad - on_rad) / kTurn_rad - play_m;
+    const double share = turnsBack(s_now_rad) - std::floor(turnsBack(s_now_rad));
+    return drop_m * share;
+  }
+};
+
+struct Screwed {
+  OperatorPhase phase = OperatorPhase::Idle;
+  double height_m = 0;      ///< of the nut beyond its target
+  double turned_rad = 0;    ///< in the direction that screws it on, at the end
+  double drop_rad = 0;      ///< where it began to be screwed on first
+  double farthest_rad = 0;  ///< turn of the handle from the middle of its range
+  int retries = 0, grips = 0;
+  std::vector<OperatorStrategy> strategies;
+};
+
+Screwed screwOn(ThreadWorld world, const ScrewTask& screw, double timeout_s = 60, std::uint64_t seed = 1) {
+  constexpr double kCoupling_N_per_m = 1150, kStep_s = 1e-3;
+  OperatorHabits habits;
+  habits.seed = seed;
+  OperatorTask task;
+  task.X_WP_start = Pose::translation({0, 0, 5e-3});
+  task.X_WP_target = Pose::translation({0, 0, world.target_m});
+  task.tip_P = Vec3(10e-3, 0, -5e-3);
+  task.tolerance_m = 0.5e-3;
+  task.timeout_s = timeout_s;
+  task.give_m_per_N = 1 / kCoupling_N_per_m;
+  task.screw = screw;
+  VirtualOperator hand(habits);
+  hand.begin(task, 0);
+  const double onward = screw.pitch_m < 0 ? -1 : 1;
+  Screwed run;
+  OperatorView view;
+  view.X_WG_hand = view.X_WP = task.X_WP_start;
+  double handle_rad = 0;
+  for (; view.time_s < 2 * timeout_s; view.time_s += kStep_s) {
+    const HandForce force = hand.step(view, kStep_s);
+    const OperatorPhase phase = hand.phase();
+    const OperatorStrategy strategy = hand.strategy();
+    if (strategy != OperatorStrategy::None && (run.strategies.empty() || run.strategies.back() != strategy)) {
+      if (strategy == OperatorStrategy::ScrewOn && run.drop_rad == 0) run.drop_rad = world.s_rad;
+      run.strategies.push_back(strategy);
+    }
+    if (phase == OperatorPhase::Done || phase == OperatorPhase::Failed) break;
+    if (phase == OperatorPhase::Regrasp) {
+      ++run.grips;
+      handle_rad = -hand.regraspTurn_rad().z();  // about the axis, which points down
+      hand.goOn();
+      continue;
+    }
+    // Springs in a row from where the hand wants to be to the nut; across and in rotation nothing resists.
+    const Pose& X_eq = force.X_eq;
+    const double turn_rad = -rotationVector(X_eq.R * view.X_WP.R.transpose()).z();
+    handle_rad += turn_rad;
+    run.farthest_rad = std::max(run.farthest_rad, std::abs(handle_rad));
+    const double z_m = std::max(X_eq.p.z(), world.floor_m(world.s_rad + onward * turn_rad));
+    const double k_N_per_m = force.k_N_per_m(2, 2);
+    const double push_N = (z_m - X_eq.p.z()) / (1 / k_N_per_m + 1 / kCoupling_N_per_m);
+    const Pose X_old = view.X_WP;
+    view.X_WP = {X_eq.R, Vec3(X_eq.p.x(), X_eq.p.y(), z_m)};
+    view.V_WP.v = (view.X_WP.p - X_old.p) / kStep_s;
+    const Vec3 p_hand = X_eq.p + Vec3(0, 0, push_N / k_N_per_m);
+    view.V_WG_hand.v = (p_hand - view.X_WG_hand.p) / kStep_s;
+    view.V_WG_hand.w = rotationVector(X_eq.R * view.X_WG_hand.R.transpose()) / kStep_s;
+    view.X_WG_hand = {X_eq.R, p_hand};
+    view.F_hand_W.f = Vec3(0, 0, push_N);
+  }
+  run.phase = hand.phase();
+  run.retries = hand.retries();
+  run.height_m = task.X_WP_target.p.z() - view.X_WP.p.z();
+  run.turned_rad = world.s_rad;
+  return run;
+}
+
+constexpr ScrewTask kNut{.pitch_m = 2e-3, .handle_rad = 0.7};
+constexpr double kHeight_m = 0.5e-3;  // five errors of sight
+
+TEST(Screw, TurnsBackUntilTheThreadDropsAndThenOnToTheHeightOfTheTarget) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Screwed run = screwOn({}, kNut, 60, seed);
+    EXPECT_EQ(run.phase, OperatorPhase::Done) << seed;
+    EXPECT_EQ(run.retries, 0) << seed;
+    using enum OperatorStrategy;
+    EXPECT_EQ(run.strategies, (std::vector{Approach, Touch, TurnBack, ScrewOn})) << seed;
+    // 1.2 rad/s, until the drop is over for 0.15 s, and the lag of the hand.
+    EXPECT_NEAR(run.drop_rad, -2.5, 0.5) << seed;
+    EXPECT_NEAR(run.height_m, 0, kHeight_m) << seed;
+    // The way down from the mouth is 3 mm: one and a half turns from where it dropped, less the play.
+    EXPECT_NEAR(run.turned_rad + 2.5, (3e-3 - 0.2e-3) / 2e-3 * kTurn_rad, kHeight_m / 2e-3 * kTurn_rad)
+        << seed;
+  }
+}
+
+TEST(Screw, ALeftHandThreadTurnsTheOtherWay) {
+  ScrewTask left = kNut;
+  left.pitch_m = -2e-3;
+  const Screwed run = screwOn({}, left);
+  EXPECT_EQ(run.phase, OperatorPhase::Done);
+  EXPECT_NEAR(run.height_m, 0, kHeight_m);
+}
+
+TEST(Screw, TheHandleStaysWithinItsRange) {
+  const Screwed run = screwOn({}, kNut);
+  // 2.6 rad back and 8.8 on: the first stroke is half a range, those after a change of direction what is
+  // left.
+  EXPECT_NEAR(run.grips, (2.6 - 0.7) / 1.4 + 8.8 / 1.4, 1.5);
+  EXPECT_LT(run.farthest_rad, 0.7 + 0.1);  // what the hand's lag adds at 1.2 rad/s
+  EXPECT_EQ(screwOn({}, {.pitch_m = 2e-3}).grips, 0);
+}
+
+TEST(Screw, WithoutADropItIsTriedAfterATurnAndAQuarter) {
+  ThreadWorld world;
+  world.drop_m = 0;
+  world.play_m = 0;
+  const Screwed run = screwOn(world, kNut, 120);
+  EXPECT_LT(run.drop_rad, -1.2 * kTurn_rad);
+}
+
+TEST(Screw, WhatDoesNotCatchIsTurnedBackAndTriedAgainUntilTheTimeIsOver) {
+  ThreadWorld smooth;
+  smooth.along_share = 0;
+  const Screwed run = screwOn(smooth, kNut);
+  EXPECT_EQ(run.phase, OperatorPhase::Failed);
+  EXPECT_GT(run.retries, 0);
+  EXPECT_NE(std::find(run.strategies.begin(), run.strategies.end(), OperatorStrategy::BackOff),
+            run.strategies.end());
+}
+
+TEST(Screw, ACrossedThreadIsNoThread) {
+  for (const double share : {0.3, 1.7}) {
+    ThreadWorld crossed;
+    crossed.along_share = share;
+    crossed.target_m = -6e-3;  // farther than it comes in the turn after which the hand knows
+    const Screwed run = screwOn(crossed, kNut, 90);
+    EXPECT_GT(run.retries, 0) << share;
+  }
+  for (const double share : {0.8, 1.2}) {  // within what play and the hand's errors explain
+    ThreadWorld worn;
+    worn.along_share = share;
+    EXPECT_EQ(screwOn(worn, kNut, 90).retries, 0) << share;
+  }
+}
+
+}  // namespace
+}  // namespace vps::device
