@@ -9,11 +9,19 @@
 
 #include "edge_table.h"
 #include "peg_scenes.h"
+#include "thread_scenes.h"
 #include "vps_scenes/assemble.h"
 
 namespace {
 
 using vps::hand::PegScene;
+
+std::vector<PegScene> allScenes() {
+  std::vector<PegScene> scenes = vps::hand::pegScenes();
+  const std::vector<PegScene>& threads = vps::hand::threadScenes();
+  scenes.insert(scenes.end(), threads.begin(), threads.end());
+  return scenes;
+}
 
 int usage() {
   std::printf(
@@ -24,8 +32,7 @@ int usage() {
       "Pegs from 50 um too large to 50 um of clearance; the exit status is 1 if a verdict is wrong.\n"
       "  --no-wall  takes away the bores' walls; wrong is then what says 'by contact'\n"
       "cases:\n");
-  for (const PegScene& scene : vps::hand::pegScenes())
-    std::printf("  %-12s %s\n", scene.name, scene.description);
+  for (const PegScene& scene : allScenes()) std::printf("  %-13s %s\n", scene.name, scene.description);
   return 2;
 }
 
@@ -81,7 +88,7 @@ int main(int argc, char** argv) {
   }
   if (words.empty()) return usage();
   if (words[0] == "edge") return runEdgeTable(words);
-  const auto& scenes = vps::hand::pegScenes();
+  const std::vector<PegScene> scenes = allScenes();
   const auto chosen =
       std::find_if(scenes.begin(), scenes.end(), [&](const PegScene& s) { return words[0] == s.name; });
   if (chosen == scenes.end()) return usage();
@@ -104,6 +111,10 @@ int main(int argc, char** argv) {
                 static_cast<unsigned long long>(seed), step.completed ? "done" : "failed", step.duration_s,
                 step.peak_force_N, 1e6 * step.max_penetration_m, 1e6 * step.final_error_m,
                 1e3 * step.final_error_rad, step.failure_reason.c_str());
+    if (step.turns != 0)
+      std::printf("  %.2f turns, %.3f mm a turn, leaning %.2f mrad, re-grasped %d times; %s: %s\n",
+                  step.turns, 1e3 * step.advance_per_turn_m, 1e3 * step.lean_rad, step.index_count,
+                  vps::scenes::toText(step.verdict), step.reason.c_str());
     std::fflush(stdout);
     if (!trace.empty() && seed == last) writeTrace(result, scene.steps[0].X_WP_target, trace.c_str());
   }

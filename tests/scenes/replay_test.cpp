@@ -154,18 +154,25 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   scene.fidelity.contact_method = ContactMethod::Penalty;
   scene.device.has_indexing = false;
   scene.steps[0].is_held = true;
-  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-4\n";
+  scene.steps[0].motion = StepMotion::Screw;
+  scene.parts[1].youngs_modulus_Pa = 3e9;
+  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-5\n";
   ASSERT_TRUE(bytes.starts_with(magic));
   // Version 2 brought the contact method, a byte, version 3 indexing, a byte, and version 4 `holds`, a byte,
-  // a number of the operator, and for each of the two parts two bytes and two numbers. Each stands at the
-  // end.
+  // a number of the operator, and for each of the two parts two bytes and two numbers. Version 5 brought the
+  // motion, a byte, with two numbers, and for each part two numbers. Each stands at the end.
   const auto before = [&](const std::string& later, int version, std::size_t added) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);
   };
-  const std::string third = before(bytes, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
+  const std::string fourth = before(bytes, 4, 1 + 2 * 8 + 2 * 2 * 8),
+                    third = before(fourth, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
                     first = before(second, 1, 1);
-  EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].is_held);
+  EXPECT_EQ(sceneFromBytes(bytes, "x").steps[0].motion, StepMotion::Screw);
+  EXPECT_EQ(sceneFromBytes(bytes, "x").parts[1].youngs_modulus_Pa, 3e9);
+  EXPECT_EQ(sceneFromBytes(fourth, "x").steps[0].motion, StepMotion::Push);
+  EXPECT_EQ(sceneFromBytes(fourth, "x").parts[1].youngs_modulus_Pa, 210e9);
+  EXPECT_TRUE(sceneFromBytes(fourth, "x").steps[0].is_held);
   EXPECT_FALSE(sceneFromBytes(third, "x").steps[0].is_held);
   EXPECT_FALSE(sceneFromBytes(third, "x").device.has_indexing);
   EXPECT_TRUE(sceneFromBytes(second, "x").device.has_indexing);

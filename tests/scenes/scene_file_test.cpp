@@ -209,6 +209,10 @@ csv_rate_hz = 100
   EXPECT_EQ(scene.record.csv_rate_hz, 100);
 }
 
+TEST_F(SceneFile, AScrewHasAPitchWithASign) {
+  EXPECT_DOUBLE_EQ(load(kStep + "motion = 'screw'\npitch = '-1.5mm'\n").steps[0].pitch_m, -1.5e-3);
+}
+
 TEST_F(SceneFile, APresetMayBeGivenByItsName) {
   EXPECT_EQ(load("fidelity = 'fast'\n" + kPin).fidelity.voxel_m, fidelityPreset("fast").voxel_m);
 }
@@ -259,6 +263,9 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
       {"start = {positon = [0, 0, 1]}\n", "9", "did you mean 'position'?"},
       {"start = {rotation_xyzw = [0, 0, 0, 0]}\n", "9", "key 'rotation_xyzw' has the length 0"},
       {"start = {rotation_xyzw = [0, 0, 0, 1], rpy_deg = [0, 0, 0]}\n", "9", "key 'rpy_deg'"},
+      {"motion = 'screw'\n", "9", "key 'motion' is a screw, whose 'pitch' is not found in the mesh"},
+      {"pitch = '2mm'\n", "9", "key 'pitch' is of a screw"},
+      {"motion = 'screw'\npitch = 1\nstart = {rpy_deg = [0, 0, 9]}\n", "9", "but the path turns it"},
       {"way_points = 3\n", "9", "key 'way_points' is 3; expected a list of poses"},
       {"way_points = [1]\n", "9", "key 'way_points'"},
       {"[[step]]\n", "9", "[[step]] has no 'part'"},

@@ -18,6 +18,7 @@ struct ThreadShape {
   double pitch_m = 1.75e-3;
   double length_m = 20e-3;
   double clearance_m = 0;   ///< radial, given to every point of the flanks, crests and roots
+  double chamfer_m = 0;     ///< at 45 degrees, of both ends: into the rod's crests, and into the nut's
   int columns = 192;        ///< around; a multiple of 6
   int rows_per_pitch = 32;  ///< a multiple of 16, so that crest and root begin on a row
   int face_steps = 12;      ///< across the end faces
@@ -33,8 +34,17 @@ inline double threadRadius(const ThreadShape& thread, double turns) {
   return thread.major_m - along * kFlank * thread.pitch_m * std::sqrt(3.0);
 }
 
+/// Chamfered at the ends: a rod beyond its crests, a nut within its roots.
+inline double chamferedRadius(const ThreadShape& thread, bool is_nut, double radius_m, double z_m) {
+  if (thread.chamfer_m <= 0) return radius_m;
+  const double cut_m = thread.chamfer_m - (thread.length_m / 2 - std::abs(z_m));
+  const double crest_m = thread.major_m + thread.clearance_m,
+               root_m = crest_m - 5.0 / 16 * std::sqrt(3.0) * thread.pitch_m;
+  return is_nut ? std::max(radius_m, root_m + cut_m) : std::min(radius_m, crest_m - cut_m);
+}
+
 /// Points of the helical surface above column i, from the lower end face to the upper.
-inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i) {
+inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i, bool is_nut) {
   const double half_m = thread.length_m / 2, row_m = thread.pitch_m / thread.rows_per_pitch;
   const double angle_rad = kTurn_rad * (i % thread.columns) / thread.columns;
   const int half_rows = static_cast<int>(std::ceil(half_m / row_m));
@@ -46,7 +56,8 @@ inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i) {
     const double phase = static_cast<double>(i % thread.columns) / thread.columns;
     const double turns =
         z_m == row * row_m ? static_cast<double>(j) / thread.rows_per_pitch : z_m / thread.pitch_m - phase;
-    column.push_back(polar(threadRadius(thread, turns) + thread.clearance_m, angle_rad, z_m));
+    const double radius_m = threadRadius(thread, turns) + thread.clearance_m;
+    column.push_back(polar(chamferedRadius(thread, is_nut, radius_m, z_m), angle_rad, z_m));
   }
   return column;
 }
@@ -56,7 +67,7 @@ inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i) {
 inline Mesh makeThreadedRod(const ThreadShape& thread) {
   const Vec3 end(0, 0, thread.length_m / 2);
   return sweptSections(thread.columns, [&](int i) {
-    std::vector<Vec3> loop = threadColumn(thread, i);
+    std::vector<Vec3> loop = threadColumn(thread, i, false);
     const Vec3 low = loop.front(), high = loop.back();
     loop.pop_back();
     appendLine(loop, high, end, thread.face_steps);
@@ -69,7 +80,7 @@ inline Mesh makeThreadedRod(const ThreadShape& thread) {
 /// A hexagonal nut with the same thread inside, its corners at corner_m. Closed, outward.
 inline Mesh makeNut(const ThreadShape& thread, double corner_m) {
   return sweptSections(thread.columns, [&](int i) {
-    std::vector<Vec3> column = threadColumn(thread, i);
+    std::vector<Vec3> column = threadColumn(thread, i, true);
     std::reverse(column.begin(), column.end());
     const double angle_rad = kTurn_rad * (i % thread.columns) / thread.columns;
     const Vec3 side = polar(polygonRadius(corner_m, 6, angle_rad), angle_rad, 0);

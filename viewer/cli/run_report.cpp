@@ -51,8 +51,9 @@ void printSteps(const scenes::AssembleResult& result) {
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());
     if (step.index_count > 0)
-      std::printf("%s: the device was recentred %s, since the path is longer than its workspace\n", name,
-                  step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
+      std::printf(
+          "%s: the device was recentred %s, since the path is longer, or turns farther, than it can\n", name,
+          step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
   }
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +

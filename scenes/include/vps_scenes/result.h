@@ -54,10 +54,15 @@ struct StepResult {
   double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int index_count = 0;  ///< times the device was clutched and recentred on a path longer than its workspace
+  int index_count = 0;                  ///< times the device was clutched and recentred on its path
   std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
-  double tolerance_m = 0;               ///< of final_error_m, as stated or from the fit
-  double final_error_m = 0;             ///< greatest distance of its surface from where it belongs
+  double turns = 0;                     ///< of a screw, the last time it was screwed on
+  double advance_per_turn_m = 0;        ///< its way along the axis in these turns, for one turn
+  double lean_rad = 0;                  ///< greatest angle between its axis and that of its target meanwhile
+  /// To press it in, by Lame's formula for the declared interference; 0: no press fit that check finds.
+  double press_needed_N = 0;
+  double tolerance_m = 0;    ///< of final_error_m, as stated or from the fit
+  double final_error_m = 0;  ///< greatest distance of its surface from where it belongs
   double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
   double rest_s = 0;

@@ -68,7 +68,15 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("impacts", &StepResult::impacts, "number of impacts"),
     field("slides", &StepResult::slides, "number of contacts that slide"),
     field("index_count", &StepResult::index_count,
-          "how often the device was clutched and recentred, on a path longer than its workspace"),
+          "how often the device was clutched and recentred, on a path longer than its workspace or a turn "
+          "beyond it"),
+    field("turns", &StepResult::turns, "of a screw: turns, the last time that it was screwed on"),
+    field("advance_per_turn_m", &StepResult::advance_per_turn_m,
+          "of a screw: its way along the axis in these turns, for one turn"),
+    field("lean_rad", &StepResult::lean_rad,
+          "of a screw: greatest angle between its axis and that of its target meanwhile"),
+    field("press_needed_N", &StepResult::press_needed_N,
+          "force that presses it in, by Lamé's formula for the declared interference; 0: not a press fit"),
     field("tolerance_m", &StepResult::tolerance_m, "tolerance of `final_error_m`, as stated or from the fit"),
     field("final_error_m", &StepResult::final_error_m,
           "greatest distance of the part's surface from where it belongs"),
@@ -81,7 +89,7 @@ inline constexpr auto kStrategyFields = std::make_tuple(
     field(
         "strategy", &StrategyUse::strategy,
         "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
-        "press_home, place_by_sight or turn_search"),
+        "press_home, place_by_sight, turn_search, turn_back or screw_on"),
     field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
     field("duration_s", &StrategyUse::duration_s, "how long it took"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));

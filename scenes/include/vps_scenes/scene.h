@@ -43,6 +43,16 @@ struct ScenePart {
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for
 };
 
+/// How the hand brings a part home.
+enum class StepMotion {
+  Push,   ///< along the last leg of its path
+  Screw,  ///< turned about that leg, through its centre of mass
+};
+
+inline const char* toText(StepMotion motion) {
+  return motion == StepMotion::Screw ? "screw" : "push";
+}
+
 /// One step of the procedure: bring `part` from its start to its target by contact.
 struct SceneStep {
   std::size_t part = 0;
@@ -55,6 +65,9 @@ struct SceneStep {
   double timeout_s = 20;
   /// A fixture or the other hand holds it after release, so that it need not stay by itself.
   bool is_held = false;
+  StepMotion motion = StepMotion::Push;
+  double pitch_m = 0;    ///< of a screw, for one turn; negative: a left-hand thread
+  double torque_Nm = 0;  ///< at which a screw is tight; 0: it is turned to the height of its target
 };
 
 /// The virtual operator. Values and sources: vps_device/operator.h.

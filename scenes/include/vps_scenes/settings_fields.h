@@ -14,6 +14,8 @@ template <>
 inline constexpr int kValueCount<Gradient> = 2;
 template <>
 inline constexpr int kValueCount<ContactMethod> = 2;
+template <>
+inline constexpr int kValueCount<StepMotion> = 2;
 
 inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
 inline constexpr Range kCount{.min = 1, .max = 1e6};
@@ -103,7 +105,14 @@ inline constexpr auto kStepKeys = std::make_tuple(
           {.range = kPositive, .type = "seconds"}),
     field("holds", &SceneStep::is_held,
           "a fixture or the other hand holds the part after it is let go: it need not stay there by itself",
-          {.since = 4}));
+          {.since = 4}),
+    field("motion", &SceneStep::motion,
+          "push: along the last leg of the path; screw: turned about that leg as well, see below",
+          {.since = 5}),
+    field("pitch", &SceneStep::pitch_m, "of a screw: its way in one turn; negative: a left-hand thread",
+          {.quantity = Quantity::Length, .since = 5, .default_text = "required for a screw"}),
+    field("torque_Nm", &SceneStep::torque_Nm, "of a screw: it is turned until it resists with this torque",
+          {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
 static_assert(coversAllMembers<SceneStep, 4>(kStepKeys));
 
 /// `[device]`

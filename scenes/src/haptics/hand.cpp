@@ -63,10 +63,34 @@ void requireForces(const Scene& scene, const device::DeviceLimits& limits) {
   require("force_limit_N", scene.hand.force_limit_N);
 }
 
+/// Refuses a screw that device and hand cannot turn.
+void requireTurns(const Scene& scene, const SceneStep& step, const device::DeviceLimits& limits) {
+  if (step.motion != StepMotion::Screw) return;
+  const auto refuse = [&](const std::string& words) {
+    throw LoadError(scene.file, scene.parts[step.part].part.name, words);
+  };
+  if (!scene.device.has_indexing && limits.workspace_rad > 0)
+    refuse(
+        "is screwed on, which takes more turns than the device's handle has; let the hand re-grasp it "
+        "([device] indexing = true)");
+  const double most_Nm =
+      std::min(device::OperatorHabits{}.torque_limit_Nm,
+               limits.peak_torque_Nm > 0 ? limits.peak_torque_Nm : device::OperatorHabits{}.torque_limit_Nm);
+  char words[160];
+  std::snprintf(
+      words, sizeof words,
+      "is to be screwed on with %g N m, but the hand has %.2g N m at most; choose a smaller torque_Nm",
+      step.torque_Nm, most_Nm);
+  if (step.torque_Nm > most_Nm) refuse(words);
+}
+
 std::vector<PathSegments> allSegments(const Scene& scene, const device::DeviceLimits& limits) {
   requireForces(scene, limits);
   std::vector<PathSegments> all;
-  for (const SceneStep& step : scene.steps) all.push_back(splitPath(scene, step, workspaceOf(limits)));
+  for (const SceneStep& step : scene.steps) {
+    requireTurns(scene, step, limits);
+    all.push_back(splitPath(scene, step, workspaceOf(limits)));
+  }
   return all;
 }
 
@@ -92,6 +116,7 @@ class SimulatedHand final : public Hand {
     device::OperatorTask reachable = task;
     reachable.way_points = segments_[step].way_points;
     reachable.index_points = segments_[step].index_points;
+    reachable.screw.handle_rad = turnRange_rad(plant_->limits().workspace_rad);
     next_.begin(reachable, now_s);
     next_s_ = now_s;
     next_step_ = step;
@@ -109,6 +134,9 @@ class SimulatedHand final : public Hand {
     goTo(next < segments_.size() ? segments_[next].X_DH_start.front() : Pose{});
   }
   void recentre() override {
+    // The device's axes are the scene's.
+    if (const Vec3 turn_rad = operator_.regraspTurn_rad(); !turn_rad.isZero())
+      return goTo({rotationFromVector(turn_rad), plant_->truePose().p});
     const std::vector<Pose>& starts = segments_[step_].X_DH_start;
     if (segment_ + 1 < starts.size()) ++segment_;
     goTo(starts[segment_]);

@@ -200,6 +200,10 @@ PathSegments withHandle(const GraspPath& path, const Pose& X_GP, double scale) {
 
 }  // namespace
 
+double turnRange_rad(double handle_rad) {
+  return handle_rad - std::min(kMargin_rad, handle_rad / 5);
+}
+
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   const double scale = scene.device.scale;
   const Pose X_PG = Pose::translation(massProperties(scene.parts[step.part].part.mesh).com);
@@ -212,8 +216,7 @@ PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspac
   for (const Pose& X : X_WG) all.add(X);
   const Vec3 needed_m = all.box.size() / scale;
   const bool is_too_long = (needed_m.array() > workspace.size_m.array()).any();
-  const double most_rad = workspace.turn_rad - std::min(kMargin_rad, workspace.turn_rad / 5),
-               needed_rad = all.turns.radius_rad();
+  const double most_rad = turnRange_rad(workspace.turn_rad), needed_rad = all.turns.radius_rad();
   const bool turns_too_far = workspace.turn_rad > 0 && needed_rad > most_rad;
   if (is_too_long || turns_too_far) {
     if (!scene.device.has_indexing && is_too_long) refuseLength(scene, step, needed_m, workspace.size_m);

@@ -33,4 +33,7 @@ struct Workspace {
 /// turn apart, since the direction in which the hand turns is then not defined.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace);
 
+/// How far a handle that turns by handle_rad to each side is turned before it is grasped again.
+double turnRange_rad(double handle_rad);
+
 }  // namespace vps::scenes::inline v0

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "core/insertion_axis.h"
 #include "models/scene_models.h"
 #include "vps/box.h"
 
@@ -28,6 +30,23 @@ double margin_m(const Scene& scene, const Box& part) {
          kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
 }
 
+/// A screw turns at every place of its last leg.
+void addTurned(const SceneStep& step, const Box& part, Box& path) {
+  constexpr int kTurns = 8;  // of 45 degrees; in between a box reaches out by less than the region's margin
+  const Vec3 center_P = part.center();
+  const Vec3 axis_W = insertionAxis(step, Pose::translation(center_P));
+  if (axis_W.isZero()) return;
+  for (int i = 0; i < kTurns; ++i) {
+    const Mat3 turn = rotationFromVector(2 * std::numbers::pi * i / kTurns * axis_W);
+    for (const Pose& X_WP : {step.X_WP_start, step.X_WP_target}) {
+      const Mat3 R = turn * X_WP.R;
+      const Box at = moved(part, Pose(R, Vec3(X_WP * center_P - R * center_P)));
+      path.add(at.min);
+      path.add(at.max);
+    }
+  }
+}
+
 Box pathOf(const SceneStep& step, const Box& part) {
   Box path;
   const auto add = [&](const Pose& X_WP) {
@@ -38,6 +57,7 @@ Box pathOf(const SceneStep& step, const Box& part) {
   add(step.X_WP_start);
   for (const Pose& X_WP : step.way_points) add(X_WP);
   add(step.X_WP_target);
+  if (step.motion == StepMotion::Screw) addTurned(step, part, path);
   return path;
 }
 
@@ -178,7 +198,9 @@ class Planner {
   void share(std::size_t i, std::size_t j) {
     PartModelPlan &a = plan_.parts[j], &b = plan_.parts[i];
     const bool is_modelled = (a.has_map || a.has_shell) && (b.has_map || b.has_shell);
-    if (!is_modelled || a.same_as || !isEqualGeometry(scene_.parts[i].part.mesh, scene_.parts[j].part.mesh))
+    const ScenePart &one = scene_.parts[i], &other = scene_.parts[j];
+    if (!is_modelled || a.same_as || one.press_fit_m != other.press_fit_m ||
+        !isEqualGeometry(one.part.mesh, other.part.mesh))
       return;
     a.has_map = b.has_map = a.has_map || b.has_map;
     a.has_shell = b.has_shell = a.has_shell || b.has_shell;

@@ -2,10 +2,12 @@
 #include "models/scene_models.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "core/wall_clock.h"
+#include "models/shrunk_mesh.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps/shell_crop.h"
@@ -32,13 +34,14 @@ bool isEqualGeometry(const Mesh& a, const Mesh& b) {
 namespace {
 
 /// Builds a part's map, or takes it from the cache.
-std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, const VoxMapSettings& settings,
-                                    const ModelOptions& options) {
+/// @param mesh  of the solid
+std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Mesh& mesh, const Solid& solid,
+                                    const VoxMapSettings& settings, const ModelOptions& options) {
   const std::string& name = part.part.name;
   MeshReport report;
-  auto map = std::make_shared<VoxMap>(
-      options.cache != nullptr ? options.cache->build(part.part.mesh, solid, settings, name, {}, &report)
-                               : buildVoxMap(solid, settings, name, {}, &report));
+  auto map = std::make_shared<VoxMap>(options.cache != nullptr
+                                          ? options.cache->build(mesh, solid, settings, name, {}, &report)
+                                          : buildVoxMap(solid, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
     options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
@@ -73,13 +76,22 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
                      const ModelOptions& options, PartModel& model) {
   BuildTimes times;
   double begun_s = wallSeconds();
+  // A rigid part cannot give way, so physics gets it without the declared interference: half on each side.
+  std::optional<Mesh> shrunk;
+  std::optional<Solid> shrunk_solid;
+  if (scene_part.press_fit_m > 0) {
+    shrunk = shrunkMesh(scene_part.part.mesh, 0.5 * scene_part.press_fit_m);
+    shrunk_solid.emplace(*shrunk, scene_part.part.name);
+  }
+  const Mesh& mesh = shrunk ? *shrunk : scene_part.part.mesh;
+  const Solid& solid = shrunk_solid ? *shrunk_solid : *model.solid;
   if (planned.has_map && !model.map)
-    model.map = mapOf(scene_part, *model.solid, voxMapSettings(fidelity), options);
+    model.map = mapOf(scene_part, mesh, solid, voxMapSettings(fidelity), options);
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
   if (planned.has_shell && !model.shell)
     model.shell = std::make_shared<PointShell>(
-        buildPointShell(*model.solid, pointShellSettings(fidelity), scene_part.part.name));
+        buildPointShell(solid, pointShellSettings(fidelity), scene_part.part.name));
   scene_part.is_cropped = !planned.kept_P.empty();
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;

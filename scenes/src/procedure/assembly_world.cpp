@@ -134,11 +134,11 @@ void AssemblyWorld::pauseLocalContact() {
   if (options_.has_local_contact) driver_->pause();
 }
 
-void AssemblyWorld::release() {
+void AssemblyWorld::release(bool is_held) {
   // On release the energy in the coupling's springs is dropped: it does not enter the energy balance.
   stored_before_J_ += simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J;
   simulation_.release();
-  if (scene_.steps[static_cast<std::size_t>(state_.step)].is_held) simulation_.hold(state_.moving.part);
+  if (is_held) simulation_.hold(state_.moving.part);
   driver_->letGo();
   local_.letGo();
   state_.is_holding = false;

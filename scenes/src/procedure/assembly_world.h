@@ -50,8 +50,9 @@ class AssemblyWorld {
   /// Puts the step's part at its start and couples it to the hand. Throws LoadError where it starts inside
   /// another part.
   void take(std::size_t step);
-  /// Uncouples the part, which stays a dynamic body, unless its step says that it is held.
-  void release();
+  /// Uncouples the part, which stays a dynamic body.
+  /// @param is_held  something else holds it from here on
+  void release(bool is_held);
   /// Fixes the part at a pose: it is no dynamic body any more, and the judge measures against it.
   void mount(const Pose& X_WP);
   /// Sets the share of the coupling gains that holds the part in hand.

@@ -54,6 +54,20 @@ void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_plac
                 " (error " + lengthInWords(step.blocked_error_m) + ") at " + placeInWords(step.blocked_at_W);
 }
 
+/// How deep a part may be where it is pressed in, and what that takes.
+void findPressFit(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
+  for (const CheckedPair& pair : checked.pairs) {
+    const bool is_pressed =
+        pair.state == PairState::PressFit && otherOf(step.part, pair.a, pair.b, in_place) != nullptr;
+    if (!is_pressed) continue;
+    const double depth_m = pair.interference_depth_m + pair.error_m;
+    step.penetration_limit_m = std::max(step.penetration_limit_m, depth_m);
+  }
+  for (const CheckedFit& fit : checked.fits)
+    if (fit.press && otherOf(step.part, fit.shaft, fit.bore, in_place) != nullptr)
+      step.press_needed_N += fit.press->declared_force_N;
+}
+
 void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vector<InPlace>& in_place,
                     StepResult& step) {
   for (const InPlace& other : in_place) {
@@ -74,7 +88,7 @@ void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vec
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
                    const std::string& part) {
   if (planned.tolerance_m > 0) return planned.tolerance_m;
-  if (planned.is_held) return kSightTolerance_m;
+  if (planned.is_held || planned.motion == StepMotion::Screw) return kSightTolerance_m;
   std::optional<double> clearance_m;
   if (planned.clearance_m > 0) clearance_m = planned.clearance_m;
   for (const CheckedFit& fit : checked.fits) {
@@ -98,6 +112,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     steps[i].part = scene.parts[planned.part].part.name;
     steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
     findOverlap(checked, in_place, steps[i]);
+    findPressFit(checked, in_place, steps[i]);
     if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
   }
   return steps;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "procedure/insertion_axis.h"
+#include "core/insertion_axis.h"
 
 namespace vps::scenes::inline v0 {
 

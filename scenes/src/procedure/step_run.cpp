@@ -8,9 +8,10 @@
 #include <numbers>
 #include <span>
 
+#include "core/insertion_axis.h"
 #include "haptics/clutching.h"
 #include "judge/box_motion.h"
-#include "procedure/insertion_axis.h"
+#include "procedure/screw_motion.h"
 #include "procedure/settling.h"
 #include "procedure/step_verdict.h"
 #include "vps_scenes/contact_episodes.h"
@@ -71,6 +72,10 @@ device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, d
   task.weight_W = moving.weight_W;
   task.tip_P = tipOf(world.scene(), step, moving.X_PG);
   task.has_corners = hasCorners(world.scene(), step, moving.X_PG, task.tip_P);
+  if (step.motion == StepMotion::Screw) {
+    task.screw.pitch_m = step.pitch_m;
+    task.screw.torque_Nm = step.torque_Nm;
+  }
   const double k_N_per_m = world.driver().settings().gains.k_N_per_m;
   task.give_m_per_N = k_N_per_m > 0 ? 1 / k_N_per_m : 0;
   return task;
@@ -123,6 +128,8 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
     return true;
   };
   const auto reach = [&] { return advanceIn(TracePhase::Reach); };
+  const bool is_screw = step.motion == StepMotion::Screw;
+  const auto regrasp = [&] { return advanceIn(is_screw ? TracePhase::Insert : TracePhase::Reach); };
   const auto press = [&] { return advanceIn(TracePhase::Press); };
   const ClutchWork clutch(driver, [&world] { return world.handStep_s(); });
   if (!clutch.takeHold(reach)) return;
@@ -138,12 +145,12 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
     world.reportProgress(0.8 * std::min(1.0, elapsed_s / step.timeout_s * 2));
     if (phase != device::OperatorPhase::Regrasp) continue;
     ++result.index_count;
-    if (!clutch.index(reach)) return;
+    if (!clutch.index(regrasp)) return;
     trace.logPhase(world);
   }
   if (driver.phase() == device::OperatorPhase::Failed) noteContact(world, result);
   if (!clutch.comeFree(press)) return;
-  if (step.is_held) return;  // what holds it has it before the hand lets go
+  if (step.is_held || result.press_needed_N > 0) return;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
@@ -187,7 +194,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   const SceneStep& step = world.scene().steps[index];
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
-  result.penetration_limit_m = penetrationLimit_m(step);
+  result.penetration_limit_m += penetrationLimit_m(step);  // beyond that of a press fit
+  const bool is_pressed = result.press_needed_N > 0;
 
   world.take(index);
   trace.beginStep(world);
@@ -197,16 +205,20 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
     ++(episode.is_slide ? result.slides : result.impacts);
   result.strategies = strategiesOf(trace.stepRows());
+  if (step.motion == StepMotion::Screw) {
+    const Pose& X_PG = world.state().moving.X_PG;
+    measureScrew(trace.stepRows(), step, insertionAxis(step, X_PG), X_PG, result);
+  }
   result.duration_s = world.state().time_s - result.start_s;
   trace.endStep(world);
 
-  world.release();
+  world.release(step.is_held || is_pressed);
   trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
   rest(world, trace, result);
   world.reportProgress(0.9);
   judgeCompletion(world, step, world.movingPose(), result);
   settleStep(world, trace.takeSamples(), result);
-  judgeStep(result);
+  judgeStep(result, world.scene().hand.force_limit_N);
   return result;
 }
 

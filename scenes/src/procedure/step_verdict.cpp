@@ -2,10 +2,13 @@
 #include "procedure/step_verdict.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 
+#include "core/insertion_axis.h"
 #include "core/length_words.h"
 #include "judge/surface_error.h"
+#include "procedure/screw_motion.h"
 #include "procedure/way_check.h"
 
 namespace vps::scenes::inline v0 {
@@ -16,6 +19,15 @@ constexpr double kPenetrationLimit_m = 10e-6;
 
 constexpr const char* kHoldsRemedy =
     "nothing holds it there; if a fixture or the next part will, say holds = true in its [[step]]";
+
+std::string pressReason(double needed_N, double hand_N) {
+  char words[240];
+  std::snprintf(words, sizeof words,
+                "the way is free, but pressing it in takes about %.0f N (by the formula for its declared "
+                "interference), and the hand has %.0f N ([operator] force_limit_N): it needs a press",
+                needed_N, hand_N);
+  return words;
+}
 
 std::string failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
                           bool is_done) {
@@ -44,25 +56,36 @@ double penetrationLimit_m(const SceneStep& step) {
 }
 
 void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result) {
+  const bool is_screw = step.motion == StepMotion::Screw;
+  const Pose& X_PG = world.state().moving.X_PG;
+  const Pose X_judged = is_screw ? turnedBack(X_WP, step, insertionAxis(step, X_PG), X_PG) : X_WP;
   result.final_error_m =
-      surfaceError_m(*world.scene().parts[step.part].model->solid, step.X_WP_target.inverse() * X_WP);
-  result.final_error_rad = rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm();
+      surfaceError_m(*world.scene().parts[step.part].model->solid, step.X_WP_target.inverse() * X_judged);
+  result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
   result.completed = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
+  const std::string fault = is_screw ? threadFault(step, result) : "";
+  result.completed = result.completed && fault.empty();
   result.by_contact = result.completed && isGuided(result);
   if (result.completed) return;
+  const bool is_there = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
+  if (is_there && !fault.empty()) {
+    result.failure_reason = "it is at its height, but " + fault;
+    return;
+  }
   result.failure_reason = failureReason(world, step, result, is_done);
-  if (is_done && result.final_error_m <= result.tolerance_m)
+  if (is_done && is_turned && result.final_error_m <= result.tolerance_m)
     result.failure_reason.append("; it is turned by ")
         .append(degreesInWords(result.final_error_rad))
         .append(" (tolerance ")
         .append(degreesInWords(step.tolerance_rad))
         .append(")");
-  if (!is_done && !world.isStopped()) result.failure_reason.append(wallOnTheWay(world, step));
+  if (!fault.empty()) result.failure_reason.append("; ").append(fault);
+  if (!is_done && !is_screw && !world.isStopped()) result.failure_reason.append(wallOnTheWay(world, step));
 }
 
-void judgeStep(StepResult& result) {
+void judgeStep(StepResult& result, double hand_N) {
   if (!result.blocked_by.empty()) {
     result.verdict = Verdict::Blocked;
     return;
@@ -77,6 +100,8 @@ void judgeStep(StepResult& result) {
   } else if (!isAtRest(result)) {
     result.reason =
         "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
+  } else if (result.press_needed_N > hand_N) {
+    result.reason = pressReason(result.press_needed_N, hand_N);
   } else {
     result.verdict = Verdict::Fits;
   }

@@ -17,7 +17,8 @@ double penetrationLimit_m(const SceneStep& step);
 void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
 
 /// Sets verdict and reason from the rest of a step's result.
-void judgeStep(StepResult& result);
+/// @param hand_N  greatest force of the hand
+void judgeStep(StepResult& result, double hand_N);
 
 /// Of a run with so many planned steps.
 Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned);

@@ -170,8 +170,7 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  // The model is built again; velocities are for simulate(), which is not recorded, and forces of press fits
-  // for the check.
+  // The model is built again; velocities are for simulate(), which is not recorded.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
                           youngs_modulus_Pa, poissons_ratio, file, deflection_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
@@ -210,12 +209,20 @@ void partFields4(Archive& archive, T& part) {
   archive(part.is_scenery, part.press_fit_m, part.deflection_m);
 }
 
+/// What a part got with version 5: the force of a press fit decides what the hand can do.
+template <typename Archive, Either<ScenePart> T>
+void partFields5(Archive& archive, T& part) {
+  archive(part.youngs_modulus_Pa, part.poissons_ratio);
+}
+
 /// What came with a version after the first.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
   for (auto& part : x.parts) settings(archive, part.part.material, kMaterialFields, version);
   if (version == 4)
     for (auto& part : x.parts) partFields4(archive, part);
+  if (version == 5)
+    for (auto& part : x.parts) partFields5(archive, part);
   for (auto& step : x.steps) settings(archive, step, kStepKeys, version);
   settings(archive, x.fidelity, kFidelityFields, version);
   settings(archive, x.coupling, kCouplingFields, version);

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "scene/read_fields.h"
+#include "scene/screw_keys.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
@@ -276,6 +277,7 @@ class SceneReader {
     }
     keys.poses("way_points", step.X_WP_target, step.way_points);
     readFields(keys, step, kStepKeys);
+    requireScrew(keys, step);
     scene_.steps.push_back(std::move(step));
   }
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
+#include <utility>
 
 #include "report/html.h"
 #include "report/length_text.h"
@@ -86,22 +88,32 @@ std::string stepFacts(const scenes::StepResult& s) {
     deepest += ", at (" + format(at_mm.x(), "%.2f") + ", " + format(at_mm.y(), "%.2f") + ", " +
                format(at_mm.z(), "%.2f") + ") mm, " + format(s.deepest_time_s, "%.3f") + " s";
   }
-  return html::facts({{"Verdict", scenes::isGood(s) ? "fits"
-                                                    : "<b class=\"bad\">" + std::string(words(s.verdict)) +
-                                                          "</b>: " + escapeHtml(s.reason)},
-                      {"Brought to its target by contact", contactWords(s)},
-                      {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
-                      {"Greatest overlap, by exact distance", deepest},
-                      {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
-                      {"Peak force, torque on the hand",
-                       format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
-                      {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
-                      {"What the hand tried, in order", strategiesInWords(s.strategies)},
-                      {"Times the device was clutched and recentred", std::to_string(s.index_count)},
-                      {"Final error", micrometres(s.final_error_m, "%.2f") + " µm, " +
-                                          format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
-                      {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
-                       micrometres(s.rest_drift_m) + " µm"}});
+  std::vector<std::pair<std::string, std::string>> facts;
+  facts = {{"Verdict", scenes::isGood(s) ? "fits"
+                                         : "<b class=\"bad\">" + std::string(words(s.verdict)) +
+                                               "</b>: " + escapeHtml(s.reason)},
+           {"Brought to its target by contact", contactWords(s)},
+           {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
+           {"Greatest overlap, by exact distance", deepest},
+           {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
+           {"Peak force, torque on the hand",
+            format(s.peak_force_N, "%.2f") + " N, " + format(s.peak_torque_Nm, "%.3f") + " N m"},
+           {"Impacts, slides", std::to_string(s.impacts) + ", " + std::to_string(s.slides)},
+           {"What the hand tried, in order", strategiesInWords(s.strategies)},
+           {"Times the device was clutched and recentred", std::to_string(s.index_count)},
+           {"Final error", micrometres(s.final_error_m, "%.2f") + " µm, " +
+                               format(1e3 * s.final_error_rad, "%.3f") + " mrad"},
+           {"Greatest motion in the " + format(s.rest_s, "%.1f") + " s after release",
+            micrometres(s.rest_drift_m) + " µm"}};
+  if (s.turns != 0)
+    facts.emplace_back("Screwed on", format(s.turns, "%.2f") + " turns, " +
+                                         format(1e3 * s.advance_per_turn_m, "%.3f") +
+                                         " mm a turn, leaning by up to " +
+                                         format(180 / std::numbers::pi * s.lean_rad, "%.2f") + " degrees");
+  if (s.press_needed_N > 0)
+    facts.emplace_back("Force to press it in",
+                       format(s.press_needed_N, "%.0f") + " N, by Lamé's formula; the hand does not feel it");
+  return html::facts(facts);
 }
 
 std::string plotFigure(const std::string& name, const std::string& caption) {

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The surface of a part that is pressed in, as physics sees it.
+#pragma once
+
+#include "vps/mesh.h"
+
+namespace vps::scenes::inline v0 {
+
+/// The same facets, each moved inwards by the given distance. Where the facets at a corner leave no such
+/// place, it is the nearest one. For distances far below the size of the facets.
+Mesh shrunkMesh(const Mesh& mesh, double by_m);
+
+}  // namespace vps::scenes::inline v0
