@@ -2,7 +2,6 @@
 #include "models/scene_models.h"
 
 #include <algorithm>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -33,15 +32,24 @@ bool isEqualGeometry(const Mesh& a, const Mesh& b) {
 
 namespace {
 
+/// What map and shell are built from, and contacts and overlaps of a run are measured with. A rigid part
+/// cannot give way, so that a part that is pressed in has none of its declared interference, half of it on
+/// each side, and a little less than the 10 um that count as contact, since without clearance it would jam.
+std::shared_ptr<const Solid> solidOf(const ScenePart& part, const Mesh& mesh) {
+  constexpr double kPressSlack_m = 8e-6;
+  const double by_m = part.press_fit_m > 0 ? 0.5 * part.press_fit_m + kPressSlack_m : 0;
+  return std::make_shared<const Solid>(by_m > 0 ? shrunkMesh(mesh, by_m) : mesh, part.part.name);
+}
+
 /// Builds a part's map, or takes it from the cache.
-/// @param mesh  of the solid
-std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Mesh& mesh, const Solid& solid,
-                                    const VoxMapSettings& settings, const ModelOptions& options) {
+std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, const VoxMapSettings& settings,
+                                    const ModelOptions& options) {
   const std::string& name = part.part.name;
   MeshReport report;
-  auto map = std::make_shared<VoxMap>(options.cache != nullptr
-                                          ? options.cache->build(mesh, solid, settings, name, {}, &report)
-                                          : buildVoxMap(solid, settings, name, {}, &report));
+  auto map = std::make_shared<VoxMap>(
+      options.cache != nullptr ? options.cache->build(part.press_fit_m > 0 ? solid.mesh() : part.part.mesh,
+                                                      solid, settings, name, {}, &report)
+                               : buildVoxMap(solid, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
     options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
@@ -76,22 +84,13 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
                      const ModelOptions& options, PartModel& model) {
   BuildTimes times;
   double begun_s = wallSeconds();
-  // A rigid part cannot give way, so physics gets it without the declared interference: half on each side.
-  std::optional<Mesh> shrunk;
-  std::optional<Solid> shrunk_solid;
-  if (scene_part.press_fit_m > 0) {
-    shrunk = shrunkMesh(scene_part.part.mesh, 0.5 * scene_part.press_fit_m);
-    shrunk_solid.emplace(*shrunk, scene_part.part.name);
-  }
-  const Mesh& mesh = shrunk ? *shrunk : scene_part.part.mesh;
-  const Solid& solid = shrunk_solid ? *shrunk_solid : *model.solid;
   if (planned.has_map && !model.map)
-    model.map = mapOf(scene_part, mesh, solid, voxMapSettings(fidelity), options);
+    model.map = mapOf(scene_part, *model.solid, voxMapSettings(fidelity), options);
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
   if (planned.has_shell && !model.shell)
     model.shell = std::make_shared<PointShell>(
-        buildPointShell(solid, pointShellSettings(fidelity), scene_part.part.name));
+        buildPointShell(*model.solid, pointShellSettings(fidelity), scene_part.part.name));
   scene_part.is_cropped = !planned.kept_P.empty();
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
@@ -117,7 +116,7 @@ std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const M
     if (!is_modelled && !part.model) continue;
     PartModel model =
         startingModel(part, planned.same_as ? scene.parts[*planned.same_as].model.get() : nullptr);
-    if (is_modelled && !model.solid) model.solid = std::make_shared<const Solid>(*model.mesh, part.part.name);
+    if (is_modelled && !model.solid) model.solid = solidOf(part, *model.mesh);
     if (planned.same_as)
       part.is_cropped = false;
     else

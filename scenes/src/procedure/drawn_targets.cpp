@@ -54,15 +54,8 @@ void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_plac
                 " (error " + lengthInWords(step.blocked_error_m) + ") at " + placeInWords(step.blocked_at_W);
 }
 
-/// How deep a part may be where it is pressed in, and what that takes.
+/// What it takes to press a part in.
 void findPressFit(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
-  for (const CheckedPair& pair : checked.pairs) {
-    const bool is_pressed =
-        pair.state == PairState::PressFit && otherOf(step.part, pair.a, pair.b, in_place) != nullptr;
-    if (!is_pressed) continue;
-    const double depth_m = pair.interference_depth_m + pair.error_m;
-    step.penetration_limit_m = std::max(step.penetration_limit_m, depth_m);
-  }
   for (const CheckedFit& fit : checked.fits)
     if (fit.press && otherOf(step.part, fit.shaft, fit.bore, in_place) != nullptr)
       step.press_needed_N += fit.press->declared_force_N;

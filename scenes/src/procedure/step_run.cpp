@@ -194,7 +194,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   const SceneStep& step = world.scene().steps[index];
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
-  result.penetration_limit_m += penetrationLimit_m(step);  // beyond that of a press fit
+  result.penetration_limit_m = penetrationLimit_m(step);
   const bool is_pressed = result.press_needed_N > 0;
 
   world.take(index);
