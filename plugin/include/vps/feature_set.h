@@ -44,8 +44,8 @@ class VPS_API FeatureSet {
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
-  /// True if the facet stands for a curved surface: it is one of three or more in a row that turn by less than
-  /// 8 degrees each.
+  /// True if the facet stands for a curved surface: it is one of three or more in a row that turn by less
+  /// than 8 degrees each.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
   /// The same of a triangle of a mesh, numbered as they were added; false for triangles without area.
   [[nodiscard]] bool isCurved(std::size_t mesh, std::uint32_t triangle) const {
