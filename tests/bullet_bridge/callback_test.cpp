@@ -140,22 +140,23 @@ TEST_F(Callbacks, AreCalledForAPartAsForABox) {
 }
 
 TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
-  // Gravity leans by 45 degrees; without the callback's friction of 2 the cube would slide.
+  // Gravity leans by 34 degrees, less than would tip the cube; without the callback's friction of 2 it would
+  // slide.
   for (const btScalar friction : {btScalar(2), btScalar(0)}) {
     calls_ = {};
     calls_.friction = friction;
     World world;
-    world.world->setGravity(btVector3(toBt(6), 0, toBt(-6)));
+    world.world->setGravity(btVector3(toBt(4), 0, toBt(-6)));
     world.add(cube(), Pose(), true);
     btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.01)));
     body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(30);
-    // Free: a t^2 / 2 = 2.7 mm.
+    // Free, in n steps: a dt^2 n (n + 1) / 2. Bullet's solver in single precision lets it go for a step.
     const double x_m = body.getWorldTransform().getOrigin().x();
     if (friction > 0)
-      EXPECT_LT(x_m, 1e-6);
+      EXPECT_LT(x_m, 12e-6);  // two steps
     else
-      EXPECT_NEAR(x_m, 2.79e-3, 0.1e-3);
+      EXPECT_NEAR(x_m, 1.86e-3, 0.05e-3);
   }
 }
 
