@@ -67,19 +67,16 @@ bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback
   }
   const auto* cast = dynamic_cast<btTriangleConvexcastCallback*>(&callback);
   if (!cast) return false;
+  // One that turns may be larger on its way than at both ends: the box is then Bullet's answer.
+  if (!(cast->m_convexShapeFrom.getBasis() == cast->m_convexShapeTo.getBasis())) return false;
   const btTransform to_shape = cast->m_triangleToWorld.inverse();
-  const btTransform ends[2] = {to_shape * cast->m_convexShapeFrom, to_shape * cast->m_convexShapeTo};
-  Vec3 center[2], half[2];
-  for (int i = 0; i < 2; ++i) {
-    btVector3 low, high;
-    cast->m_convexShape->getAabb(ends[i], low, high);
-    center[i] = 0.5 * (fromBt(low) + fromBt(high));
-    half[i] = 0.5 * (fromBt(high) - fromBt(low));
-  }
-  // One that turns on its way may be larger between the ends: the box is then Bullet's answer.
-  if ((half[0] - half[1]).norm() > rounding_m) return false;
+  const btTransform start = to_shape * cast->m_convexShapeFrom;
+  btVector3 low, high;
+  cast->m_convexShape->getAabb(start, low, high);
+  const Vec3 from = 0.5 * (fromBt(low) + fromBt(high)), half = 0.5 * (fromBt(high) - fromBt(low));
+  const Vec3 way = fromBt((to_shape * cast->m_convexShapeTo).getOrigin() - start.getOrigin());
   const Vec3 margin = Vec3::Constant(rounding_m + cast->m_triangleCollisionMargin);
-  visitPath({center[0], center[1] - center[0], half[0] + margin}, cast->m_hitFraction, callback);
+  visitPath({from, way, half + margin}, cast->m_hitFraction, callback);
   return true;
 }
 

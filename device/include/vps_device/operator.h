@@ -70,6 +70,12 @@ VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 
 /// A part that is screwed on: it is turned about the axis of insertion, through G, and pushed lightly.
 struct ScrewTask {
+  /// An M16 nut that is crossed by half a pitch leans by that across its diameter, 3.6 degrees; a loose one
+  /// leans by less than a degree within its play. assumed: between.
+  static constexpr double kCrossedLean_rad = 0.035;
+  /// Of the pitch: a part that skips threads or does not catch is off by more. assumed.
+  static constexpr double kOffPitch = 0.5;
+
   /// Way of the part in one turn; positive: a right-hand thread. 0: the part is not screwed.
   double pitch_m = 0;
   double torque_Nm = 0;   ///< tight at this torque; 0: it is turned until it is seen at its target

@@ -12,17 +12,13 @@ constexpr int kLittleBackOffs = 3;    // then it withdraws whole
 
 }  // namespace
 
-void Insertion::begin(const Situation& situation, const Feel& feel) noexcept {
-  situation_ = situation;
+void Insertion::reset() noexcept {
   has_aligned_ = false;
-  retries_ = stuck_inside_ = searches_ = 0;
-  start(OperatorStrategy::Approach, feel);
+  stuck_inside_ = searches_ = 0;
 }
 
 Strategy& Insertion::present() noexcept {
   switch (strategy_) {
-    case OperatorStrategy::Touch:
-      return touch_;
     case OperatorStrategy::TiltIn:
       return tilt_in_;
     case OperatorStrategy::SpiralSearch:
@@ -36,33 +32,15 @@ Strategy& Insertion::present() noexcept {
       return back_off_little_;
     case OperatorStrategy::PressHome:
       return press_home_;
-    case OperatorStrategy::PlaceBySight:
-      return place_by_sight_;
-    case OperatorStrategy::None:
-    case OperatorStrategy::Approach:
-    case OperatorStrategy::TurnBack:
-    case OperatorStrategy::ScrewOn:
-      break;
+    default:
+      return Sequence::present();
   }
-  return approach_;
 }
 
-void Insertion::start(OperatorStrategy strategy, const Feel& feel) noexcept {
-  strategy_ = strategy;
+void Insertion::prepare() noexcept {
   const OperatorHabits& habits = situation_.habits;
   situation_.push_limit_N = std::min(habits.force_limit_N, habits.press_N * (1 + 0.5 * (retries_ % 5)));
   situation_.attempt = searches_ / 2;
-  present().start(situation_, feel);
-}
-
-Outcome Insertion::step(const Feel& feel, double dt_s) noexcept {
-  const Outcome outcome = present().step(feel, dt_s);
-  if (outcome == Outcome::GoingOn) return outcome;
-  const bool is_last =
-      strategy_ == OperatorStrategy::PressHome || strategy_ == OperatorStrategy::PlaceBySight;
-  if (is_last && outcome == Outcome::Done) return Outcome::Done;
-  next(outcome == Outcome::Done, feel);
-  return Outcome::GoingOn;
 }
 
 bool Insertion::isFree(const Feel& feel) const noexcept {
@@ -72,10 +50,7 @@ bool Insertion::isFree(const Feel& feel) const noexcept {
 void Insertion::next(bool succeeded, const Feel& feel) noexcept {
   switch (strategy_) {
     case OperatorStrategy::Approach:
-      if (!succeeded) return start(OperatorStrategy::PlaceBySight, feel);
-      if (!situation_.has_touched) situation_.mouth_m = feel.along_m;
-      situation_.has_touched = true;
-      return start(OperatorStrategy::Touch, feel);
+      return afterApproach(succeeded, feel);
     case OperatorStrategy::Touch:
       return afterTouch(feel);
     case OperatorStrategy::TiltIn:
@@ -89,10 +64,7 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
       return start(nextSearch(), feel);
     case OperatorStrategy::PressHome:
       return press_home_.hasYielded() ? start(OperatorStrategy::PlaceBySight, feel) : backOff(false, feel);
-    case OperatorStrategy::PlaceBySight:
-    case OperatorStrategy::TurnBack:
-    case OperatorStrategy::ScrewOn:
-    case OperatorStrategy::None:
+    default:
       return;
   }
 }

@@ -56,7 +56,8 @@ class VirtualOperator::Person {
     return insertion_;
   }
   [[nodiscard]] const Sequence& sequence() const noexcept {
-    return const_cast<Person*>(this)->sequence();  // NOLINT
+    if (isScrew()) return screwing_;
+    return insertion_;
   }
   void turn(const OperatorView& view, double spin_rad_s, double dt_s) noexcept;
 

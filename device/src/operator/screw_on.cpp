@@ -16,10 +16,6 @@ constexpr double kScrewSettle_s = 0.3;
 constexpr double kScrewLook_s = 0.6;  // average of what is seen of the height: two fixations
 constexpr double kCaughtTurns = 1;    // it follows the thread by then
 constexpr double kCheckTurns = 0.5;
-constexpr double kOffPitch = 0.5;  // of the pitch: a crossed or missed thread is off by more
-// A nut that is crossed by half a pitch leans by that across its diameter, 3.6 degrees for M16, and a loose
-// one leans by less than a degree within its play.
-constexpr double kLean_rad = 0.035;
 constexpr double kStall_rad = 0.01, kStall_s = 0.5;
 constexpr double kJamShare = 0.6;  // of the torque that the hand has
 }  // namespace
@@ -46,7 +42,7 @@ bool ScrewOn::followsThread(const Feel& feel) noexcept {
   const double turns = turnsOn(situation_.screw) * (feel.spin_rad - mark_rad_) / kScrewTurn_rad;
   if (turns < (has_caught_ ? kCheckTurns : kCaughtTurns)) return true;
   const double wanted_m = turns * std::abs(situation_.screw.pitch_m);
-  const bool follows = std::abs(feel.along_m - mark_m_ - wanted_m) < kOffPitch * wanted_m;
+  const bool follows = std::abs(feel.along_m - mark_m_ - wanted_m) < ScrewTask::kOffPitch * wanted_m;
   has_caught_ = true;
   mark_rad_ = feel.spin_rad;
   mark_m_ = feel.along_m;
@@ -80,7 +76,7 @@ Outcome ScrewOn::step(const Feel& feel, double dt_s) noexcept {
   }
   const bool is_stuck = turning_.step(turned_rad_, feel.time_s, kStall_rad) > kStall_s &&
                         torque_Nm > kJamShare * habits.torque_limit_Nm;
-  return is_stuck || (feel.lean_rad - lean_rad_).norm() > kLean_rad || !followsThread(feel)
+  return is_stuck || (feel.lean_rad - lean_rad_).norm() > ScrewTask::kCrossedLean_rad || !followsThread(feel)
              ? Outcome::Failed
              : Outcome::GoingOn;
 }

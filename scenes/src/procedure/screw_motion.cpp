@@ -16,12 +16,6 @@ namespace {
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// Fewer turns tell no pitch: the play of a loose thread is a quarter of it.
 constexpr double kLeastTurns = 0.5;
-/// Of the pitch. A part that skips threads or does not catch is off by more.
-constexpr double kOffPitch = 0.5;
-/// An M16 nut that is crossed by half a pitch leans by 3.6 degrees; within its play it leans by less than
-/// one.
-constexpr double kLean_rad = 0.035;
-
 bool isScrewing(const TraceRow& row) {
   return row.strategy == static_cast<int>(device::OperatorStrategy::ScrewOn);
 }
@@ -60,10 +54,10 @@ std::string threadFault(const SceneStep& step, const StepResult& result) {
   const std::string figures =
       "in " + turnsInWords(result.turns) + " it moved on by " + lengthInWords(result.advance_per_turn_m) +
       " a turn (pitch " + lengthInWords(pitch_m) + ") and leaned by up to " + degreesInWords(result.lean_rad);
-  if (result.lean_rad > kLean_rad) return "the thread is crossed: " + figures;
+  if (result.lean_rad > device::ScrewTask::kCrossedLean_rad) return "the thread is crossed: " + figures;
   if (result.turns < kLeastTurns) return "it could not be turned on: " + figures;
   const double off = result.advance_per_turn_m / pitch_m - 1;
-  if (std::abs(off) <= kOffPitch) return {};
+  if (std::abs(off) <= device::ScrewTask::kOffPitch) return {};
   return (off < 0 ? "the threads did not catch: " : "the thread is skipped: ") + figures;
 }
 

@@ -118,6 +118,11 @@ void noteContact(AssemblyWorld& world, StepResult& result) {
     }
 }
 
+/// By what the scene says, or by its press fit.
+bool isHeldAfter(const SceneStep& step, const StepResult& result) {
+  return step.is_held || result.press_needed_N > 0;
+}
+
 /// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
 void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
   startHaptics(world);
@@ -150,7 +155,7 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
   }
   if (driver.phase() == device::OperatorPhase::Failed) noteContact(world, result);
   if (!clutch.comeFree(press)) return;
-  if (step.is_held || result.press_needed_N > 0) return;  // what holds it has it before the hand lets go
+  if (isHeldAfter(step, result)) return;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
@@ -195,7 +200,6 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
   result.penetration_limit_m = penetrationLimit_m(step);
-  const bool is_pressed = result.press_needed_N > 0;
 
   world.take(index);
   trace.beginStep(world);
@@ -212,7 +216,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   result.duration_s = world.state().time_s - result.start_s;
   trace.endStep(world);
 
-  world.release(step.is_held || is_pressed);
+  world.release(isHeldAfter(step, result));
   trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
   rest(world, trace, result);
   world.reportProgress(0.9);
