@@ -77,6 +77,7 @@ class VPS_API FeatureMotion {
   std::vector<Pose> way_10_;  // scratch
   bool is_valid_ = false;
   Pose last_;            // X_01 of the last call
+  Pose searched_at_;     // X_01
   double path_m_ = 0;    // way since the search, upper bound
   double margin_m_ = 0;  // of the search
 };

@@ -13,7 +13,8 @@
 
 namespace vps::inline v0 {
 
-enum class FeatureKind : std::uint8_t { Corner, Edge, Facet };
+struct CornerTree;
+struct FacetTree;
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
 /// turn by 8 degrees or more, and lone kinks between two planes.
@@ -27,7 +28,7 @@ struct FeatureEdge {
   bool has_curved_face[2] = {false, false};       ///< the facet stands for a curved surface
 };
 
-/// The features of one or several meshes in one frame, with a tree of boxes over each kind.
+/// The features of one or several meshes in one frame, with a tree over each kind.
 class VPS_API FeatureSet {
  public:
   FeatureSet();
@@ -43,6 +44,8 @@ class VPS_API FeatureSet {
 
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
+  /// Outward, unit.
+  [[nodiscard]] const Vec3& normal(std::uint32_t facet) const { return normals_[facet]; }
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
   /// True if the facet stands for a curved surface: it is one of three or more in a row that turn by less
   /// than 8 degrees each.
@@ -67,18 +70,27 @@ class VPS_API FeatureSet {
   [[nodiscard]] std::span<const std::uint32_t> edgesAt(std::uint32_t corner) const {
     return std::span(edges_at_).subspan(first_edge_[corner], first_edge_[corner + 1] - first_edge_[corner]);
   }
+  /// Unit directions from a corner along the sides of the facets around it.
+  [[nodiscard]] std::span<const Vec3> raysAt(std::uint32_t corner) const {
+    return std::span(rays_).subspan(first_ray_[corner], first_ray_[corner + 1] - first_ray_[corner]);
+  }
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
 
-  /// The features whose own boxes overlap `box`, in a fixed order; what `found` held is lost.
-  void find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const;
+  /// The edges whose own boxes overlap `box`, in a fixed order; what `found` held is lost.
+  void findEdges(const Box& box, std::vector<std::uint32_t>& found) const;
+  /// For searches of FeatureMotion.
+  [[nodiscard]] const CornerTree& cornerTree() const;
+  [[nodiscard]] const FacetTree& facetTree() const;
 
  private:
   void markCurvedEdges(std::size_t first);
+  void buildRays(const std::vector<std::uint32_t>& corner_of);
 
   std::vector<Vec3> vertices_;
   std::vector<std::array<std::uint32_t, 3>> facets_;
   static constexpr std::uint8_t kTwoSided = 1, kCurved = 2;
+  std::vector<Vec3> normals_;  // of facets
   std::vector<std::uint8_t> facet_flags_;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
   std::vector<float> sagitta_m_;
@@ -87,9 +99,11 @@ class VPS_API FeatureSet {
   std::vector<FeatureEdge> edges_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> edges_at_, first_edge_;
+  std::vector<Vec3> rays_;
+  std::vector<std::uint32_t> first_ray_;
   Box box_;
-  struct Tree;
-  std::unique_ptr<const Tree> trees_[3];
+  struct Trees;
+  std::unique_ptr<const Trees> trees_;
 };
 
 }  // namespace vps::inline v0

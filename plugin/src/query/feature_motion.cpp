@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/triangle_distance.h"
+#include "query/feature_points.h"
+#include "query/flush_features.h"
 
 namespace vps::inline v0 {
 
@@ -22,51 +23,6 @@ struct Features {
     for (int i = 0; i < a_count; ++i) at[i] = a[i] + share * way[i];
   }
 };
-
-/// The nearest points of two features.
-struct Nearest {
-  Vec3 p = Vec3::Zero(), q = Vec3::Zero();  // on part 0, on part 1
-  bool is_end = false;                      // of two edges: at an end of one of them
-};
-
-// Ericson, Real-Time Collision Detection, section 5.1.9.
-Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
-  const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
-  const double square = a * e - b * b;
-  double s = square > 1e-12 * a * e ? std::clamp((b * f - c * e) / square, 0.0, 1.0) : 0.0;
-  double t = (b * s + f) / e;
-  if (t < 0) {
-    t = 0;
-    s = std::clamp(-c / a, 0.0, 1.0);
-  } else if (t > 1) {
-    t = 1;
-    s = std::clamp((b - c) / a, 0.0, 1.0);
-  }
-  return {p1 + s * d1, p2 + t * d2, s <= 0 || s >= 1 || t <= 0 || t >= 1};
-}
-
-Nearest nearestOf(Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]) {
-  if (kind == Kind::CornerOnFacet) return {a[0], closestOnTriangleInline(a[0], b[0], b[1], b[2]).q};
-  if (kind == Kind::FacetOnCorner) return {closestOnTriangleInline(b[0], a[0], a[1], a[2]).q, b[0]};
-  return nearestOfSegments(a[0], a[1], b[0], b[1]);
-}
-
-int pointsOf(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]) {
-  const std::vector<Vec3>& v = part.vertices();
-  if (kind == Kind::EdgeOnEdge) {
-    const FeatureEdge& edge = part.edges()[feature];
-    out[0] = v[edge.from];
-    out[1] = v[edge.to];
-    return 2;
-  }
-  if ((kind == Kind::CornerOnFacet) == (i == 0)) {
-    out[0] = v[part.corners()[feature]];
-    return 1;
-  }
-  for (std::size_t k = 0; k < 3; ++k) out[k] = v[part.facets()[feature][k]];
-  return 3;
-}
 
 /// Where features reach a distance.
 struct Reach {
@@ -161,20 +117,6 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, Rea
   return true;
 }
 
-// Not of unit length.
-Vec3 facetNormal(const FeatureSet& part, std::uint32_t facet) {
-  const auto& t = part.facets()[facet];
-  const std::vector<Vec3>& v = part.vertices();
-  return (v[t[1]] - v[t[0]]).cross(v[t[2]] - v[t[0]]);
-}
-
-// The line through side k of a facet, from this corner to the next.
-double distanceToSide(const FeatureSet& part, std::uint32_t facet, std::size_t k, const Vec3& p) {
-  const auto& t = part.facets()[facet];
-  const Vec3 &from = part.vertices()[t[k]], way = part.vertices()[t[(k + 1) % 3]] - from;
-  return (p - from).cross(way).norm() / way.norm();
-}
-
 // The corner of a facet that another does not have, as a place.
 Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
   const auto &t = part.facets()[facet], &u = part.facets()[other];
@@ -209,70 +151,7 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
     return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
   }
   if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
-  return sign * n.dot(facetNormal(part, feature)) > 0 && !isNeighbourNearer(part, feature, p, sign * n);
-}
-
-constexpr double kCosFlush = 0.94;  // 20 degrees
-
-/// The corner and the facet of a pair, whichever part has which.
-struct CornerAndFacet {
-  const FeatureSet& with_corner;
-  std::uint32_t corner;
-  const FeatureSet& with_facet;
-  std::uint32_t facet;
-  Mat3 R;  ///< from the frame of the corner's part to the facet's
-};
-
-/// @param kind  not EdgeOnEdge
-CornerAndFacet cornerAndFacet(const FeatureSet& part0, const FeatureSet& part1, Kind kind, std::uint32_t i,
-                              std::uint32_t j, const Mat3& R_10) {
-  if (kind == Kind::CornerOnFacet) return {part0, i, part1, j, R_10};
-  return {part1, j, part0, i, R_10.transpose()};
-}
-
-// True if one of the faces around the corner lies flush on a facet that stands for a curved surface.
-// @param facet  the pair's, or another one of the same part
-bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
-  if (!pair.with_facet.isCurved(facet)) return false;
-  const Vec3 n = pair.R.transpose() * facetNormal(pair.with_facet, facet).normalized();
-  for (const std::uint32_t edge : pair.with_corner.edgesAt(pair.corner))
-    for (const Vec3& own : pair.with_corner.edges()[edge].normal)
-      if (own.dot(n) < -kCosFlush) return true;
-  return false;
-}
-
-// True if curved surfaces lie flush in each other beside two curved edges, and the edges meet across them.
-// Where a round peg's rim comes down on that of its hole, the walls are opposite too, but the edges meet
-// along them.
-// @param n_1  direction between the edges, in the frame of part 1
-bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {
-  constexpr double kAcross = 0.7;  // assumed: within 45 degrees
-  if (!edge0.is_curved || !edge1.is_curved) return false;
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      if (edge0.has_curved_face[i] && edge1.has_curved_face[j] &&
-          (R_10 * edge0.normal[i]).dot(edge1.normal[j]) < -kCosFlush &&
-          std::abs(edge1.normal[j].dot(n_1)) > kAcross)
-        return true;
-  return false;
-}
-
-// True if a corner slides over the border of a facet from a curved neighbour on which it lies flush, as a
-// thread's crest does where it comes out of its nut. There the polygons overlap by as much as they leave
-// their curves; twice that, since a border that meets another edge at its end has no curve known there.
-// @param p  the nearest point of the facet, in its part's frame
-bool slidesOverBorder(const CornerAndFacet& pair, const Vec3& p) {
-  const double own_m = pair.with_corner.sagitta_m(pair.with_corner.corners()[pair.corner]);
-  if (!(own_m > 0)) return false;
-  const FeatureSet& part = pair.with_facet;
-  const auto& t = part.facets()[pair.facet];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t other = part.neighbours(pair.facet)[k];
-    if (other == FeatureSet::kNone || !isFlushOn(pair, other)) continue;
-    const double their_m = std::max(part.sagitta_m(t[k]), part.sagitta_m(t[(k + 1) % 3]));
-    if (distanceToSide(part, pair.facet, k, p) < 2 * (own_m + their_m)) return true;
-  }
-  return false;
+  return sign * n.dot(part.normal(feature)) > 0 && !isNeighbourNearer(part, feature, p, sign * n);
 }
 
 double angle_rad(const Mat3& R) {
@@ -310,49 +189,6 @@ double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
   return std::min(kRest_m, kShareOfRadius * std::min(part0.radius_m(), part1.radius_m()));
 }
 
-void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01,
-                           double margin_m) {
-  near_.clear();
-  margin_m_ = margin_m;
-  path_m_ = 0;
-  const Pose X_10 = X_01.inverse();
-  const auto addIfNear = [&](Kind kind, std::uint32_t i, std::uint32_t j) {
-    Vec3 a[3], b[3];
-    const int count = pointsOf(part0, kind, 0, i, a);
-    for (int k = 0; k < count; ++k) a[k] = X_10 * a[k];
-    pointsOf(part1, kind, 1, j, b);
-    const Nearest nearest = nearestOf(kind, a, b);
-    const double distance_m = (nearest.p - nearest.q).norm();
-    if (distance_m > margin_m) return;
-    if (kind != Kind::EdgeOnEdge) {
-      const CornerAndFacet pair = cornerAndFacet(part0, part1, kind, i, j, X_10.R);
-      if (isFlushOn(pair, pair.facet)) return;
-    }
-    near_.push_back({kind, {i, j}, distance_m, 0});
-  };
-  // The items of part 0 that are near part 1's box, then what is near each.
-  thread_local std::vector<std::uint32_t> items, others;
-  const auto searchPairs = [&](Kind kind, const FeatureSet& own, const FeatureSet& other, FeatureKind of_own,
-                               FeatureKind of_other, const Pose& X_other_own) {
-    own.find(grown(moved(other.box(), X_other_own.inverse()), margin_m), of_own, items);
-    for (const std::uint32_t i : items) {
-      Box box;
-      if (of_own == FeatureKind::Corner) {
-        box.add(X_other_own * own.vertices()[own.corners()[i]]);
-      } else {
-        box.add(X_other_own * own.vertices()[own.edges()[i].from]);
-        box.add(X_other_own * own.vertices()[own.edges()[i].to]);
-      }
-      other.find(grown(box, margin_m), of_other, others);
-      for (const std::uint32_t j : others)
-        kind == Kind::FacetOnCorner ? addIfNear(kind, j, i) : addIfNear(kind, i, j);
-    }
-  };
-  searchPairs(Kind::CornerOnFacet, part0, part1, FeatureKind::Corner, FeatureKind::Facet, X_10);
-  searchPairs(Kind::FacetOnCorner, part1, part0, FeatureKind::Corner, FeatureKind::Facet, X_01);
-  searchPairs(Kind::EdgeOnEdge, part0, part1, FeatureKind::Edge, FeatureKind::Edge, X_10);
-}
-
 namespace {
 
 // The same point of part 0 in its own frame, by its weights among the feature's vertices.
@@ -383,16 +219,6 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
     contact.along[1] = (f.b[1] - f.b[0]).normalized();
   }
   return contact;
-}
-
-// True for features of curved surfaces that lie flush in each other: points of pointshells meet these.
-bool isLeftToPoints(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
-                    const Mat3& R_10, const Vec3& n_1) {
-  const auto [i, j] = contact.feature;
-  if (contact.kind == Kind::EdgeOnEdge) return isFlush(part0.edges()[i], part1.edges()[j], R_10, n_1);
-  const CornerAndFacet pair = cornerAndFacet(part0, part1, contact.kind, i, j, R_10);
-  const Vec3& on_facet = contact.p[contact.kind == Kind::CornerOnFacet ? 1 : 0];
-  return isFlushOn(pair, pair.facet) || slidesOverBorder(pair, on_facet);
 }
 
 // Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
@@ -454,14 +280,19 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
   constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
-  constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
-  constexpr double kHeldShare = 0.2;    // assumed: half of what is looked at on the way
+  // Fast parts are searched again every fourth step, unless that is a large share of the part.
+  constexpr double kSteps = 4, kMostOfRadius = 0.05;  // assumed
+  constexpr double kRounding_m = 1e-9;                // assumed: far below the rest gap
+  constexpr double kHeldShare = 0.2;                  // assumed: half of what is looked at on the way
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
-  if (!is_valid_ || path_m_ + step_m + looked_at_m > margin_m_)
-    search(part0, part1, start, 1.25 * step_m + kMargin_m);
+  if (!is_valid_ || travel_m(part0, part1, searched_at_, start) + step_m + looked_at_m > margin_m_) {
+    const double ahead_m =
+        std::min(kSteps * step_m, kMostOfRadius * std::min(part0.radius_m(), part1.radius_m()));
+    search(part0, part1, start, 1.25 * step_m + std::max(kMargin_m, ahead_m));
+  }
   is_valid_ = true;
   last_ = start;
   way_10_.clear();

@@ -10,13 +10,27 @@
 #include "query/curved_facets.h"
 #include "query/edge_joints.h"
 #include "query/feature_angles.h"
+#include "query/touch_search.h"
 
 namespace vps::inline v0 {
 
-struct FeatureSet::Tree {
-  explicit Tree(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {}
-  std::vector<Box> boxes;
-  BoxTree tree;
+struct FeatureSet::Trees {
+  explicit Trees(const FeatureSet& part) : edge_boxes(boxesOfEdges(part)), edges(edge_boxes) {
+    corners.build(part);
+    facets.build(part);
+  }
+  static std::vector<Box> boxesOfEdges(const FeatureSet& part) {
+    std::vector<Box> boxes(part.edges().size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      for (const std::uint32_t v : {part.edges()[i].from, part.edges()[i].to})
+        boxes[i].add(part.vertices()[v]);
+    return boxes;
+  }
+
+  std::vector<Box> edge_boxes;
+  BoxTree edges;
+  CornerTree corners;
+  FacetTree facets;
 };
 
 FeatureSet::FeatureSet() {
@@ -40,17 +54,16 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     facets_.push_back({first + t[0], first + t[1], first + t[2]});
     facet_of[i] = static_cast<std::uint32_t>(facet_flags_.size());
     facet_flags_.push_back(is_sheet ? kTwoSided : 0);
+    const auto& [a, b, c] = facets_.back();
+    normals_.push_back((vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]).normalized());
     neighbours_.push_back({kNone, kNone, kNone});
   }
   const std::size_t first_edge = edges_.size();
   std::vector<std::uint32_t> facets_beside;  // two for each edge
   const std::vector<HalfEdge> half_edges = sortedHalfEdges(mesh);
   std::vector<Vec3> normals(mesh.triangles.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (facet_of[i] == kNone) continue;
-    const auto& [a, b, c] = facets_[facet_of[i]];
-    normals[i] = (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]).normalized();
-  }
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    if (facet_of[i] != kNone) normals[i] = normals_[facet_of[i]];
   std::vector<std::uint8_t> is_curved(mesh.triangles.size(), 0);
   if (!is_sheet) is_curved = findCurvedFacets(half_edges, normals);
   for (std::size_t i = 0; i < is_curved.size(); ++i)
@@ -120,7 +133,7 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
 void FeatureSet::build() {
   std::sort(corners_.begin(), corners_.end());
   corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-  std::vector<std::uint32_t> corner_of(vertices_.size(), 0);
+  std::vector<std::uint32_t> corner_of(vertices_.size(), kNone);
   for (std::uint32_t i = 0; i < corners_.size(); ++i) corner_of[corners_[i]] = i;
   first_edge_.assign(corners_.size() + 1, 0);
   const auto forEachEnd = [&](const auto& visit) {
@@ -133,30 +146,49 @@ void FeatureSet::build() {
   std::vector<std::uint32_t> next(first_edge_.begin(), first_edge_.end() - 1);
   forEachEnd([&](std::uint32_t edge, std::uint32_t corner) { edges_at_[next[corner]++] = edge; });
 
+  buildRays(corner_of);
+
   box_ = Box();
   for (const Vec3& p : vertices_) box_.add(p);
-  const auto plant = [&](FeatureKind kind, std::size_t count, const auto& addPoints) {
-    std::vector<Box> boxes(count);
-    for (std::size_t i = 0; i < count; ++i) addPoints(i, boxes[i]);
-    trees_[static_cast<std::size_t>(kind)] = std::make_unique<const Tree>(std::move(boxes));
-  };
-  plant(FeatureKind::Corner, corners_.size(),
-        [&](std::size_t i, Box& box) { box.add(vertices_[corners_[i]]); });
-  plant(FeatureKind::Edge, edges_.size(), [&](std::size_t i, Box& box) {
-    box.add(vertices_[edges_[i].from]);
-    box.add(vertices_[edges_[i].to]);
-  });
-  plant(FeatureKind::Facet, facets_.size(), [&](std::size_t i, Box& box) {
-    for (const std::uint32_t v : facets_[i]) box.add(vertices_[v]);
-  });
+  trees_ = std::make_unique<const Trees>(*this);
 }
 
-void FeatureSet::find(const Box& box, FeatureKind kind, std::vector<std::uint32_t>& found) const {
+void FeatureSet::buildRays(const std::vector<std::uint32_t>& corner_of) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+      sides;  // a corner, and the vertex at a side's other end
+  for (const auto& t : facets_)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const std::uint32_t corner = corner_of[t[k]]; corner != kNone) {
+        sides.emplace_back(corner, t[(k + 1) % 3]);
+        sides.emplace_back(corner, t[(k + 2) % 3]);
+      }
+  std::sort(sides.begin(), sides.end());
+  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+  rays_.clear();
+  first_ray_.assign(corners_.size() + 1, 0);
+  for (const auto& [corner, end] : sides) {
+    const Vec3 way = vertices_[end] - vertices_[corners_[corner]];
+    if (!(way.squaredNorm() > 0)) continue;
+    rays_.push_back(way.normalized());
+    ++first_ray_[corner + 1];
+  }
+  for (std::size_t i = 1; i < first_ray_.size(); ++i) first_ray_[i] += first_ray_[i - 1];
+}
+
+void FeatureSet::findEdges(const Box& box, std::vector<std::uint32_t>& found) const {
   found.clear();
-  trees_[static_cast<std::size_t>(kind)]->tree.forEachOverlap(box, [&](std::uint32_t i) {
+  trees_->edges.forEachOverlap(box, [&](std::uint32_t i) {
     found.push_back(i);
     return true;
   });
+}
+
+const CornerTree& FeatureSet::cornerTree() const {
+  return trees_->corners;
+}
+
+const FacetTree& FeatureSet::facetTree() const {
+  return trees_->facets;
 }
 
 }  // namespace vps::inline v0

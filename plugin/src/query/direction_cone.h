@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cones of directions, which bound where the normals of many facets point.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "vps/pose.h"
+
+namespace vps::inline v0 {
+
+/// All directions within an angle of an axis.
+struct DirectionCone {
+  Vec3 axis = Vec3::UnitZ();  ///< unit
+  double angle_rad = std::numbers::pi, cosine = -1, sine = 0;
+
+  static DirectionCone around(const Vec3& axis, double angle_rad) {
+    const double angle = std::min(angle_rad, std::numbers::pi);
+    return {axis, angle, std::cos(angle), std::sin(angle)};
+  }
+  static DirectionCone everywhere() { return {}; }
+
+  /// The greatest angle between a direction of the cone and this one.
+  [[nodiscard]] double farthest_rad(const Vec3& direction) const {
+    return std::acos(std::clamp(axis.dot(direction), -1.0, 1.0)) + angle_rad;
+  }
+};
+
+/// A cone that holds all of them; everywhere() if there are none. Its axis is the mean of theirs.
+inline DirectionCone coneOver(std::span<const DirectionCone> cones) {
+  Vec3 sum = Vec3::Zero();
+  for (const DirectionCone& c : cones) sum += c.axis;
+  if (!(sum.norm() > 1e-6)) return DirectionCone::everywhere();
+  const Vec3 axis = sum.normalized();
+  double angle_rad = 0;
+  for (const DirectionCone& c : cones) angle_rad = std::max(angle_rad, c.farthest_rad(axis));
+  return DirectionCone::around(axis, angle_rad);
+}
+
+/// True if no direction of a cone is within slack_rad of one of another.
+/// @param axis  of the first cone, in the frame of the second
+inline bool areApart(const DirectionCone& a, const Vec3& axis, const DirectionCone& b, double slack_rad) {
+  // cos(alpha + beta + slack) >= cos(alpha + beta) - slack, while the angle is less than a half turn.
+  return a.angle_rad + b.angle_rad + slack_rad < std::numbers::pi &&
+         axis.dot(b.axis) < a.cosine * b.cosine - a.sine * b.sine - slack_rad;
+}
+
+/// True if all directions of a cone are within angle_rad (up to a quarter turn) of all opposite to another's.
+/// @param axis  of the first cone, in the frame of the second
+inline bool areOpposite(const DirectionCone& a, const Vec3& axis, const DirectionCone& b, double angle_rad) {
+  const double left_rad = angle_rad - a.angle_rad - b.angle_rad, square = left_rad * left_rad;
+  return left_rad > 0 && -axis.dot(b.axis) > 1 - square / 2 + square * square / 24;  // at least the cosine
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a pair of features, and where two features are nearest.
+#pragma once
+
+#include "vps/feature_motion.h"
+
+namespace vps::inline v0 {
+
+/// The nearest points of two features.
+struct Nearest {
+  Vec3 p = Vec3::Zero(), q = Vec3::Zero();  ///< on part 0, on part 1
+  bool is_end = false;                      ///< of two edges: at an end of one of them
+};
+
+/// @param a, b  corners of the features, as pointsOf() gives them, in one frame
+Nearest nearestOf(FeatureContact::Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]);
+
+/// The corners of a feature in its part's own frame. Returns how many it has.
+/// @param i  part 0 or 1
+int pointsOf(const FeatureSet& part, FeatureContact::Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]);
+
+}  // namespace vps::inline v0

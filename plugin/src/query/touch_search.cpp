@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/touch_search.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "query/touch_cone.h"
+#include "vps/feature_set.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+Box boxAround(const std::vector<DirectedTree::Item>& items, std::span<const std::uint32_t> which,
+              Vec3 DirectedTree::Item::*member) {
+  Box box;
+  for (const std::uint32_t i : which) box.add(items[i].*member);
+  return box;
+}
+
+// The place in the order at which a node's items are parted.
+std::uint32_t part(const std::vector<DirectedTree::Item>& items, std::span<std::uint32_t> which) {
+  constexpr double kSimilar = 0.3;  // measured on a thread in its nut: 0.25 to 0.5 are alike
+  int axis = 0;
+  const Box directions = boxAround(items, which, &DirectedTree::Item::direction);
+  if (directions.size().maxCoeff(&axis) > kSimilar) {
+    const double middle = directions.center()[axis];
+    const auto half = std::partition(which.begin(), which.end(),
+                                     [&](std::uint32_t i) { return items[i].direction[axis] < middle; });
+    return static_cast<std::uint32_t>(half - which.begin());
+  }
+  boxAround(items, which, &DirectedTree::Item::p).size().maxCoeff(&axis);
+  const auto half = which.begin() + static_cast<std::ptrdiff_t>(which.size() / 2);
+  // A total order, so that every standard library makes the same halves.
+  std::nth_element(which.begin(), half, which.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double pa = items[a].p[axis], pb = items[b].p[axis];
+    return pa != pb ? pa < pb : a < b;
+  });
+  return static_cast<std::uint32_t>(which.size() / 2);
+}
+
+}  // namespace
+
+void DirectedTree::build(const std::vector<Item>& items) {
+  nodes.clear();
+  order.resize(items.size());
+  std::iota(order.begin(), order.end(), 0U);
+  if (!order.empty()) nodes.push_back({0, static_cast<std::uint32_t>(order.size()), 0});
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const auto [first, end, left] = nodes[n];
+    if (end - first == 1) continue;
+    const std::uint32_t half = first + vps::part(items, std::span(order).subspan(first, end - first));
+    nodes[n].left = static_cast<std::uint32_t>(nodes.size());
+    nodes.push_back({first, half, 0});
+    nodes.push_back({half, end, 0});
+  }
+}
+
+void FacetTree::build(const FeatureSet& part) {
+  const auto boxOf = [&](std::uint32_t facet) {
+    Box box;
+    for (const std::uint32_t v : part.facets()[facet]) box.add(part.vertices()[v]);
+    return box;
+  };
+  const auto coneOf = [&](std::uint32_t facet) {
+    return part.isTwoSided(facet) ? DirectionCone::everywhere()
+                                  : DirectionCone::around(part.normal(facet), 0);
+  };
+  std::vector<DirectedTree::Item> items;
+  for (std::uint32_t i = 0; i < part.facets().size(); ++i)
+    items.push_back({boxOf(i).center(), part.normal(i)});
+  tree.build(items);
+  bounds.clear();
+  std::vector<DirectionCone> cones;
+  for (const DirectedTree::Node& node : tree.nodes) {
+    Bounds& b = bounds.emplace_back();
+    cones.clear();
+    for (std::uint32_t k = node.first; k < node.end; ++k) {
+      const std::uint32_t facet = tree.order[k];
+      const Box box = boxOf(facet);
+      b.box.add(box.min);
+      b.box.add(box.max);
+      b.is_curved = b.is_curved && part.isCurved(facet);
+      cones.push_back(coneOf(facet));
+    }
+    b.normals = coneOver(cones);
+  }
+}
+
+namespace {
+
+/// Two different directions of the faces around a corner, or everywhere() where there are fewer.
+struct Faces {
+  DirectionCone cone[2];
+};
+
+Faces facesAt(const FeatureSet& part, std::uint32_t corner) {
+  constexpr double kCosSame = 0.9;  // assumed: 26 degrees; a thread's crest and flank are 60 apart
+  std::vector<DirectionCone> groups[2];
+  for (const std::uint32_t edge : part.edgesAt(corner))
+    for (const Vec3& n : part.edges()[edge].normal) {
+      if (!(n.squaredNorm() > 0)) continue;
+      for (std::vector<DirectionCone>& group : groups)
+        if (group.empty() || group[0].axis.dot(n) > kCosSame) {
+          group.push_back(DirectionCone::around(n, 0));
+          break;
+        }
+    }
+  return {{coneOver(groups[0]), coneOver(groups[1])}};
+}
+
+// The faces of several corners, in the order in which they are most alike.
+Faces facesOver(const std::vector<Faces>& all) {
+  std::vector<DirectionCone> cones[2];
+  for (const Faces& f : all) {
+    const bool is_swapped = f.cone[0].axis.dot(all[0].cone[0].axis) < f.cone[1].axis.dot(all[0].cone[0].axis);
+    for (const int k : {0, 1}) cones[k].push_back(f.cone[is_swapped ? 1 - k : k]);
+  }
+  return {{coneOver(cones[0]), coneOver(cones[1])}};
+}
+
+}  // namespace
+
+void CornerTree::build(const FeatureSet& part) {
+  std::vector<std::uint32_t> corners;
+  std::vector<DirectedTree::Item> items;
+  std::vector<DirectionCone> touch;
+  std::vector<Faces> faces;
+  for (std::uint32_t i = 0; i < part.corners().size(); ++i) {
+    const std::optional<DirectionCone> cone = touchCone(part.raysAt(i), kTouchSlope);
+    if (!cone) continue;
+    corners.push_back(i);
+    items.push_back({part.vertices()[part.corners()[i]], cone->axis});
+    touch.push_back(*cone);
+    faces.push_back(facesAt(part, i));
+  }
+  tree.build(items);
+  bounds.clear();
+  std::vector<DirectionCone> cones;
+  std::vector<Faces> all;
+  for (const DirectedTree::Node& node : tree.nodes) {
+    Bounds& b = bounds.emplace_back();
+    Box box;
+    cones.clear();
+    all.clear();
+    for (std::uint32_t k = node.first; k < node.end; ++k) {
+      box.add(items[tree.order[k]].p);
+      cones.push_back(touch[tree.order[k]]);
+      all.push_back(faces[tree.order[k]]);
+    }
+    b.center = box.center();
+    b.radius_m = 0.5 * box.size().norm();
+    b.touch = coneOver(cones);
+    const Faces over = facesOver(all);
+    for (const int k : {0, 1}) b.faces[k] = over.cone[k];
+  }
+  for (std::uint32_t& i : tree.order) i = corners[i];
+}
+
+namespace {
+
+constexpr double kFlush_rad = 0.349;  // 20 degrees, as kCosFlush
+
+double squaredDistance(const Box& box, const Vec3& p) {
+  return (p - p.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();
+}
+
+/// A node of the corners, in the frame of the facets.
+struct Placed {
+  Vec3 center, touch, faces[2];
+};
+
+class TouchSearch {
+ public:
+  TouchSearch(const FeatureSet& with_corners, const FeatureSet& with_facets, const Pose& X_fc,
+              double margin_m, double slack_rad, std::vector<TouchPair>& found)
+      : corners_of_(with_corners),
+        facets_of_(with_facets),
+        corners_(with_corners.cornerTree()),
+        facets_(with_facets.facetTree()),
+        X_(X_fc),
+        margin_m_(margin_m),
+        slack_rad_(slack_rad),
+        surely_flush_(slack_rad < kFlush_rad ? -std::cos(kFlush_rad - slack_rad) : -2),
+        found_(found) {}
+
+  void run() {
+    if (!corners_.tree.nodes.empty() && !facets_.tree.nodes.empty()) visit(0, placed(0), 0);
+  }
+
+ private:
+  [[nodiscard]] Placed placed(std::uint32_t c) const {
+    const CornerTree::Bounds& b = corners_.bounds[c];
+    return {X_ * b.center, X_.R * b.touch.axis, {X_.R * b.faces[0].axis, X_.R * b.faces[1].axis}};
+  }
+
+  // Descends in the tree whose node is larger.
+  void visit(std::uint32_t c, const Placed& at, std::uint32_t f) {
+    const CornerTree::Bounds& corner = corners_.bounds[c];
+    const FacetTree::Bounds& facet = facets_.bounds[f];
+    if (!canTouch(corner, at, facet)) return;
+    const DirectedTree::Node &cn = corners_.tree.nodes[c], &fn = facets_.tree.nodes[f];
+    if (cn.left == 0 && fn.left == 0) return addPairs(cn, fn);
+    const bool is_facet_larger = facet.box.size().norm() > 2 * corner.radius_m;
+    if (cn.left == 0 || (fn.left != 0 && is_facet_larger)) {
+      visit(c, at, fn.left);
+      visit(c, at, fn.left + 1);
+    } else {
+      visit(cn.left, placed(cn.left), f);
+      visit(cn.left + 1, placed(cn.left + 1), f);
+    }
+  }
+
+  [[nodiscard]] bool canTouch(const CornerTree::Bounds& corner, const Placed& at,
+                              const FacetTree::Bounds& facet) const {
+    const double reach_m = corner.radius_m + margin_m_;
+    if (!(squaredDistance(facet.box, at.center) <= reach_m * reach_m)) return false;
+    if (areApart(corner.touch, at.touch, facet.normals, slack_rad_)) return false;
+    if (!facet.is_curved) return true;
+    for (const int k : {0, 1})
+      if (areOpposite(corner.faces[k], at.faces[k], facet.normals, kFlush_rad - slack_rad_)) return false;
+    return true;
+  }
+
+  void addPairs(const DirectedTree::Node& corners, const DirectedTree::Node& facets) {
+    for (std::uint32_t i = corners.first; i < corners.end; ++i) {
+      const std::uint32_t corner = corners_.tree.order[i];
+      surround(corner);
+      for (std::uint32_t k = facets.first; k < facets.end; ++k) {
+        const std::uint32_t facet = facets_.tree.order[k];
+        Box box;
+        for (const std::uint32_t v : facets_of_.facets()[facet]) box.add(facets_of_.vertices()[v]);
+        if (squaredDistance(box, p_) <= margin_m_ * margin_m_ && canTouch(facet))
+          found_.push_back({corner, facet});
+      }
+    }
+  }
+
+  void surround(std::uint32_t corner) {
+    p_ = X_ * corners_of_.vertices()[corners_of_.corners()[corner]];
+    rays_.clear();
+    for (const Vec3& ray : corners_of_.raysAt(corner)) rays_.push_back(X_.R * ray);
+    faces_.clear();
+    for (const std::uint32_t edge : corners_of_.edgesAt(corner))
+      for (const Vec3& n : corners_of_.edges()[edge].normal) faces_.push_back(X_.R * n);
+  }
+
+  [[nodiscard]] bool canTouch(std::uint32_t facet) const {
+    const Vec3& n = facets_of_.normal(facet);
+    if (!facets_of_.isTwoSided(facet))
+      for (const Vec3& ray : rays_)
+        if (n.dot(ray) < -kTouchSlope - slack_rad_) return false;
+    return !facets_of_.isCurved(facet) || std::none_of(faces_.begin(), faces_.end(), [&](const Vec3& own) {
+      return own.dot(n) < surely_flush_;
+    });
+  }
+
+  const FeatureSet &corners_of_, &facets_of_;
+  const CornerTree& corners_;
+  const FacetTree& facets_;
+  const Pose& X_;
+  double margin_m_, slack_rad_, surely_flush_;
+  std::vector<TouchPair>& found_;
+  // What surrounds a corner, in the frame of the facets.
+  Vec3 p_;
+  std::vector<Vec3> rays_, faces_;
+};
+
+}  // namespace
+
+void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Pose& X_fc,
+                    double margin_m, double slack_rad, std::vector<TouchPair>& found) {
+  found.clear();
+  TouchSearch(with_corners, with_facets, X_fc, margin_m, slack_rad, found).run();
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/touch_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "query/touch_cone.h"
+#include "support/screw.h"
+#include "vps/feature_set.h"
+#include "vps/mesh.h"
+
+namespace vps {
+namespace {
+
+Vec3 direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+bool isAllowed(const std::vector<Vec3>& rays, const Vec3& n, double slope) {
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
+}
+
+// Rays as of spikes, edges, flat places, saddles and by chance; the cone may be larger than it must.
+TEST(TouchCone, HoldsEveryDirectionThatAllRaysAllow) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> wide(0.1, 3.0);
+  int empty = 0, narrow = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const Vec3 axis = direction(random);
+    const double spread = wide(random);
+    std::vector<Vec3> rays;
+    for (int i = 0; i < 3 + trial % 6; ++i) rays.push_back((axis + spread * direction(random)).normalized());
+    if (trial % 3 == 0) rays.push_back(-rays[0]);  // an edge goes straight on
+    const auto cone = touchCone(rays, kTouchSlope);
+    if (!cone) ++empty;
+    if (cone && cone->angle_rad < 1.5) ++narrow;
+    for (int k = 0; k < 3000; ++k) {
+      const Vec3 n = direction(random);
+      if (!isAllowed(rays, n, kTouchSlope)) continue;
+      ASSERT_TRUE(cone) << trial;
+      ASSERT_LE(std::acos(std::clamp(n.dot(cone->axis), -1.0, 1.0)), cone->angle_rad + 1e-12) << trial;
+    }
+  }
+  EXPECT_GT(empty, 5);
+  EXPECT_GT(narrow, 100);
+}
+
+FeatureSet featuresOf(const Mesh& mesh) {
+  FeatureSet features;
+  features.append(mesh, Pose(), false);
+  features.build();
+  return features;
+}
+
+using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+// Every corner against every facet, by the definition.
+// @param turn  of the parts since the search
+// @param slack_rad  for sines and cosines
+Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose& X, double margin_m,
+                const Mat3& turn, double slack_rad) {
+  const double surely_flush = -std::cos(20 * std::numbers::pi / 180 - slack_rad);
+  const Mat3 R = turn * X.R;
+  Pairs found;
+  for (std::uint32_t c = 0; c < corners.corners().size(); ++c) {
+    const Vec3 p = X * corners.vertices()[corners.corners()[c]];
+    for (std::uint32_t f = 0; f < facets.facets().size(); ++f) {
+      Box box;
+      for (const std::uint32_t v : facets.facets()[f]) box.add(facets.vertices()[v]);
+      const Vec3& n = facets.normal(f);
+      bool can_touch = (p - p.cwiseMax(box.min).cwiseMin(box.max)).norm() <= margin_m;
+      for (const Vec3& ray : corners.raysAt(c))
+        can_touch = can_touch && n.dot(R * ray) >= -kTouchSlope - slack_rad;
+      if (facets.isCurved(f))
+        for (const std::uint32_t edge : corners.edgesAt(c))
+          for (const Vec3& own : corners.edges()[edge].normal)
+            can_touch = can_touch && !((R * own).dot(n) < surely_flush);
+      if (can_touch) found.emplace(c, f);
+    }
+  }
+  return found;
+}
+
+bool holds(const Pairs& all, const Pairs& some) {
+  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+}
+
+TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
+  test::ThreadShape thread;
+  thread.columns = 48;
+  thread.rows_per_pitch = 16;
+  thread.length_m = 2 * thread.pitch_m;
+  const FeatureSet nut = featuresOf(test::makeNut(thread, 1.8 * thread.major_m));
+  const FeatureSet rod = featuresOf(test::makeThreadedRod(thread));
+  const FeatureSet box = featuresOf(makeBox(Vec3(6e-3, 8e-3, 5e-3)));
+  const FeatureSet tube = featuresOf(makeTube(5e-3, 3e-3, 6e-3, 60));
+  const FeatureSet ball = featuresOf(makeSphere(5e-3, 3));
+  std::mt19937 random(5);
+  std::size_t count = 0;
+  const auto compare = [&](const FeatureSet& a, const FeatureSet& b, const Pose& X, double margin_m,
+                           double slack_rad) {
+    std::vector<TouchPair> found;
+    findTouchPairs(a, b, X, margin_m, slack_rad, found);
+    Pairs pairs;
+    for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
+    EXPECT_EQ(pairs.size(), found.size());
+    // All that can touch after a turn by less than the slack, and not more than a product's slack lets in.
+    EXPECT_TRUE(holds(searchAll(a, b, X, margin_m, Mat3::Identity(), slack_rad), pairs));
+    for (int k = 0; k < 3; ++k) {
+      const Mat3 turn = rotationFromVector(slack_rad * direction(random));
+      EXPECT_TRUE(holds(pairs, searchAll(a, b, X, margin_m, turn, 0)));
+    }
+    count += pairs.size();
+  };
+  const FeatureSet* all[] = {&nut, &rod, &box, &tube, &ball};
+  std::uniform_real_distribution<double> away(0, 4e-3), margin(10e-6, 1e-3), slack(0, 0.3);
+  for (const FeatureSet* a : all)
+    for (const FeatureSet* b : all)
+      for (int trial = 0; trial < 3; ++trial) {
+        const Pose X{rotationFromVector(3 * direction(random)), away(random) * direction(random)};
+        compare(*a, *b, X, margin(random), slack(random));
+      }
+  EXPECT_GT(count, 1000u);
+}
+
+// A thread in its nut: its crests cannot touch anything but faces that lie flush on theirs.
+TEST(TouchSearch, LeavesOutFlushThreads) {
+  test::ThreadShape thread;
+  thread.length_m = 10 * thread.pitch_m;
+  const FeatureSet rod = featuresOf(test::makeThreadedRod(thread));
+  thread.length_m = 5 * thread.pitch_m;
+  thread.clearance_m = 20e-6;
+  const FeatureSet nut = featuresOf(test::makeNut(thread, 1.8 * thread.major_m));
+  std::vector<TouchPair> found;
+  findTouchPairs(rod, nut, Pose::translation({0, 0, 2.5 * thread.pitch_m}), 100e-6, 0.01, found);
+  EXPECT_LT(found.size(), rod.corners().size());
+}
+
+}  // namespace
+}  // namespace vps
