@@ -9,6 +9,7 @@
 #include <random>
 
 #include "support/lathe.h"
+#include "support/screw.h"
 #include "vps/mesh_distance.h"
 
 namespace vps {
@@ -249,6 +250,36 @@ TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
     ASSERT_FALSE(found.empty()) << overlap;
     EXPECT_LT(found[0].gap_m, -0.9 * overlap);
   }
+}
+
+// A thread's rod that turns into its nut, fast and slowly, and jumps.
+TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
+  test::ThreadShape thread;
+  thread.columns = 48;
+  thread.rows_per_pitch = 16;
+  thread.length_m = 3 * thread.pitch_m;
+  const EdgeSet nut = edgesOf(test::makeNut(thread, 1.8 * thread.major_m)),
+                rod = edgesOf(test::makeThreadedRod(thread));
+  CrossingMemory memory;
+  std::size_t count = 0;
+  double turn_rad = 0;
+  for (int i = 0; i < 300; ++i) {
+    turn_rad += i % 100 == 50 ? 1.0 : i < 150 ? 1e-3 : 2e-2;
+    const Pose X{rotationFromVector(Vec3(2e-3 * std::sin(0.1 * i), 0, turn_rad)),
+                 Vec3(50e-6 * std::sin(0.3 * i), 0, turn_rad / (2 * std::numbers::pi) * thread.pitch_m)};
+    const double cutoff_m = i % 7 == 0 ? 120e-6 : 30e-6;
+    std::vector<EdgeCrossing> with, without;
+    findCrossings(nut, rod, X, cutoff_m, 60e-6, without);
+    findCrossings(nut, rod, X, cutoff_m, 60e-6, with, &memory);
+    ASSERT_EQ(with.size(), without.size()) << i;
+    for (std::size_t k = 0; k < with.size(); ++k) {
+      ASSERT_EQ(with[k].edge[0], without[k].edge[0]);
+      ASSERT_EQ(with[k].edge[1], without[k].edge[1]);
+      ASSERT_EQ(with[k].gap_m, without[k].gap_m);
+    }
+    count += with.size();
+  }
+  EXPECT_GT(count, 50u);
 }
 
 }  // namespace

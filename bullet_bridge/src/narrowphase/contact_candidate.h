@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/contact_key.h"
+#include "vps/edge_crossing.h"
 #include "vps/pose.h"
 #include "vps/query.h"
 #include "vps_bullet/settings.h"
@@ -106,9 +107,11 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
 
 /// Crossings of the edges of two Shapes that are nearer than the cutoff or overlap by no more than the depth;
 /// their distance and normal are exact.
+/// @param memory  of the two Shapes, or null
 /// @return how many exceeded settings.candidate_limit, which counts all candidates in `out`
 std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, double cutoff_m,
-                                   double depth_m, const Settings& settings, std::vector<Candidate>& out);
+                                   double depth_m, const Settings& settings, CrossingMemory* memory,
+                                   std::vector<Candidate>& out);
 
 // Reducing.
 

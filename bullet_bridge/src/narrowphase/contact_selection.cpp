@@ -75,7 +75,7 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
   if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
       pair.shape[0] && pair.shape[1])
     left_out += findCrossingCandidates(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
-                                       context.settings, out);
+                                       context.settings, state ? &state->crossings : nullptr, out);
   context.points_tested += tested;
   context.left_out += left_out;
 }

@@ -14,6 +14,7 @@
 #include "native_shapes/shape_key.h"
 #include "solver/penalty_pair.h"
 #include "solver/step_check.h"
+#include "vps/edge_crossing.h"
 #include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
@@ -45,6 +46,7 @@ struct PairState {
   bool is_incomplete = false;                ///< the solved step needed more contacts than the selection has
   std::unique_ptr<StepCheck> check;          ///< with rigid contact
   FeatureMotion features;                    ///< with rigid contact: of the models
+  CrossingMemory crossings;                  ///< with rigid contact: of the models' edges
   PenaltyPair penalty;                       ///< with penalty contact
   bool is_registered = false;                ///< penalty is in the context's PenaltyContacts
   std::optional<QueryState> query_state[2];  ///< of side 0's points in side 1's map, and the reverse

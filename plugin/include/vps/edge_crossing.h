@@ -36,6 +36,9 @@ struct EdgeSegment {
 VPS_API void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner,
                          std::vector<EdgeSegment>& out);
 
+struct EdgeCrossing;
+class CrossingMemory;
+
 /// Edges with a hierarchy of bounding spheres.
 class VPS_API EdgeSet {
  public:
@@ -50,7 +53,10 @@ class VPS_API EdgeSet {
   }
 
  private:
-  friend class CrossingSearch;
+  friend class EdgePairSearch;
+  friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                                    double cutoff_m, double depth_m, std::vector<EdgeCrossing>& out,
+                                    CrossingMemory* memory);
   struct Node {
     Vec3 center = Vec3::Zero();
     double radius_m = 0;
@@ -84,12 +90,36 @@ struct EdgeCrossing {
   double gap_m = 0;                          ///< n (p[0] - p[1]); negative where they overlap
 };
 
+/// The pairs of edges that are near each other, kept while two parts move little.
+class VPS_API CrossingMemory {
+ public:
+  /// To be called when a set changes.
+  void reset() noexcept { is_valid_ = false; }
+
+ private:
+  friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                                    double cutoff_m, double depth_m, std::vector<EdgeCrossing>& out,
+                                    CrossingMemory* memory);
+  struct Pair {
+    std::uint32_t edge[2];
+    double distance_m;  // at the search
+  };
+  void search(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m);
+
+  std::vector<Pair> near_;
+  Pose searched_at_, last_;
+  double reach_m_ = 0;
+  bool is_valid_ = false;
+};
+
 /// Appends the crossings with -depth_m <= gap <= cutoff_m, sorted by edge of set 0, then of set 1. Edges
 /// within 5 degrees of parallel have no single crossing; the shells' points find their contacts.
 /// @param X_01  frame of set 1 in that of set 0
-/// Cost: the pairs of near spheres, and 30 ns for each pair of segments. Allocates only in `out`.
+/// @param memory  of these two sets, from earlier poses; it changes the cost and not the answer
+/// Cost: a search for near pairs, with a memory only when the motion has used its margin, and 30 ns for each
+/// pair. Allocates in `out` and the memory.
 /// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                           double depth_m, std::vector<EdgeCrossing>& out);
+                           double depth_m, std::vector<EdgeCrossing>& out, CrossingMemory* memory = nullptr);
 
 }  // namespace vps::inline v0

@@ -10,6 +10,8 @@
 #include "mesh/mesh_edges.h"
 #include "query/edge_joints.h"
 #include "query/feature_angles.h"
+#include "query/feature_points.h"
+#include "query/kept_list.h"
 
 namespace vps::inline v0 {
 
@@ -137,46 +139,64 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-/// Descends both hierarchies at once.
-class CrossingSearch {
+/// Descends both hierarchies at once; calls visit(i0, i1, distance) for each pair of segments within reach_m.
+class EdgePairSearch {
  public:
-  CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                 double depth_m, std::vector<EdgeCrossing>& out)
-      : edges0_(edges0),
-        edges1_(edges1),
-        X_01_(X_01),
-        X_10_(X_01.inverse()),
-        cutoff_m_(cutoff_m),
-        depth_m_(depth_m),
-        out_(out) {}
+  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m)
+      : edges0_(edges0), edges1_(edges1), X_01_(X_01), X_10_(X_01.inverse()), reach_m_(reach_m) {}
 
-  void run() {
-    if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty()) visit(edges0_.nodes_[0], edges1_.nodes_[0]);
+  template <typename Visit>
+  void run(const Visit& found) const {
+    if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty())
+      visit(edges0_.nodes_[0], edges1_.nodes_[0], found);
   }
 
  private:
   using Node = EdgeSet::Node;
 
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
-  void visit(const Node& a, const Node& b) {
+  template <typename Visit>
+  void visit(const Node& a, const Node& b, const Visit& found) const {
     const Vec3 b_center = X_01_ * b.center;
-    const double reach_m = a.radius_m + b.radius_m + std::max(cutoff_m_, depth_m_);
+    const double reach_m = a.radius_m + b.radius_m + reach_m_;
     if ((a.center - b_center).squaredNorm() > reach_m * reach_m) return;
     // The sphere of a long segment contains much space that is far from the segment.
-    const double near_m = std::max(cutoff_m_, depth_m_);
-    if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + near_m)) return;
-    if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + near_m)) return;
+    if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + reach_m_)) return;
+    if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + reach_m_)) return;
     if (a.is_leaf != 0 && b.is_leaf != 0) {
-      cross(a.first, b.first);
+      const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
+      const Nearest nearest = nearestOfSegments(s0.from, s0.to, X_01_ * s1.from, X_01_ * s1.to);
+      const double distance_m = (nearest.p - nearest.q).norm();
+      if (distance_m <= reach_m_) found(a.first, b.first, distance_m);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b);
+      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b, found);
     } else {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(a, edges1_.nodes_[b.first + i]);
+      for (std::uint32_t i = 0; i < 2; ++i) visit(a, edges1_.nodes_[b.first + i], found);
     }
   }
 
+  const EdgeSet &edges0_, &edges1_;
+  const Pose& X_01_;
+  const Pose X_10_;
+  double reach_m_;
+};
+
+namespace {
+
+/// Tests pairs of segments.
+class CrossingTest {
+ public:
+  CrossingTest(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
+               double depth_m, std::vector<EdgeCrossing>& out)
+      : segments0_(edges0.segments()),
+        segments1_(edges1.segments()),
+        X_01_(X_01),
+        cutoff_m_(cutoff_m),
+        depth_m_(depth_m),
+        out_(out) {}
+
   void cross(std::uint32_t i0, std::uint32_t i1) {
-    const EdgeSegment &s0 = edges0_.segments_[i0], &s1 = edges1_.segments_[i1];
+    const EdgeSegment &s0 = segments0_[i0], &s1 = segments1_[i1];
     const Vec3 from1 = X_01_ * s1.from;
     const Vec3 way0 = s0.to - s0.from, way1 = X_01_.R * (s1.to - s1.from);
     const double length0_m = way0.norm(), length1_m = way1.norm();
@@ -207,17 +227,55 @@ class CrossingSearch {
     out_.push_back(c);
   }
 
-  const EdgeSet &edges0_, &edges1_;
+ private:
+  const std::vector<EdgeSegment>&segments0_, &segments1_;
   const Pose& X_01_;
-  const Pose X_10_;
   double cutoff_m_, depth_m_;
   std::vector<EdgeCrossing>& out_;
 };
 
+// Segments that cross are within this distance of each other: both points may lie past an end.
+double reachOfCrossing_m(double cutoff_m, double depth_m) {
+  const double gap_m = std::max(cutoff_m, depth_m);
+  return gap_m + 2 * (kPast_m + kPastShare * gap_m);
+}
+
+}  // namespace
+
+void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m) {
+  near_.clear();
+  EdgePairSearch(edges0, edges1, X_01, reach_m)
+      .run([&](std::uint32_t i0, std::uint32_t i1, double distance_m) {
+        near_.push_back({{i0, i1}, distance_m});
+      });
+  searched_at_ = X_01;
+  reach_m_ = reach_m;
+  is_valid_ = true;
+}
+
 void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                   double depth_m, std::vector<EdgeCrossing>& out) {
+                   double depth_m, std::vector<EdgeCrossing>& out, CrossingMemory* memory) {
+  if (edges0.segments().empty() || edges1.segments().empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  CrossingSearch(edges0, edges1, X_01, cutoff_m, depth_m, out).run();
+  const double needed_m = reachOfCrossing_m(cutoff_m, depth_m);
+  CrossingTest test(edges0, edges1, X_01, cutoff_m, depth_m, out);
+  if (memory == nullptr) {
+    EdgePairSearch(edges0, edges1, X_01, needed_m).run([&](std::uint32_t i0, std::uint32_t i1, double) {
+      test.cross(i0, i1);
+    });
+  } else {
+    const Ball ball0{edges0.nodes_[0].center, edges0.nodes_[0].radius_m};
+    const Ball ball1{edges1.nodes_[0].center, edges1.nodes_[0].radius_m};
+    double way_m = memory->is_valid_ ? travel_m(ball0, ball1, memory->searched_at_, X_01) : 0;
+    if (!memory->is_valid_ || way_m + needed_m > memory->reach_m_) {
+      const double step_m = memory->is_valid_ ? travel_m(ball0, ball1, memory->last_, X_01) : 0;
+      memory->search(edges0, edges1, X_01, needed_m + searchMargin_m(step_m, ball0, ball1));
+      way_m = 0;
+    }
+    memory->last_ = X_01;
+    for (const CrossingMemory::Pair& pair : memory->near_)
+      if (pair.distance_m - way_m <= needed_m) test.cross(pair.edge[0], pair.edge[1]);
+  }
   std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
     return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];
   });

@@ -6,6 +6,7 @@
 
 #include "query/feature_points.h"
 #include "query/flush_features.h"
+#include "query/kept_list.h"
 
 namespace vps::inline v0 {
 
@@ -154,21 +155,15 @@ bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t fe
   return sign * n.dot(part.normal(feature)) > 0 && !isNeighbourNearer(part, feature, p, sign * n);
 }
 
-double angle_rad(const Mat3& R) {
-  // 2 asin(|R - 1| / sqrt(8)): exact for a rotation, and above it by rounding only.
-  return 2 * std::asin(std::min(1.0, (R - Mat3::Identity()).norm() / std::sqrt(8.0)));
+Ball ballAround(const FeatureSet& part) {
+  return {part.box().center(), part.radius_m()};
 }
 
 }  // namespace
 
 double travel_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01_start,
                 const Pose& X_01_end) {
-  const bool is_first = part0.radius_m() <= part1.radius_m();
-  const FeatureSet& smaller = is_first ? part0 : part1;
-  const Pose start = is_first ? X_01_start.inverse() : X_01_start;
-  const Pose end = is_first ? X_01_end.inverse() : X_01_end;
-  const Vec3 moved = end * smaller.box().center() - start * smaller.box().center();
-  return moved.norm() + angle_rad(end.R * start.R.transpose()) * smaller.radius_m();
+  return travel_m(ballAround(part0), ballAround(part1), X_01_start, X_01_end);
 }
 
 Vec3 FeatureContact::normal_0(const Pose& X_01) const {
@@ -279,20 +274,14 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
-  constexpr double kMargin_m = 100e-6;  // assumed: what slow parts move in some ten steps
-  // Fast parts are searched again every fourth step, unless that is a large share of the part.
-  constexpr double kSteps = 4, kMostOfRadius = 0.05;  // assumed
-  constexpr double kRounding_m = 1e-9;                // assumed: far below the rest gap
-  constexpr double kHeldShare = 0.2;                  // assumed: half of what is looked at on the way
+  constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
+  constexpr double kHeldShare = 0.2;    // assumed: half of what is looked at on the way
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, end);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
-  if (!is_valid_ || travel_m(part0, part1, searched_at_, start) + step_m + looked_at_m > margin_m_) {
-    const double ahead_m =
-        std::min(kSteps * step_m, kMostOfRadius * std::min(part0.radius_m(), part1.radius_m()));
-    search(part0, part1, start, 1.25 * step_m + std::max(kMargin_m, ahead_m));
-  }
+  if (!is_valid_ || travel_m(part0, part1, searched_at_, start) + step_m + looked_at_m > margin_m_)
+    search(part0, part1, start, searchMargin_m(step_m, ballAround(part0), ballAround(part1)));
   is_valid_ = true;
   last_ = start;
   way_10_.clear();

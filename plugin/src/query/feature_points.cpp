@@ -7,11 +7,6 @@
 
 namespace vps::inline v0 {
 
-namespace {
-
-using Kind = FeatureContact::Kind;
-
-// Ericson, Real-Time Collision Detection, section 5.1.9.
 Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
   const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
@@ -28,7 +23,7 @@ Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const 
   return {p1 + s * d1, p2 + t * d2, s <= 0 || s >= 1 || t <= 0 || t >= 1};
 }
 
-}  // namespace
+using Kind = FeatureContact::Kind;
 
 Nearest nearestOf(Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]) {
   if (kind == Kind::CornerOnFacet) return {a[0], closestOnTriangleInline(a[0], b[0], b[1], b[2]).q};

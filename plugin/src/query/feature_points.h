@@ -12,6 +12,9 @@ struct Nearest {
   bool is_end = false;                      ///< of two edges: at an end of one of them
 };
 
+/// Of the segments from p1 to q1 and from p2 to q2. Source: Ericson 2005, section 5.1.9.
+Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2);
+
 /// @param a, b  corners of the features, as pointsOf() gives them, in one frame
 Nearest nearestOf(FeatureContact::Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]);
 

@@ -187,29 +187,43 @@ class TouchSearch {
         found_(found) {}
 
   void run() {
-    if (!corners_.tree.nodes.empty() && !facets_.tree.nodes.empty()) visit(0, placed(0), 0);
+    if (corners_.tree.nodes.empty() || facets_.tree.nodes.empty()) return;
+    thread_local std::vector<std::uint32_t> list;
+    list.assign(1, 0);
+    visit(0, list, 0);
   }
 
  private:
-  [[nodiscard]] Placed placed(std::uint32_t c) const {
-    const CornerTree::Bounds& b = corners_.bounds[c];
-    return {X_ * b.center, X_.R * b.touch.axis, {X_.R * b.faces[0].axis, X_.R * b.faces[1].axis}};
+  // The facets' nodes that may be touched by a node of corners are those in the list from `first` on, or
+  // within them. Appends what is left of them for the corners' children, and takes it off again.
+  void visit(std::uint32_t c, std::vector<std::uint32_t>& list, std::size_t first) {
+    const CornerTree::Bounds& corner = corners_.bounds[c];
+    const DirectedTree::Node& node = corners_.tree.nodes[c];
+    const Placed at{X_ * corner.center,
+                    X_.R * corner.touch.axis,
+                    {X_.R * corner.faces[0].axis, X_.R * corner.faces[1].axis}};
+    const std::size_t end = list.size();
+    for (std::size_t i = first; i < end; ++i) descend(corner, at, node.left == 0, list[i], list);
+    if (node.left == 0) {
+      if (list.size() > end) addPairs(corners_.tree.order[node.first], std::span(list).subspan(end));
+    } else if (list.size() > end) {
+      visit(node.left, list, end);
+      visit(node.left + 1, list, end);
+    }
+    list.resize(end);
   }
 
-  // Descends in the tree whose node is larger.
-  void visit(std::uint32_t c, const Placed& at, std::uint32_t f) {
-    const CornerTree::Bounds& corner = corners_.bounds[c];
+  // Appends the nodes within f that the corners may touch: leaves, or for several corners nodes as large.
+  void descend(const CornerTree::Bounds& corner, const Placed& at, bool is_leaf, std::uint32_t f,
+               std::vector<std::uint32_t>& list) const {
     const FacetTree::Bounds& facet = facets_.bounds[f];
     if (!canTouch(corner, at, facet)) return;
-    const DirectedTree::Node &cn = corners_.tree.nodes[c], &fn = facets_.tree.nodes[f];
-    if (cn.left == 0 && fn.left == 0) return addPairs(cn, fn);
-    const bool is_facet_larger = facet.box.size().norm() > 2 * corner.radius_m;
-    if (cn.left == 0 || (fn.left != 0 && is_facet_larger)) {
-      visit(c, at, fn.left);
-      visit(c, at, fn.left + 1);
+    const std::uint32_t left = facets_.tree.nodes[f].left;
+    if (left == 0 || (!is_leaf && facet.box.size().squaredNorm() <= 4 * corner.radius_m * corner.radius_m)) {
+      list.push_back(f);
     } else {
-      visit(cn.left, placed(cn.left), f);
-      visit(cn.left + 1, placed(cn.left + 1), f);
+      descend(corner, at, is_leaf, left, list);
+      descend(corner, at, is_leaf, left + 1, list);
     }
   }
 
@@ -224,22 +238,15 @@ class TouchSearch {
     return true;
   }
 
-  void addPairs(const DirectedTree::Node& corners, const DirectedTree::Node& facets) {
-    for (std::uint32_t i = corners.first; i < corners.end; ++i) {
-      const std::uint32_t corner = corners_.tree.order[i];
-      surround(corner);
-      for (std::uint32_t k = facets.first; k < facets.end; ++k) {
-        const std::uint32_t facet = facets_.tree.order[k];
-        Box box;
-        for (const std::uint32_t v : facets_of_.facets()[facet]) box.add(facets_of_.vertices()[v]);
-        if (squaredDistance(box, p_) <= margin_m_ * margin_m_ && canTouch(facet))
-          found_.push_back({corner, facet});
-      }
+  void addPairs(std::uint32_t corner, std::span<const std::uint32_t> leaves) {
+    surround(corner);
+    for (const std::uint32_t leaf : leaves) {
+      const std::uint32_t facet = facets_.tree.order[facets_.tree.nodes[leaf].first];
+      if (canTouch(facet)) found_.push_back({corner, facet});
     }
   }
 
   void surround(std::uint32_t corner) {
-    p_ = X_ * corners_of_.vertices()[corners_of_.corners()[corner]];
     rays_.clear();
     for (const Vec3& ray : corners_of_.raysAt(corner)) rays_.push_back(X_.R * ray);
     faces_.clear();
@@ -264,7 +271,6 @@ class TouchSearch {
   double margin_m_, slack_rad_, surely_flush_;
   std::vector<TouchPair>& found_;
   // What surrounds a corner, in the frame of the facets.
-  Vec3 p_;
   std::vector<Vec3> rays_, faces_;
 };
 
