@@ -147,6 +147,28 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   EXPECT_NEAR(c.gap_m(end.inverse()), height_m - fall_m, 1e-12);
 }
 
+// A tip that is far away when the step begins: a long way is looked at in stretches.
+TEST(FeatureMotion, AFastCornerMeetsAFaceWhereTheFormulaSays) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  const Body tip(mesh);
+  const double height_m = 7.123e-3, fall_m = 50e-3, slide_m = 5e-3;
+  const Pose start = Pose::translation(Vec3(0, 0, 5e-3 + height_m));
+  const Pose end = Pose::translation(Vec3(slide_m, 0, 5e-3 + height_m - fall_m));
+  const auto found = check(tip, floor, start.inverse(), end.inverse());
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].share, (height_m - kLeast_m) / fall_m, 0.1 * kLeast_m / fall_m);
+  EXPECT_NEAR(found[0].start_m, height_m, 1e-15);
+  EXPECT_NEAR(found[0].gap_m(start.inverse()), height_m, 1e-12);
+  EXPECT_NEAR(found[0].gap_m(end.inverse()), height_m - fall_m, 1e-12);
+  // Past the floor's rim it meets nothing.
+  const Pose beside = Pose::translation(Vec3(31e-3, 0, 5e-3 + height_m));
+  EXPECT_TRUE(check(tip, floor, beside.inverse(), (Pose::translation(Vec3(0, 0, -fall_m)) * beside).inverse())
+                  .empty());
+}
+
 // Two roofs whose ridges cross at a right angle touch in no corner.
 TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
   Mesh roof;

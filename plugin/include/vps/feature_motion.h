@@ -51,6 +51,9 @@ class VPS_API FeatureMotion {
   /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
   /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step
   ///
+  /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, up to
+  /// the first in which features come too near.
+  ///
   /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
   /// surfaces, so that they slide smoothly.
@@ -72,6 +75,8 @@ class VPS_API FeatureMotion {
     double path_m;      // way of the parts until then
   };
   void search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01, double margin_m);
+  void checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& to,
+                    const Pose& end, bool holds_close, std::vector<FeatureContact>& out);
 
   std::vector<Near> near_;
   std::vector<Pose> way_10_;  // scratch

@@ -216,29 +216,54 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-// Poses of part 0 in part 1 on the way: the smaller part's centre moves on a straight line, and it turns
-// evenly.
-void findWay(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
-             std::vector<Pose>& way_10) {
-  constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
-  constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
-  const bool is_first = part0.radius_m() <= part1.radius_m();
-  const FeatureSet& smaller = is_first ? part0 : part1;
-  const Pose from = is_first ? start.inverse() : start, to = is_first ? end.inverse() : end;
-  const Vec3 turn = rotationVector(to.R * from.R.transpose()), center = smaller.box().center();
-  const double sagitta_m = turn.squaredNorm() * smaller.radius_m() / 8;
-  const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
-  const Vec3 c_from = from * center, c_to = to * center;
-  way_10.clear();
-  for (int k = 0; k <= pieces; ++k) {
-    const double share = static_cast<double>(k) / pieces;
-    Pose X = k == pieces ? to : from;
-    if (k > 0 && k < pieces) {
-      X.R = rotationFromVector(share * turn) * from.R;
-      X.p = c_from + share * (c_to - c_from) - X.R * center;
+/// The way between two poses: the smaller part's centre moves on a straight line, and it turns evenly.
+class Way {
+ public:
+  Way(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end)
+      : is_first_(part0.radius_m() <= part1.radius_m()),
+        from_(is_first_ ? start.inverse() : start),
+        to_(is_first_ ? end.inverse() : end),
+        turn_(rotationVector(to_.R * from_.R.transpose())),
+        center_((is_first_ ? part0 : part1).box().center()),
+        radius_m_((is_first_ ? part0 : part1).radius_m()) {}
+
+  /// Of part 0 in part 1.
+  [[nodiscard]] Pose at(double share) const {
+    const Vec3 c_from = from_ * center_, c_to = to_ * center_;
+    Pose X = share < 1 ? from_ : to_;
+    if (share > 0 && share < 1) {
+      X.R = rotationFromVector(share * turn_) * from_.R;
+      X.p = c_from + share * (c_to - c_from) - X.R * center_;
     }
-    way_10.push_back(is_first ? X : X.inverse());
+    return is_first_ ? X : X.inverse();
   }
+
+  /// Poses between which vertices move on nearly straight lines.
+  void divide(std::vector<Pose>& way_10) const {
+    constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
+    constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
+    const double sagitta_m = turn_.squaredNorm() * radius_m_ / 8;
+    const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
+    way_10.clear();
+    for (int k = 0; k <= pieces; ++k) way_10.push_back(at(static_cast<double>(k) / pieces));
+  }
+
+ private:
+  bool is_first_;
+  Pose from_, to_;  // of the smaller part in the other
+  Vec3 turn_, center_;
+  double radius_m_;
+};
+
+double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
+                  const Pose& X_01) {
+  Vec3 a[3], b[3];
+  const int count = pointsOf(part0, contact.kind, 0, contact.feature[0], a);
+  pointsOf(part1, contact.kind, 1, contact.feature[1], b);
+  const Pose X_10 = X_01.inverse();
+  for (int k = 0; k < count; ++k) a[k] = X_10 * a[k];
+  const Nearest nearest = nearestOf(contact.kind, a, b);
+  return (nearest.p - nearest.q).norm();
 }
 
 /// The piece of the way in which features reach a distance first.
@@ -274,10 +299,33 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
+  const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
+  constexpr double kMost = 1e4;  // assumed: some metres of a small part
+  const int stretches =
+      static_cast<int>(std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, kMost));
+  if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
+  const Way way(part0, part1, start, end);
+  const std::size_t first = out.size();
+  Pose from = start;
+  for (int k = 0; k < stretches && out.size() == first; ++k) {
+    const Pose to = k + 1 < stretches ? way.at((k + 1.0) / stretches).inverse() : end;
+    checkStretch(part0, part1, from, to, end, holds_close && k == 0, out);
+    from = to;
+    for (std::size_t i = first; i < out.size(); ++i) {
+      out[i].share = (k + out[i].share) / stretches;
+      out[i].start_m = distanceAt(part0, part1, out[i], start);
+    }
+  }
+}
+
+// @param end  of the whole step; a contact counts if the gap is too small there
+void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
+                                 const Pose& to, const Pose& end, bool holds_close,
+                                 std::vector<FeatureContact>& out) {
   constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
   constexpr double kHeldShare = 0.2;    // assumed: half of what is looked at on the way
   constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
-  const double step_m = travel_m(part0, part1, start, end);
+  const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
   if (!is_valid_ || travel_m(part0, part1, searched_at_, start) + step_m + looked_at_m > margin_m_)
@@ -298,7 +346,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     near.distance_m = (nearest.p - nearest.q).norm();
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
-    if (way_10_.empty()) findWay(part0, part1, start, end, way_10_);
+    if (way_10_.empty()) Way(part0, part1, start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;

@@ -28,12 +28,19 @@ inline double travel_m(const Ball& ball0, const Ball& ball1, const Pose& X_01_st
   return (end * smaller.center - start * smaller.center).norm() + turn_rad * smaller.radius_m;
 }
 
+/// A longer way is looked at in stretches of this length: else all pairs of fast parts would be near.
+inline double longestStretch_m(const Ball& ball0, const Ball& ball1) {
+  constexpr double kLeast_m = 100e-6, kOfRadius = 0.05;  // assumed
+  return std::max(kLeast_m, kOfRadius * std::min(ball0.radius_m, ball1.radius_m));
+}
+
 /// By how much farther than needed to search, so that the list lasts for several steps of step_m each.
 inline double searchMargin_m(double step_m, const Ball& ball0, const Ball& ball1) {
   // Slow parts are searched again when they have moved so far, fast ones every fourth step. assumed
-  constexpr double kLeast_m = 100e-6, kLeastOfRadius = 0.015, kSteps = 4, kMostOfRadius = 0.05;
+  constexpr double kLeast_m = 100e-6, kLeastOfRadius = 0.015, kSteps = 4;
   const double radius_m = std::min(ball0.radius_m, ball1.radius_m);
-  const double ahead_m = std::clamp(kSteps * step_m, kLeastOfRadius * radius_m, kMostOfRadius * radius_m);
+  const double ahead_m =
+      std::min(std::max(kSteps * step_m, kLeastOfRadius * radius_m), longestStretch_m(ball0, ball1));
   return 1.25 * step_m + std::max(kLeast_m, ahead_m);
 }
 
