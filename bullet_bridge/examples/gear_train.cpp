@@ -80,5 +80,5 @@ int main() {
   // mesh.
   const auto teeth = [&](int k) { return std::abs(turned_rad[k]) / (2 * kPi) * kTeeth[k]; };
   return teeth(0) > 5.9 && std::abs(teeth(1) - teeth(0)) < 0.04 && std::abs(teeth(2) - teeth(0)) < 0.06 ? 0
-                                                                                                       : 1;
+                                                                                                        : 1;
 }

@@ -17,7 +17,7 @@ using vps::bullet::toBt;
 namespace {
 
 /// Where a ring of a thread's own is after it has fallen on the shared plate.
-btTransform drop(const vps::bullet::Shape& plate, double tilt_rad, int threads) {
+btTransform drop(vps::bullet::Shape& plate, double tilt_rad, int threads) {
   btDefaultCollisionConfiguration config;
   vps::bullet::Dispatcher dispatcher(&config, threads);  // 1: all work stays in the calling thread
   btDbvtBroadphase broadphase;
@@ -25,7 +25,7 @@ btTransform drop(const vps::bullet::Shape& plate, double tilt_rad, int threads) 
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
   world.setGravity(btVector3(0, 0, toBt(-9.81)));
   vps::bullet::install(dispatcher);
-  btRigidBody ground(0, nullptr, const_cast<vps::bullet::Shape*>(&plate));
+  btRigidBody ground(0, nullptr, &plate);
   vps::bullet::BodySettings settings;
   settings.X_WP = vps::Pose(vps::rotationFromVector({tilt_rad, 0, 0}), {0, 0, 0.02});
   // Models are built by TBB, with as many threads as the arena allows: here one, the host's.
