@@ -11,7 +11,7 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${name})
   install(EXPORT vps_${name} NAMESPACE vps:: FILE vps-${name}-targets.cmake
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vps COMPONENT ${name})
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/vps${VPS_PACKAGE_SUFFIX} COMPONENT ${name})
   if(ARG_HEADERS)
     foreach(header IN LISTS ARG_HEADERS)
       get_filename_component(folder ${header} DIRECTORY)
@@ -45,12 +45,12 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   endif()
 endfunction()
 
-# vps-NAME.pc. For static libraries it lists the private dependencies as well, so that users do not need --static.
+# vps-NAME.pc, or vps-NAME-float32.pc. For static libraries it lists the private dependencies as well, so that users do not need --static.
 function(vps_write_pkg_config name requires modules cflags private_modules private_libs)
   list(TRANSFORM requires PREPEND "vps-")
-  list(TRANSFORM requires APPEND " = ${PROJECT_VERSION}")
+  list(TRANSFORM requires APPEND "${VPS_PACKAGE_SUFFIX} = ${PROJECT_VERSION}")
   list(APPEND requires ${modules})
-  set(libs -lvps_${name})
+  set(libs -lvps_${name}${VPS_PACKAGE_SUFFIX})
   if(BUILD_SHARED_LIBS)
     set(private_modules "")
     set(private_libs "")
@@ -63,10 +63,10 @@ function(vps_write_pkg_config name requires modules cflags private_modules priva
   list(JOIN requires ", " PC_REQUIRES)
   list(JOIN cflags " " PC_CFLAGS)
   list(JOIN libs " " PC_LIBS)
-  set(PC_NAME ${name})
+  set(PC_NAME ${name}${VPS_PACKAGE_SUFFIX})
   file(RELATIVE_PATH PC_PREFIX /root/${CMAKE_INSTALL_LIBDIR}/pkgconfig /root)
-  configure_file(${PROJECT_SOURCE_DIR}/plugin/cmake/vps-component.pc.in ${PROJECT_BINARY_DIR}/vps-${name}.pc @ONLY)
-  install(FILES ${PROJECT_BINARY_DIR}/vps-${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${name})
+  configure_file(${PROJECT_SOURCE_DIR}/plugin/cmake/vps-component.pc.in ${PROJECT_BINARY_DIR}/vps-${PC_NAME}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/vps-${PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${name})
 endfunction()
 
 # Called once, after all components are known.
@@ -74,12 +74,14 @@ function(vps_install_package)
   include(CMakePackageConfigHelpers)
   get_property(VPS_INSTALLED_COMPONENTS GLOBAL PROPERTY VPS_INSTALLED_COMPONENTS)
   get_property(VPS_COMPONENT_TABLE GLOBAL PROPERTY VPS_COMPONENT_TABLE)
-  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/vps)
+  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/vps${VPS_PACKAGE_SUFFIX})
   set(folder ${PROJECT_SOURCE_DIR}/plugin/cmake)
   configure_package_config_file(${folder}/vpsConfig.cmake.in ${PROJECT_BINARY_DIR}/vpsConfig.cmake
     INSTALL_DESTINATION ${destination})
-  write_basic_package_version_file(${PROJECT_BINARY_DIR}/vpsConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/vpsBasicVersion.cmake COMPATIBILITY SameMinorVersion)
+  configure_file(${folder}/vpsConfigVersion.cmake.in ${PROJECT_BINARY_DIR}/vpsConfigVersion.cmake @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/vpsConfig.cmake ${PROJECT_BINARY_DIR}/vpsConfigVersion.cmake
+    ${PROJECT_BINARY_DIR}/vpsBasicVersion.cmake
     ${folder}/FindVpsBullet.cmake ${folder}/FindVpsEpoxy.cmake ${folder}/FindVpsOpenVDB.cmake
     DESTINATION ${destination} COMPONENT plugin)
 endfunction()

@@ -20,7 +20,7 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   add_library(vps_${name} ${ARG_SOURCES})  # shared with BUILD_SHARED_LIBS
   add_library(vps::${name} ALIAS vps_${name})
   set_target_properties(vps_${name} PROPERTIES
-    EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    EXPORT_NAME ${name} OUTPUT_NAME vps_${name}${VPS_PACKAGE_SUFFIX} VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(vps_${name} PUBLIC cxx_std_20)
   target_include_directories(vps_${name} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

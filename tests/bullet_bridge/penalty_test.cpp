@@ -2,9 +2,11 @@
 // Penalty contact: a spring and a bristle at every touching point.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bullet_bridge/world.h"
+#include "vps_bullet/log.h"
 
 namespace vps::bullet {
 namespace {
@@ -189,6 +191,68 @@ TEST(Penalty, AStockSolverTakesTheContactsAsRigidAndIsReported) {
   EXPECT_NE(message.find("not solved by bullet::Solver"), std::string::npos) << message;
   EXPECT_EQ(message.find("not solved"), message.rfind("not solved")) << "reported more than once";
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
+}
+
+/// A heap of boxes of 5,900 points each, in which more touch than are solved one by one.
+class PenaltyHeap : public testing::Test {
+ protected:
+  static constexpr std::size_t kLimit = 500;
+  PenaltyHeap() {
+    setLogHook([this](LogLevel, const std::string& message) { said_.push_back(message); });
+    world_ =
+        std::make_unique<World>(SolverKind::Penalty, Settings{}, 100, SolverSettings{.point_limit = kLimit});
+    static const Built box = test::build(makeBox(Vec3(0.02, 0.015, 0.01)), 7850, 0.25e-3, 0.5e-3);
+    world_->addShape(ground_, 0, Vec3::Zero(), Pose());
+    for (int i = 0; i < 6; ++i)
+      world_->add(box, Pose(rotationFromVector(Vec3(0.3 * i, 0.2, 0.1 * i)),
+                            Vec3(i % 2 ? 0.006 : -0.006, i & 2 ? 0.006 : -0.006, 0.02 + 0.015 * i)));
+  }
+  ~PenaltyHeap() override {
+    world_.reset();
+    setLogHook({});
+  }
+  const Solver& solver() const { return static_cast<const Solver&>(*world_->solver_); }
+  btStaticPlaneShape ground_{btVector3(0, 0, 1), 0};
+  std::unique_ptr<World> world_;
+  std::vector<std::string> said_;
+};
+
+TEST_F(PenaltyHeap, SolvesNoMorePointsThanItsLimitAndSaysSoOnce) {
+  std::size_t most_near = 0, most_solved = 0;
+  for (int i = 0; i < 400; ++i) {
+    world_->step();
+    most_near = std::max(most_near, solver().pointsNear());
+    most_solved = std::max(most_solved, solver().pointsSolved());
+  }
+  EXPECT_GT(most_near, 4 * kLimit) << "the heap is large enough for this test";
+  EXPECT_LE(most_solved, kLimit);
+  EXPECT_EQ(std::count_if(said_.begin(), said_.end(),
+                          [](const std::string& m) { return m.find("point_limit") != std::string::npos; }),
+            1);
+  for (const auto& body : world_->bodies) {
+    if (!body->isStaticObject()) {
+      EXPECT_GT(body->getWorldTransform().getOrigin().z(), 0.0049) << "none sinks into the ground";
+    }
+  }
+}
+
+TEST(Penalty, GroupsOfPointsCarryTheWeightAndHoldByFriction) {
+  constexpr double kMu = 0.3;
+  const double angle_rad = std::atan(0.97 * kMu);
+  const Mat3 R = rotationFromVector(Vec3(0.3, 0.95, 0).normalized() * angle_rad);
+  World world(SolverKind::Penalty, {}, 100, SolverSettings{.point_limit = 100});
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, kMu);
+  btRigidBody& body = world.add(box, Pose(R, R * Vec3(0, 0, 0.005)), false, kMu);
+  world.step(1000);
+  const auto& solver = static_cast<const Solver&>(*world.solver_);
+  EXPECT_GT(solver.pointsNear(), 400u);
+  EXPECT_LE(solver.pointsSolved(), 100u);
+  const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
+  world.step(1000);
+  const Vec3 end = fromBt(body.getWorldTransform().getOrigin());
+  EXPECT_LE((end - start).norm(), kIsDouble ? 1e-11 : 5e-6);
+  EXPECT_NEAR((R.transpose() * end).z(), 0.005, 1e-7);
 }
 
 TEST(Penalty, RefusesAStiffnessThatIsNotPositiveAndFinite) {

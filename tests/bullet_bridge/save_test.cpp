@@ -107,6 +107,65 @@ TEST(SavedWorld, AScaledShapeKeepsItsSize) {
   importer.deleteAllData();
 }
 
+/// A load of the only body of a world with it.
+class LoadedBody : public testing::Test {
+ protected:
+  btRigidBody& saveAndLoad(World& world) {
+    file_ = save(world);
+    EXPECT_TRUE(importer_.loadFileFromMemory(file_.data(), static_cast<int>(file_.size())));
+    EXPECT_EQ(importer_.getNumRigidBodies(), 1);
+    return *btRigidBody::upcast(importer_.getRigidBodyByIndex(0));
+  }
+  ~LoadedBody() override { importer_.deleteAllData(); }
+
+ private:
+  std::vector<char> file_;
+  WorldImporter importer_;
+};
+
+TEST_F(LoadedBody, HasItsOwnInertiaThresholdsAndMotion) {
+  World world;
+  world.world->setGravity(btVector3(0, 0, 0));
+  btRigidBody& body = world.add(tube(), Pose());
+  // Not what any shape would give.
+  body.setMassProps(toBt(0.02), toBt(Vec3(1e-5, 2e-5, 3e-5)));
+  body.setSleepingThresholds(toBt(1e-3), toBt(0.1));
+  body.setLinearVelocity(toBt(Vec3(0.1, 0.2, 0.3)));
+  body.setAngularVelocity(toBt(Vec3(1, 2, 3)));
+  const btRigidBody& loaded = saveAndLoad(world);
+  EXPECT_LT((fromBt(loaded.getLocalInertia()) - Vec3(1e-5, 2e-5, 3e-5)).norm(), 1e-11);
+  EXPECT_NEAR(loaded.getLinearSleepingThreshold(), 1e-3, 1e-9);
+  EXPECT_NEAR(loaded.getAngularSleepingThreshold(), 0.1, 1e-7);
+  EXPECT_LT((fromBt(loaded.getLinearVelocity()) - Vec3(0.1, 0.2, 0.3)).norm(), 1e-7);
+  EXPECT_LT((fromBt(loaded.getAngularVelocity()) - Vec3(1, 2, 3)).norm(), 1e-6);
+}
+
+TEST_F(LoadedBody, HasThePartsOfItsCompoundAsParts) {
+  // A tube twice and a box, one of them in a compound within.
+  btBoxShape box(btVector3(toBt(0.004), toBt(0.004), toBt(0.004)));
+  btCompoundShape inner, outer;
+  inner.addChildShape(btTransform::getIdentity(), tube().shape.get());
+  outer.addChildShape(toBt(Pose::translation(Vec3(0.03, 0, 0))), tube().shape.get());
+  outer.addChildShape(toBt(Pose::translation(Vec3(0, 0.03, 0))), &box);
+  outer.addChildShape(toBt(Pose::translation(Vec3(0, 0, 0.03))), &inner);
+  World world;
+  world.addShape(outer, 0.1, Vec3(1e-5, 2e-5, 3e-5), Pose());
+  const btRigidBody& loaded = saveAndLoad(world);
+  EXPECT_LT((fromBt(loaded.getLocalInertia()) - Vec3(1e-5, 2e-5, 3e-5)).norm(), 1e-11);
+  ASSERT_TRUE(loaded.getCollisionShape()->isCompound());
+  const auto& compound = static_cast<const btCompoundShape&>(*loaded.getCollisionShape());
+  ASSERT_EQ(compound.getNumChildShapes(), 3);
+  const auto* first = dynamic_cast<const Shape*>(compound.getChildShape(0));
+  ASSERT_NE(first, nullptr);
+  EXPECT_NEAR(first->models().map->voxel_m(), 0.5e-3, 1e-15);
+  EXPECT_LT((fromBt(compound.getChildTransform(0)).p - Vec3(0.03, 0, 0)).norm(), 1e-8);
+  EXPECT_EQ(compound.getChildShape(1)->getShapeType(), BOX_SHAPE_PROXYTYPE);
+  ASSERT_TRUE(compound.getChildShape(2)->isCompound());
+  EXPECT_LT((fromBt(compound.getChildTransform(2)).p - Vec3(0, 0, 0.03)).norm(), 1e-8);
+  EXPECT_EQ(static_cast<const btCompoundShape*>(compound.getChildShape(2))->getChildShape(0), first)
+      << "a shape that was shared is shared";
+}
+
 TEST(RestoreShape, RefusesOtherNamesAndNumbersThatCannotBe) {
   btTriangleMesh mesh;
   mesh.addTriangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));

@@ -13,9 +13,9 @@ flags=(-std=c++20 -DVPS_PLUGIN_STATIC_DEFINE -DVPS_BULLET_STATIC_DEFINE -I"$root
 double=(-DBT_USE_DOUBLE_PRECISION)
 single=()
 if [ "$ours" = double ]; then
-  same=("${double[@]}") other=("${single[@]}") same_suffix=-float64 other_suffix=""
+  same=("${double[@]}") other=("${single[@]}") same_suffix=-float64 other_suffix="" ours_suffix=""
 else
-  same=("${single[@]}") other=("${double[@]}") same_suffix="" other_suffix=-float64
+  same=("${single[@]}") other=("${double[@]}") same_suffix="" other_suffix=-float64 ours_suffix=-float32
 fi
 
 for header in "$root"/bullet_bridge/include/vps_bullet/*.h "$build/include/vps_bullet/precision.h"; do
@@ -52,7 +52,7 @@ int main() {
   return 1;
 }
 END
-link=("$build/bullet_bridge/libvps_bullet.a" "$build/plugin/libvps_plugin.a")
+link=("$build/bullet_bridge/libvps_bullet$ours_suffix.a" "$build/plugin/libvps_plugin$ours_suffix.a")
 mixed=() right=()
 for part in BulletDynamics BulletCollision LinearMath; do
   mixed+=("-l$part$other_suffix")

@@ -20,7 +20,10 @@ if [ "$kind" = shared ]; then
 fi
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
 prefix=$work/prefix
-libs=$(dirname "$(find "$prefix" -name 'libvps_plugin.*' | head -1)")
+suffix=""  # of the package's names
+grep -q '^VPS_BULLET_DOUBLE:BOOL=OFF' "$build/CMakeCache.txt" && suffix=-float32
+include=$prefix/include${suffix:+/vps$suffix}
+libs=$(dirname "$(find "$prefix" -name 'libvps_plugin*' | head -1)")
 export LD_LIBRARY_PATH=$libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 flags=""
 [ -n "$sanitize" ] && flags="-fsanitize=$sanitize"
@@ -57,11 +60,11 @@ configure plugin_alone plugin_alone $(missing "${others[@]}" tomlplusplus VpsBul
 echo "== what is missing is named"
 refused "vps::bullet needs VpsBullet" plugin_alone refused_1 -DVPS_ASKED=bullet $(missing VpsBullet)
 refused "vps::nonsense is not installed here" plugin_alone refused_2 -DVPS_ASKED=nonsense
-if [ -e "$prefix/include/vps/vdb.h" ] && [ "$kind" = static ]; then
+if [ -e "$include/vps/vdb.h" ] && [ "$kind" = static ]; then
   refused "vps::vdb needs VpsOpenVDB" plugin_alone refused_3 -DVPS_ASKED=vdb $(missing VpsOpenVDB)
 fi
 
-if [ "$kind" = static ] && [ -e "$prefix/include/vps_device" ]; then
+if [ "$kind" = static ] && [ -e "$include/vps_device" ]; then
   echo "== find_package(vps COMPONENTS bullet OPTIONAL_COMPONENTS device)"
   configure app haptic $(missing "${others[@]}") >/dev/null
   "$cmake" --build "$work/haptic" --target haptic_bullet >/dev/null
@@ -81,17 +84,17 @@ fi
 echo "== pkg-config"
 export PKG_CONFIG_PATH=$libs/pkgconfig
 ${CXX:-c++} -std=c++20 $flags "$source/plugin_alone/plugin_alone.cpp" -o "$work/by_pkg_config" \
-  $(pkg-config --cflags --libs vps-plugin)
+  $(pkg-config --cflags --libs vps-plugin$suffix)
 "$work/by_pkg_config"
-${CXX:-c++} -std=c++20 -O2 $flags "$source/app/app.cpp" -o "$work/app_by_pkg_config" $(pkg-config --cflags --libs vps-bullet)
+${CXX:-c++} -std=c++20 -O2 $flags "$source/app/app.cpp" -o "$work/app_by_pkg_config" $(pkg-config --cflags --libs vps-bullet$suffix)
 "$work/app_by_pkg_config"
 
 if [ "$kind" = shared ]; then
   echo "== the shared libraries"
-  version=$(pkg-config --modversion vps-plugin)
-  readelf -d "$libs/libvps_plugin.so" | grep -q "soname: \[libvps_plugin.so.${version%.*}\]"
-  readelf -d "$work/app/app" | grep -q "NEEDED.*libvps_bullet.so.${version%.*}"
-  exported=$(nm -DC --defined-only "$libs/libvps_plugin.so")
+  version=$(pkg-config --modversion "vps-plugin$suffix")
+  readelf -d "$libs/libvps_plugin$suffix.so" | grep -q "soname: \[libvps_plugin$suffix.so.${version%.*}\]"
+  readelf -d "$work/app/app" | grep -q "NEEDED.*libvps_bullet$suffix.so.${version%.*}"
+  exported=$(nm -DC --defined-only "$libs/libvps_plugin$suffix.so")
   grep -q 'vps::v0::buildPointShell(' <<<"$exported" || { echo "a public function is not exported"; exit 1; }
   if grep 'vps::v0::\(sampleFeatures\|joinCoarse\|readKernels\)(' <<<"$exported"; then
     echo "these are private, and are exported"

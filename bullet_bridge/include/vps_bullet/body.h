@@ -73,8 +73,9 @@ struct Body {
   [[nodiscard]] Pose X_WP() const;
 };
 
-/// Throws LoadError as buildPartModel() and makeBodyFrame(), std::invalid_argument as meshOf() and
-/// resolutionFor().
+/// From a file: this library reads none. importCad() of vps::scenes does, and its parts have a mesh
+/// (examples/body_from_file.cpp). Throws LoadError as buildPartModel() and makeBodyFrame(),
+/// std::invalid_argument as meshOf() and resolutionFor().
 VPS_BULLET_API Body makeBody(const Mesh& mesh, const BodySettings& settings = {});
 VPS_BULLET_API Body makeBody(const btStridingMeshInterface& triangles, const BodySettings& settings = {});
 

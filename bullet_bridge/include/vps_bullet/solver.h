@@ -4,6 +4,7 @@
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
+#include <cstddef>
 #include <memory>
 
 #include "vps_bullet/export.h"
@@ -15,8 +16,12 @@ struct SolverSettings {
   double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more
   /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
   /// sweeps. Where Newton's method is needed it may take sixty steps, even if that is more. For penalty
-  /// contacts: steps of Newton's method. >= 1
+  /// contacts: steps of Newton's method in all rounds. >= 1
   int iteration_limit = 400;
+  /// Penalty points of one island that are solved one by one; 0: all. Where more are near, up to 256
+  /// neighbours are solved as one point, the deepest, with the stiffness of all; a message (log.h) says so
+  /// once. A step takes 1 to 2 us for each point that is solved.
+  std::size_t point_limit = 8000;
 };
 
 /// Solves islands of rigid bodies, contacts (constraint or penalty), joints and CouplingConstraints; the
@@ -40,6 +45,9 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   /// Iterations of the last island that this method solved, counted as for iteration_limit. At most 30 final
   /// sweeps come on top.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
+  /// Penalty points that were solved for that island, of as many as were near.
+  [[nodiscard]] std::size_t pointsSolved() const { return points_solved_; }
+  [[nodiscard]] std::size_t pointsNear() const { return points_near_; }
   /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if that is more.
   [[nodiscard]] bool hasConverged() const { return is_converged_; }
   /// How often an island was stopped within a step, because no contacts were found that keep its bodies'
@@ -48,11 +56,14 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
 
  private:
   struct Work;
+  void reportGroups();
   SolverSettings settings_;
   std::unique_ptr<Work> work_;
   int iterations_used_ = 0;
   bool is_converged_ = true;
   std::size_t shortened_steps_ = 0;
+  std::size_t points_solved_ = 0, points_near_ = 0;
+  bool has_reported_groups_ = false;
 };
 
 }  // namespace vps::bullet::inline v0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "narrowphase/contact_candidate.h"
@@ -105,16 +106,18 @@ Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
 class SurfaceView {
  public:
   SurfaceView(const SideView& side, const SideView& other)
-      : side_(side), surfaces_(other.shape->models().surfaces), X_NM_(other.X_WM.inverse() * side.X_WM) {}
+      : side_(side),
+        surfaces_(other.shape->models().surfaces),
+        known_(surfaces_.size()),
+        X_NM_(other.X_WM.inverse() * side.X_WM) {}
 
   /// Lower bound of the distance of p; max_m if p is farther, or deep behind a sheet.
-  [[nodiscard]] double leastDistance(const Vec3& p_M, double max_m) const {
+  [[nodiscard]] double leastDistance(const Vec3& p_M, double max_m) {
     double least_m = max_m;
-    for (const Surface& surface : surfaces_) {
-      const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
-      // Inside a solid every depth counts, so the sign is needed at any distance.
-      const double d = surface.sheet ? sheetBound(surface, p, max_m) : surface.distance->signedDistance(p);
-      least_m = std::min(least_m, d);
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      const Vec3 p = surfaces_[i].X_MP.inverse() * (X_NM_ * p_M);
+      least_m = std::min(least_m, surfaces_[i].sheet ? sheetBound(surfaces_[i], p, max_m)
+                                                     : solidDistance(surfaces_[i], p, max_m, known_[i]));
     }
     return least_m;
   }
@@ -122,9 +125,9 @@ class SurfaceView {
   /// Distance and normal in N of the nearest surface; kNever_m beyond cutoff_m.
   [[nodiscard]] SurfaceDistance at(const Vec3& p_M, const Vec3& inward_M, double cutoff_m) const {
     SurfaceDistance nearest{kNever_m, Vec3::Zero()};
-    for (const Surface& surface : surfaces_) {
-      const SurfaceDistance d =
-          surface.sheet ? atSheet(surface, p_M, inward_M, cutoff_m) : atSolid(surface, p_M);
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      const SurfaceDistance d = surfaces_[i].sheet ? atSheet(surfaces_[i], p_M, inward_M, cutoff_m)
+                                                   : atSolid(surfaces_[i], p_M, cutoff_m, known_[i]);
       if (d.distance_m < nearest.distance_m) nearest = d;
     }
     return nearest;
@@ -132,6 +135,38 @@ class SurfaceView {
 
  private:
   static constexpr double kNever_m = 1e30;
+
+  /// The last distance from a solid that was computed for a node of the shell: of p, at q.
+  struct Known {
+    Vec3 p = Vec3::Zero(), q = Vec3::Zero();
+    double distance_m = 0;
+    bool is_set = false;
+  };
+
+  // How far the nearest surface can be from p, since q is a point of it; where p must lie outside, no farther
+  // than matters. Inside a solid every depth counts, so the sign is needed at any distance. A search
+  // without a limit would be long where much of the surface is about equally far. 0: p is outside and beyond
+  // max_m. With a winding number the sign may change off the surface, at holes.
+  static double searchLimit_m(const Surface& surface, const Vec3& p, double max_m, const Known& known) {
+    constexpr double kRounding = 1 + 1e-9, kLeast_m = 1e-12;
+    if (!known.is_set) return 1e300;
+    const double way_m = (p - known.p).norm();
+    const double limit_m = (p - known.q).norm() * kRounding + kLeast_m;
+    if (surface.distance->isByWinding() || known.distance_m <= way_m * kRounding + kLeast_m) return limit_m;
+    if (known.distance_m - way_m * kRounding - kLeast_m > max_m) return 0;
+    return std::min(limit_m, std::max(max_m, 0.0) * kRounding + kLeast_m);
+  }
+
+  // max_m if p is farther.
+  static double solidDistance(const Surface& surface, const Vec3& p, double max_m, Known& known) {
+    const double limit_m = searchLimit_m(surface, p, max_m, known);
+    if (limit_m == 0) return max_m;
+    const Solid::Closest closest = surface.distance->closest(p, limit_m);
+    if (!closest.found) return max_m;
+    const double sign = closest.normal.dot(p - closest.q) < 0 ? -1 : 1;
+    known = {p, closest.q, sign * closest.distance_m, true};
+    return known.distance_m;
+  }
 
   // Greatest depth behind a sheet at which a point counts: as far as its part's field can measure.
   [[nodiscard]] double depthBehindSheets_m() const {
@@ -154,10 +189,14 @@ class SurfaceView {
     return {sign * closest.distance_m, surface.X_MP.R * n};
   }
 
-  [[nodiscard]] SurfaceDistance atSolid(const Surface& surface, const Vec3& p_M) const {
+  [[nodiscard]] SurfaceDistance atSolid(const Surface& surface, const Vec3& p_M, double cutoff_m,
+                                        const Known& known) const {
+    const SurfaceDistance never{kNever_m, Vec3::Zero()};
     const Vec3 p = surface.X_MP.inverse() * (X_NM_ * p_M);
-    const MeshDistance::Closest closest = surface.distance->closest(p);
-    return make(closest, p, closest.normal, surface);
+    const double limit_m = searchLimit_m(surface, p, cutoff_m, known);
+    if (limit_m == 0) return never;
+    const Solid::Closest closest = surface.distance->closest(p, limit_m);
+    return closest.found ? make(closest, p, closest.normal, surface) : never;
   }
 
   [[nodiscard]] SurfaceDistance atSheet(const Surface& surface, const Vec3& p_M, const Vec3& inward_M,
@@ -187,6 +226,7 @@ class SurfaceView {
 
   const SideView& side_;
   const std::vector<Surface>& surfaces_;
+  std::vector<Known> known_;  // by surface
   Pose X_NM_;
 };
 
@@ -217,10 +257,13 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   QueryMemory* memory = query.state ? &query.state->query : nullptr;
   const RepresentativePoints::Request leaders{options, aboutMap(query.step_W, X_MW), query.always,
                                               smallQueryLimit(settings)};
-  const QueryResult result = query.state && query.state->leading
-                                 ? query.state->leading->find(*theirs.map, X_MP, leaders, near, memory)
-                                 : queryContacts(*theirs.map, shell, X_MP, options, near, memory);
-  points_tested += result.points_tested;
+  if (!query.state || !query.state->leading) {
+    points_tested += queryContacts(*theirs.map, shell, X_MP, options, near, memory).points_tested;
+    if (query.state && needsLeading(near.contacts.size(), shell, settings))
+      query.state->lead(shell, settings);
+  }
+  if (query.state && query.state->leading)
+    points_tested += query.state->leading->find(*theirs.map, X_MP, leaders, near, memory).points_tested;
   const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   // The buffer's capacity depends on other pairs; the limit must not.
   const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
@@ -261,7 +304,7 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
                                   const Settings& settings, std::vector<Candidate>& out,
                                   std::size_t& points_tested) {
   if (other.shape->models().surfaces.empty()) return 0;
-  const SurfaceView view(side, other);
+  SurfaceView view(side, other);
   const PointShell& shell = *side.shape->models().shell;
   const auto at = [&](std::uint32_t id) { return view.at(shell.points[id], shell.inward[id], cutoff_m); };
   const auto canBeNear = [&](const ShellNode& node) {

@@ -26,9 +26,7 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
 
 QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   std::optional<QueryState>& own = state.query_state[i];
-  return own ? *own
-             : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell,
-                           state.context->settings);
+  return own ? *own : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell);
 }
 
 SideQuery sideQueryOf(const PairView& pair, int i, PairState& state) {

@@ -34,6 +34,7 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
       const Vec3 bend_W = turned * before->bend_W;
       point.bend_W = bend_W - point.n_W * point.n_W.dot(bend_W);
       point.f_n_N = before->f_n_N;
+      point.is_leader = before->is_leader;
       before_m = std::min(0.0, before->gap_m);
       // The share that is no longer tolerated is pressed out within the step: at most separation_m of it.
       if (before->tolerated_m > 0)

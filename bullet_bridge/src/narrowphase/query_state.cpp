@@ -23,12 +23,14 @@ double tileSize_m(const PointShell& shell, const Settings& settings) {
 
 }  // namespace
 
-QueryState::QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings)
-    : query(map, shell) {
-  // Every penalty point counts; of the points of rigid contact only a few do.
-  if (settings.contact_method == ContactMethod::Constraint && shell.size() > smallQueryLimit(settings) &&
-      shell.spacing_m > 0)
-    leading.emplace(shell, tileSize_m(shell, settings));
+void QueryState::lead(const PointShell& shell, const Settings& settings) {
+  leading.emplace(shell, tileSize_m(shell, settings));
+}
+
+// Every penalty point counts; of the points of rigid contact only a few do.
+bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings) {
+  return settings.contact_method == ContactMethod::Constraint && near_points > smallQueryLimit(settings) &&
+         shell.spacing_m > 0;
 }
 
 std::size_t smallQueryLimit(const Settings& settings) {

@@ -10,16 +10,19 @@
 namespace vps::bullet::inline v0 {
 
 struct QueryState {
-  /// O(points). The shell must outlive it.
-  QueryState(const VoxMap& map, const PointShell& shell, const Settings& settings);
+  /// O(points / 16). The shell must outlive it.
+  QueryState(const VoxMap& map, const PointShell& shell) : query(map, shell) {}
 
   QueryMemory query;  ///< valid for one cutoff
-  /// One representative point per surface tile; for constraint contact and shells with more points than
-  /// smallQueryLimit().
+  /// One representative point per surface tile; for constraint contact, as soon as more points than
+  /// smallQueryLimit() have been near. O(points) to make: most pairs never need it.
   std::optional<RepresentativePoints> leading;
+  void lead(const PointShell& shell, const Settings& settings);
 };
 
 /// Up to this number of near points of one side, all of them are examined.
 std::size_t smallQueryLimit(const Settings& settings);
+/// True if representative points serve for so many near points.
+bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);
 
 }  // namespace vps::bullet::inline v0

@@ -2,9 +2,9 @@
 #include "native_shapes/native_shape_adapter.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
+#include "native_shapes/content_hash.h"
 #include "native_shapes/native_shape_mesh.h"
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
@@ -102,19 +102,6 @@ ShapeModels modelsOf(const NativeShapeMesh& native) {
   return models;
 }
 
-// FNV-1a over the bits of the coordinates.
-std::uint64_t hashOf(const Mesh& mesh) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  for (const auto& t : mesh.triangles)
-    for (const std::uint32_t v : t)
-      for (int k = 0; k < 3; ++k) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &mesh.vertices[v][k], sizeof bits);
-        hash = (hash ^ bits) * 0x100000001b3ull;
-      }
-  return hash;
-}
-
 }  // namespace
 
 NativeShapeAdapter::NativeShapeAdapter(const btCollisionShape& shape)
@@ -136,7 +123,7 @@ std::shared_ptr<const NativeShapeAdapter> NativeShapeCache::get(const btCollisio
   const auto it = entries_.find(&shape);
   const bool is_known = it != entries_.end() && it->second.key == key;
   if (is_known && it->second.adapter.use_count() > 1) return it->second.adapter;
-  const std::uint64_t hash = hashOf(nativeShapeMesh(shape).mesh);
+  const std::uint64_t hash = contentHash(shape);
   if (is_known && it->second.hash == hash) return it->second.adapter;
   // Bullet does not report deleted shapes, so adapters without pairs are dropped when there are many.
   constexpr std::size_t kMaxKept = 64;

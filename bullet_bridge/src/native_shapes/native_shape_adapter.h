@@ -34,7 +34,7 @@ const btCollisionShape& unwrapped(const btCollisionShape& shape);
 
 /// The adapters of an installation: built when a native shape first meets a Shape, shared by its pairs.
 /// A shape is identified by its address. Another shape may later have the same address, so it is checked: by
-/// its key always, and by a hash of its triangles' corners when no pair uses the adapter. Thread-safe.
+/// its key always, and by a hash of its corners when no pair uses the adapter. Thread-safe.
 class NativeShapeCache {
  public:
   /// Throws as nativeShapeMesh(). O(triangles log triangles) the first time.

@@ -26,7 +26,7 @@ double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
 
 }  // namespace
 
-void PenaltyNewton::add(PenaltyPair& pair, bool follows_rotation) {
+void PenaltyNewton::add(PenaltyPair& pair, int level, bool follows_rotation) {
   if (pair.points.empty()) return;
   const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
   if (body[0] < 0 && body[1] < 0) return;
@@ -49,7 +49,13 @@ void PenaltyNewton::add(PenaltyPair& pair, bool follows_rotation) {
     off_tangent[i] = follows_rotation ? Mat3(rotationFromVector(turn) - Mat3::Identity() - crossMatrix(turn))
                                       : Mat3(Mat3::Zero());
   }
-  patch.build(pair, off_tangent, dt_s_);
+  patch.build(pair, off_tangent, dt_s_, level);
+}
+
+std::size_t PenaltyNewton::pointCount() const {
+  std::size_t count = 0;
+  for (const PenaltyPatch& patch : patches()) count += patch.pointCount();
+  return count;
 }
 
 Vec6 PenaltyNewton::twistOf(const PenaltyPatch& patch, const std::vector<Vec6>& u) const {

@@ -32,8 +32,11 @@ class PenaltyNewton {
     dt_s_ = dt_s;
   }
   /// The pair must outlive finish(). The limits of friction are initially those of last step's forces.
+  /// @param level  of PointGroup
   /// @param follows_rotation  points of a rotating body move along circles, not along their tangents
-  void add(PenaltyPair& pair, bool follows_rotation = true);
+  void add(PenaltyPair& pair, int level = 0, bool follows_rotation = true);
+  /// Points that are solved: groups count as one.
+  [[nodiscard]] std::size_t pointCount() const;
   /// When to stop: after a step that changes no point's velocity by more than the residual (Short), or when
   /// the missing momentum would change no point's velocity by more (Balanced), which is stricter for stiff
   /// contacts.

@@ -23,6 +23,7 @@ struct PenaltyPoint {
   double k_N_per_m = 0;        ///< of spring and bristle: stiffness per area times area
   Vec3 bend_W = Vec3::Zero();  ///< of the bristle [m]: displacement of body 0 against body 1
   double f_n_N = 0;            ///< normal force at the end of the last step solved
+  bool is_leader = false;      ///< stood for its PointGroup in the last step solved
   double tolerated_m = 0;      ///< share of an initial overlap that is not pressed out yet
 };
 

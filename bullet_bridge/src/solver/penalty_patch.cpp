@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "vps_bullet/convert.h"
 
@@ -50,10 +51,11 @@ class SymmetricSum {
 
 }  // namespace
 
-void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double dt_s) {
+void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double dt_s, int level) {
   pair = &from;
   dt_s_ = dt_s;
-  const std::size_t count = from.points.size();
+  groupPoints(from, level, groups_);
+  const std::size_t count = groups_.size();
   points_.resize(count);
   for (auto& column : wrench_) column.resize(count);
   for (Columns* columns : {&r_m_, &bend_m_, &bent_m_})
@@ -65,9 +67,10 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
                           fromBt(from.object[1]->getWorldTransform().getOrigin())};
   double radius2_m2 = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const PenaltyPoint& p = from.points[i];
+    const PointGroup& group = groups_[i];
+    const PenaltyPoint& p = from.points[group.leader];
     const Vec3 r = p.p_W - center;
-    points_[i] = {r, p.n_W, p.k_N_per_m};
+    points_[i] = {r, p.n_W, group.k_N_per_m};
     const Vec6 wrench = wrenchOf(r, p.n_W);
     for (int c = 0; c < 6; ++c) wrench_[static_cast<std::size_t>(c)][i] = wrench[c];
     for (int c = 0; c < 3; ++c) {
@@ -76,7 +79,7 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
     }
     gap_m_[i] =
         p.gap_m + p.n_W.dot(off_tangent[0] * (p.p_W - origin[0]) - off_tangent[1] * (p.p_W - origin[1]));
-    limit_N_[i] = from.mu * p.f_n_N;
+    limit_N_[i] = from.mu * group.f_n_N;
     radius2_m2 = std::max(radius2_m2, r.squaredNorm());
   }
   radius_m = std::sqrt(radius2_m2);
@@ -160,15 +163,22 @@ void PenaltyPatch::finish(const Vec6& twist) const {
   findSlips(twist);
   pair->total_N = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    PenaltyPoint& out = pair->points[i];
+    const PointGroup& group = groups_[i];
+    for (std::uint32_t j = group.first; j < group.end; ++j) pair->points[j].is_leader = j == group.leader;
+    const std::span<PenaltyPoint> all = std::span(pair->points).subspan(group.first, group.end - group.first);
     if (!isActive(i)) {
-      out.f_n_N = 0;
-      out.bend_W.setZero();
+      for (PenaltyPoint& out : all) {
+        out.f_n_N = 0;
+        out.bend_W.setZero();
+      }
       continue;
     }
     const PointForce force = forceAt(i);
-    out.f_n_N = force.f_n_N;
-    out.bend_W = points_[i].k > 0 ? Vec3(force.friction.f_N / points_[i].k) : Vec3(Vec3::Zero());
+    const double k = points_[i].k;
+    for (PenaltyPoint& out : all) {
+      out.f_n_N = k > 0 ? force.f_n_N * (out.k_N_per_m / k) : 0;
+      out.bend_W = k > 0 ? Vec3(force.friction.f_N / k) : Vec3(Vec3::Zero());
+    }
     pair->total_N += force.f_n_N;
   }
 }

@@ -8,6 +8,7 @@
 
 #include "solver/island.h"
 #include "solver/penalty_pair.h"
+#include "solver/point_groups.h"
 #include "vps/friction.h"
 
 namespace vps::bullet::inline v0 {
@@ -25,7 +26,8 @@ class PenaltyPatch {
   /// @param off_tangent  for body 0 and 1: maps a point's position from its body's origin to its displacement
   /// in the
   ///                     step beyond that of the body's present velocity
-  void build(PenaltyPair& pair, const Mat3 (&off_tangent)[2], double dt_s);
+  /// @param level  of the groups that are solved as one point each; 0: each point alone
+  void build(PenaltyPair& pair, const Mat3 (&off_tangent)[2], double dt_s, int level);
 
   /// Sets the gradient, and with_hessian the Hessian, of the potential at a twist. O(points), cheap for
   /// points that do not press.
@@ -33,8 +35,11 @@ class PenaltyPatch {
   /// Updates the limits of friction from the normal forces at a twist. Raises `change` and `greatest` to the
   /// greatest change and limit [N].
   void updateLimits(const Vec6& twist, double& change, double& greatest);
-  /// Writes forces and bends at a twist to the pair's points.
+  /// Writes forces and bends at a twist to the pair's points. The points of a group share its force by their
+  /// stiffness and have the same bend, so that another grouping in the next step goes on from there.
   void finish(const Vec6& twist) const;
+
+  [[nodiscard]] std::size_t pointCount() const { return points_.size(); }
 
   PenaltyPair* pair = nullptr;
   int body[2] = {-1, -1};
@@ -58,7 +63,8 @@ class PenaltyPatch {
   [[nodiscard]] PointForce forceAt(std::size_t i) const;
 
   double dt_s_ = 0;
-  std::vector<Point> points_;
+  std::vector<PointGroup> groups_;             // of the pair's points
+  std::vector<Point> points_;                  // one for each group
   std::array<std::vector<double>, 6> wrench_;  // of a unit normal force, by component: r x n, n
   std::vector<double> gap_m_, limit_N_;
   Columns r_m_, bend_m_;

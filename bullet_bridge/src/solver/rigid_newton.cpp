@@ -58,7 +58,7 @@ void RigidNewton::setPenaltyPoints(std::span<const RigidContact> contacts, doubl
     pairs_[pair_count_ - 1].points.push_back(penaltyPointOf(c, dt_s, compliance_));
   }
   penalty_.clear(dt_s);
-  for (PenaltyPair& pair : pairs()) penalty_.add(pair, false);  // as the sweeps do
+  for (PenaltyPair& pair : pairs()) penalty_.add(pair, 0, false);  // as the sweeps do
 }
 
 // Returns the greatest velocity by which a row misses its law.

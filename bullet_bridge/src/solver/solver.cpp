@@ -16,9 +16,12 @@
 #include <algorithm>
 #include <deque>
 #include <span>
+#include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
+#include "log/report.h"
 #include "solver/contact_sweeps.h"
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
@@ -49,6 +52,8 @@ struct Solver::Work {
   std::vector<ActiveCoupling> active_couplings;
   std::vector<PenaltyManifold> manifolds;  // with penalty contact
   std::deque<PenaltyPair> converted;       // of manifolds without VPS contact
+  std::vector<PenaltyPair*> pairs;         // each once
+  std::size_t points_near = 0;             // of all pairs
   std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
   std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
@@ -57,6 +62,7 @@ struct Solver::Work {
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
   bool gatherContacts(std::span<btPersistentManifold*> manifolds, const ContactCreateFunction* stores,
                       const btContactSolverInfo& info);
+  void gatherPenaltyPoints(std::size_t limit, double dt_s);
   void gatherCouplings(double dt_s);
   void applyLaws();
   bool updateLaws();
@@ -133,12 +139,21 @@ bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const C
         rigid.add(*manifold, manifold->getContactPoint(i), info);
     return true;
   }
+  return true;
+}
+
+void Solver::Work::gatherPenaltyPoints(std::size_t limit, double dt_s) {
+  pairs.clear();
+  points_near = 0;
   std::unordered_set<const PenaltyPair*> added;  // a pair may have several manifolds
   for (PenaltyManifold& m : manifolds) {
-    if (!m.pair) m.pair = &converted.emplace_back(penaltyPairOf(*m.manifold, info.m_timeStep));
-    if (added.insert(m.pair).second) penalty.add(*m.pair);
+    if (!m.pair) m.pair = &converted.emplace_back(penaltyPairOf(*m.manifold, dt_s));
+    if (!added.insert(m.pair).second) continue;
+    pairs.push_back(m.pair);
+    points_near += m.pair->points.size();
   }
-  return true;
+  const int level = levelFor(pairs, limit);
+  for (PenaltyPair* pair : pairs) penalty.add(*pair, level);
 }
 
 void Solver::Work::gatherCouplings(double dt_s) {
@@ -218,11 +233,14 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
   constexpr double kSettled = 1e-6;        // share of the greatest limit of friction
   SolveOutcome last;
   int most_steps = 0;
+  SolverSettings left = settings;
   for (int round = 0; round < rounds; ++round) {
     applyLaws();
-    last = solveContacts(settings, dt_s);
+    last = solveContacts(left, dt_s);
     most_steps = std::max(most_steps, last.steps);
-    if (round == rounds - 1) break;  // not converged: laws and limits stay those of the last solution
+    if (is_penalty) left.iteration_limit -= last.steps;  // each evaluates thousands of points
+    if (round == rounds - 1 || left.iteration_limit <= 0)
+      break;  // not converged: laws and limits stay those of the last solution
     const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettled;
     if (updateLaws() && has_settled_friction) break;
   }
@@ -267,6 +285,17 @@ bool Solver::Work::shorten(double dt_s) {
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
 Solver::~Solver() = default;
 
+void Solver::reportGroups() {
+  if (points_solved_ >= points_near_ || std::exchange(has_reported_groups_, true)) return;
+  report(LogLevel::Warning,
+         std::to_string(points_near_)
+             .append(" penalty points are near in one island: neighbours are solved together, as ")
+             .append(std::to_string(points_solved_))
+             .append(
+                 " points (SolverSettings::point_limit). Contact is a little stiffer then; a coarser spacing "
+                 "of the parts or ContactMethod::Constraint avoids it"));
+}
+
 btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                             int manifold_count, btTypedConstraint** constraints, int constraint_count,
                             const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) {
@@ -282,6 +311,13 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
   if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call without bodies
+  points_near_ = points_solved_ = 0;
+  if (work.is_penalty) {
+    work.gatherPenaltyPoints(settings_.point_limit, dt_s);
+    points_near_ = work.points_near;
+    points_solved_ = work.penalty.pointCount();
+    reportGroups();
+  }
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 

@@ -18,6 +18,11 @@ void hullRow(const Options& options, Table& table);
 /// packaged.
 void shapesRow(const Options& options, Table& table);
 
+/// Queries of a part against a mesh of 81,920 triangles and against a hull of 200 points.
+void pairQueryRow(const Options& options, Table& table);
+/// The first step of twenty gears, in which all pairs are new.
+void firstStepRow(const Options& options, Table& table);
+
 /// M16 nut on a bolt at poses in contact: milliseconds for a query, by VPS and others.
 void queryRow(const Options& options, Table& table);
 

@@ -252,7 +252,7 @@ const std::vector<Case>& allCases() {
       {"impact", massImpactRow}, {"gears", gearRow},           {"heap", heapRow},
       {"longrest", longRestRow}, {"inside", createdInsideRow}, {"proxy", proxyRow},
       {"wall", wallRow},         {"query", queryRow},          {"shapes", shapesRow},
-      {"hulls", hullRow, true}};
+      {"pairs", pairQueryRow},   {"first", firstStepRow},      {"hulls", hullRow, true}};
   return cases;
 }
 

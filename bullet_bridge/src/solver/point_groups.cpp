@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/point_groups.h"
+
+namespace vps::bullet::inline v0 {
+namespace {
+
+// A leader keeps its role against one that is deeper by less. Assumed: a tenth of what a part may move
+// before its points are sought again.
+constexpr double kClearly_m = 1e-7;
+double leadGap_m(const PenaltyPoint& p) {
+  return p.is_leader ? p.gap_m - kClearly_m : p.gap_m;
+}
+
+constexpr double kSameWay = 0.7;  // 45 degrees
+
+/// Calls visit(first, end) for each group.
+template <typename Visit>
+void forEachGroup(const PenaltyPair& pair, int level, const Visit& visit) {
+  const std::vector<PenaltyPoint>& points = pair.points;
+  for (std::size_t first = 0; first < points.size();) {
+    std::size_t end = first + 1;
+    if (!pair.is_of_manifold && level > 0)
+      while (end < points.size() && points[end].key >> level == points[first].key >> level &&
+             points[end].n_W.dot(points[first].n_W) > kSameWay)
+        ++end;
+    visit(first, end);
+    first = end;
+  }
+}
+
+}  // namespace
+
+void groupPoints(const PenaltyPair& pair, int level, std::vector<PointGroup>& groups) {
+  groups.clear();
+  forEachGroup(pair, level, [&](std::size_t first, std::size_t end) {
+    PointGroup group{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(end)};
+    for (std::size_t i = first; i < end; ++i) {
+      group.k_N_per_m += pair.points[i].k_N_per_m;
+      group.f_n_N += pair.points[i].f_n_N;
+      if (leadGap_m(pair.points[i]) < leadGap_m(pair.points[group.leader]))
+        group.leader = static_cast<std::uint32_t>(i);
+    }
+    groups.push_back(group);
+  });
+}
+
+int levelFor(std::span<const PenaltyPair* const> pairs, std::size_t limit) {
+  if (limit == 0) return 0;
+  for (int level = 0; level < kCoarsestLevel; ++level) {
+    std::size_t count = 0;
+    for (const PenaltyPair* pair : pairs)
+      forEachGroup(*pair, level, [&](std::size_t, std::size_t) { ++count; });
+    if (count <= limit) return level;
+  }
+  return kCoarsestLevel;
+}
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What single pairs cost: queries of Bullet's own shapes, and the step in which many pairs are new.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "rival_rows.h"
+#include "support/gear.h"
+#include "vps_bullet/body.h"
+#include "vps_bullet/convert.h"
+#include "vps_bullet/install.h"
+
+namespace vps::bench {
+
+namespace {
+
+struct CountPoints : btCollisionWorld::ContactResultCallback {
+  int points = 0;
+  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    ++points;
+    return 0;
+  }
+};
+
+/// Median of contactPairTest of a part of 22,000 points that touches one of Bullet's shapes; the first, which
+/// reads the shape, is left out.
+Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const Vec3& p_WN, double bound_s) {
+  btDefaultCollisionConfiguration config;
+  btCollisionDispatcher dispatcher(&config);
+  btDbvtBroadphase broadphase;
+  btCollisionWorld world(&dispatcher, &broadphase, &config);
+  bullet::install(dispatcher);
+  const bullet::Body part = bullet::makeBody(mesh);
+  btCollisionObject other;
+  other.setCollisionShape(&native);
+  other.setWorldTransform(bullet::toBt(Pose::translation(p_WN)));
+  std::vector<double> times_s;
+  CountPoints found;
+  for (int i = 0; i < 20; ++i) {
+    found.points = 0;
+    const double start_s = dynamics::threadTime_s();
+    world.contactPairTest(part.rigid.get(), &other, found);
+    if (i > 0) times_s.push_back(dynamics::threadTime_s() - start_s);
+  }
+  std::sort(times_s.begin(), times_s.end());
+  bullet::uninstall(dispatcher);
+  return {"query of a pair",
+          name,
+          {atMost("median", times_s[times_s.size() / 2], bound_s, 1e3, "ms"),
+           reported("contacts", found.points, 1, ""),
+           reported("points of the part", static_cast<double>(part.model->shell->size()), 1, "")},
+          ""};
+}
+
+}  // namespace
+
+void pairQueryRow(const Options&, Table& table) {
+  const Mesh sphere = makeSphere(0.05, 6);
+  btTriangleMesh triangles;
+  for (const auto& t : sphere.triangles)
+    triangles.addTriangle(bullet::toBt(sphere.vertices[t[0]]), bullet::toBt(sphere.vertices[t[1]]),
+                          bullet::toBt(sphere.vertices[t[2]]));
+  btBvhTriangleMeshShape mesh(&triangles, true);
+  // A ring of 20 mm that sits 0.77 mm deep on a ball of 82,000 triangles.
+  table.add(queryOf("btBvhTriangleMeshShape of 81,920 triangles", makeTube(0.02, 0.01, 0.02, 96), mesh,
+                    {0, 0, -0.0582}, 5e-3));
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  btConvexHullShape hull;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p(normal(random), normal(random), normal(random));
+    hull.addPoint(bullet::toBt(Vec3(0.02 * p.normalized())));
+  }
+  hull.setMargin(0);
+  table.add(queryOf("btConvexHullShape of 200 points", makeBox({0.1, 0.1, 0.02}), hull, {0.01, 0.004, 0.0295},
+                    1e-3));
+}
+
+// Twenty gears of 23,000 points are put into a bin; all their pairs are new in the first step.
+void firstStepRow(const Options&, Table& table) {
+  test::GearShape gear;
+  gear.module_m = 1.25e-3;
+  gear.teeth = 20;
+  gear.width_m = 8e-3;
+  gear.other_radius_m = 4e-3;
+  gear.points_per_tooth = 16;
+  gear.axial_steps = gear.radial_steps = 4;
+  const dynamics::PartMesh part = dynamics::makePart(test::makeSpurGear(gear));
+  dynamics::World world({dynamics::Mode::Constraint, true, dynamics::vpsEngine({0.2e-3, 0.36e-3})});
+  const auto addWall = [&](const Vec3& half_m, const Vec3& center) {
+    world.addShape(std::make_shared<btBoxShape>(bullet::toBt(half_m)), {}, Pose::translation(center));
+  };
+  addWall({0.1, 0.1, 0.01}, {0, 0, -0.01});
+  for (const double side : {-1.0, 1.0}) {
+    addWall({0.01, 0.1, 0.2}, {side * 0.055, 0, 0.1});
+    addWall({0.1, 0.01, 0.2}, {0, side * 0.055, 0.1});
+  }
+  double points = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double angle_rad = 2.399963 * i;
+    const Vec3 turn = Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.3) * (0.2 + 0.11 * i);
+    const Vec3 at(i & 1 ? 0.018 : -0.018, i & 2 ? 0.018 : -0.018, 0.022 + 0.03 * (i / 4));
+    const dynamics::Placed placed = world.add(part, Pose(rotationFromVector(turn), at), false, 0.3);
+    const auto* shape = dynamic_cast<const bullet::Shape*>(placed.body->getCollisionShape());
+    points = static_cast<double>(shape->models().shell->size());
+  }
+  const auto stepTime_s = [&] {
+    const double start_s = dynamics::threadTime_s();
+    world.step();
+    return dynamics::threadTime_s() - start_s;
+  };
+  const double first_s = stepTime_s(), second_s = stepTime_s();
+  table.add({"20 gears in a bin",
+             "constraint",
+             {atMost("first step", first_s, 10e-3, 1e3, "ms"), reported("second", second_s, 1e3, "ms"),
+              reported("points of each", points, 1, "")},
+             ""});
+}
+
+}  // namespace vps::bench
