@@ -104,7 +104,8 @@ int runExplain(const ExplainArguments& given) {
   ProgressBar bar;
   const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {given.json});
   scenes::ModelOptions options;
-  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  // The time to build is measured, so that models are taken only from a folder that was asked for.
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache.folder);
   setModelOptions(options, bar, cache, given.scene.models_everything);
   const scenes::ModelPurpose purpose = given.is_for_simulate || scene.steps.empty()
                                            ? scenes::ModelPurpose::Simulate

@@ -48,15 +48,29 @@ std::shared_ptr<const Solid> solidOf(const ScenePart& part, const Mesh& mesh) {
   return std::make_shared<const Solid>(by_m > 0 ? shrunkMesh(mesh, by_m) : mesh, part.part.name);
 }
 
+/// What a cache knows a part's models by.
+const Mesh& cachedMesh(const ScenePart& part, const Solid& solid) {
+  return part.press_fit_m > 0 ? solid.mesh() : part.part.mesh;
+}
+
+/// Builds a part's shell, or takes it from the cache.
+std::shared_ptr<const PointShell> shellOf(const ScenePart& part, const Solid& solid,
+                                          const PointShellSettings& settings, const ModelOptions& options) {
+  const std::string& name = part.part.name;
+  return std::make_shared<PointShell>(
+      options.cache != nullptr ? options.cache->buildShell(cachedMesh(part, solid), solid, settings, name)
+                               : buildPointShell(solid, settings, name));
+}
+
 /// Builds a part's map, or takes it from the cache.
 std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, const VoxMapSettings& settings,
                                     const ModelOptions& options) {
   const std::string& name = part.part.name;
   MeshReport report;
-  auto map = std::make_shared<VoxMap>(
-      options.cache != nullptr ? options.cache->build(part.press_fit_m > 0 ? solid.mesh() : part.part.mesh,
-                                                      solid, settings, name, {}, &report)
-                               : buildVoxMap(solid, settings, name, {}, &report));
+  auto map =
+      std::make_shared<VoxMap>(options.cache != nullptr ? options.cache->build(cachedMesh(part, solid), solid,
+                                                                               settings, name, {}, &report)
+                                                        : buildVoxMap(solid, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
     options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
@@ -96,8 +110,7 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
   if (planned.has_shell && !model.shell)
-    model.shell = std::make_shared<PointShell>(
-        buildPointShell(*model.solid, pointShellSettings(fidelity), scene_part.part.name));
+    model.shell = shellOf(scene_part, *model.solid, pointShellSettings(fidelity), options);
   scene_part.is_cropped = !planned.kept_P.empty();
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
