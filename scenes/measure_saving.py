@@ -16,7 +16,7 @@ def run(vps, scene, flags):
     """The JSON of one run, with its peak memory."""
     with tempfile.TemporaryDirectory() as folder:
         numbers = os.path.join(folder, "assemble.json")
-        command = [vps, "assemble", scene, "--no-pictures", "--out", folder, "--json", numbers] + flags
+        command = [vps, "assemble", scene, "--no-pictures", "--no-cache", "--out", folder, "--json", numbers] + flags
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         _, status, usage = os.wait4(process.pid, 0)
         if os.waitstatus_to_exitcode(status) not in (0, 1):

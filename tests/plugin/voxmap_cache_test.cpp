@@ -3,8 +3,10 @@
 #include "vps/voxmap_cache.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <set>
 #include <thread>
@@ -13,6 +15,7 @@
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
+#include "vps/solid.h"
 
 namespace vps::test {
 namespace {
@@ -158,6 +161,105 @@ TEST_F(VoxMapCacheTest, ConcurrentWritersLeaveOneWholeFile) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path() / "maps"), {}), 1);
   expectSame(build(part()), maps[0]);
   EXPECT_TRUE(warnings_.empty());
+}
+
+constexpr PointShellSettings kPoints = {1e-3, 0.35};
+
+PointShell shellOf(const VoxMapCache& cache, const Mesh& mesh) {
+  return cache.buildShell(mesh, Solid(mesh), kPoints);
+}
+
+void expectSame(const PointShell& a, const PointShell& b) {
+  EXPECT_EQ(a.points, b.points);
+  EXPECT_EQ(a.inward, b.inward);
+  EXPECT_EQ(a.area_m2, b.area_m2);
+  EXPECT_EQ(a.order, b.order);
+  EXPECT_EQ(a.spacing_m, b.spacing_m);
+  EXPECT_EQ(a.leaf_blocks, b.leaf_blocks);
+  EXPECT_EQ(a.memoryBytes(), b.memoryBytes());
+  ASSERT_EQ(a.nodes.size(), b.nodes.size());
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    EXPECT_EQ(a.nodes[i].center, b.nodes[i].center);
+    EXPECT_EQ(a.nodes[i].radius_m, b.nodes[i].radius_m);
+    EXPECT_EQ(a.nodes[i].skip, b.nodes[i].skip);
+  }
+}
+
+TEST_F(VoxMapCacheTest, TheSecondShellIsReadFromTheFileWithTheSameBits) {
+  const PointShell direct = buildPointShell(Solid(part()), kPoints);
+  expectSame(shellOf(cache_, part()), direct);
+  const fs::path file = cache_.shellFileOf(part(), kPoints);
+  ASSERT_TRUE(fs::exists(file));
+  const auto written = fs::last_write_time(file);
+  expectSame(shellOf(cache_, part()), direct);
+  EXPECT_GT(fs::last_write_time(file), written) << "its use was not noted";
+  EXPECT_NE(cache_.shellFileOf(part(), {0.9e-3, 0.35}), file);
+  EXPECT_NE(cache_.shellFileOf(part(), {1e-3, 0.3}), file);
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(VoxMapCacheTest, EveryDamagedShellIsBuiltAgainWithAWarningAndReplaced) {
+  const PointShell direct = shellOf(cache_, part());
+  const fs::path file = cache_.shellFileOf(part(), kPoints);
+  const std::string good = bytesOf(file);
+  std::vector<std::string> damaged = {"", std::string(5000, 'x'), good + "x",
+                                      good.substr(0, good.size() - 60)};
+  for (std::size_t i = 0; i < good.size(); i += i < 60 ? 1 : good.size() / 40) {
+    damaged.push_back(good);
+    damaged.back()[i] = static_cast<char>(damaged.back()[i] ^ (1 << i % 8));
+  }
+  for (const std::string& bytes : damaged) {
+    warnings_.clear();
+    write(file, bytes);
+    expectSame(shellOf(cache_, part()), direct);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("built again"), std::string::npos) << warnings_[0];
+    ASSERT_EQ(bytesOf(file), good);
+  }
+}
+
+Mesh cube(int i) {
+  return makeBox(Vec3::Constant(0.01 + 1e-4 * i));
+}
+
+TEST_F(VoxMapCacheTest, TheLongestUnusedFilesGoFirstWhenTheFolderIsFull) {
+  build(cube(0));
+  const std::uint64_t each = fs::file_size(cache_.fileOf(cube(0), kSettings));
+  write(folder_.path() / "maps" / "notes.txt", std::string(10 * each, 'x'));  // not the cache's own
+  const VoxMapCache small(folder_.path() / "maps", {}, 4 * each + each / 2);
+  const auto isKept = [&](int i) { return fs::exists(small.fileOf(cube(i), kSettings)); };
+  for (int i = 1; i <= 3; ++i) {
+    (void)small.build(cube(i), kSettings);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // clocks of file systems are coarse
+  }
+  (void)small.build(cube(0), kSettings);  // used again
+  for (int i = 0; i <= 3; ++i) EXPECT_TRUE(isKept(i)) << i;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  (void)small.build(cube(4), kSettings);
+  EXPECT_TRUE(isKept(0) && isKept(3) && isKept(4));
+  EXPECT_FALSE(isKept(1)) << "the longest unused";
+  EXPECT_TRUE(fs::exists(folder_.path() / "maps" / "notes.txt"));
+}
+
+TEST_F(VoxMapCacheTest, AFullDiskGivesOneWarningAndTheModels) {
+  // Writing beyond the limit fails, as on a full disk.
+  struct sigaction before = {}, ignored = {};
+  ignored.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &ignored, &before);
+  rlimit old = {};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const rlimit tight = {1000, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &tight);
+  const VoxMap first = build(cube(1)), second = build(cube(2));
+  const PointShell shell = shellOf(cache_, cube(1));
+  setrlimit(RLIMIT_FSIZE, &old);
+  sigaction(SIGXFSZ, &before, nullptr);
+  expectSame(first, buildVoxMap(cube(1), kSettings));
+  expectSame(second, buildVoxMap(cube(2), kSettings));
+  expectSame(shell, buildPointShell(Solid(cube(1)), kPoints));
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_NE(warnings_[0].find("could not be kept"), std::string::npos) << warnings_[0];
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "maps")) << "part of a file was left";
 }
 
 }  // namespace

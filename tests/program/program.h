@@ -34,21 +34,25 @@ class Program : public testing::Test {
   void SetUp() override {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::temp_directory_path() / ("vps_program_" + std::string(info->name()));
-    fs::remove_all(folder_);
+    TearDown();
     fs::create_directories(folder_);
     write("plate.stl", stlBox(Vec3(20, 20, 10)));  // millimetres
     write("pin.stl", stlBox(Vec3(4, 4, 8)));
     write("cut.stl", stlBox(Vec3(4, 4, 8)).substr(0, 300));
     write("scene.toml", kScene);
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    fs::remove_all(folder_);
+    fs::remove_all(folder_.string() + ".cache");
+  }
 
   void write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
 
   Ran run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" VPS_PROGRAM "' " + arguments +
+    const std::string command = "cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + folder_.string() +
+                                ".cache' '" VPS_PROGRAM "' " + arguments +
                                 " >stdout.txt 2>stderr.txt </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(folder_ / "stdout.txt"),

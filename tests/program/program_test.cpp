@@ -186,6 +186,32 @@ TEST_F(Program, ACacheGivesTheSameAnswerAndADamagedOneAWarning) {
   EXPECT_NE(third.err.find("built again"), std::string::npos) << third.err;
 }
 
+TEST_F(Program, ModelsAreKeptInTheUsersCacheUnlessToldNotTo) {
+  const fs::path cache = folder_.string() + ".cache/bullet-vps";
+  const auto answer = [&](const std::string& options) {
+    const Ran ran = run("simulate scene.toml --seconds 0.05 --json a.json" + options);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("kept"), std::string::npos) << ran.err;
+    auto data = nlohmann::json::parse(slurp(folder_ / "a.json"));
+    data.erase("wall");
+    return data.dump();
+  };
+  const std::string without = answer(" --no-cache");
+  EXPECT_FALSE(fs::exists(cache));
+  EXPECT_EQ(answer(""), without);
+  EXPECT_GE(std::distance(fs::directory_iterator(cache), {}), 2) << "a map and a shell";
+  EXPECT_EQ(fs::status(cache).permissions(), fs::perms::owner_all);
+  EXPECT_EQ(answer(""), without) << "read from the cache";
+  EXPECT_EQ(answer(" --cache-limit 1e-6"), without) << "with no room in the cache";
+
+  fs::remove_all(cache);
+  std::ofstream(cache) << "a file where the folder should be";
+  const Ran ran = run("simulate scene.toml --seconds 0.05 --json a.json");
+  EXPECT_EQ(ran.status, 0);
+  EXPECT_NE(ran.err.find("could not be kept"), std::string::npos) << ran.err;
+  EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+}
+
 TEST_F(Program, AFailedRunLeavesEarlierResultsAlone) {
   fs::create_directories(folder_ / "out");
   write("out/report.html", "earlier");

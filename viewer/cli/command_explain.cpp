@@ -19,6 +19,7 @@ struct ExplainArguments {
   SceneArguments scene;
   std::string json;
   bool is_for_simulate = false;  ///< what vps simulate would model; always so for a scene without steps
+  bool is_measured = false;      ///< builds everything, instead of estimating it
 };
 
 std::string megabytes(std::size_t bytes) {
@@ -48,13 +49,17 @@ std::string whereOf(const scenes::PartModelPlan& part) {
 }
 
 std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
-  Table table({"<part", "<modelled", "<where", "MB", "points", "build [s]", "<why"});
+  const bool is_measured = !explained.cost.is_estimated;
+  Table table(
+      {"<part", "<modelled", "<where", "MB", "points", is_measured ? "build [s]" : "triangles", "<why"});
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const scenes::PartModelPlan& part = explained.plan.parts[i];
     const scenes::PartCost& cost = explained.cost.parts[i];
     table.add({scene.parts[i].part.name, modelsOf(part), whereOf(part),
                megabytes(cost.map_bytes + cost.shell_bytes), std::to_string(cost.points),
-               fixed(cost.map_wall_s + cost.shell_wall_s, 3), whyOf(scene, part)});
+               is_measured ? fixed(cost.map_wall_s + cost.shell_wall_s, 3)
+                           : std::to_string(scene.parts[i].part.mesh.triangles.size()),
+               whyOf(scene, part)});
   }
   return table.text();
 }
@@ -66,25 +71,32 @@ std::string regionOf(const scenes::FieldPlan& step) {
 }
 
 std::string tableOfSteps(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
+  const bool is_measured = !explained.cost.is_estimated;
   Table table({"<step", "<moves", "<within [mm]", "<against the field of", "<left out", "field MB", "points",
-               "cook [s]"});
+               is_measured ? "cook [s]" : "<cooked"});
   for (std::size_t s = 0; s < explained.plan.steps.size(); ++s) {
     const scenes::FieldPlan& step = explained.plan.steps[s];
     const scenes::StepCost& cost = explained.cost.steps[s];
     table.add({std::to_string(s + 1),
                step.part ? scene.parts[*step.part].part.name : "all parts that are not fixed", regionOf(step),
                namesOf(scene, step.cooked), namesOf(scene, step.left_out), megabytes(cost.bytes),
-               std::to_string(cost.points), cost.is_cooked ? fixed(cost.cook_wall_s, 3) : "as before"});
+               std::to_string(cost.points),
+               !cost.is_cooked ? "as before"
+               : is_measured   ? fixed(cost.cook_wall_s, 3)
+                               : "anew"});
   }
   return table.text();
 }
 
 std::string totalOf(const char* words, const scenes::ModelPlanCost& cost) {
-  return std::string(words) + megabytes(cost.most.bytes) + " MB at most (" +
-         std::to_string(cost.most.voxmaps) + " voxmaps, " + std::to_string(cost.most.pointshells) +
-         " pointshells, " + std::to_string(cost.most.points) + " points and " +
-         std::to_string(cost.most.field_points) + " in the cooked fields), " + fixed(cost.build_wall_s, 2) +
-         " s to build, " + fixed(cost.cook_wall_s, 2) + " s to cook\n";
+  const std::string size = words + (cost.is_estimated ? std::string("about ") : "") +
+                           megabytes(cost.most.bytes) + " MB at most (" + std::to_string(cost.most.voxmaps) +
+                           " voxmaps, " + std::to_string(cost.most.pointshells) + " pointshells, " +
+                           std::to_string(cost.most.points) + " points and " +
+                           std::to_string(cost.most.field_points) + " in the cooked fields)";
+  if (cost.is_estimated) return size + "\n";
+  return size + ", " + fixed(cost.build_wall_s, 2) + " s to build, " + fixed(cost.cook_wall_s, 2) +
+         " s to cook\n";
 }
 
 int runExplain(const ExplainArguments& given) {
@@ -92,16 +104,21 @@ int runExplain(const ExplainArguments& given) {
   ProgressBar bar;
   const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {given.json});
   scenes::ModelOptions options;
-  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  // The time to build is measured, so that models are taken only from a folder that was asked for.
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache.folder);
   setModelOptions(options, bar, cache, given.scene.models_everything);
   const scenes::ModelPurpose purpose = given.is_for_simulate || scene.steps.empty()
                                            ? scenes::ModelPurpose::Simulate
                                            : scenes::ModelPurpose::Assemble;
-  ExplainAnswer answer = {scene, scenes::explain(scene, purpose, options), {}};
+  const auto costOf = [&] {
+    return given.is_measured ? scenes::explain(scene, purpose, options)
+                             : scenes::estimate(scene, purpose, options);
+  };
+  ExplainAnswer answer = {scene, costOf(), {}};
   if (!given.scene.models_everything) {
     options.models_everything = true;
     options.warn = {};  // the first call has printed the warnings
-    answer.everything = scenes::explain(scene, purpose, options);
+    answer.everything = costOf();
   }
   throwIfStopped();
   json.write(toJson(answer));
@@ -115,6 +132,9 @@ int runExplain(const ExplainArguments& given) {
   std::fputs(totalOf("total                    ", answer.chosen.cost).c_str(), stdout);
   if (answer.everything)
     std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);
+  if (!given.is_measured)
+    std::fputs("estimated from areas and edges; --measure builds all of it and measures memory and time\n",
+               stdout);
   return kGood;
 }
 
@@ -128,6 +148,9 @@ void addExplain(CommandLine& line) {
   addSceneOptions(command, given->scene);
   command.add_flag("--simulate", given->is_for_simulate,
                    "explain vps simulate instead of vps assemble; the default for a scene without steps");
+  command.add_flag("--measure", given->is_measured,
+                   "build the models, and those of --model-everything, and measure their memory and time; "
+                   "without it both are estimated");
   addJsonOption(command, given->json);
 }
 

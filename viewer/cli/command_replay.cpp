@@ -22,7 +22,7 @@ namespace {
 
 struct ReplayArguments {
   std::string recording;
-  std::string cache;  ///< folder for voxmaps; empty: none
+  CacheArguments cache;
   std::string out, json;
   std::string csv;              ///< folder for the recorded channels as tables; empty: none
   bool is_tables_only = false;  ///< do not run
@@ -101,7 +101,7 @@ void addReplay(CommandLine& line) {
   command.add_option("--csv", given->csv, "folder for the recorded channels as tables")->type_name("DIR");
   command.add_flag("--no-run", given->is_tables_only, "with --csv: write the tables and do not run");
   command.add_option("--out", given->out, "folder for a report, as vps assemble writes it")->type_name("DIR");
-  addCacheOption(command, given->cache);
+  addCacheOptions(command, given->cache);
   addJsonOption(command, given->json);
 }
 

@@ -211,6 +211,7 @@ std::string toJson(const ExplainAnswer& answer) {
                {"scene", scene.name},
                {"for", plan.purpose == scenes::ModelPurpose::Assemble ? "assemble" : "simulate"},
                {"models_everything", plan.models_everything},
+               {"estimated", answer.chosen.cost.is_estimated},
                {"voxel_m", scene.fidelity.voxel_m},
                {"point_spacing_m", scene.fidelity.spacing_m},
                {"sides", toText(scene.fidelity.sides)},

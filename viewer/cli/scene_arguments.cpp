@@ -3,6 +3,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "file_kind.h"
 #include "output.h"
 #include "progress_bar.h"
@@ -59,12 +62,29 @@ void addCacheOption(CLI::App& command, std::string& folder) {
   command.add_option("--cache", folder, "folder in which voxmaps are kept and looked up")->type_name("DIR");
 }
 
+void addCacheOptions(CLI::App& command, CacheArguments& given) {
+  CLI::Option* folder =
+      command
+          .add_option(
+              "--cache", given.folder,
+              "folder in which voxmaps and pointshells are kept between runs and looked up; without it "
+              "bullet-vps in $XDG_CACHE_HOME or ~/.cache")
+          ->type_name("DIR");
+  command.add_flag("--no-cache", given.is_off, "build the models again, and keep none")->excludes(folder);
+  command
+      .add_option("--cache-limit", given.limit_GB,
+                  "size of that folder; the models that were not used for the longest time are removed")
+      ->type_name("GB")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
 void addSceneOptions(CLI::App& command, SceneArguments& given) {
   addSceneArgument(command, given.scene);
   command.add_flag("--model-everything", given.models_everything,
                    "build a voxmap and a pointshell of every part, share none and leave none out");
   addFidelityOptions(command, given.fidelity);
-  addCacheOption(command, given.cache);
+  addCacheOptions(command, given.cache);
 }
 
 void addUnitsOption(CLI::App& command, std::string& units) {
@@ -81,6 +101,24 @@ std::optional<double> unitFrom(const std::string& text) {
 std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   if (folder.empty()) return std::nullopt;
   return VoxMapCache(folder, warn);
+}
+
+std::optional<VoxMapCache> cacheFrom(const CacheArguments& given) {
+  if (given.is_off) return std::nullopt;
+  const std::string folder = given.folder.empty() ? defaultCacheFolder() : given.folder;
+  if (folder.empty()) return std::nullopt;
+  constexpr double kMost_GB = 1e9;  // so that the bytes stay within 64 bits
+  return VoxMapCache(folder, warn, static_cast<std::uint64_t>(1e9 * std::min(given.limit_GB, kMost_GB)));
+}
+
+std::string defaultCacheFolder() {
+  const auto absolute = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && value[0] == '/' ? std::string(value) : std::string();
+  };
+  if (const std::string caches = absolute("XDG_CACHE_HOME"); !caches.empty()) return caches + "/bullet-vps";
+  if (const std::string home = absolute("HOME"); !home.empty()) return home + "/.cache/bullet-vps";
+  return "";
 }
 
 void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,

@@ -32,10 +32,17 @@ void addPointsOption(CLI::App& command, FidelityArguments& given);
 /// `base` with what was given on the command line. Throws LoadError naming the option.
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
 
+/// Where models are kept between runs.
+struct CacheArguments {
+  std::string folder;   ///< empty: the user's own, see defaultCacheFolder()
+  bool is_off = false;  ///< models are built each time
+  double limit_GB = 4;  ///< the files that were not used for the longest time are removed
+};
+
 /// A scene and how its models are built.
 struct SceneArguments {
   std::string scene;
-  std::string cache;               ///< folder for voxmaps; empty: none
+  CacheArguments cache;
   bool models_everything = false;  ///< see scenes::ModelOptions
   FidelityArguments fidelity;
 };
@@ -44,7 +51,9 @@ struct SceneArguments {
 void addSceneArgument(CLI::App& command, std::string& scene);
 /// Adds --cache.
 void addCacheOption(CLI::App& command, std::string& folder);
-/// Adds SCENE and the options --model-everything, --cache and those of addFidelityOptions().
+/// Adds --cache, --no-cache and --cache-limit.
+void addCacheOptions(CLI::App& command, CacheArguments& given);
+/// Adds SCENE and the options --model-everything, those of addCacheOptions() and of addFidelityOptions().
 void addSceneOptions(CLI::App& command, SceneArguments& given);
 
 /// The scene, with the command line's fidelity instead of its own. Prints warnings about its CAD files on
@@ -60,6 +69,11 @@ std::optional<double> unitFrom(const std::string& text);
 
 /// The cache in a folder, which reports damaged files on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
+/// The cache that the options stand for; none with --no-cache, and where the user has no folder for caches.
+std::optional<VoxMapCache> cacheFrom(const CacheArguments& given);
+/// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty where neither is an absolute path.
+/// Source: XDG Base Directory Specification 0.8.
+std::string defaultCacheFolder();
 
 /// Sets progress, warnings on stderr and the cache. Bar and cache must outlive the options.
 void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,

@@ -1,31 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder of voxmaps, so that each part is voxelised once.
+// A folder of voxmaps and pointshells, so that each part is modelled once.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "vps/export.h"
+#include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
 namespace vps::inline v0 {
 
-/// A folder of voxmaps. Each file is named by a 128-bit hash (XXH3) of everything that determines the map:
-/// every vertex and triangle to the bit, the settings, and the version of the file. A map from the folder has
-/// the same bits as one from buildVoxMap() for the mesh's Solid.
+class CacheFolder;
+
+/// A folder of voxmaps and pointshells. Each file is named by a 128-bit hash (XXH3) of everything that
+/// determines the model: every vertex and triangle to the bit, the settings, and the version of the file. A
+/// model from the folder has the same bits as one that is built from the mesh's Solid.
 ///
 /// A file is used only if it is whole, of this version and this byte order, and its content matches the hash
-/// it ends with; otherwise the map is built again and the file replaced, with a warning. The hash detects
-/// damage, not malice: use a folder that only your own account can write. Several threads and programs may
-/// share the folder. Files are never removed: delete the folder or any file in it at any time.
+/// it ends with; otherwise the model is built again and the file replaced, with a warning. The hash detects
+/// damage, not malice: use a folder that only your own account can write, as a folder that the cache creates.
+/// Several threads and programs may share the folder. With a limit, the files that were not used for the
+/// longest time are removed when the folder exceeds it. The folder or any file in it may be deleted at any
+/// time. Where a file cannot be written (a disk that is full or read-only), there is one warning, and no
+/// other file is written.
 class VPS_API VoxMapCache {
  public:
   using Warn = std::function<void(const std::string&)>;
 
   /// @param folder  created when the first map is written
-  /// @param warn    called with one line of text if a file could not be read or written
-  explicit VoxMapCache(std::filesystem::path folder, Warn warn = {});
+  /// @param warn    called with one line of text if a file could not be read or written; by one thread at a
+  ///                time
+  /// @param limit_bytes  of all files together; 0: no limit
+  explicit VoxMapCache(std::filesystem::path folder, Warn warn = {}, std::uint64_t limit_bytes = 0);
 
   /// As vps::buildVoxMap() for the mesh's Solid, but reads the map from the folder if it is there: O(bytes)
   /// of mesh and map. Throws LoadError for the same reasons, never for a fault of the folder.
@@ -37,14 +47,19 @@ class VPS_API VoxMapCache {
                const std::string& part = "", const Progress& progress = {},
                MeshReport* report = nullptr) const;
 
-  /// The path of this mesh's map, whether the file exists or not.
+  /// As vps::buildPointShell() of the mesh's Solid, but reads the shell from the folder if it is there.
+  /// Throws LoadError for the same reasons, never for a fault of the folder.
+  PointShell buildShell(const Mesh& mesh, const Solid& solid, const PointShellSettings& settings,
+                        const std::string& part = "") const;
+
+  /// The paths of this mesh's models, whether the files exist or not.
   [[nodiscard]] std::filesystem::path fileOf(const Mesh& mesh, const VoxMapSettings& settings) const;
+  [[nodiscard]] std::filesystem::path shellFileOf(const Mesh& mesh, const PointShellSettings& settings) const;
 
  private:
   VoxMap readOrBuild(const Mesh& mesh, const VoxMapSettings& settings, MeshReport* report,
                      const std::function<VoxMap(MeshReport&)>& make) const;
-  std::filesystem::path folder_;
-  Warn warn_;
+  std::shared_ptr<CacheFolder> folder_;
 };
 
 }  // namespace vps::inline v0

@@ -14,11 +14,6 @@
 namespace vps::inline v0 {
 namespace {
 
-/// Spacing of points on edges over the spacing on faces (assumed): tight fits touch at edges, and their cost
-/// is proportional to their length. A vertex of a chain is left out where that moves the rim by less than
-/// 1/500 of the spacing: 1 um at 0.5 mm, a fifth of the allowance of a 20 um fit.
-constexpr double kEdgeStep = 0.5;
-constexpr double kEdgeTolerance = 1.0 / 500;
 /// Face points per square of spacing (measured 1.25), rounded up for the estimate.
 constexpr double kDensity = 1.3;
 /// Assumed: about 1.5 GB of shell.

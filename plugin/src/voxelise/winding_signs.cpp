@@ -52,6 +52,37 @@ void forEachNeighbour(const Index3& at, const Index3& size, Visit visit) {
     }
 }
 
+/// A sign that a signed node passes on, and what is left of its margin; below 0: none.
+struct Passed {
+  int sign = 1;
+  double margin = -1;
+};
+
+/// The sign that a node takes from one of its up to 26 neighbours: the surface cannot pass between two nodes
+/// whose distances exceed their own in sum.
+/// @param lossAt  of margin, per voxel from a node, up to the nodes next to it
+template <typename Loss>
+Passed passedAcross(int node, const NodeValue* nodes, const std::array<int, kBrickNodes>& size,
+                    const std::array<float, kBrickNodes>& margin, double voxel_quanta, const Loss& lossAt) {
+  constexpr std::array<double, 4> kLength = {0, 1, 1.4142135623731,
+                                             1.7320508075689};  // rounded up, of offsets
+  const Index3 at = nodeAt(node), low = (at.array() - 1).max(0), high = (at.array() + 1).min(kNodes - 1);
+  Passed best;
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z) {
+        const int other = nodeIndex(x, y, z);
+        if (!(margin[other] >= 0) || size[other] == 0) continue;  // zero has no sign
+        const double length = kLength[(Index3(x, y, z) - at).cwiseAbs().sum()];
+        // Distances are rounded by half a quantum each.
+        if (!(size[node] + size[other] > length * voxel_quanta * (1 + 1e-5) + 1)) continue;
+        // The doubt about the winding number that a sign began with is counted here again, to be safe.
+        const double left = margin[other] - lossAt(other) * length - Interior::kDoubt;
+        if (left > best.margin) best = {nodes[other] < 0 ? -1 : 1, left};
+      }
+  return best;
+}
+
 }  // namespace
 
 WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& low, double voxel_m,
@@ -59,7 +90,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
-  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin, per step
+  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin, per step, anywhere in the brick
   Count count;
   std::array<int, kBrickNodes> size;
   std::array<float, kBrickNodes> margin;
@@ -71,16 +102,27 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   // Distances are rounded by half a quantum each.
   const double step = voxel_m / quantum_m * (1 + 1e-5) + 1;
   std::array<std::int16_t, kBrickNodes> queue;
-  for (int seed = 0; seed < kBrickNodes; ++seed) {
-    if (margin[seed] >= 0) continue;
-    const double w = interior_.windingNumber(voxel_m * (low + nodeAt(seed)).cast<double>());
-    const int sign = w > 0.5 ? -1 : 1;
-    margin[seed] = static_cast<float>(std::min(std::abs(w - 0.5), kMaxMargin));
+  // Near a border one bound for the brick would leave each of its nodes to be decided alone.
+  constexpr double kSmallLoss = 0.005;  // of the margins of 0.25 that a brick's sixteen steps may use up
+  std::array<float, kBrickNodes> loss_of;
+  if (loss > kSmallLoss) loss_of.fill(-1);
+  const auto lossAt = [&](int i) {
+    if (!(loss > kSmallLoss)) return loss;
+    if (loss_of[i] < 0) {
+      const Vec3 p = voxel_m * (low + nodeAt(i)).cast<double>();
+      const Box around = {p.array() - voxel_m, p.array() + voxel_m};
+      loss_of[i] = static_cast<float>(interior_.slope().bound(around) * voxel_m * (1 + 1e-6));
+    }
+    return static_cast<double>(loss_of[i]);
+  };
+  // Signs a node, and all that it can pass its sign to along the axes.
+  const auto spread = [&](int from, int sign, double margin_there, double doubt) {
+    margin[from] = static_cast<float>(margin_there);
     int end = 0;
-    queue[end++] = static_cast<std::int16_t>(seed);
+    queue[end++] = static_cast<std::int16_t>(from);
     for (int next = 0; next < end; ++next) {
       const int i = queue[next];
-      const double left = margin[i] - loss - (i == seed ? Interior::kDoubt : 0);
+      const double left = margin[i] - lossAt(i) - (i == from ? doubt : 0);
       // On the surface itself both signs are right, and the winding number leaves it open.
       count.certain += size[i] < kFullBand && (margin[i] > kCertainMargin || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
@@ -92,7 +134,27 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
         queue[end++] = static_cast<std::int16_t>(j);
       });
     }
-  }
+  };
+  // First the nodes from which a sign spreads. Those next to the surface follow, most of them across a
+  // diagonal: next to an oblique surface no neighbour along an axis is far enough.
+  for (const bool is_first : {true, false})
+    for (int seed = 0; seed < kBrickNodes; ++seed) {
+      if (margin[seed] >= 0 || (is_first && !(2 * size[seed] > step))) continue;
+      if (size[seed] == 0) {  // on the surface, as are a brick's 81 nodes in a face along the grid: no sign
+        margin[seed] = 0;
+        ++count.certain;
+        continue;
+      }
+      if (!is_first) {
+        const Passed passed = passedAcross(seed, nodes, size, margin, voxel_m / quantum_m, lossAt);
+        if (passed.margin > kCertainMargin) {
+          spread(seed, passed.sign, passed.margin, 0);
+          continue;
+        }
+      }
+      const double w = interior_.windingNumber(voxel_m * (low + nodeAt(seed)).cast<double>());
+      spread(seed, w > 0.5 ? -1 : 1, std::min(std::abs(w - 0.5), kMaxMargin), Interior::kDoubt);
+    }
   return count;
 }
 

@@ -13,7 +13,7 @@ namespace vps::scenes::inline v0 {
 struct ModelOptions {
   Progress progress;
   bool models_everything = false;      ///< models every part everywhere (model_plan.h)
-  const VoxMapCache* cache = nullptr;  ///< where voxmaps are kept between runs; null: built each time
+  const VoxMapCache* cache = nullptr;  ///< where models are kept between runs; null: built each time
   /// Gets one line for each part whose inside and outside could not be told apart with certainty. May be
   /// empty.
   std::function<void(const std::string&)> warn;

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "models/scene_models.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
 #include <set>
 #include <utility>
 
@@ -41,15 +48,29 @@ std::shared_ptr<const Solid> solidOf(const ScenePart& part, const Mesh& mesh) {
   return std::make_shared<const Solid>(by_m > 0 ? shrunkMesh(mesh, by_m) : mesh, part.part.name);
 }
 
+/// What a cache knows a part's models by.
+const Mesh& cachedMesh(const ScenePart& part, const Solid& solid) {
+  return part.press_fit_m > 0 ? solid.mesh() : part.part.mesh;
+}
+
+/// Builds a part's shell, or takes it from the cache.
+std::shared_ptr<const PointShell> shellOf(const ScenePart& part, const Solid& solid,
+                                          const PointShellSettings& settings, const ModelOptions& options) {
+  const std::string& name = part.part.name;
+  return std::make_shared<PointShell>(
+      options.cache != nullptr ? options.cache->buildShell(cachedMesh(part, solid), solid, settings, name)
+                               : buildPointShell(solid, settings, name));
+}
+
 /// Builds a part's map, or takes it from the cache.
 std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, const VoxMapSettings& settings,
                                     const ModelOptions& options) {
   const std::string& name = part.part.name;
   MeshReport report;
-  auto map = std::make_shared<VoxMap>(
-      options.cache != nullptr ? options.cache->build(part.press_fit_m > 0 ? solid.mesh() : part.part.mesh,
-                                                      solid, settings, name, {}, &report)
-                               : buildVoxMap(solid, settings, name, {}, &report));
+  auto map =
+      std::make_shared<VoxMap>(options.cache != nullptr ? options.cache->build(cachedMesh(part, solid), solid,
+                                                                               settings, name, {}, &report)
+                                                        : buildVoxMap(solid, settings, name, {}, &report));
   if (report.signed_by_winding && options.warn)
     options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
   return map;
@@ -89,13 +110,113 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
   times.map_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
   if (planned.has_shell && !model.shell)
-    model.shell = std::make_shared<PointShell>(
-        buildPointShell(*model.solid, pointShellSettings(fidelity), scene_part.part.name));
+    model.shell = shellOf(scene_part, *model.solid, pointShellSettings(fidelity), options);
   scene_part.is_cropped = !planned.kept_P.empty();
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
   return times;
 }
+
+/// Builds the models of a scene's parts on all cores. Each part's models depend on that part alone, and
+/// warnings and errors are passed on in the order of the parts, so that the result does not depend on timing.
+class ModelBuilder {
+ public:
+  ModelBuilder(Scene& scene, const ModelPlan& plan, const ModelOptions& options)
+      : scene_(scene),
+        plan_(plan),
+        options_(options),
+        times_(scene.parts.size()),
+        warnings_(scene.parts.size()),
+        errors_(scene.parts.size()),
+        first_failed_(scene.parts.size()) {}
+
+  std::vector<BuildTimes> run() {
+    const std::vector<std::size_t> order = largestFirst();
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, order.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t k = range.begin(); k < range.end(); ++k) tryPart(order[k]);
+        },
+        tbb::simple_partitioner());
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
+      if (errors_[i]) std::rethrow_exception(errors_[i]);
+      if (options_.warn) std::ranges::for_each(warnings_[i], options_.warn);
+      if (plan_.parts[i].same_as) share(i);
+    }
+    if (options_.progress) options_.progress("modelling", 1);
+    return std::move(times_);
+  }
+
+ private:
+  /// The parts with models of their own, so that no core is left with a large one at the end.
+  [[nodiscard]] std::vector<std::size_t> largestFirst() {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+      if (!plan_.parts[i].same_as) order.push_back(i);
+    const auto size = [&](std::size_t i) { return scene_.parts[i].part.mesh.triangles.size(); };
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+    for (const std::size_t i : order) triangles_ += size(i);
+    return order;
+  }
+
+  void tryPart(std::size_t i) {
+    if (i > first_failed_) return;
+    try {
+      report(i);
+      // Without isolation a thread that waits for one part's voxels would begin another part.
+      tbb::this_task_arena::isolate([&] { build(i); });
+    } catch (...) {
+      errors_[i] = std::current_exception();
+      for (std::size_t first = first_failed_; i < first && !first_failed_.compare_exchange_weak(first, i);) {
+      }
+    }
+  }
+
+  /// Progress is counted in triangles of the parts that were begun.
+  void report(std::size_t i) {
+    if (!options_.progress) return;
+    const std::lock_guard lock(reporting_);
+    options_.progress(
+        "modelling " + scene_.parts[i].part.name,
+        static_cast<double>(begun_) / static_cast<double>(std::max<std::size_t>(1, triangles_)));
+    begun_ += scene_.parts[i].part.mesh.triangles.size();
+  }
+
+  /// True if the part needs a solid at least.
+  [[nodiscard]] bool isModelled(std::size_t i) const {
+    return plan_.parts[i].has_map || plan_.parts[i].has_shell || isCooked(plan_, i);
+  }
+
+  void build(std::size_t i) {
+    ScenePart& part = scene_.parts[i];
+    requireUsable(part.part.mesh, part.file, part.part.name);
+    if (!isModelled(i) && !part.model) return;
+    ModelOptions options = options_;
+    options.warn = [&](const std::string& text) { warnings_[i].push_back(text); };
+    PartModel model = startingModel(part, nullptr);
+    if (isModelled(i) && !model.solid) model.solid = solidOf(part, *model.mesh);
+    times_[i] = buildPart(part, plan_.parts[i], scene_.fidelity, options, model);
+    part.model = std::make_shared<const PartModel>(std::move(model));
+  }
+
+  /// Takes the models of an earlier part of equal geometry.
+  void share(std::size_t i) {
+    ScenePart& part = scene_.parts[i];
+    part.is_cropped = false;
+    part.model = std::make_shared<const PartModel>(
+        startingModel(part, scene_.parts[*plan_.parts[i].same_as].model.get()));
+  }
+
+  Scene& scene_;
+  const ModelPlan& plan_;
+  const ModelOptions& options_;
+  std::vector<BuildTimes> times_;
+  std::vector<std::vector<std::string>> warnings_;  ///< by part
+  std::vector<std::exception_ptr> errors_;          ///< by part
+  std::atomic<std::size_t> first_failed_;           ///< later parts need not be begun
+  std::mutex reporting_;
+  std::size_t triangles_ = 0, begun_ = 0;
+};
 
 }  // namespace
 
@@ -103,28 +224,7 @@ std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const M
   if (scene.fidelity_wish)
     throw LoadError(scene.file, "",
                     "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");
-  const Progress& progress = options.progress;
-  std::vector<BuildTimes> times(scene.parts.size());
-  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    ScenePart& part = scene.parts[i];
-    const PartModelPlan& planned = plan.parts[i];
-    if (progress)
-      progress("modelling " + part.part.name,
-               static_cast<double>(i) / static_cast<double>(scene.parts.size()));
-    requireUsable(part.part.mesh, part.file, part.part.name);
-    const bool is_modelled = planned.has_map || planned.has_shell || isCooked(plan, i);
-    if (!is_modelled && !part.model) continue;
-    PartModel model =
-        startingModel(part, planned.same_as ? scene.parts[*planned.same_as].model.get() : nullptr);
-    if (is_modelled && !model.solid) model.solid = solidOf(part, *model.mesh);
-    if (planned.same_as)
-      part.is_cropped = false;
-    else
-      times[i] = buildPart(part, planned, scene.fidelity, options, model);
-    part.model = std::make_shared<const PartModel>(std::move(model));
-  }
-  if (progress) progress("modelling", 1);
-  return times;
+  return ModelBuilder(scene, plan, options).run();
 }
 
 void buildModels(Scene& scene, const ModelOptions& options) {

@@ -21,7 +21,9 @@ struct BuildTimes {
 };
 
 /// Gives every part of the plan its ScenePart::model. A voxmap, pointshell or surface that a part has already
-/// is kept, unless it is cropped. Throws LoadError naming the file and part that cannot be modelled.
+/// is kept, unless it is cropped. Parts are built in parallel, with the same bits on any number of cores;
+/// progress is called by one thread at a time. Throws LoadError naming the file and the first part that
+/// cannot be modelled.
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
 /// Whole models of every part; parts of equal geometry share them.

@@ -6,6 +6,7 @@
 
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
+#include "procedure/cooked_poses.h"
 #include "simulation/simulation.h"
 
 namespace vps::scenes::inline v0 {
@@ -27,25 +28,6 @@ std::vector<PartCost> costOf(const Scene& scene, const ModelPlan& plan,
   }
   return costs;
 }
-
-/// The poses at which the parts are cooked: fixed parts as designed, others at their targets.
-class CookedPoses {
- public:
-  explicit CookedPoses(const Scene& scene) {
-    for (const ScenePart& part : scene.parts) X_WP_.push_back(part.X_WP);
-    for (const SceneStep& step : scene.steps) X_WP_[step.part] = step.X_WP_target;
-  }
-  /// The parts of the field in place, followed by those that the step adds.
-  [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const FieldPlan& step) const {
-    for (const std::size_t i : step.cooked)
-      if (std::ranges::none_of(parts, [i](const FixedPart& placed) { return placed.part == i; }))
-        parts.push_back({i, X_WP_[i]});
-    return parts;
-  }
-
- private:
-  std::vector<Pose> X_WP_;
-};
 
 void cookSteps(const Scene& scene, const ModelPlan& plan, const ModelOptions& options, ModelPlanCost& cost) {
   Simulation simulation(scene, plan);

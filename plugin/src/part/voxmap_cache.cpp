@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cache file has a Header, the MeshReport, the cells' bricks and centre bounds, the nodes of all bricks,
-// and a hash of everything before it. Numbers are stored as in memory.
-#define XXH_INLINE_ALL
+// A file of a voxmap has a Header, the MeshReport, the cells' bricks and centre bounds, the nodes of all
+// bricks, and a hash of everything before it. Numbers are stored as in memory.
 #include "vps/voxmap_cache.h"
 
-#include <xxhash.h>
-
 #include <array>
-#include <cstdio>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <tuple>
 
+#include "part/cache_folder.h"
+#include "part/shell_file.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/solid.h"
-#include "vps/write_file.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -23,25 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Incremented when the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
-/// Reads as another number on a machine of the other byte order.
-constexpr std::uint32_t kByteOrder = 0x01020304;
-
-using Digest = std::array<std::uint64_t, 2>;
-
-class Hash {
- public:
-  Hash() { XXH3_128bits_reset(&state_); }
-  void add(const void* bytes, std::size_t count) { XXH3_128bits_update(&state_, bytes, count); }
-  [[nodiscard]] Digest digest() const {
-    const XXH128_hash_t h = XXH3_128bits_digest(&state_);
-    return {h.high64, h.low64};
-  }
-
- private:
-  XXH3_state_t state_;
-};
 
 struct Header {
   std::array<char, 8> magic = kMagic;
@@ -74,68 +53,9 @@ Digest keyOf(const Mesh& mesh, const VoxMapSettings& settings) {
   Hash hash;
   hash.add(sizes.data(), sizeof sizes);
   hash.add(values.data(), sizeof values);
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  hash.add(mesh.vertices.data(), mesh.vertices.size() * sizeof mesh.vertices[0]);
-  hash.add(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+  hash.add(mesh);
   return hash.digest();
 }
-
-std::string nameOf(const Digest& key) {
-  std::array<char, 33> text;
-  std::snprintf(text.data(), text.size(), "%016llx%016llx", static_cast<unsigned long long>(key[0]),
-                static_cast<unsigned long long>(key[1]));
-  return std::string(text.data()) + ".voxmap";
-}
-
-/// Reads and hashes; isGood() becomes false at the first missing byte.
-class Reader {
- public:
-  explicit Reader(const fs::path& file) : in_(file, std::ios::binary) {}
-  [[nodiscard]] bool isGood() const { return in_.good(); }
-  void read(void* to, std::size_t bytes) {
-    in_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
-    if (in_.good()) hash_.add(to, bytes);
-  }
-  template <typename T>
-  void read(std::vector<T>& to) {
-    read(to.data(), to.size() * sizeof(T));
-  }
-  /// True if the file ends with the hash of all that was read, and nothing follows.
-  [[nodiscard]] bool endsWell() {
-    const Digest found = hash_.digest();
-    Digest kept = {};
-    in_.read(reinterpret_cast<char*>(kept.data()), sizeof kept);
-    return in_.good() && found == kept && in_.peek() == std::ifstream::traits_type::eof();
-  }
-
- private:
-  std::ifstream in_;
-  Hash hash_;
-};
-
-class Writer {
- public:
-  explicit Writer(const fs::path& file) : out_(file, std::ios::binary) {}
-  void write(const void* from, std::size_t bytes) {
-    out_.write(static_cast<const char*>(from), static_cast<std::streamsize>(bytes));
-    hash_.add(from, bytes);
-  }
-  template <typename T>
-  void write(const std::vector<T>& from) {
-    write(from.data(), from.size() * sizeof(T));
-  }
-  /// True if everything has been written.
-  bool finish() {
-    const Digest digest = hash_.digest();
-    out_.write(reinterpret_cast<const char*>(digest.data()), sizeof digest);
-    out_.close();
-    return !out_.fail();
-  }
-
- private:
-  std::ofstream out_;
-  Hash hash_;
-};
 
 /// Size of a file with this header; nothing if the numbers are impossible. Checked before memory is
 /// allocated.
@@ -170,7 +90,7 @@ class VoxMapCacheFile {
   /// Returns nothing, and a reason in `why`, if the file cannot be trusted.
   static std::optional<VoxMap> read(const fs::path& file, const Digest& key, MeshReport& report,
                                     std::string& why) {
-    Reader reader(file);
+    HashedReader reader(file);
     if (!reader.isGood()) return why = "cannot be read", std::nullopt;
     Header header;
     reader.read(&header, sizeof header);
@@ -202,7 +122,7 @@ class VoxMapCacheFile {
     header.node_error = layout.node_error;
     header.is_metric = layout.is_metric ? 1 : 0;
     header.bricks = layout.pool->size() - 2;
-    Writer writer(file);
+    HashedWriter writer(file);
     writer.write(&header, sizeof header);
     std::apply([&](const auto&... member) { (writer.write(&member, sizeof member), ...); },
                membersOf(report));
@@ -213,7 +133,7 @@ class VoxMapCacheFile {
   }
 
  private:
-  static std::optional<VoxMap> readBody(Reader& reader, const Header& header, MeshReport& report) {
+  static std::optional<VoxMap> readBody(HashedReader& reader, const Header& header, MeshReport& report) {
     auto layout = std::make_shared<VoxLayout>();
     Box bounds;
     for (int k = 0; k < 3; ++k) {
@@ -241,10 +161,15 @@ class VoxMapCacheFile {
   }
 };
 
-VoxMapCache::VoxMapCache(fs::path folder, Warn warn) : folder_(std::move(folder)), warn_(std::move(warn)) {}
+VoxMapCache::VoxMapCache(fs::path folder, Warn warn, std::uint64_t limit_bytes)
+    : folder_(std::make_shared<CacheFolder>(std::move(folder), std::move(warn), limit_bytes)) {}
 
 fs::path VoxMapCache::fileOf(const Mesh& mesh, const VoxMapSettings& settings) const {
-  return folder_ / nameOf(keyOf(mesh, settings));
+  return folder_->fileOf(nameOf(keyOf(mesh, settings)) + ".voxmap");
+}
+
+fs::path VoxMapCache::shellFileOf(const Mesh& mesh, const PointShellSettings& settings) const {
+  return folder_->fileOf(nameOf(shellKeyOf(mesh, settings)) + ".shell");
 }
 
 VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
@@ -263,27 +188,40 @@ VoxMap VoxMapCache::build(const Mesh& mesh, const Solid& solid, const VoxMapSett
 VoxMap VoxMapCache::readOrBuild(const Mesh& mesh, const VoxMapSettings& settings, MeshReport* report,
                                 const std::function<VoxMap(MeshReport&)>& make) const {
   const Digest key = keyOf(mesh, settings);
-  const fs::path file = folder_ / nameOf(key);
-  const auto warn = [&](const fs::path& about, const std::string& text) {
-    if (warn_) warn_(about.string() + ": " + text);
-  };
+  const fs::path file = fileOf(mesh, settings);
   MeshReport found;
   std::error_code error;
   if (fs::exists(file, error)) {
     std::string why;
     if (const std::optional<VoxMap> map = VoxMapCacheFile::read(file, key, found, why)) {
+      CacheFolder::touch(file);
       if (report != nullptr) *report = found;
       return *map;
     }
-    warn(file, why + "; built again");
+    folder_->warn(file, why + "; built again");
   }
   const VoxMap map = make(found);
   if (report != nullptr) *report = found;
-  fs::create_directories(folder_, error);
-  WholeFile whole(file);
-  if (error || !VoxMapCacheFile::write(map, found, whole.temporary(), key) || whole.commit())
-    warn(folder_, "a voxmap could not be kept there; is it a folder, may you write to it, is the disk full?");
+  folder_->keep(file, [&](const fs::path& to) { return VoxMapCacheFile::write(map, found, to, key); });
   return map;
+}
+
+PointShell VoxMapCache::buildShell(const Mesh& mesh, const Solid& solid, const PointShellSettings& settings,
+                                   const std::string& part) const {
+  const Digest key = shellKeyOf(mesh, settings);
+  const fs::path file = shellFileOf(mesh, settings);
+  std::error_code error;
+  if (fs::exists(file, error)) {
+    std::string why;
+    if (std::optional<PointShell> shell = readShell(file, key, why)) {
+      CacheFolder::touch(file);
+      return std::move(*shell);
+    }
+    folder_->warn(file, why + "; built again");
+  }
+  PointShell shell = buildPointShell(solid, settings, part);
+  folder_->keep(file, [&](const fs::path& to) { return writeShell(shell, to, key); });
+  return shell;
 }
 
 }  // namespace vps::inline v0

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Binary files that end with a hash of what they hold. Numbers are stored as in memory.
+#pragma once
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+/// Reads as another number on a machine of the other byte order.
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+
+using Digest = std::array<std::uint64_t, 2>;
+
+class Hash {
+ public:
+  Hash() { XXH3_128bits_reset(&state_); }
+  void add(const void* bytes, std::size_t count) { XXH3_128bits_update(&state_, bytes, count); }
+  void add(const Mesh& mesh) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    add(mesh.vertices.data(), mesh.vertices.size() * sizeof mesh.vertices[0]);
+    add(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+  }
+  [[nodiscard]] Digest digest() const {
+    const XXH128_hash_t h = XXH3_128bits_digest(&state_);
+    return {h.high64, h.low64};
+  }
+
+ private:
+  XXH3_state_t state_;
+};
+
+/// The digest as a file's name without extension.
+std::string nameOf(const Digest& key);
+
+/// Reads and hashes; isGood() becomes false at the first missing byte.
+class HashedReader {
+ public:
+  explicit HashedReader(const std::filesystem::path& file) : in_(file, std::ios::binary) {}
+  [[nodiscard]] bool isGood() const { return in_.good(); }
+  void read(void* to, std::size_t bytes) {
+    in_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
+    if (in_.good()) hash_.add(to, bytes);
+  }
+  template <typename T>
+  void read(std::vector<T>& to) {
+    read(to.data(), to.size() * sizeof(T));
+  }
+  /// True if the file ends with the hash of all that was read, and nothing follows.
+  [[nodiscard]] bool endsWell() {
+    const Digest found = hash_.digest();
+    Digest kept = {};
+    in_.read(reinterpret_cast<char*>(kept.data()), sizeof kept);
+    return in_.good() && found == kept && in_.peek() == std::ifstream::traits_type::eof();
+  }
+
+ private:
+  std::ifstream in_;
+  Hash hash_;
+};
+
+class HashedWriter {
+ public:
+  explicit HashedWriter(const std::filesystem::path& file) : out_(file, std::ios::binary) {}
+  void write(const void* from, std::size_t bytes) {
+    out_.write(static_cast<const char*>(from), static_cast<std::streamsize>(bytes));
+    hash_.add(from, bytes);
+  }
+  template <typename T>
+  void write(const std::vector<T>& from) {
+    write(from.data(), from.size() * sizeof(T));
+  }
+  /// True if everything has been written.
+  bool finish() {
+    const Digest digest = hash_.digest();
+    out_.write(reinterpret_cast<const char*>(digest.data()), sizeof digest);
+    out_.close();
+    return !out_.fail();
+  }
+
+ private:
+  std::ofstream out_;
+  Hash hash_;
+};
+
+}  // namespace vps::inline v0

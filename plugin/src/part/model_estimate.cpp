@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/model_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pointshell/shell_samples.h"
+#include "voxmap/map_limits.h"
+
+namespace vps::inline v0 {
+namespace {
+
+/// Largest piece of surface over the size of a brick, and the greatest number of pieces that large triangles
+/// are cut into (assumed: a hundredth of a second).
+constexpr double kPiece = 0.5;
+constexpr double kMostPieces = 1e4;
+/// Around a box, a map keeps the cells next to it: one and a half on average.
+constexpr double kKeptCells = 1.5;
+/// Face points per square of spacing, and the squares of face that a point on an edge takes from them.
+/// Measured: with these, the counts of the bearing block's parts are off by up to a tenth.
+constexpr double kDensity = 1.12, kTakenByEdge = 0.3;
+
+bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
+  return std::ranges::any_of(boxes, [&](const Box& box) {
+    return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+  });
+}
+
+}  // namespace
+
+ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels,
+                             const PointShellSettings& points) {
+  area_m2_ = area(mesh);
+  cell_m_ = VoxMap::kBrick * voxels.voxel_m;
+  // The bricks that meet a slab as thick as the band: its thickness, and one for where the slab starts.
+  bricks_per_m2_ = (2 * voxels.band_voxels / VoxMap::kBrick + 1.2) / (cell_m_ * cell_m_);
+  const Vec3 size_m = bounds(mesh).size();
+  directory_bytes_ =
+      directoryBytes(Vec3((size_m.array() + 2 * voxels.band_voxels * voxels.voxel_m) / cell_m_ + 3));
+  face_points_per_m2_ = kDensity / (points.spacing_m * points.spacing_m);
+  const double piece_m = std::max(kPiece * cell_m_, std::sqrt(area_m2_ / kMostPieces));
+  pieces_.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles)
+    addPieces(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], piece_m);
+  for (const ShellSample& sample : sampleFeatures(mesh, triangleNormals(mesh), kEdgeStep * points.spacing_m,
+                                                  kEdgeTolerance * points.spacing_m, points.edge_angle_rad))
+    edge_points_P_.push_back(sample.p);
+}
+
+/// Halves a triangle across its longest edge until its longest edge is short.
+void ModelEstimate::addPieces(const Vec3& a, const Vec3& b, const Vec3& c, double piece_m) {
+  const double ab = (b - a).squaredNorm(), bc = (c - b).squaredNorm(), ca = (a - c).squaredNorm();
+  if (bc > ab && bc >= ca) return addPieces(b, c, a, piece_m);
+  if (ca > ab) return addPieces(c, a, b, piece_m);
+  const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
+  // A sliver's area lies along its longest edge: halves of equal area are enough where they are narrow.
+  if (ab <= piece_m * piece_m || area_m2 <= 1e-3 * piece_m * piece_m) {
+    pieces_.push_back({(a + b + c) / 3, area_m2});
+    return;
+  }
+  const Vec3 middle = 0.5 * (a + b);
+  addPieces(a, middle, c, piece_m);
+  addPieces(middle, b, c, piece_m);
+}
+
+double ModelEstimate::areaWithin(const std::vector<Box>& boxes_P) const {
+  double sum_m2 = 0;
+  for (const Piece& piece : pieces_)
+    if (isWithinAny(piece.center_P, boxes_P)) sum_m2 += piece.area_m2;
+  return sum_m2;
+}
+
+double ModelEstimate::mapBytes(const std::vector<Box>& kept_P) const {
+  double kept_m2 = area_m2_;
+  if (!kept_P.empty()) {
+    std::vector<Box> around_P;
+    for (const Box& box : kept_P) around_P.push_back(grown(box, kKeptCells * cell_m_));
+    kept_m2 = areaWithin(around_P);
+  }
+  return directory_bytes_ + bricks_per_m2_ * kept_m2 * VoxPool::kBytes;
+}
+
+double ModelEstimate::pointCount(const std::vector<Box>& kept_P) const {
+  const double kept_m2 = kept_P.empty() ? area_m2_ : areaWithin(kept_P);
+  double edges = static_cast<double>(edge_points_P_.size());
+  if (!kept_P.empty())
+    edges = static_cast<double>(
+        std::ranges::count_if(edge_points_P_, [&](const Vec3& p_P) { return isWithinAny(p_P, kept_P); }));
+  return edges + std::max(0.0, face_points_per_m2_ * kept_m2 - kDensity * kTakenByEdge * edges);
+}
+
+double ModelEstimate::shellBytes(double point_count) {
+  // Per point: position, normal, area, order, its lane of a block and its share of the nodes above.
+  return sizeof(PointShell) + point_count * (2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint32_t) +
+                                             (sizeof(ShellBlock) * 17.0 / 16 + 2 * sizeof(ShellNode)) / 16);
+}
+
+}  // namespace vps::inline v0
