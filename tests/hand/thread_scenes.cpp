@@ -87,7 +87,7 @@ scenes::Scene looseM16(double depth_m, std::uint64_t seed) {
   scenes::Scene scene = threadScene("m16", meshOf("factory_bolt_m16_loose.obj"),
                                     meshOf("factory_nut_m16_loose_subdiv_3x.obj"), kM16Pitch_m,
                                     {0, 0, kBoltTop_m - kNutBottom_m}, depth_m, seed);
-  scene.steps[0].timeout_s = 180;  // a turn takes some 15 s
+  scene.steps[0].timeout_s = 300;  // a turn takes some 40 s
   return scene;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file has a Header, then points, normals, areas and progressive order, and a hash of everything before it.
-// The hierarchy of spheres takes a hundredth of the time of sampling, and is made again.
+// A file has a ShellHeader, then points, normals, areas and progressive order, and a hash of everything
+// before it. The hierarchy of spheres takes a hundredth of the time of sampling, and is made again.
 #include "part/shell_file.h"
 
 #include "pointshell/shell_hierarchy.h"
@@ -9,28 +9,28 @@ namespace vps::inline v0 {
 namespace {
 
 /// Incremented when the file's layout changes, or sampling gives other bits.
-constexpr std::uint32_t kVersion = 1;
-constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
+constexpr std::uint32_t kShellVersion = 1;
+constexpr std::array<char, 8> kShellMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
 
-struct Header {
-  std::array<char, 8> magic = kMagic;
-  std::uint32_t version = kVersion;
+struct ShellHeader {
+  std::array<char, 8> magic = kShellMagic;
+  std::uint32_t version = kShellVersion;
   std::uint32_t byte_order = kByteOrder;
   Digest key = {};
   double spacing_m = 0;
   std::uint64_t points = 0;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 48);  // no gaps
+static_assert(std::is_trivially_copyable_v<ShellHeader> && sizeof(ShellHeader) == 48);  // no gaps
 
 constexpr std::uint64_t kPointBytes = 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint32_t);
 
 }  // namespace
 
 Digest shellKeyOf(const Mesh& mesh, const PointShellSettings& settings) {
-  const std::array<std::uint64_t, 3> sizes = {kVersion, mesh.vertices.size(), mesh.triangles.size()};
+  const std::array<std::uint64_t, 3> sizes = {kShellVersion, mesh.vertices.size(), mesh.triangles.size()};
   const std::array<double, 2> values = {settings.spacing_m, settings.edge_angle_rad};
   Hash hash;
-  hash.add(kMagic.data(), kMagic.size());
+  hash.add(kShellMagic.data(), kShellMagic.size());
   hash.add(sizes.data(), sizeof sizes);
   hash.add(values.data(), sizeof values);
   hash.add(mesh);
@@ -39,15 +39,15 @@ Digest shellKeyOf(const Mesh& mesh, const PointShellSettings& settings) {
 
 std::optional<PointShell> readShell(const std::filesystem::path& file, const Digest& key, std::string& why) {
   HashedReader reader(file);
-  Header header;
+  ShellHeader header;
   if (!reader.isGood()) return why = "cannot be read", std::nullopt;
   reader.read(&header, sizeof header);
-  if (!reader.isGood() || header.magic != kMagic) return why = "is not a pointshell", std::nullopt;
-  if (header.version != kVersion || header.byte_order != kByteOrder)
+  if (!reader.isGood() || header.magic != kShellMagic) return why = "is not a pointshell", std::nullopt;
+  if (header.version != kShellVersion || header.byte_order != kByteOrder)
     return why = "is of another version of this program", std::nullopt;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  constexpr std::uint64_t kFrame = sizeof(Header) + sizeof(Digest);
+  constexpr std::uint64_t kFrame = sizeof(ShellHeader) + sizeof(Digest);
   // Before memory is taken for the points.
   if (error || size < kFrame || (size - kFrame) % kPointBytes != 0 ||
       (size - kFrame) / kPointBytes != header.points)
@@ -70,7 +70,7 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
 }
 
 bool writeShell(const PointShell& shell, const std::filesystem::path& file, const Digest& key) {
-  Header header;
+  ShellHeader header;
   header.key = key;
   header.spacing_m = shell.spacing_m;
   header.points = shell.size();
