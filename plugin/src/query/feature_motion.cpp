@@ -300,18 +300,20 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
   const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
-  constexpr double kMost = 1e4;  // assumed: some metres of a small part
+  constexpr double kMost = 1e4;         // assumed: some metres of a small part
+  constexpr std::size_t kEnough = 256;  // assumed: more than a solver adds at once
   const int stretches =
       static_cast<int>(std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, kMost));
   if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
   const Way way(part0, part1, start, end);
   const std::size_t first = out.size();
   Pose from = start;
-  for (int k = 0; k < stretches && out.size() == first; ++k) {
+  for (int k = 0; k < stretches && out.size() < first + kEnough; ++k) {
     const Pose to = k + 1 < stretches ? way.at((k + 1.0) / stretches).inverse() : end;
+    const std::size_t found = out.size();
     checkStretch(part0, part1, from, to, end, holds_close && k == 0, out);
     from = to;
-    for (std::size_t i = first; i < out.size(); ++i) {
+    for (std::size_t i = found; i < out.size(); ++i) {
       out[i].share = (k + out[i].share) / stretches;
       out[i].start_m = distanceAt(part0, part1, out[i], start);
     }
