@@ -84,9 +84,9 @@ scenes::Scene looseM16(double depth_m, std::uint64_t seed) {
     return scenes::importCad((from / file).string(), metres).parts.at(0).mesh;
   };
   constexpr double kBoltTop_m = 41e-3, kNutBottom_m = 16e-3, kM16Pitch_m = 2e-3;
-  scenes::Scene scene = threadScene("m16", meshOf("factory_bolt_m16_loose.obj"),
-                                    meshOf("factory_nut_m16_loose_subdiv_3x.obj"), kM16Pitch_m,
-                                    {0, 0, kBoltTop_m - kNutBottom_m}, depth_m, seed);
+  scenes::Scene scene =
+      threadScene("m16", meshOf("factory_bolt_m16_loose.obj"), meshOf("factory_nut_m16_loose_subdiv_3x.obj"),
+                  kM16Pitch_m, {0, 0, kBoltTop_m - kNutBottom_m}, depth_m, seed);
   scene.steps[0].timeout_s = 300;  // a turn takes some 40 s
   return scene;
 }

@@ -51,8 +51,8 @@ class VPS_API FeatureMotion {
   /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
   /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step
   ///
-  /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, until some
-  /// hundred contacts are found; the same features may be found in several.
+  /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, until
+  /// some hundred contacts are found; the same features may be found in several.
   ///
   /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
