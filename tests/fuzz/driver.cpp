@@ -5,6 +5,7 @@
 //   fuzz_ply [seconds] [file ...]    with files: only those, to see a failure again
 //
 // An input that fails is kept as fuzz-failed in the working folder.
+#include <sys/time.h>
 #include <unistd.h>
 #include <csignal>
 
@@ -21,7 +22,7 @@ extern "C" __attribute__((weak)) void __sanitizer_set_death_callback(void (*call
 namespace {
 
 constexpr std::size_t kMaxCuts = 3000;  // of one seed; a longer one is cut at every second byte, third, ...
-constexpr unsigned kSlow_s = 30;        // an input that takes longer is a failure too
+constexpr int kSlow_s = 30;             // an input that takes more processor time is a failure too
 std::string current;
 
 void keepInput() {
@@ -33,16 +34,23 @@ void keepInput() {
 }
 
 void onSignal(int signal) {
-  std::fprintf(stderr, signal == SIGALRM ? "took too long\n" : "aborted\n");
+  std::fprintf(stderr, signal == SIGPROF ? "took too long\n" : "aborted\n");
   keepInput();
   _exit(1);
 }
 
+/// Sends SIGPROF after so many seconds of processor time, whatever else the machine does; 0: no longer.
+void limitTime(int seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = seconds;
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
 void runOne(std::string bytes) {
   current = std::move(bytes);
-  alarm(kSlow_s);
+  limitTime(kSlow_s);
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(current.data()), current.size());
-  alarm(0);
+  limitTime(0);
 }
 
 /// One to four changes: a bit, a byte, a number, a piece cut out, doubled or taken from another seed.
@@ -82,7 +90,7 @@ int main(int argc, char** argv) {
     __sanitizer_set_death_callback(keepInput);
   else
     std::signal(SIGSEGV, onSignal);
-  std::signal(SIGALRM, onSignal);
+  std::signal(SIGPROF, onSignal);
   std::signal(SIGABRT, onSignal);
   for (int i = 2; i < argc; ++i) runOne(vps::fuzz::bytesOf(argv[i]));
   if (argc > 2) return 0;
