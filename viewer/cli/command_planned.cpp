@@ -17,7 +17,6 @@ void addPlanned(CommandLine& line, const std::string& name, const std::string& s
 }  // namespace
 
 void addPlannedCommands(CommandLine& line) {
-  addPlanned(line, "view", "opens a window on a scene", "vps view scene.toml");
   addPlanned(line, "render", "the haptic rendering node", "vps render scene.toml");
   addPlanned(line, "watch", "the viewer node", "vps watch");
 }

@@ -13,6 +13,14 @@
 
 namespace vps::scenes::inline v0 {
 
+/// Asks a run for a Snapshot, as a window does. A run makes one at the end of a physics step where it is
+/// asked, so that nobody else reads its state, and a run that is watched has the same bits as one that is
+/// not.
+struct SnapshotTap {
+  std::atomic<bool> is_wanted{false};    ///< set by the one who watches, cleared by the run
+  std::function<void(Snapshot&&)> give;  ///< called by the physics thread
+};
+
 struct AssembleOptions : ModelOptions {
   bool keep_going = true;  ///< after a failed step, place its part at its target and go on with the next step
   /// The judge measures every judge_stride-th pose of a step, and always the fifty poses with the deepest
@@ -29,6 +37,7 @@ struct AssembleOptions : ModelOptions {
   bool degrades = true;
   /// Called by the physics thread after each step, with the simulated time. May be empty.
   std::function<void(double time_s)> after_step;
+  SnapshotTap* tap = nullptr;  ///< may be null
   /// Called after each step of the procedure with the result so far, whose sums are not filled in yet. May be
   /// empty.
   std::function<void(const AssembleResult&)> on_step;

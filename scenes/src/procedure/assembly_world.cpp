@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "procedure/loop_settings.h"
+#include "procedure/run_trace.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0 {
@@ -173,6 +174,8 @@ bool AssemblyWorld::advance(bool is_settling) {
     shedLoad();
   }
   step();
+  if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false))
+    options_.tap->give(snapshotOf(*this));
   return true;
 }
 

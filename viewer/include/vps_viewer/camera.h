@@ -20,6 +20,8 @@ struct VPS_VIEWER_API Camera {
   [[nodiscard]] Pose pose() const;
   /// Pixel (x right, y down, pixel centres at half integers) of a point in front of the camera.
   [[nodiscard]] std::array<double, 2> project(const Vec3& p_W, int width, int height) const;
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// The nearest camera that looks along -direction and shows the whole box.

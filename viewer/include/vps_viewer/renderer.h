@@ -43,7 +43,13 @@ struct CutPlane {
   Vec3 n_W = Vec3::UnitY();
   bool cuts_hand =
       false;  ///< false as in technical drawings: the inserted part (shaft, pin, screw) stays whole
+
+  bool operator==(const CutPlane&) const = default;
 };
+
+/// About as many triangles a draft has at most. Measured: with 100,000 the vertices no longer determine the
+/// time of a draft with llvmpipe.
+inline constexpr std::size_t kDraftTriangles = 100000;
 
 struct DrawOptions {
   int width = 1280, height = 960;
@@ -62,6 +68,11 @@ struct DrawOptions {
   double contact_full_scale_m = 20e-6;  ///< depth at the red end of the colour scale
   double force_full_scale_N = 15;       ///< force whose arrow has a sixth of the picture's size
   int supersampling = 2;  ///< n x n samples per pixel besides multisampling: 1 fast, 2 for print
+  /// For a view that moves: without shadows, ambient occlusion and outlines, and scenes of more than
+  /// kDraftTriangles are coarser.
+  bool is_draft = false;
+
+  bool operator==(const DrawOptions&) const = default;
 };
 
 /// The box in W around all that the snapshot shows, with show_waiting also around waiting parts.

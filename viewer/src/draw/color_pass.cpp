@@ -23,7 +23,8 @@ void setStudio(const gl::Program& program, const Picture& picture) {
 void drawGhostEdges(const DrawnBody& ghost, const Picture& picture) {
   glEnable(GL_CLIP_DISTANCE0);
   const Vec3 p_eye = -(ghost.X_CP.R.transpose() * ghost.X_CP.p);
-  const std::vector<ShadingEdge> rim = outline(ghost.mesh->shading, p_eye);
+  std::vector<ShadingEdge> rim;
+  if (!picture.options.is_draft) rim = outline(ghost.mesh->shading, p_eye);
   const Vector4f ink(0.2f * ghost.color.x(), 0.35f * ghost.color.y(), 0.6f * ghost.color.z(), 0.55f);
   drawLines(ghost.mesh->sharp_edges, ghost, picture, 1.1f, ink);
   drawLines(GpuLines(rim), ghost, picture, 1.1f, ink);
@@ -87,7 +88,7 @@ void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const
   glDisable(GL_DEPTH_TEST);
   gl.drawFullScreen(gl.programs.background);
   glEnable(GL_DEPTH_TEST);
-  if (picture.options.show_ground) drawFloorShadow(picture);
+  if (picture.options.show_ground && !picture.options.is_draft) drawFloorShadow(picture);
   setStudio(gl.programs.mesh, picture);
   drawMeshes(gl.programs.mesh, picture.bodies, picture.view, picture.view.projection, true);
   setStudio(gl.programs.cap, picture);

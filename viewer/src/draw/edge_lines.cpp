@@ -52,9 +52,12 @@ void drawEdges(const Picture& picture) {
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_BLEND);
   for (const DrawnBody& body : picture.bodies) {
+    const bool is_coarser = body.mesh->coarse_count < body.mesh->index_count;
+    if (picture.options.is_draft && is_coarser) continue;  // its edges are not where its triangles are
     const Vector3f ink = 0.10f * body.color + Vector3f::Constant(0.004f);
     const Vec3 p_eye = -(body.X_CP.R.transpose() * body.X_CP.p);
-    const std::vector<ShadingEdge> rim = outline(body.mesh->shading, p_eye);
+    std::vector<ShadingEdge> rim;
+    if (!picture.options.is_draft) rim = outline(body.mesh->shading, p_eye);
     drawLines(body.mesh->sharp_edges, body, picture, 1.25f, {ink.x(), ink.y(), ink.z(), 0.85f});
     drawLines(GpuLines(rim), body, picture, 1.25f, {ink.x(), ink.y(), ink.z(), 0.85f});
   }

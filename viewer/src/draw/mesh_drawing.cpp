@@ -12,7 +12,7 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
     program.set("X_CP", toMatrix(body.X_CP));
     program.set("cut_C", body.is_cut ? view.cut_C : kNoCut);
     if (is_shaded) program.set("color", body.color);
-    body.mesh->draw();
+    body.mesh->draw(body.is_coarse);
   }
   glDisable(GL_CLIP_DISTANCE0);
 }

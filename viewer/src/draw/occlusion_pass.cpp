@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ambient occlusion in screen space, from the normal and depth of what is seen.
+#include <array>
+#include <cstdint>
+
 #include "draw/passes.h"
 
 namespace vps::viewer::inline v0 {
@@ -39,6 +42,11 @@ void renderOcclusion(const Picture& picture) {
   glBindFramebuffer(GL_FRAMEBUFFER, frame.occlusion_target.id());
   picture.gl.drawFullScreen(blur);
   glEnable(GL_DEPTH_TEST);
+}
+
+void lightEverything(const Picture& picture) {
+  const std::array<std::uint8_t, 2> all = {255, 255};
+  glClearTexImage(picture.gl.frame->occlusion.id(), 0, GL_RG, GL_UNSIGNED_BYTE, all.data());
 }
 
 }  // namespace vps::viewer::inline v0

@@ -32,6 +32,8 @@ void drawFloorShadow(const Picture& picture);
 void renderGeometry(const Picture& picture);
 /// How much light of the sky and of the key light reaches every pixel.
 void renderOcclusion(const Picture& picture);
+/// Instead of renderOcclusion(): all light reaches every pixel.
+void lightEverything(const Picture& picture);
 
 // color_pass.cpp
 /// The colour image: background, parts, cut faces, edges, marks, target.

@@ -29,9 +29,13 @@ struct Renderer::Impl {
   explicit Impl(const RenderScene& scene) : parts(partExtents(scene)) {
     const EglContext::Current current(context);
     gl = std::make_unique<GpuResources>();
+    std::size_t triangles = 0;
+    for (const DrawnMesh& part : scene) triangles += part.mesh->triangles.size();
+    const double coarse_share =
+        triangles > kDraftTriangles ? double(kDraftTriangles) / static_cast<double>(triangles) : 1;
     for (const DrawnMesh& part : scene) {
       std::unique_ptr<GpuMesh>& mesh = gl->meshes[part.mesh];
-      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors);
+      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors, coarse_share);
       part_meshes.push_back(mesh.get());
       part_colors.emplace_back(Eigen::Map<const Vector3f>(part.color.data()));
     }
@@ -59,6 +63,7 @@ struct Renderer::Impl {
                          const bool is_in_hand = role == scenes::BodyRole::InHand;
                          DrawnBody body = bodyAt(part, X_WP, view);
                          body.color = is_in_hand && options.highlight_hand ? kHandColor : part_colors[part];
+                         body.is_coarse = options.is_draft;
                          body.is_cut = options.cut && (!is_in_hand || options.cut->cuts_hand);
                          bodies.push_back(body);
                        });
@@ -72,6 +77,7 @@ struct Renderer::Impl {
       return std::nullopt;
     DrawnBody target = bodyAt(snapshot.target_part, snapshot.X_WP_target, view);
     target.color = kHandColor;
+    target.is_coarse = options.is_draft;
     target.is_cut = options.cut && options.cut->cuts_hand;
     return target;
   }
@@ -101,10 +107,14 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
   const std::vector<DrawnBody> bodies = impl.listBodies(snapshot, view, clamped);
   const std::optional<DrawnBody> target = impl.targetOf(snapshot, view, clamped);
   const Picture picture = {*impl.gl, view, clamped, bodies};
-  renderKeyShadow(picture);
-  if (clamped.show_ground) renderFloorShadow(picture);
-  renderGeometry(picture);
-  renderOcclusion(picture);
+  if (clamped.is_draft) {
+    lightEverything(picture);
+  } else {
+    renderKeyShadow(picture);
+    if (clamped.show_ground) renderFloorShadow(picture);
+    renderGeometry(picture);
+    renderOcclusion(picture);
+  }
   renderColor(picture, snapshot, target ? &*target : nullptr);
   Image image = resolvePicture(*impl.gl);
   drawOverlay(image, snapshot, options, {kHandColor, kHandColor}, impl.lettering);

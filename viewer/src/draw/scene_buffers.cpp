@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "draw/coarse_mesh.h"
+
 namespace vps::viewer::inline v0 {
 
 GpuLines::GpuLines(std::span<const ShadingEdge> segments)
@@ -25,24 +27,33 @@ std::vector<std::array<float, 3>> colorsOf(const ShadingMesh& shading,
 
 }  // namespace
 
-GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors)
+GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
+                 double coarse_share)
     : bounds_P(bounds(mesh)),
       shading(buildShadingMesh(mesh)),
       vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
       colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, vertex_colors)))),
       indices(gl::makeBuffer(std::span<const std::uint32_t>(shading.indices))),
       array(gl::makeVertexArray()),
+      coarse_array(gl::makeVertexArray()),
       sharp_edges(shading.sharp_edges),
       index_count(static_cast<GLsizei>(shading.indices.size())) {
-  gl::addAttribute(array, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
-  gl::addAttribute(array, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
-  gl::addAttribute(array, colors, 2, 3, 0, sizeof(std::array<float, 3>));
+  const std::vector<std::uint32_t> coarse =
+      coarseIndices(shading, static_cast<std::size_t>(coarse_share * index_count / 3));
+  coarse_indices = gl::makeBuffer(std::span<const std::uint32_t>(coarse));
+  coarse_count = static_cast<GLsizei>(coarse.size());
+  for (const gl::VertexArray* each : {&array, &coarse_array}) {
+    gl::addAttribute(*each, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
+    gl::addAttribute(*each, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
+    gl::addAttribute(*each, colors, 2, 3, 0, sizeof(std::array<float, 3>));
+  }
   glVertexArrayElementBuffer(array.id(), indices.id());
+  glVertexArrayElementBuffer(coarse_array.id(), coarse_indices.id());
 }
 
-void GpuMesh::draw() const {
-  glBindVertexArray(array.id());
-  glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+void GpuMesh::draw(bool is_coarse) const {
+  glBindVertexArray(is_coarse ? coarse_array.id() : array.id());
+  glDrawElements(GL_TRIANGLES, is_coarse ? coarse_count : index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 Eigen::Matrix4f toMatrix(const Pose& X) {

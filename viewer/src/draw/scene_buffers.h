@@ -22,12 +22,13 @@ struct GpuLines {
 struct GpuMesh {
   Box bounds_P;         ///< in the part's frame
   ShadingMesh shading;  ///< kept, because outlines and sections are computed on the CPU for each picture
-  gl::Buffer vertices, colors, indices;
-  gl::VertexArray array;
+  gl::Buffer vertices, colors, indices, coarse_indices;
+  gl::VertexArray array, coarse_array;
   GpuLines sharp_edges;
-  GLsizei index_count = 0;
-  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors);
-  void draw() const;
+  GLsizei index_count = 0, coarse_count = 0;
+  /// @param coarse_share  share of the triangles that a draft draws, 1: all
+  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors, double coarse_share);
+  void draw(bool is_coarse) const;
 };
 
 /// A part at its pose in one picture.
@@ -37,6 +38,7 @@ struct DrawnBody {
   Pose X_CP;  ///< mesh centre in the camera frame
   Eigen::Vector3f color = Eigen::Vector3f::Zero();
   bool is_cut = false;
+  bool is_coarse = false;
 };
 
 Eigen::Matrix4f toMatrix(const Pose& X);

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window of `vps view` as its users see it, on a display in memory (Xvfb) with keys from xdotool.
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "program.h"
+#include "vps_scenes/scene.h"
+#include "vps_viewer/renderer.h"
+#include "vps_viewer/window.h"
+#include "window/camera_motion.h"
+#include "window/timeline.h"
+
+namespace vps {
+namespace {
+
+using namespace std::chrono_literals;
+using viewer::Image;
+
+std::string outputOf(const std::string& command) {
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string text;
+  for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe)) text += static_cast<char>(c);
+  pclose(pipe);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+bool has(const char* program) {
+  return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+class Window : public Program {
+ protected:
+  // The part of a window of 1280 x 720 that the panels leave.
+  static constexpr viewer::PictureSize kPicture = {950, 656};
+
+  void SetUp() override {
+    Program::SetUp();
+    if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
+    if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool (Debian: xvfb, xdotool)";
+    const std::string number = (folder_ / "display.txt").string();
+    xvfb_ = std::stoi(
+        outputOf("Xvfb -displayfd 3 -screen 0 1400x900x24 3>'" + number + "' >/dev/null 2>&1 & echo $!"));
+    ASSERT_TRUE(soon([&] { return slurp(number).find('\n') != std::string::npos; }));
+    const std::string text = slurp(number);
+    display_ = "DISPLAY=:" + text.substr(0, text.find('\n')) + " ";
+  }
+  void TearDown() override {
+    if (view_ > 0) kill(view_, SIGKILL);
+    if (xvfb_ > 0) kill(xvfb_, SIGTERM);
+    Program::TearDown();
+  }
+
+  /// Waits for a minute at most.
+  template <class Condition>
+  static bool soon(Condition is_true) {
+    for (int i = 0; i < 600; ++i) {
+      if (is_true()) return true;
+      std::this_thread::sleep_for(100ms);
+    }
+    return false;
+  }
+
+  void open(const std::string& arguments) {
+    view_ = std::stoi(outputOf("cd '" + folder_.string() + "'; (" + display_ +
+                               " exec '" VPS_PROGRAM "' view " + arguments +
+                               " >out.txt 2>err.txt & echo $! >pid.txt; wait $!; echo $? >status.txt) "
+                               "</dev/null >/dev/null 2>&1 & sleep 0.3; cat pid.txt"));
+    ASSERT_TRUE(soon([&] {
+      window_ = outputOf(display_ + "xdotool search --name 'vps view' 2>/dev/null");
+      return !window_.empty() || fs::exists(folder_ / "status.txt");
+    }));
+    ASSERT_FALSE(window_.empty()) << slurp(folder_ / "err.txt");
+    xdotool("windowfocus " + window_);
+  }
+  void xdotool(const std::string& arguments) const {
+    std::system((display_ + "xdotool " + arguments + " >/dev/null 2>&1").c_str());
+  }
+  /// The window's content, by its own key.
+  Image picture() {
+    const fs::path file = folder_ / ("view_" + std::to_string(++pictures_) + ".png");
+    for (int i = 0; i < 20 && !fs::exists(file); ++i) {
+      xdotool("key p");
+      for (int k = 0; k < 50 && !fs::exists(file); ++k) std::this_thread::sleep_for(100ms);
+    }
+    // A key that was sent twice saves twice.
+    while (fs::exists(folder_ / ("view_" + std::to_string(pictures_ + 1) + ".png"))) ++pictures_;
+    return fs::exists(file) ? viewer::loadPng(file.string()) : Image();
+  }
+  /// Whether the window shows this picture, or does so soon.
+  bool shows(const Image& wanted) {
+    return soon([&] {
+      const Image now = picture();
+      if (now.width < wanted.width || now.height < wanted.height) return false;
+      Image crop(wanted.width, wanted.height);
+      for (int y = 0; y < crop.height; ++y)
+        std::copy_n(now.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
+      return viewer::compare(crop, wanted, 2).share_beyond == 0;  // 2: as for other pictures, image.h
+    });
+  }
+  /// The exit status.
+  int close(const std::string& key = "q") {
+    xdotool("key " + key);
+    if (!soon([&] { return !slurp(folder_ / "status.txt").empty(); })) return -1;
+    view_ = 0;
+    return std::stoi(slurp(folder_ / "status.txt"));
+  }
+  /// What the finished assembly looks like from a standard view.
+  Image expected(std::size_t view) const {
+    const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
+    const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
+    const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
+    viewer::DrawOptions options;
+    options.width = kPicture.width;
+    options.height = kPicture.height;
+    options.supersampling = 1;
+    options.show_legend = false;
+    return viewer::Renderer(drawn).render(
+        snapshot,
+        viewer::cameraFor(viewer::standardViews()[view], viewer::snapshotBounds(drawn, snapshot), kPicture),
+        options);
+  }
+
+  std::string display_, window_;
+  pid_t xvfb_ = 0, view_ = 0;
+  int pictures_ = 0;
+};
+
+TEST_F(Window, OpensShowsTheSceneObeysKeysAndClosesCleanly) {
+  open("scene.toml");
+  EXPECT_TRUE(shows(expected(0)));
+  xdotool("key 6");
+  EXPECT_TRUE(shows(expected(5)));
+  const Image before = picture();
+  xdotool("key question");
+  EXPECT_TRUE(soon([&] { return viewer::compare(picture(), before, 2).share_beyond > 0.1; }))
+      << "the list of keys covers a part of the picture";
+  xdotool("key Escape");
+  EXPECT_TRUE(shows(expected(5)));
+  EXPECT_EQ(close(), 0);
+  EXPECT_EQ(slurp(folder_ / "err.txt"), "");
+}
+
+TEST_F(Window, SurvivesSizesFromOnePixelToMoreThanTheScreen) {
+  open("scene.toml");
+  EXPECT_TRUE(shows(expected(0)));
+  for (const char* size : {"1 1", "40 900", "3000 2000", "1280 720"}) {
+    xdotool("windowsize " + window_ + " " + size);
+    std::this_thread::sleep_for(1s);
+  }
+  xdotool("key 2");
+  EXPECT_TRUE(shows(expected(1)));
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ARunThatIsWatchedIsRecordedWithTheSameBits) {
+  const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
+  ASSERT_EQ(run("assemble " + scene + " --out out --no-pictures --record alone.mcap").status, 0);
+  open(scene + " --run --speed 0 --record watched.mcap");
+  EXPECT_TRUE(soon([&] { return fs::exists(folder_ / "watched.mcap"); }));
+  EXPECT_EQ(close(), 0);
+  EXPECT_EQ(slurp(folder_ / "watched.mcap"), slurp(folder_ / "alone.mcap"));
+
+  fs::remove(folder_ / "status.txt");
+  open("watched.mcap");
+  xdotool("key End");
+  EXPECT_GT(picture().width, 0);
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ClosingAWindowWithARunStopsTheRun) {
+  open(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml --run");
+  std::this_thread::sleep_for(2s);
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Program, AWindowWithoutADisplayIsRefusedInWords) {
+  if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  expectRefused("view scene.toml", "no window can be opened");
+  expectRefused("view missing.toml", "missing.toml");
+  expectRefused("view scene.toml --width 0", "--width");
+}
+
+TEST_F(Window, ADisplayWithAnOldOpenGlIsRefusedInWords) {
+  const Ran ran = run("view scene.toml >old.txt 2>&1; env " + display_ +
+                      "MESA_GL_VERSION_OVERRIDE=2.1 '" VPS_PROGRAM "' view scene.toml");
+  EXPECT_EQ(ran.status, 2);
+  EXPECT_NE(ran.err.find("OpenGL 3.3"), std::string::npos) << ran.err;
+}
+
+}  // namespace
+}  // namespace vps

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps view: a window on a scene or a recording.
+#include <memory>
+
+#include "command.h"
+#include "file_kind.h"
+#include "output.h"
+#include "scene_arguments.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+#include "vps_viewer/window.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+struct ViewArguments {
+  SceneArguments scene;
+  WindowOptions window;
+};
+
+int runView(const ViewArguments& given) {
+  if (const std::string missing = missingForWindow(); !missing.empty()) throw LoadError("", "", missing);
+  const std::string& file = given.scene.scene;
+  WindowOptions window = given.window;
+  window.stop = &stopRequested();
+  if (lowerExtension(file) == ".mcap") {
+    if (window.runs || !window.record.empty())
+      throw LoadError(file, "", "is a recording; --run and --record are for scenes");
+    viewRecording(device::loadRecording(file), window);
+    return kGood;
+  }
+  requireNotRead(window.record, {file});
+  const scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record});
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  window.models.cache = cache ? &*cache : nullptr;
+  window.models.models_everything = given.scene.models_everything;
+  viewScene(scene, window);
+  return kGood;
+}
+
+}  // namespace
+
+void addView(CommandLine& line) {
+  const auto given = std::make_shared<ViewArguments>();
+  CLI::App& command = addCommand(
+      line, "view", "opens a window on a scene or a recording: look, play, run; `?` in it lists the keys",
+      "vps view scenes/bearing_block/scene.toml", [given] { return runView(*given); });
+  addSceneOptions(command, given->scene);
+  command.get_option("scene")->description("scene file (TOML), or what vps assemble --record wrote (MCAP)");
+  WindowOptions& window = given->window;
+  command.add_option("--width", window.width, "width of the window")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 16384));
+  command.add_option("--height", window.height, "height of the window")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 16384));
+  command.add_flag("--dark", window.is_dark, "dark panels");
+  command.add_flag("--run", window.runs, "run the procedure at once");
+  command
+      .add_option("--speed", window.speed,
+                  "of playing and of a run, by the clock; of a run, 0: as fast as it goes")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
+      ->type_name("FILE");
+  command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
+      ->capture_default_str()
+      ->type_name("NAME");
+}
+
+}  // namespace vps::viewer::inline v0

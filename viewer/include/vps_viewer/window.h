@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window of `vps view`: look at a scene, play a recording, watch a run.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "vps_device/recording.h"
+#include "vps_scenes/model_options.h"
+#include "vps_scenes/scene.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer::inline v0 {
+
+struct WindowOptions {
+  int width = 1280, height = 720;
+  bool is_dark = false;
+  bool runs = false;              ///< begins with a run of the procedure instead of the tour
+  double speed = 1;               ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
+  std::string record;             ///< file in which a run is recorded; empty: none
+  std::string pictures = "view";  ///< saved pictures are PICTURES_1.png, ...
+  scenes::ModelOptions models;    ///< of a run
+  const std::atomic<bool>* stop = nullptr;  ///< set it to close the window
+};
+
+/// In words, what this build lacks for a window; empty: nothing.
+VPS_VIEWER_API std::string missingForWindow();
+
+/// Open a window and return when it is closed. Throw std::runtime_error, which names what is missing and what
+/// helps: a build without a window, no display, OpenGL too old.
+VPS_VIEWER_API void viewScene(const scenes::Scene& scene, const WindowOptions& options);
+VPS_VIEWER_API void viewRecording(const device::RecordedRun& run, const WindowOptions& options);
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A window with OpenGL and Dear ImGui, and the picture that it shows.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "vps_viewer/image.h"
+#include "window/camera_motion.h"
+
+struct GLFWwindow;
+
+namespace vps::viewer::inline v0 {
+
+/// Used on the thread that made it, except wake(). One at a time.
+class GlfwWindow {
+ public:
+  /// Throws std::runtime_error, which says what is missing: a display, or OpenGL 3.3.
+  GlfwWindow(const std::string& title, PictureSize size);
+  ~GlfwWindow();
+  GlfwWindow(const GlfwWindow&) = delete;
+  GlfwWindow& operator=(const GlfwWindow&) = delete;
+
+  /// Called with each typed character, and with the names of other keys: "Left", "Escape".
+  std::function<void(const std::string& key)> on_key;
+
+  /// Waits for events. Returns whether there is something new to draw.
+  bool wait(double longest_s);
+  /// Ends wait(), from any thread.
+  void wake();
+  [[nodiscard]] bool isClosed() const;
+  /// In pixels; 0 while it is minimised.
+  [[nodiscard]] PictureSize size() const;
+  /// Of texts and distances: 1 on a common screen, 2 on one with twice the pixels for the same length.
+  [[nodiscard]] float scale() const { return scale_; }
+
+  void beginFrame(bool is_dark);
+  void endFrame();
+  /// Shows what endFrame() drew.
+  void present();
+  /// The picture that picture() stands for, as ImGui's images want it.
+  void setPicture(const Image& image);
+  [[nodiscard]] void* picture() const;
+  [[nodiscard]] bool hasPicture() const { return has_picture_; }
+  /// Between endFrame() and present(): what endFrame() drew, panels included.
+  [[nodiscard]] Image readBack() const;
+
+ private:
+  void openImGui();
+  static void onAny(GLFWwindow* window);
+
+  GLFWwindow* window_ = nullptr;
+  unsigned texture_ = 0;
+  PictureSize texture_size_{0, 0};
+  float scale_ = 1;
+  bool has_picture_ = false;
+  int frames_due_ = 3;
+  std::atomic<bool> has_news_{false};
+};
+
+}  // namespace vps::viewer::inline v0

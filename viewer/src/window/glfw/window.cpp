@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The window's loop: events, panels, and what the picture shows.
+#include "vps_viewer/window.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "vps_scenes/replay.h"
+#include "vps_viewer/verdict_words.h"
+#include "window/exploded.h"
+#include "window/glfw/session.h"
+
+namespace vps::viewer::inline v0 {
+namespace {
+
+// Larger windows show a smaller picture, stretched: the greatest texture that every driver of OpenGL 3.3
+// takes.
+constexpr int kGreatestPicture = 4096;
+constexpr double kFrame_s = 1.0 / 60, kIdle_s = 0.5;
+
+PictureSize pictureSize(const PictureArea& area) {
+  const double shrink =
+      std::min(1.0, double(kGreatestPicture) / std::max({1, area.size.width, area.size.height}));
+  return {static_cast<int>(area.size.width * shrink), static_cast<int>(area.size.height * shrink)};
+}
+
+void typed(Session& session, const std::string& key) {
+  if (session.run && key == "Space") return session.run->pause(!session.run->isPaused());
+  for (const KeyBinding& binding : keyBindings())
+    if (key == binding.key) apply(binding.action, session.view, session.shownLine(), session.box_W());
+}
+
+void startOrStopRun(Session& session, GlfwWindow& window) {
+  if (session.run) {
+    session.run.reset();
+    session.run_line = {};
+    session.status = {};
+    session.view.time_s = 0;
+    return;
+  }
+  LiveSettings settings;
+  settings.record = session.options.record;
+  settings.speed = session.options.speed;
+  settings.models = session.options.models;
+  session.view.is_playing = false;
+  session.run_line = {};
+  session.run_line.chapters = {{"before the first step", 0, ""}};
+  session.run_line.curves = {
+      {"force", "N", {}}, {"torque", "N m", {}}, {"depth", "um", {}}, {"contacts", "", {}}};
+  session.run = std::make_unique<LiveRun>(session.scene, settings, [&window] { window.wake(); });
+  session.run->ask();
+}
+
+void addToCurves(Session& session, const scenes::Snapshot& shot) {
+  Timeline& line = session.run_line;
+  double depth_m = 0;
+  for (const scenes::ContactMark& mark : shot.contacts) depth_m = std::max(depth_m, mark.depth_m);
+  line.time_s.push_back(shot.time_s);
+  line.end_s = session.view.time_s = shot.time_s;
+  const double values[] = {shot.has_hand ? shot.F_hand_W.f.norm() : 0,
+                           shot.has_hand ? shot.F_hand_W.tau.norm() : 0, depth_m * 1e6,
+                           static_cast<double>(shot.contacts.size())};
+  for (std::size_t i = 0; i < line.curves.size(); ++i)
+    line.curves[i].values.push_back(static_cast<float>(values[i]));
+  const bool is_new_step = shot.step >= 0 && static_cast<std::size_t>(shot.step) + 1 >= line.chapters.size();
+  if (is_new_step)
+    line.chapters.push_back(
+        {std::to_string(shot.step + 1) + " " +
+             session.scene.parts[session.scene.steps[static_cast<std::size_t>(shot.step)].part].part.name,
+         shot.time_s, ""});
+}
+
+void followRun(Session& session) {
+  session.status = session.run->status();
+  for (std::size_t i = 0; i < session.status.result.steps.size(); ++i)
+    if (i + 1 < session.run_line.chapters.size())
+      session.run_line.chapters[i + 1].verdict = words(session.status.result.steps[i].verdict);
+  if (std::optional<scenes::Snapshot> shot = session.run->take()) {
+    if (!session.status.is_over) addToCurves(session, *shot);
+    session.shown = std::move(*shot);
+    session.run->ask();
+  }
+}
+
+void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
+  std::optional<DrawnPicture> picture = worker.take();
+  if (!picture) return;
+  window.setPicture(picture->image);
+  session.picture_ms = 1e3 * picture->wall_s;
+  session.is_draft = picture->is_draft;
+  session.drawn_by = worker.description().substr(0, worker.description().find(' '));
+}
+
+void askForPicture(Session& session, PictureWorker& worker) {
+  const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
+  session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
+  const PictureSize size = pictureSize(session.area);
+  if (size.width < 16 || size.height < 16) return;
+  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw};
+  wanted.options.width = size.width;
+  wanted.options.height = size.height;
+  worker.request(wanted);
+}
+
+/// The whole window as a picture file.
+void savePicture(Session& session, const GlfwWindow& window) {
+  std::string file;
+  do {
+    file = session.options.pictures + "_" + std::to_string(++session.pictures) + ".png";
+  } while (std::filesystem::exists(file));
+  try {
+    savePng(window.readBack(), file);
+    session.say("saved " + file);
+  } catch (const std::exception& error) {
+    session.say(error.what());
+  }
+}
+
+void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
+  window.beginFrame(session.view.is_dark);
+  drawPanels(session, window);
+  session.view.size = session.area.size;
+  useMouse(session);
+  askForPicture(session, worker);
+  if (window.hasPicture())
+    ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
+                                             {session.area.x + static_cast<float>(session.area.size.width),
+                                              session.area.y + static_cast<float>(session.area.size.height)});
+  window.endFrame();
+  if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
+  window.present();
+}
+
+void carryOut(Session& session, GlfwWindow& window) {
+  ViewState& view = session.view;
+  if (std::exchange(view.wants_run, false)) {
+    if (session.is_recording)
+      session.say("a recording is not run; vps replay does");
+    else
+      startOrStopRun(session, window);
+  }
+  if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
+}
+
+void loop(Session& session, GlfwWindow& window) {
+  using Clock = std::chrono::steady_clock;
+  session.shown = session.placed = session.line.at(0);
+  const PictureSize size = window.size();
+  session.view.camera = cameraFor(standardViews()[0], session.box_W(), size);
+  session.view.draw.show_legend = false;
+  session.view.draw.supersampling = 1;
+  session.view.is_dark = session.options.is_dark;
+  session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
+  session.view.wants_run = session.options.runs;
+  PictureWorker worker(session.drawn, [&window] { window.wake(); });
+  Clock::time_point last = Clock::now();
+  bool is_fitted = false;
+  const auto is_stopped = [&] { return session.options.stop != nullptr && session.options.stop->load(); };
+  while (!window.isClosed() && !session.view.wants_close && !is_stopped()) {
+    const bool moves = session.view.is_playing;
+    const bool has_news = window.wait(moves ? kFrame_s : kIdle_s);
+    const Clock::time_point now = Clock::now();
+    advance(session.view, session.line, std::chrono::duration<double>(now - last).count());
+    last = now;
+    carryOut(session, window);
+    if (session.run)
+      followRun(session);
+    else
+      session.shown = session.line.at(session.view.time_s);
+    takePicture(session, worker, window);
+    const PictureSize size_now = window.size();
+    if (size_now.width <= 0 || size_now.height <= 0) continue;  // minimised
+    if (has_news || moves) drawFrame(session, window, worker);
+    if (!std::exchange(is_fitted, true))
+      session.view.camera = cameraFor(standardViews()[0], session.box_W(), session.area.size);
+  }
+  session.run.reset();  // before the window that it wakes
+}
+
+void openAndLoop(Session& session, const std::string& title) {
+  GlfwWindow window(title, {session.options.width, session.options.height});
+  window.on_key = [&session](const std::string& key) { typed(session, key); };
+  loop(session, window);
+}
+
+}  // namespace
+
+std::string missingForWindow() {
+  return "";
+}
+
+void viewScene(const scenes::Scene& scene, const WindowOptions& options) {
+  Session session(scene, options);
+  session.line = sceneTour(scene);
+  for (const std::string& warning : scene.warnings) session.say(warning);
+  openAndLoop(session, scene.name + " - vps view");
+}
+
+void viewRecording(const device::RecordedRun& run, const WindowOptions& options) {
+  const scenes::Scene scene = scenes::recordedScene(run);
+  Session session(scene, options);
+  session.line = recordedTimeline(scene, run);
+  session.is_recording = true;
+  openAndLoop(session, run.file + " - vps view");
+}
+
+}  // namespace vps::viewer::inline v0

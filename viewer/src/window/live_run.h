@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A procedure that runs on a thread of its own while a window watches it.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vps_scenes/assemble.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer::inline v0 {
+
+struct LiveSettings {
+  std::string record;           ///< file to record the run in; empty: none
+  bool is_paused = false;       ///< begins paused
+  double speed = 1;             ///< of simulated time by the clock; 0: as fast as it goes
+  scenes::ModelOptions models;  ///< progress is replaced
+};
+
+/// What is known of a run, for those who watch.
+struct LiveStatus {
+  std::string doing;      ///< "building models", in words
+  double share = 0;       ///< of that, 0 to 1
+  double time_s = 0;      ///< simulated
+  std::size_t steps = 0;  ///< physics steps so far
+  bool is_over = false;
+  std::string error;  ///< why it could not go on; empty: nothing
+  /// So far; complete when is_over.
+  scenes::AssembleResult result;
+};
+
+/// Runs in simulated time, so that pausing, single steps, its speed, and being watched change no bit of it.
+class VPS_VIEWER_API LiveRun {
+ public:
+  /// @param scene    a copy of its own, whose models it builds
+  /// @param on_news  called on the run's threads where something new can be asked for
+  LiveRun(scenes::Scene scene, const LiveSettings& settings, std::function<void()> on_news);
+  /// Stops the run. Waits for the physics step, or for the models, that are being computed.
+  ~LiveRun();
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
+
+  void pause(bool is_paused);
+  [[nodiscard]] bool isPaused() const;
+  /// Of a paused run: one physics step.
+  void oneStep();
+  /// Asks for a snapshot at the end of the next physics step.
+  void ask();
+  /// The newest snapshot, once.
+  [[nodiscard]] std::optional<scenes::Snapshot> take();
+  [[nodiscard]] LiveStatus status() const;
+
+ private:
+  void run(const LiveSettings& settings);
+  /// On the run's thread, after each physics step: waits while paused, or ahead of the clock.
+  void keepTime(double time_s);
+
+  scenes::Scene scene_;
+  std::function<void()> on_news_;
+  std::atomic<bool> stop_{false};
+  scenes::SnapshotTap tap_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<scenes::Snapshot> newest_;
+  LiveStatus status_;
+  double speed_;
+  bool is_paused_;
+  int steps_allowed_ = 0;                  ///< while paused
+  double clock_s_ = 0, clock_time_s_ = 0;  ///< wall and simulated time when it went on last
+  bool is_clock_set_ = false;
+  std::thread thread_;  // last, since it uses the others
+};
+
+}  // namespace vps::viewer::inline v0

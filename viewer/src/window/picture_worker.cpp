@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/picture_worker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace vps::viewer::inline v0 {
+namespace {
+
+bool isSamePose(const Pose& a, const Pose& b) {
+  return a.R == b.R && a.p == b.p;
+}
+
+bool isSameSnapshot(const scenes::Snapshot& a, const scenes::Snapshot& b) {
+  const auto same_body = [](const scenes::BodySnapshot& x, const scenes::BodySnapshot& y) {
+    return x.part == y.part && x.role == y.role && isSamePose(x.X_WP, y.X_WP);
+  };
+  const auto same_mark = [](const scenes::ContactMark& x, const scenes::ContactMark& y) {
+    return x.p_W == y.p_W && x.n_W == y.n_W && x.depth_m == y.depth_m;
+  };
+  return std::equal(a.bodies.begin(), a.bodies.end(), b.bodies.begin(), b.bodies.end(), same_body) &&
+         std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same_mark) &&
+         a.has_target == b.has_target && a.target_part == b.target_part &&
+         isSamePose(a.X_WP_target, b.X_WP_target) && a.has_hand == b.has_hand &&
+         isSamePose(a.X_W_Proxy, b.X_W_Proxy) && a.F_hand_W.f == b.F_hand_W.f &&
+         a.F_hand_W.tau == b.F_hand_W.tau;
+}
+
+}  // namespace
+
+bool isSame(const PictureRequest& a, const PictureRequest& b) {
+  return a.camera == b.camera && a.options == b.options && isSameSnapshot(a.snapshot, b.snapshot);
+}
+
+PictureWorker::PictureWorker(RenderScene scene, std::function<void()> on_done)
+    : on_done_(std::move(on_done)), thread_([this, drawn = std::move(scene)] { run(drawn); }) {}
+
+PictureWorker::~PictureWorker() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void PictureWorker::request(const PictureRequest& wanted) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (last_ && isSame(*last_, wanted)) return;
+    wanted_ = last_ = wanted;
+  }
+  wake_.notify_one();
+}
+
+std::optional<DrawnPicture> PictureWorker::take() {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::exchange(done_, std::nullopt);
+}
+
+std::size_t PictureWorker::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+std::string PictureWorker::description() const {
+  const std::lock_guard lock(mutex_);
+  return description_;
+}
+
+void PictureWorker::run(const RenderScene& scene) {
+  try {
+    Renderer renderer(scene);
+    {
+      const std::lock_guard lock(mutex_);
+      description_ = renderer.description();
+    }
+    drawAll(renderer);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+  on_done_();
+}
+
+void PictureWorker::drawAll(Renderer& renderer) {
+  using Clock = std::chrono::steady_clock;
+  // A full picture takes the place of drafts for a second at most, so it waits until the view has rested.
+  constexpr auto kRest = std::chrono::milliseconds(150);
+  PictureRequest asked;
+  bool has_draft = false;  // of `asked`, and it is not drawn in full yet
+  for (;;) {
+    bool is_draft = true;
+    {
+      std::unique_lock lock(mutex_);
+      const auto is_new = [&] { return is_ending_ || (wanted_ && !(has_draft && isSame(asked, *wanted_))); };
+      if (has_draft)
+        is_draft = wake_.wait_for(lock, kRest, is_new);
+      else
+        wake_.wait(lock, is_new);
+      if (is_ending_) return;
+      asked = *wanted_;
+      if (!is_draft) wanted_.reset();
+    }
+    DrawOptions options = asked.options;
+    options.is_draft = is_draft;
+    if (is_draft) options.supersampling = 1;
+    const Clock::time_point begun = Clock::now();
+    Image image = renderer.render(asked.snapshot, asked.camera, options);
+    const double wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    {
+      const std::lock_guard lock(mutex_);
+      done_ = DrawnPicture{std::move(image), is_draft, wall_s};
+      ++count_;
+    }
+    has_draft = is_draft;
+    on_done_();
+  }
+}
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A thread that draws what the window asks for, so that the window answers while a slow picture is drawn.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "vps_viewer/renderer.h"
+
+namespace vps::viewer::inline v0 {
+
+struct PictureRequest {
+  scenes::Snapshot snapshot;
+  Camera camera;
+  DrawOptions options;
+};
+/// Whether both give the same picture.
+[[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);
+
+struct DrawnPicture {
+  Image image;
+  bool is_draft = false;
+  double wall_s = 0;  ///< time that drawing took
+};
+
+/// Draws the newest request first as a draft, and in full once nothing newer is wanted. Requests in between
+/// are skipped, and one that asks for the same again draws nothing.
+class VPS_VIEWER_API PictureWorker {
+ public:
+  /// @param scene    its meshes outlive the worker
+  /// @param on_done  called on the worker's thread after each picture, and after a failure
+  PictureWorker(RenderScene scene, std::function<void()> on_done);
+  ~PictureWorker();
+  PictureWorker(const PictureWorker&) = delete;
+  PictureWorker& operator=(const PictureWorker&) = delete;
+
+  void request(const PictureRequest& wanted);
+  /// The newest picture, once. Throws what the renderer threw: std::runtime_error, which names the packages
+  /// to install.
+  [[nodiscard]] std::optional<DrawnPicture> take();
+  /// Pictures drawn so far.
+  [[nodiscard]] std::size_t count() const;
+  /// What draws, in words; empty before the first picture.
+  [[nodiscard]] std::string description() const;
+
+ private:
+  void run(const RenderScene& scene);
+  void drawAll(Renderer& renderer);
+
+  std::function<void()> on_done_;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::optional<PictureRequest> wanted_;  ///< not drawn in full yet
+  std::optional<PictureRequest> last_;    ///< the newest request
+  std::optional<DrawnPicture> done_;
+  std::exception_ptr failure_;
+  std::string description_;
+  std::size_t count_ = 0;
+  bool is_ending_ = false;
+  std::thread thread_;  // last, since it uses the others
+};
+
+}  // namespace vps::viewer::inline v0

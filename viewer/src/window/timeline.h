@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a window plays: snapshots over time, with the steps and curves that belong to them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "vps_device/recording.h"
+#include "vps_scenes/scene.h"
+#include "vps_scenes/snapshot.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer::inline v0 {
+
+/// A step of the procedure on the time axis.
+struct Chapter {
+  std::string name;
+  double start_s = 0;
+  std::string verdict;  ///< in words; empty: not known
+};
+
+/// A quantity over time, at Timeline::time_s.
+struct Curve {
+  std::string name, unit;
+  std::vector<float> values;
+};
+
+struct Message {
+  double time_s = 0;
+  std::string words;
+};
+
+struct VPS_VIEWER_API Timeline {
+  double end_s = 0;
+  std::vector<Chapter> chapters;  ///< in order of time; not empty
+  std::vector<double> time_s;
+  std::vector<Curve> curves;
+  std::vector<Message> messages;
+  std::function<scenes::Snapshot(double time_s)> at;  ///< for any time; times outside are the nearest inside
+
+  /// Index of the chapter at that time.
+  [[nodiscard]] std::size_t chapterAt(double t_s) const;
+};
+
+/// The finished assembly at time 0, then each step's part on its path, without physics: 2 s a step. The scene
+/// outlives it.
+VPS_VIEWER_API Timeline sceneTour(const scenes::Scene& scene);
+
+/// A recorded run as its trace has it. Contacts are not recorded, only their number. Both outlive it.
+VPS_VIEWER_API Timeline recordedTimeline(const scenes::Scene& scene, const device::RecordedRun& run);
+
+}  // namespace vps::viewer::inline v0
