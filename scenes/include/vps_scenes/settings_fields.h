@@ -110,7 +110,7 @@ inline constexpr auto kStepKeys = std::make_tuple(
           "push: along the last leg of the path; screw: turned about that leg as well, see below",
           {.since = 5}),
     field("pitch", &SceneStep::pitch_m, "of a screw: its way in one turn; negative: a left-hand thread",
-          {.quantity = Quantity::Length, .since = 5, .default_text = "required for a screw"}),
+          {.quantity = Quantity::Length, .since = 5, .default_text = "found in the mesh"}),
     field("torque_Nm", &SceneStep::torque_Nm, "of a screw: it is turned until it resists with this torque",
           {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
 static_assert(coversAllMembers<SceneStep, 4>(kStepKeys));

@@ -277,7 +277,7 @@ class SceneReader {
     }
     keys.poses("way_points", step.X_WP_target, step.way_points);
     readFields(keys, step, kStepKeys);
-    requireScrew(keys, step);
+    completeScrew(keys, part.part.mesh, step);
     scene_.steps.push_back(std::move(step));
   }
 

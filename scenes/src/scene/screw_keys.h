@@ -7,8 +7,8 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Throws LoadError for a screw without a pitch or with a path that turns it, and for keys of a screw
-/// elsewhere.
-void requireScrew(const SceneKeys& keys, const SceneStep& step);
+/// Finds the pitch in the moving part's mesh where the file gives none. Throws LoadError for a screw without
+/// a pitch or with a path that turns it, and for keys of a screw elsewhere.
+void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step);
 
 }  // namespace vps::scenes::inline v0
