@@ -85,7 +85,7 @@ TEST(ThreadForm, OfTheLooseM16NutAndBolt) {
   const char* folder = std::getenv("VPS_CAD_DIR");
   const std::filesystem::path from =
       std::filesystem::path(folder != nullptr ? folder : "../shared/cad") / "thread-m16-loose";
-  if (!std::filesystem::exists(from)) GTEST_SKIP() << "no folder " << from;
+  if (!std::filesystem::exists(from)) GTEST_SKIP() << from.string() << " does not exist; set VPS_CAD_DIR";
   ImportSettings metres;
   metres.unit_m = 1;
   for (const char* file : {"factory_bolt_m16_loose.obj", "factory_nut_m16_loose_subdiv_3x.obj"}) {
