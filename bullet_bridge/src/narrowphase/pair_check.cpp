@@ -19,11 +19,6 @@ constexpr double kGrowthShare = 0.1;
 // The field's error in voxels, up to which points count as possibly inside: at edges, and on faces.
 constexpr double kEdgeError = 0.45, kFaceError = 0.05;
 
-Pose between(const Pose& X_start, const Pose& X_end, double share) {
-  const Mat3 R = rotationFromVector(share * rotationVector(X_end.R * X_start.R.transpose()));
-  return {Mat3(R * X_start.R), X_start.p + share * (X_end.p - X_start.p)};
-}
-
 double turn_rad(const Mat3& R) {
   return rotationVector(R).norm();
 }
@@ -287,7 +282,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
   thread_local std::vector<Candidate> entered;
   for (int k = 1; k <= places && missed.empty(); ++k) {
     const double share = static_cast<double>(k) / places;
-    const Pose then[2] = {between(m.start[0], m.end[0], share), between(m.start[1], m.end[1], share)};
+    const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
     const Placed placed(*this, then);
     findOverlaps(placed.pair, *state_.context, m.tolerated_m, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};

@@ -19,11 +19,6 @@ Vec3 shortened(const Vec3& v, double limit) noexcept {
   return length > limit ? Vec3(v * (limit / length)) : v;
 }
 
-Pose between(const Pose& X_from, const Pose& X_to, double share) noexcept {
-  const Vec3 turn = rotationVector(X_to.R * X_from.R.transpose());
-  return {Mat3(rotationFromVector(share * turn) * X_from.R), Vec3(X_from.p + share * (X_to.p - X_from.p))};
-}
-
 }  // namespace
 
 void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
@@ -255,7 +250,7 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
   const double share = length2 < 1e-18
                            ? minimumJerk((late_s - segment_.start_s) / segment_.duration_s)
                            : std::clamp(leg.dot(X_seen.p - segment_.X_from.p) / length2, 0.0, 1.0);
-  const Pose X_path = between(segment_.X_from, segment_.X_to, share);
+  const Pose X_path = interpolate(segment_.X_from, segment_.X_to, share);
   const Vec3 along = length2 < 1e-18 ? axis_W_ : Vec3(leg.normalized());
   Vec3 error_m = X_path.p - X_seen.p;
   error_m -= along * along.dot(error_m);
@@ -300,7 +295,7 @@ Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
   if (isInserting()) return wantedAtTheHole();
   if (phase_ != OperatorPhase::Reach) return X_rest_;
   const double share = minimumJerk((now_s - segment_.start_s) / segment_.duration_s);
-  Pose X = between(segment_.X_from, segment_.X_to, share);
+  Pose X = interpolate(segment_.X_from, segment_.X_to, share);
   // The aim error grows over the last free segment; it models the misjudged position of the hole.
   const double aim = next_ + 2 == path_.size() ? share : 0;
   X.p += aim * aim_m_ + belief_.across_m;
@@ -314,7 +309,7 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
   const double length_m = (X_to.p - X_from.p).norm();
   const double share = length_m > 1e-9 ? std::clamp(1 + along_m / length_m, 0.0, 1.0)
                                        : minimumJerk((feel_.time_s - segment_.start_s) / segment_.duration_s);
-  return between(X_from, X_to, share).R;
+  return interpolate(X_from, X_to, share).R;
 }
 
 // Turned about the tip, so that a lean does not move the tip.

@@ -22,6 +22,10 @@ struct Box {
 
 /// True if the boxes share a point. An empty box shares none.
 [[nodiscard]] VPS_API bool overlap(const Box& a, const Box& b) noexcept;
+/// True if the point lies in the box. No point lies in an empty box.
+[[nodiscard]] inline bool isWithin(const Vec3& p, const Box& box) noexcept {
+  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+}
 /// True if all of `inner` lies in `outer`. An empty box lies in every box.
 [[nodiscard]] VPS_API bool isWithin(const Box& inner, const Box& outer) noexcept;
 /// The box grown by `by_m` on every side. An empty box stays empty.

@@ -25,4 +25,9 @@ Mat3 rotationFromVector(const Vec3& r) {
   return Eigen::AngleAxisd(angle_rad, r / angle_rad).toRotationMatrix();
 }
 
+Pose interpolate(const Pose& from, const Pose& to, double share) {
+  const Vec3 turn = rotationVector(to.R * from.R.transpose());
+  return {Mat3(rotationFromVector(share * turn) * from.R), Vec3(from.p + share * (to.p - from.p))};
+}
+
 }  // namespace vps::inline v0

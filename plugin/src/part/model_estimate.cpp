@@ -21,9 +21,7 @@ constexpr double kKeptCells = 1.5;
 constexpr double kDensity = 1.12, kTakenByEdge = 0.3;
 
 bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
-  return std::ranges::any_of(boxes, [&](const Box& box) {
-    return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-  });
+  return std::ranges::any_of(boxes, [&](const Box& box) { return isWithin(p, box); });
 }
 
 }  // namespace

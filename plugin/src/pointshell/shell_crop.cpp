@@ -19,10 +19,7 @@ std::vector<std::uint32_t> keptBefore(const std::vector<std::uint8_t>& is_kept) 
 std::vector<std::uint8_t> pointsWithin(const PointShell& shell, const std::vector<Box>& boxes) {
   std::vector<std::uint8_t> is_kept(shell.size());
   for (std::size_t i = 0; i < is_kept.size(); ++i)
-    is_kept[i] = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-      return (shell.points[i].array() >= box.min.array()).all() &&
-             (shell.points[i].array() <= box.max.array()).all();
-    });
+    is_kept[i] = std::ranges::any_of(boxes, [&](const Box& box) { return isWithin(shell.points[i], box); });
   return is_kept;
 }
 

@@ -20,8 +20,7 @@ Vec3 centreOf(const PlacedSurface& part) {
   const Box& box = part.surface->box();
   const MassProperties mass = massProperties(part.surface->mesh());
   // The centre of mass of an open mesh can be anywhere.
-  const bool is_within = mass.volume_m3 > 0 && (mass.com.array() >= box.min.array()).all() &&
-                         (mass.com.array() <= box.max.array()).all();
+  const bool is_within = mass.volume_m3 > 0 && isWithin(mass.com, box);
   return part.X_WP * (is_within ? mass.com : box.center());
 }
 

@@ -24,11 +24,6 @@ Vec3 turnBetween(const Mat3& R_from, const Mat3& R_to) {
   return rotationVector(R_to * R_from.transpose());
 }
 
-Pose between(const Pose& X_from, const Pose& X_to, double share) {
-  return {Mat3(rotationFromVector(share * turnBetween(X_from.R, X_to.R)) * X_from.R),
-          Vec3(X_from.p + share * (X_to.p - X_from.p))};
-}
-
 /// The share of the line from a to b that fits into a box of this size together with `box`, which contains a.
 double reachOf(const Box& box, const Vec3& size_m, const Vec3& a, const Vec3& b) {
   double share = 1;
@@ -50,7 +45,7 @@ class Turns {
     for (const Mat3& other : all_)
       if (const double apart_rad = turnBetween(other, R).norm(); apart_rad > apart_rad_) {
         apart_rad_ = apart_rad;
-        middle_ = between(Pose(other, Vec3(Vec3::Zero())), Pose(R, Vec3(Vec3::Zero())), 0.5).R;
+        middle_ = interpolate(Pose(other, Vec3(Vec3::Zero())), Pose(R, Vec3(Vec3::Zero())), 0.5).R;
       }
   }
   [[nodiscard]] double radius_rad() const {
@@ -75,7 +70,7 @@ class Turns {
 double turnReachOf(const Turns& turns, double limit_rad, const Pose& X_from, const Pose& X_to) {
   const auto fits = [&](double share) {
     Turns more = turns;
-    more.add(between(X_from, X_to, share).R);
+    more.add(interpolate(X_from, X_to, share).R);
     return more.radius_rad() <= limit_rad;
   };
   if (limit_rad <= 0 || fits(1)) return 1;
@@ -116,7 +111,7 @@ GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W
                                     turnReachOf(covered.turns, workspace_W.turn_rad, X_at, X_goal));
       if (share >= 1) break;
       if (share > kLeastShare) {
-        path.X_WG.push_back(between(X_at, X_goal, share));
+        path.X_WG.push_back(interpolate(X_at, X_goal, share));
         path.is_index_point.push_back(true);
       } else {
         path.is_index_point.back() = true;  // the workspace ends at a way point

@@ -7,10 +7,6 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-bool isInside(const Box& box, const Vec3& p) {
-  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-}
-
 void sampleTriangle(const Vec3& a, const Vec3& b, const Vec3& c, double spacing_m, const Box& box,
                     std::vector<SurfaceSample>& samples) {
   Box own;
@@ -27,7 +23,7 @@ void sampleTriangle(const Vec3& a, const Vec3& b, const Vec3& c, double spacing_
       v = 1 - v;
     }
     const Vec3 p = a + u * (b - a) + v * (c - a);
-    if (isInside(box, p)) samples.push_back({p, area_m2 / static_cast<double>(count)});
+    if (isWithin(p, box)) samples.push_back({p, area_m2 / static_cast<double>(count)});
   }
 }
 
@@ -38,7 +34,7 @@ std::vector<SurfaceSample> sampleSurface(const Mesh& mesh, double spacing_m, con
   for (const auto& [a, b, c] : mesh.triangles)
     sampleTriangle(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], spacing_m, box, samples);
   for (const Vec3& p : mesh.vertices)
-    if (isInside(box, p)) samples.push_back({p, 0});
+    if (isWithin(p, box)) samples.push_back({p, 0});
   return samples;
 }
 

@@ -11,11 +11,6 @@ namespace {
 
 constexpr double kFinished_s = 2, kMove_s = 1.5, kRest_s = 0.5;
 
-Pose between(const Pose& a, const Pose& b, double share) {
-  const Vec3 turn = rotationVector(b.R * a.R.transpose());
-  return {Mat3(rotationFromVector(share * turn) * a.R), a.p + share * (b.p - a.p)};
-}
-
 /// The pose on the path after a share of its legs, each of which takes the same time.
 Pose onPath(const scenes::SceneStep& step, double share) {
   std::vector<Pose> path = {step.X_WP_start};
@@ -23,7 +18,7 @@ Pose onPath(const scenes::SceneStep& step, double share) {
   path.push_back(step.X_WP_target);
   const double legs = share * static_cast<double>(path.size() - 1);
   const auto leg = std::min(static_cast<std::size_t>(legs), path.size() - 2);
-  return between(path[leg], path[leg + 1], legs - static_cast<double>(leg));
+  return interpolate(path[leg], path[leg + 1], legs - static_cast<double>(leg));
 }
 
 scenes::Snapshot finished(const scenes::Scene& scene) {
