@@ -34,10 +34,12 @@ std::string pairTable(const scenes::CheckResult& result) {
 }
 
 std::string fitTable(const scenes::CheckResult& result) {
-  Table table({"<fit", "<of", "<in", "size [mm]", "clearance [um]", "error [um]", "length [mm]", "<ISO 286"});
+  Table table(
+      {"<fit", "<of", "<in", "size [mm]", "clearance [um]", "error [um]", "length [mm]", "<standard"});
   for (const scenes::CheckedFit& fit : result.fits)
     table.add({toText(fit.kind), fit.shaft, fit.bore, fixed(1e3 * fit.shaft_m, 3),
-               um(fit.diametral_clearance_m), um(fit.error_m), fixed(1e3 * fit.length_m, 2), fit.iso_286});
+               um(fit.diametral_clearance_m), um(fit.error_m), fixed(1e3 * fit.length_m, 2),
+               scenes::standardOf(fit)});
   return table.text();
 }
 
@@ -67,7 +69,10 @@ std::string playCell(double plus, double minus, double scale, int digits) {
 }
 
 std::string waysText(const scenes::CheckedPart& part) {
-  if (!part.ways_out_W.empty()) return std::to_string(part.ways_out_W.size());
+  std::string out;
+  if (!part.ways_out_W.empty()) out = std::to_string(part.ways_out_W.size());
+  if (!part.screw_ways_out.empty()) out.append(out.empty() ? "by screw" : " and by screw");
+  if (!out.empty()) return out;
   return part.is_play_certain ? "none" : "not known ~";
 }
 

@@ -241,6 +241,10 @@ std::string toJson(const scenes::CheckResult& result) {
       json["play_axes"].push_back(toValue(Vec3(part.play_axes_W.col(axis))));
     json["ways_out"] = Json::array();
     for (const Vec3& way : part.ways_out_W) json["ways_out"].push_back(toValue(way));
+    json["screw_ways_out"] = Json::array();
+    for (const scenes::ScrewWay& way : part.screw_ways_out)
+      json["screw_ways_out"].push_back(
+          {{"axis", toValue(way.axis_W)}, {"at_m", toValue(way.at_W)}, {"lead_m", way.lead_m}});
   }
   Json pairs = Json::array(), fits = Json::array();
   for (const scenes::CheckedPair& pair : result.pairs)

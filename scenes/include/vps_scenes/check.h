@@ -73,8 +73,9 @@ struct CheckedPair {
 };
 
 enum class FitKind {
-  Shaft,  ///< a round shaft in a bore
-  Key,    ///< two parallel faces between two others
+  Shaft,   ///< a round shaft in a bore
+  Key,     ///< two parallel faces between two others
+  Thread,  ///< a screw in a nut
 };
 VPS_SCENES_API const char* toText(FitKind kind);
 
@@ -91,27 +92,43 @@ struct CheckedPress {
   double friction = 0;                              ///< that was used: geometric mean of both parts'
 };
 
-/// A part that fits into another: found from facets that lie on a common cylinder or plane.
+/// A part that fits into another: found from facets that lie on a common cylinder, plane or helix.
 struct CheckedFit {
   FitKind kind = FitKind::Shaft;
-  std::string shaft, bore;            ///< the inner and the outer part
-  Vec3 axis_W = Vec3::UnitZ();        ///< of the cylinders; of a key across its faces. Unit
-  Vec3 at_W = Vec3::Zero();           ///< on the axis, in the middle of the length
-  double shaft_m = 0, bore_m = 0;     ///< diameters, or widths, as drawn
-  Vec3 along_W = Vec3::UnitZ();       ///< of a shaft the axis, of a key the overlap's longer side. Unit
-  double length_m = 0;                ///< over which both are found, in this direction
-  double diametral_clearance_m = 0;   ///< negative: interference
-  double offset_m = 0;                ///< greatest distance of the axes over the length; 0 for a key
-  double error_m = 0;                 ///< of the clearance
-  std::string iso_286;                ///< "H7/g6" if both sizes lie in the zones of a common fit, else empty
+  std::string shaft, bore;           ///< the inner and the outer part
+  Vec3 axis_W = Vec3::UnitZ();       ///< of the cylinders; of a key across its faces. Unit
+  Vec3 at_W = Vec3::Zero();          ///< on the axis, in the middle of the length
+  double shaft_m = 0, bore_m = 0;    ///< diameters (of a thread the major ones), or widths, as drawn
+  Vec3 along_W = Vec3::UnitZ();      ///< of a shaft the axis, of a key the overlap's longer side. Unit
+  double length_m = 0;               ///< over which both are found, in this direction
+  double diametral_clearance_m = 0;  ///< negative: interference
+  double offset_m = 0;               ///< greatest distance of the axes over the length; 0 for a key
+  double error_m = 0;                ///< of the clearance
+  std::string iso_286;               ///< "H7/g6" if both sizes lie in the zones of a common fit, else empty
+  /// Of a thread: its way in one turn, negative if left-hand; as the standard has it where `thread` names
+  /// one.
+  double lead_m = 0;
+  int starts = 0;
+  std::string thread;                 ///< "M16", "M16x1.5-LH" of ISO 262; else empty
   std::optional<CheckedPress> press;  ///< of a shaft with interference, if a press fit is declared
 };
+
+/// The fit in words of a standard: "H7/g6", "M16", or "lead 3.2 mm, 2 starts, left-hand" for a thread that is
+/// in none; empty for other fits that are in none.
+VPS_SCENES_API std::string standardOf(const CheckedFit& fit);
 
 /// How far a part moves along or turns about an axis before it touches, the other parts held. Infinite where
 /// it moves away, or turns a whole turn.
 struct Play {
   std::array<double, 6> m = {};    ///< +x, -x, +y, -y, +z, -z
   std::array<double, 6> rad = {};  ///< about the same axes
+};
+
+/// A way in which a part is screwed out of the others.
+struct ScrewWay {
+  Vec3 axis_W = Vec3::UnitZ();  ///< unit; the part leaves in this direction
+  Vec3 at_W = Vec3::Zero();     ///< on the axis
+  double lead_m = 0;            ///< the way in one turn; negative: left-hand
 };
 
 struct CheckedPart {
@@ -125,6 +142,7 @@ struct CheckedPart {
   Vec3 play_center_W = Vec3::Zero();    ///< through which the axes of rotation go
   double play_error_m = 0, play_error_rad = 0;
   std::vector<Vec3> ways_out_W;  ///< unit directions in which it leaves the others on a straight line
+  std::vector<ScrewWay> screw_ways_out;
   /// False: a shaft and its bore have the same size, or facets of curved faces cross as drawn. The mesh can
   /// then stop a motion that the faces allow, so `play` is at least what it says and ways out may be missing.
   bool is_play_certain = true;

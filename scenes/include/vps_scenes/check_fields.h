@@ -43,13 +43,16 @@ inline constexpr auto kPressFields = std::make_tuple(
 static_assert(coversAllMembers<CheckedPress>(kPressFields));
 
 inline constexpr auto kCheckedFitFields = std::make_tuple(
-    field("kind", &CheckedFit::kind, "`shaft` in a bore, or `key`: two parallel faces between two others"),
+    field("kind", &CheckedFit::kind,
+          "`shaft` in a bore, `key` (two parallel faces between two others) or `thread`"),
     field("shaft", &CheckedFit::shaft, "name of the inner part"),
     field("bore", &CheckedFit::bore, "name of the outer part"),
     field("axis", &CheckedFit::axis_W, "axis of the cylinders, or normal of the key's faces, in the world"),
     field("at_m", &CheckedFit::at_W, "the middle of the fit, in the world"),
-    field("shaft_m", &CheckedFit::shaft_m, "diameter of the shaft, or width of the key"),
-    field("bore_m", &CheckedFit::bore_m, "diameter of the bore, or width of the slot"),
+    field("shaft_m", &CheckedFit::shaft_m,
+          "diameter of the shaft, major diameter of the screw, or width of the key"),
+    field("bore_m", &CheckedFit::bore_m,
+          "diameter of the bore, major diameter of the nut, or width of the slot"),
     field("along", &CheckedFit::along_W, "direction of the length, in the world"),
     field("length_m", &CheckedFit::length_m, "length over which both fit"),
     field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
@@ -58,6 +61,9 @@ inline constexpr auto kCheckedFitFields = std::make_tuple(
     field("error_m", &CheckedFit::error_m,
           "bound of the clearance's error, from the corners' distance to the faces"),
     field("iso_286", &CheckedFit::iso_286, "a common fit whose zones hold both sizes; empty: none"),
+    field("lead_m", &CheckedFit::lead_m, "of a thread: its way in one turn; negative: left-hand"),
+    field("starts", &CheckedFit::starts, "of a thread: how many run side by side"),
+    field("thread", &CheckedFit::thread, "its name in ISO 262, as M16 or M16x1.5-LH; empty: none"),
     group("press", &CheckedFit::press, kPressFields));
 static_assert(coversAllMembers<CheckedFit>(kCheckedFitFields));
 

@@ -38,23 +38,26 @@ double distanceToOrigin(const std::array<Vec2, 3>& t) {
 
 }  // namespace
 
+AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v) {
+  AxisExtent extent;
+  std::array<Vec2, 3> seen;  // along the axis
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 r = t[k] - center;
+    const double along_m = axis.dot(r);
+    extent.from_m = std::min(extent.from_m, along_m);
+    extent.to_m = std::max(extent.to_m, along_m);
+    seen[k] = {u.dot(r), v.dot(r)};
+    extent.farthest_m = std::max(extent.farthest_m, seen[k].norm());
+  }
+  extent.nearest_m = distanceToOrigin(seen);
+  return extent;
+}
+
 AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center)
     : nodes(part.tree().nodes().size()), triangles(part.mesh().triangles.size()) {
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    AxisExtent& extent = triangles[i];
-    const Triangle t = part.triangle(i);
-    std::array<Vec2, 3> seen;  // along the axis
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 r = t[k] - center;
-      const double along_m = axis.dot(r);
-      extent.from_m = std::min(extent.from_m, along_m);
-      extent.to_m = std::max(extent.to_m, along_m);
-      seen[k] = {u.dot(r), v.dot(r)};
-      extent.farthest_m = std::max(extent.farthest_m, seen[k].norm());
-    }
-    extent.nearest_m = distanceToOrigin(seen);
-  }
+  for (std::uint32_t i = 0; i < triangles.size(); ++i)
+    triangles[i] = axisExtent(part.triangle(i), center, axis, u, v);
   const auto& tree = part.tree().nodes();
   for (std::size_t n = tree.size(); n-- > 0;) {  // children stand after their parents
     if (!tree[n].isLeaf()) {

@@ -2,6 +2,7 @@
 #include "vps_scenes/check.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "check/check_pair.h"
 #include "check/check_play.h"
@@ -30,7 +31,24 @@ const char* toText(PairState state) {
 }
 
 const char* toText(FitKind kind) {
-  return kind == FitKind::Shaft ? "shaft" : "key";
+  switch (kind) {
+    case FitKind::Shaft:
+      return "shaft";
+    case FitKind::Key:
+      return "key";
+    case FitKind::Thread:
+      return "thread";
+  }
+  return "";
+}
+
+std::string standardOf(const CheckedFit& fit) {
+  if (fit.kind != FitKind::Thread || !fit.thread.empty()) return fit.iso_286 + fit.thread;
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "lead %.3f mm%s%s", 1e3 * std::abs(fit.lead_m),
+                fit.starts > 1 ? (", " + std::to_string(fit.starts) + " starts").c_str() : "",
+                fit.lead_m < 0 ? ", left-hand" : "");
+  return text.data();
 }
 
 std::size_t CheckResult::clashes() const {
@@ -99,6 +117,7 @@ std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const
     const FittedPart of_a{parts[a], faces[a]}, of_b{parts[b], faces[b]};
     appendShaftFits(of_a, of_b, found[i]);
     appendKeyFits(of_a, of_b, found[i]);
+    appendThreadFits(of_a, of_b, found[i]);
   });
   std::vector<CheckedFit> fits;
   for (const std::vector<CheckedFit>& of_pair : found)

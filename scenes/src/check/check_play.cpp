@@ -13,7 +13,7 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 constexpr std::size_t kAxes = 6;
-constexpr std::size_t kTasks = kAxes + 1;  // of a part: its axes, and the ways out
+constexpr std::size_t kTasks = kAxes + 2;  // of a part: its axes, and the ways out, straight and by screw
 
 struct PartTask {
   std::unique_ptr<const MotionSearch> search;
@@ -78,6 +78,10 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
     if (!task.search) return;
     if (axis == kAxes) {
       result.parts[part].ways_out_W = waysOut(*task.search, parts[part], task.frame, task.fits, leave_m);
+      return;
+    }
+    if (axis > kAxes) {
+      result.parts[part].screw_ways_out = screwWaysOut(*task.search, parts[part], task.fits, leave_m);
       return;
     }
     const std::array<double, 2> both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);

@@ -15,9 +15,11 @@ constexpr double kFlatFacesParallel = 1e-3;  // of the normals of facets whose c
 }  // namespace
 
 std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<RoundFace>& round,
-                                std::size_t most) {
+                                const std::vector<ThreadFace>& threads, std::size_t most) {
   const Mesh& mesh = surface.mesh();
   std::vector<bool> is_taken(mesh.triangles.size(), false);
+  for (const ThreadFace& face : threads)
+    for (const std::uint32_t i : face.facets) is_taken[i] = true;
   for (const RoundFace& face : round)
     for (const std::uint32_t i : face.facets) is_taken[i] = true;
   double tolerance_m = 0;

@@ -6,10 +6,11 @@
 
 #include "check/part_surface.h"
 #include "check/round_faces.h"
+#include "check/thread_faces.h"
 
 namespace vps::scenes::inline v0 {
 
-/// Connected facets in one plane, outside of round faces.
+/// Connected facets in one plane, outside of round faces and threads.
 struct FlatFace {
   Vec3 n = Vec3::UnitZ();  ///< outward, unit, in the part's frame
   double offset_m = 0;     ///< n . x of its points
@@ -20,6 +21,6 @@ struct FlatFace {
 
 /// The largest `most` faces, the largest first. O(n log n).
 std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<RoundFace>& round,
-                                std::size_t most);
+                                const std::vector<ThreadFace>& threads, std::size_t most);
 
 }  // namespace vps::scenes::inline v0

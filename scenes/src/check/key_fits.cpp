@@ -208,8 +208,9 @@ void appendFits(const FittedPart& key, const FittedPart& slot, std::vector<Check
 
 FitFaces fitFaces(const PartSurface& surface) {
   constexpr std::size_t kFlat = 400;  // assumed: more than the flat faces of a machined part
-  FitFaces faces{roundFaces(surface), {}};
-  faces.flat = flatFaces(surface, faces.round, kFlat);
+  FitFaces faces{roundFaces(surface), {}, {}};
+  faces.threads = threadFaces(surface, faces.round);
+  faces.flat = flatFaces(surface, faces.round, faces.threads, kFlat);
   return faces;
 }
 

@@ -75,6 +75,19 @@ Box boxOf(const Triangle& t) {
 
 }  // namespace
 
+PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<std::uint8_t> of_facets,
+                             const TriangleTree& tree)
+    : held(of_held), is_of_moving(of_moving), facets(std::move(of_facets)), nodes(tree.nodes().size(), 1) {
+  for (std::size_t n = nodes.size(); n-- > 0;) {  // children stand after their parents
+    const TriangleTree::Node& node = tree.nodes()[n];
+    if (!node.isLeaf()) {
+      nodes[n] = nodes[node.left] & nodes[node.left + 1];
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.end; ++i) nodes[n] &= facets[tree.order()[i]];
+  }
+}
+
 MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
                            const std::vector<double>& crossing_m)
     : part_(part) {
@@ -84,20 +97,26 @@ MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSu
   }
 }
 
+std::size_t MotionSearch::indexOf(const std::string& held) const {
+  return static_cast<std::size_t>(std::ranges::find(held_, held, [](const Held& h) { return h.part->name; }) -
+                                  held_.begin());
+}
+
 double MotionSearch::rest_m() const {
   double most_m = kRest_m;
   for (const Held& held : held_) most_m = std::max(most_m, held.rest_m);
   return most_m;
 }
 
-std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion) const {
+std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion, double most) const {
   if (!motion.is_turn) return std::nullopt;
   const Motion in_moving = motion.in(part_.X_WP.inverse());
-  Turning turning{AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
+  Turning turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
   const double farthest_m = (part_.box_W.min - motion.center)
                                 .cwiseAbs()
                                 .cwiseMax((part_.box_W.max - motion.center).cwiseAbs())
-                                .norm();
+                                .norm() +
+                            std::abs(most * motion.forward_m);
   Box center;
   center.add(motion.center);
   for (const Held& held : held_) {
@@ -109,8 +128,9 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
   return turning;
 }
 
-double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Motion& motion_H,
-                          const Pose& X_HM, double most, Blocker& by) const {
+double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
+                          const PassingFacets* passing, Blocker& by) const {
+  const auto& [motion_H, X_HM, most, along_m] = piece;
   const Held& held = held_[which];
   if (turning && !turning->held[which]) return most;
   const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
@@ -120,11 +140,18 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   const auto reaches = [&](const Box& of_moving, const Box& of_held, double radius_m) {
     const Box wide = grown(of_moving, near_m);
     if (!motion_H.is_turn) return entry(wide, of_held, motion_H.direction);
-    return std::sqrt(distance2(wide, of_held)) / std::max(radius_m, 1e-300);
+    return std::sqrt(distance2(wide, of_held)) / std::max(std::hypot(radius_m, motion_H.forward_m), 1e-300);
   };
   double best = most;
+  if (passing != nullptr && passing->held != which) passing = nullptr;
+  const auto passes = [&](const std::vector<std::uint8_t> PassingFacets::*what, std::uint32_t k,
+                          std::uint32_t i) {
+    return passing != nullptr && (passing->*what)[passing->is_of_moving ? i : k] != 0;
+  };
   const auto visit = [&](std::uint32_t k, std::uint32_t i) {
-    if (turning && !turning->moving.triangles[i].reaches(turning->held[which]->triangles[k], near_m)) return;
+    if (passes(&PassingFacets::facets, k, i)) return;
+    if (turning && !turning->moving.triangles[i].reaches(turning->held[which]->triangles[k], near_m, along_m))
+      return;
     Triangle t = moving.triangle(i);
     for (Vec3& p : t) p = X_HM * p;
     const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
@@ -142,7 +169,8 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   };
   const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
   const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
-    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m))
+    if (passes(&PassingFacets::nodes, k, i)) return kMotionSearchForever;
+    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m, along_m))
       return kMotionSearchForever;
     const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
     const Box box = moved(tree_M[i].box, X_HM);
@@ -188,27 +216,33 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most) const {
-  return reach(motion, most, turningOf(motion));
+  return reach(motion, most, turningOf(motion, most), nullptr);
 }
 
-std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most) const {
-  const std::optional<Turning> turning = turningOf(motion);
-  return {reach(motion, most, turning), reach(motion.reversed(), most, turning)};
+std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
+                                             const PassingFacets* passing) const {
+  const std::optional<Turning> turning = turningOf(motion, most);
+  return {reach(motion, most, turning, passing), reach(motion.reversed(), most, turning, passing)};
 }
 
-Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning) const {
+Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
+                          const PassingFacets* passing) const {
   std::vector<Motion> in_held;
   for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
   const double least = kLeastStep_m / speed;
   double longest = kFirstStep_m / speed;
+  const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
   Reach reach;
   for (int i = 0; i < kMostSteps && reach.s < most; ++i) {
     const double wanted = std::min(longest, most - reach.s);
     double safe = wanted;
     for (std::size_t h = 0; h < held_.size() && safe > 0; ++h) {
       Blocker by{h, 0, 0};
-      const double here = step(h, turning, in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, by);
+      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + safe) * forward_m});
+      const double here =
+          step(h, turning, {in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, {back_m, front_m}},
+               passing, by);
       if (here >= safe) continue;
       safe = here;
       reach.by = by;

@@ -24,6 +24,17 @@ struct Reach {
   Blocker by;
 };
 
+/// What need not be looked at in a motion: facets of the moving part or of one that is held, which cannot
+/// touch the other of the two.
+struct PassingFacets {
+  std::size_t held = 0;  ///< index in MotionSearch's list
+  bool is_of_moving = false;
+  std::vector<std::uint8_t> facets, nodes;  ///< 1: passes; a node of the part's tree if all its facets do
+
+  PassingFacets(std::size_t held, bool is_of_moving, std::vector<std::uint8_t> facets,
+                const TriangleTree& tree);
+};
+
 /// The motions of one part, with the others held where they stand.
 ///
 /// Conservative advancement: from a pose, each pair of triangles has a way on which it stays apart
@@ -41,9 +52,13 @@ class MotionSearch {
   /// @param motion in the world
   [[nodiscard]] Reach reach(const Motion& motion, double most) const;
   /// Of the motion and of its reverse.
-  [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most) const;
+  [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most,
+                                               const PassingFacets* passing = nullptr) const;
   /// Whether the two facets alone stop the motion.
   [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
+  [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_[index].part; }
+  /// Of the held part with this name, which is among them.
+  [[nodiscard]] std::size_t indexOf(const std::string& held) const;
   /// The greatest rest depth of all pairs.
   [[nodiscard]] double rest_m() const;
 
@@ -55,14 +70,23 @@ class MotionSearch {
   };
   /// For a turn: of the part, and of each held part that it can reach.
   struct Turning {
+    Vec3 axis_W;
     AxisExtents moving;
     std::vector<std::optional<AxisExtents>> held;
   };
-  [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion) const;
-  [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning) const;
+  /// A piece of a motion: from a pose on, `most` at most.
+  struct Piece {
+    Motion motion_H;
+    Pose X_HM;
+    double most = 0;
+    std::array<double, 2> along_m = {};  ///< where a screw goes, along Turning::axis_W from the pose as drawn
+  };
+  [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion, double most) const;
+  [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning,
+                            const PassingFacets* passing) const;
   [[nodiscard]] Reach backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const;
-  double step(std::size_t held, const std::optional<Turning>& turning, const Motion& motion_H,
-              const Pose& X_HM, double most, Blocker& by) const;
+  double step(std::size_t held, const std::optional<Turning>& turning, const Piece& piece,
+              const PassingFacets* passing, Blocker& by) const;
 
   const PlacedSurface& part_;
   std::vector<Held> held_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "check/screw_profile.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -40,7 +42,7 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
   PlayFrame frame{part.X_WP.R, centreOf(part)};
   const CheckedFit* longest = nullptr;
   for (const CheckedFit& fit : fits) {
-    if (!isOf(fit, part) || fit.kind != FitKind::Shaft) continue;
+    if (!isOf(fit, part) || fit.kind == FitKind::Key) continue;
     // A part is guided by the fits that it enters; those that enter it may be many.
     const bool is_better =
         longest == nullptr || std::pair(fit.shaft == part.name, fit.length_m) >
@@ -72,7 +74,7 @@ std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part,
   for (int axis = 0; axis < 3; ++axis)
     for (const double sign : {1, -1}) add(sign * frame.axes_W.col(axis));
   for (const CheckedFit& fit : fits)
-    if (isOf(fit, part) && fit.kind == FitKind::Shaft)
+    if (isOf(fit, part) && fit.kind != FitKind::Key)
       for (const double sign : {1, -1}) add(sign * fit.axis_W);
   for (const Vec3& d : makeSphere(1, 1).vertices) add(d);
 
@@ -88,6 +90,29 @@ std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part,
       blockers.insert(blockers.begin(), reach.by);
     else
       ways.push_back(d);
+  }
+  return ways;
+}
+
+std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurface& part,
+                                   const std::vector<CheckedFit>& fits, double leave_m) {
+  std::vector<ScrewWay> ways;
+  for (const CheckedFit& fit : fits) {
+    if (!isOf(fit, part) || fit.kind != FitKind::Thread) continue;
+    const double forward_m = fit.lead_m / (2 * std::numbers::pi);
+    // Turned to the right, a right-hand thread goes along the axis; turned to the left, against it.
+    const Motion screw{fit.axis_W, fit.at_W, true, forward_m};
+    const double most_rad = leave_m / std::abs(forward_m);
+    const bool is_screw = fit.shaft == part.name;
+    const std::size_t mate = search.indexOf(is_screw ? fit.bore : fit.shaft);
+    const PlacedSurface& other = search.held(mate);
+    const PlacedSurface &inner = is_screw ? part : other, &outer = is_screw ? other : part;
+    const PassingFacets passing(mate, is_screw, ScrewProfile(outer, screw).passing(inner),
+                                inner.surface->tree());
+    const std::array<Reach, 2> reach = search.reachBoth(screw, most_rad, &passing);
+    for (const std::size_t i : {0, 1})
+      if (!reach[i].is_stopped)
+        ways.push_back({(i == 0) == (forward_m > 0) ? fit.axis_W : Vec3(-fit.axis_W), fit.at_W, fit.lead_m});
   }
   return ways;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Play of a part, and the directions in which it leaves.
+// Play of a part, and the ways on which it leaves.
 #pragma once
 
 #include <vector>
@@ -26,5 +26,9 @@ std::array<double, 2> playAlong(const MotionSearch& search, const PlayFrame& fra
 /// of those of its fits, and of 42 directions all around.
 std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,
                           const std::vector<CheckedFit>& fits, double leave_m);
+
+/// Screws along the threads of its fits, both ways, on which the part leaves the others.
+std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurface& part,
+                                   const std::vector<CheckedFit>& fits, double leave_m);
 
 }  // namespace vps::scenes::inline v0

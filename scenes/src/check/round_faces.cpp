@@ -8,6 +8,8 @@
 #include <numbers>
 #include <optional>
 
+#include "check/cylinder_fit.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -23,21 +25,14 @@ constexpr std::size_t kLeastNormals = 4;
 /// How far the middle of a facet is inside, in the radius: 1 - cos(kCurved_rad / 2).
 constexpr double kMostChord = 0.02;
 
-struct Cylinder {
-  Vec3 axis, p;
-  double radius_m = 0;
-
-  [[nodiscard]] Vec3 outward(const Vec3& x) const {
-    const Vec3 d = x - p;
-    return d - axis.dot(d) * axis;
-  }
-  [[nodiscard]] double off(const Vec3& x) const { return outward(x).norm() - radius_m; }
-};
-
 class Finder {
  public:
   explicit Finder(const PartSurface& surface)
-      : surface_(surface), mesh_(surface.mesh()), is_taken_(mesh_.triangles.size()), seen_(is_taken_.size()) {
+      : surface_(surface),
+        mesh_(surface.mesh()),
+        is_taken_(mesh_.triangles.size()),
+        is_tried_(is_taken_.size()),
+        seen_(is_taken_.size()) {
     for (const Vec3& v : mesh_.vertices) tolerance_m_ = std::max(tolerance_m_, v.cwiseAbs().maxCoeff());
     tolerance_m_ *= kRoundFacesRounding;
     is_corner_.assign(mesh_.vertices.size(), false);
@@ -50,7 +45,7 @@ class Finder {
   std::vector<RoundFace> find() {
     std::vector<RoundFace> faces;
     for (std::uint32_t seed = 0; seed < is_taken_.size(); ++seed) {
-      if (is_taken_[seed] || !isBent(seed)) continue;
+      if (is_taken_[seed] || is_tried_[seed] || !isBent(seed)) continue;
       if (std::optional<RoundFace> face = grownFrom(seed)) faces.push_back(std::move(*face));
     }
     return faces;
@@ -175,32 +170,10 @@ class Finder {
     return guess;
   }
 
-  /// Gauss-Newton for the least squares of the corners' distances; false where it fails.
   bool refine(Cylinder& of, const std::vector<std::uint32_t>& facets) const {
-    using Vec5 = Eigen::Matrix<double, 5, 1>;
-    using Mat5 = Eigen::Matrix<double, 5, 5>;
-    for (int round = 0; round < 6; ++round) {
-      const Vec3 u = of.axis.unitOrthogonal(), v = of.axis.cross(u);
-      const double scale_m = of.radius_m;  // makes tilts lengths
-      Mat5 sum = Mat5::Zero();
-      Vec5 right = Vec5::Zero();
-      for (const std::uint32_t i : facets)
-        forEachCorner(i, [&](const Vec3& x) {
-          const Vec3 out = of.outward(x), r = out.normalized();
-          const double along = of.axis.dot(x - of.p) / scale_m;
-          Vec5 row;
-          row << -r.dot(u), -r.dot(v), -along * r.dot(u), -along * r.dot(v), -1;
-          sum += row * row.transpose();
-          right -= row * (out.norm() - of.radius_m);
-        });
-      const Vec5 step = sum.ldlt().solve(right);
-      if (!step.allFinite() || step.norm() > of.radius_m) return false;
-      of.p += step[0] * u + step[1] * v;
-      of.axis = (of.axis + (step[2] * u + step[3] * v) / scale_m).normalized();
-      of.radius_m += step[4];
-      if (step.norm() < 1e-13 * of.radius_m) break;
-    }
-    return of.radius_m > 0;
+    std::vector<Vec3> corners;
+    for (const std::uint32_t i : facets) forEachCorner(i, [&](const Vec3& x) { corners.push_back(x); });
+    return fitCylinder(corners, of);
   }
 
   std::optional<RoundFace> finished(const Cylinder& on, std::vector<std::uint32_t> facets) {
@@ -220,7 +193,10 @@ class Finder {
     }
     face.is_bore = facing < 0;
     const double whole_m2 = 2 * std::numbers::pi * on.radius_m * (face.to_m - face.from_m);
-    if (!(area_m2 >= kLeastTurn * whole_m2) || !(whole_m2 > 0)) return std::nullopt;
+    if (!(area_m2 >= kLeastTurn * whole_m2) || !(whole_m2 > 0)) {
+      for (const std::uint32_t i : face.facets) is_tried_[i] = true;
+      return std::nullopt;
+    }
     for (const std::uint32_t i : face.facets) is_taken_[i] = true;
     std::ranges::sort(face.facets);
     return face;
@@ -230,6 +206,7 @@ class Finder {
   const Mesh& mesh_;
   double tolerance_m_ = 0;
   std::vector<bool> is_taken_;
+  std::vector<bool> is_tried_;   // on a cylinder of which too little is there, as the crests of a thread
   std::vector<bool> is_corner_;  // by vertex: at an edge between two facets of a curved face
   std::vector<std::uint32_t> seen_;
   std::uint32_t round_ = 0;

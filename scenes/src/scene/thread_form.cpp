@@ -93,7 +93,7 @@ constexpr int kMostStarts = 4;
 /// A row of the map: its mean and spread, and what goes around the axis in waves of each order.
 struct Row {
   bool is_known = false;
-  double mean_m = 0, mean_square_m2 = 0, least_m = 0, greatest_m = 0;
+  double mean_m = 0, mean_square_m2 = 0;
   std::complex<double> wave[kMostStarts + 1];  // of order m; that of -m is its conjugate
 };
 
@@ -101,14 +101,11 @@ Row rowOf(const RadiusMap& map, int row) {
   constexpr double kKnown = 0.8;
   constexpr int kAngles = RadiusMap::kAngles;
   Row out;
-  out.least_m = std::numeric_limits<double>::infinity();
   int known = 0;
   for (int i = 0; i < kAngles; ++i)
     if (const double r = map.at(i, row); !std::isnan(r)) {
       out.mean_m += r;
       ++known;
-      out.least_m = std::min(out.least_m, r);
-      out.greatest_m = std::max(out.greatest_m, r);
     }
   if (known < kKnown * kAngles) return out;
   out.is_known = true;
@@ -128,13 +125,10 @@ class Spectrum {
   Spectrum(std::span<const Row> rows, double row_m)
       : rows_(rows), row_m_(row_m), count_(static_cast<int>(rows.size())) {
     double sum = 0, squares = 0;
-    least_m = std::numeric_limits<double>::infinity();
     for (const Row& row : rows) {
       if (!row.is_known) return;
       sum += row.mean_m / count_;
       squares += row.mean_square_m2 / count_;
-      least_m = std::min(least_m, row.least_m);
-      greatest_m = std::max(greatest_m, row.greatest_m);
     }
     variance_m2_ = squares - sum * sum;
     is_known = variance_m2_ > 0;
@@ -179,7 +173,6 @@ class Spectrum {
   }
 
   bool is_known = false;  ///< all rows
-  double least_m = 0, greatest_m = 0;
 
  private:
   [[nodiscard]] std::complex<double> waveAt(int order, int row) const {
@@ -222,8 +215,7 @@ std::optional<ThreadForm> threadIn(const RadiusMap& map, bool is_inside) {
       const Wave wave = spectrum.strongest();
       if (!(wave.share > best_share) || 2 * wave.amplitude_m < kLeastDepth * wave.pitch_m) continue;
       best_share = wave.share;
-      best = ThreadForm{wave.order * wave.pitch_m, std::abs(wave.order), is_inside, spectrum.least_m,
-                        spectrum.greatest_m};
+      best = ThreadForm{wave.order * wave.pitch_m, std::abs(wave.order), is_inside};
     }
   return best;
 }
@@ -232,8 +224,12 @@ std::optional<ThreadForm> threadIn(const RadiusMap& map, bool is_inside) {
 
 std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3& axis) {
   for (const bool is_inside : {false, true})
-    if (const auto form = threadIn(RadiusMap(mesh, p, axis, is_inside), is_inside)) return form;
+    if (const auto form = findThread(mesh, p, axis, is_inside)) return form;
   return std::nullopt;
+}
+
+std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3& axis, bool is_inside) {
+  return threadIn(RadiusMap(mesh, p, axis, is_inside), is_inside);
 }
 
 }  // namespace vps::scenes::inline v0

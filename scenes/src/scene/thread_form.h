@@ -9,10 +9,9 @@
 namespace vps::scenes::inline v0 {
 
 struct ThreadForm {
-  double lead_m = 0;                   ///< its way in one turn; negative: a left-hand thread
-  int starts = 1;                      ///< threads side by side; the pitch is the lead divided by this
-  bool is_inside = false;              ///< in a bore
-  double least_m = 0, greatest_m = 0;  ///< radii of the surface where the thread is
+  double lead_m = 0;       ///< its way in one turn; negative: a left-hand thread
+  int starts = 1;          ///< threads side by side; the pitch is the lead divided by this
+  bool is_inside = false;  ///< in a bore
 };
 
 /// The thread around an axis: the surface's distance from the axis is nearly periodic along a helix over two
@@ -20,5 +19,7 @@ struct ThreadForm {
 /// @param p, axis  the axis, in the part's frame; unit
 /// Accuracy: a hundredth of the lead for five turns, more for fewer. Some 0.2 s for 50,000 triangles.
 std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3& axis);
+/// The same on the outside of a solid, or in a bore.
+std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3& axis, bool is_inside);
 
 }  // namespace vps::scenes::inline v0

@@ -50,10 +50,15 @@ std::string pairs(const scenes::CheckResult& result) {
                      rows);
 }
 
+const char* kindOf(scenes::FitKind kind) {
+  if (kind == scenes::FitKind::Thread) return "thread";
+  return kind == scenes::FitKind::Shaft ? "round" : "two parallel faces";
+}
+
 std::string fits(const scenes::CheckResult& result) {
   std::vector<std::vector<Cell>> rows;
   for (const scenes::CheckedFit& fit : result.fits)
-    rows.push_back({{fit.kind == scenes::FitKind::Shaft ? "round" : "two parallel faces", ""},
+    rows.push_back({{kindOf(fit.kind), ""},
                     {escapeHtml(fit.shaft), ""},
                     {escapeHtml(fit.bore), ""},
                     {format(1e3 * fit.shaft_m, "%.4f"), "n"},
@@ -61,10 +66,12 @@ std::string fits(const scenes::CheckResult& result) {
                     {micrometres(fit.diametral_clearance_m), fit.diametral_clearance_m < 0 ? "n bad" : "n"},
                     {micrometres(fit.error_m), "n"},
                     {format(1e3 * fit.length_m, "%.2f"), "n"},
-                    {escapeHtml(fit.iso_286), ""}});
-  return "<h2>Fits</h2>\n<p>Found on the meshes, whose corners lie on the true faces. The last column names "
+                    {escapeHtml(standardOf(fit)), ""}});
+  return "<h2>Fits</h2>\n<p>Found on the meshes, whose corners lie on the true faces. Of a thread the sizes "
+         "are its "
+         "major diameters, and the play along the axis says how loose its flanks are. The last column names "
          "a "
-         "common fit of ISO 286 in whose zones both sizes lie.</p>\n" +
+         "common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO 262.</p>\n" +
          html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
                       "error [µm]", "length [mm]", "ISO 286"},
                      rows);
@@ -114,6 +121,10 @@ std::string both(double plus, double minus, double scale, const char* form) {
   return std::string("+").append(one(plus)).append(" / −").append(one(minus));
 }
 
+std::string coordinates(const Vec3& d) {
+  return format(d.x(), "%.2f") + ", " + format(d.y(), "%.2f") + ", " + format(d.z(), "%.2f");
+}
+
 std::string play(const scenes::CheckResult& result) {
   std::vector<std::vector<Cell>> rows;
   for (const scenes::CheckedPart& part : result.parts) {
@@ -128,9 +139,10 @@ std::string play(const scenes::CheckResult& result) {
         row.push_back({both(part.play->m[i], part.play->m[i + 1], 1e6, "%.1f"), "n"});
     }
     std::string ways = part.play ? "" : "it overlaps another part";
-    for (const Vec3& way : part.ways_out_W)
-      ways += (ways.empty() ? "(" : ", (") + format(way.x(), "%.2f") + ", " + format(way.y(), "%.2f") + ", " +
-              format(way.z(), "%.2f") + ")";
+    for (const Vec3& way : part.ways_out_W) ways += (ways.empty() ? "(" : ", (") + coordinates(way) + ")";
+    for (const scenes::ScrewWay& way : part.screw_ways_out)
+      ways += (ways.empty() ? "by screw along (" : "; by screw along (") + coordinates(way.axis_W) + "), " +
+              format(1e3 * std::abs(way.lead_m), "%.3f") + " mm a turn";
     if (ways.empty())
       ways = part.is_play_certain ? "none"
                                   : "not known: round faces of equal size touch, and their meshes can "
@@ -142,7 +154,7 @@ std::string play(const scenes::CheckResult& result) {
          "other "
          "parts held; free: it moves away, or turns a whole turn. Ways out are directions in which it leaves "
          "on a "
-         "straight line.</p>\n" +
+         "straight line, or by a screw.</p>\n" +
          html::table({"part", "x [µm]", "y [µm]", "z [µm]", "about x [mrad]", "about y [mrad]",
                       "about z [mrad]", "ways out"},
                      rows);

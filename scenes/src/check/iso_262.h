@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names of metric screw threads.
+#pragma once
+
+#include <string>
+
+namespace vps::scenes::inline v0 {
+
+struct MetricThread {
+  std::string name;    ///< "M16", "M16x1.5" for a fine pitch, "M16x1.5-LH" for a left-hand one
+  double pitch_m = 0;  ///< the standard one
+};
+
+/// The thread of ISO 262 whose pitch is within a hundredth of this one, and in whose tolerance 8g to h the
+/// diameter lies; an empty name if there is none.
+/// @param major_m  greatest diameter of the screw
+/// @param lead_m   of a thread with one start; negative: left-hand
+/// Source: ISO 262:1998 (selected sizes), ISO 965-1:2013 (deviations of the major diameter).
+MetricThread metricThread(double major_m, double lead_m);
+
+}  // namespace vps::scenes::inline v0
