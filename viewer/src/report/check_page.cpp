@@ -73,7 +73,7 @@ std::string fits(const scenes::CheckResult& result) {
          "a "
          "common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO 262.</p>\n" +
          html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
-                      "error [µm]", "length [mm]", "ISO 286"},
+                      "error [µm]", "length [mm]", "standard"},
                      rows);
 }
 
