@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps import: makes a scene from a CAD file: parts as meshes, poses and proposed steps.
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
+#include "part_file_name.h"
 #include "progress_bar.h"
 #include "scene_arguments.h"
 #include "stl.h"
@@ -19,6 +19,7 @@
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/scene_text.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -31,49 +32,6 @@ struct ImportArguments {
   std::string units, deflection, json;
   bool is_forced = false;  ///< replaces an existing scene.toml
 };
-
-/// A file name made from a part's name, different from those in `taken`. Binary PLY would be smaller than
-/// STL, but the assimp of Debian 12 reads a first data byte of 0x0A as a line end.
-std::string fileNameOf(const std::string& name, std::set<std::string>& taken) {
-  std::string stem;
-  for (const unsigned char c : name)
-    stem += std::isalnum(c) || c == '-' || c == '_' ? static_cast<char>(c) : '_';
-  if (stem.empty()) stem = "part";
-  std::string file = stem + ".stl";
-  for (int i = 2; !taken.insert(file).second; ++i) file = stem + "_" + std::to_string(i) + ".stl";
-  return file;
-}
-
-/// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const unsigned char c : text) {
-    char escape[8];
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += static_cast<char>(c);
-    } else if (c < 0x20 || c == 0x7F) {
-      std::snprintf(escape, sizeof escape, "\\u%04X", c);
-      out += escape;
-    } else {
-      out += static_cast<char>(c);
-    }
-  }
-  return out + "\"";
-}
-
-std::string poseText(const Pose& pose) {
-  const Quat q = pose.quaternion();
-  // Twelve digits resolve a picometre in a metre; more would show the rounding errors of the file's
-  // arithmetic.
-  const auto n = [](double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.12g", value == 0 ? 0.0 : value);
-    return std::string(text);
-  };
-  return "{position = [" + n(pose.p.x()) + ", " + n(pose.p.y()) + ", " + n(pose.p.z()) +
-         "], rotation_xyzw = [" + n(q.x()) + ", " + n(q.y()) + ", " + n(q.z()) + ", " + n(q.w()) + "]}";
-}
 
 Box boundsAt(const scenes::ImportedPart& part) {
   Box box;
@@ -106,22 +64,24 @@ Proposal propose(const std::vector<scenes::ImportedPart>& parts) {
 
 std::string sceneText(const scenes::ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts,
                       const Proposal& proposal) {
-  std::string out =
-      "# From " + quoted(cad.file) + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.
+  std::string out = "# From " + scenes::tomlText(cad.file) +
+                    R"(. Lengths and meshes are in metres; write "5mm" for millimetres.
 unit = "m"
 
 )";
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    out += "[[part]]\nname = " + quoted(parts[i].name) + "\nfile = " + quoted(parts[i].file) + "\n";
+    out += "[[part]]\nname = " + scenes::tomlText(parts[i].name) +
+           "\nfile = " + scenes::tomlText(parts[i].file) + "\n";
     if (i == proposal.fixed) out += "fixed = true\n";
-    out += "pose = " + poseText(cad.parts[i].X_WP) + "\n\n";
+    out += "pose = " + scenes::tomlPose(cad.parts[i].X_WP) + "\n\n";
   }
   if (!proposal.steps.empty())
     out +=
         R"(# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, and
 # give each fit's diametral clearance (clearance = "20um").
 )";
-  for (const std::size_t i : proposal.steps) out += "[[step]]\npart = " + quoted(parts[i].name) + "\n\n";
+  for (const std::size_t i : proposal.steps)
+    out += "[[step]]\npart = " + scenes::tomlText(parts[i].name) + "\n\n";
   out.pop_back();
   return out;
 }
@@ -148,7 +108,7 @@ int runImport(const ImportArguments& given) {
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
   for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
-    const ImportedPartAnswer row{part.name, fileNameOf(part.name, taken), part.mesh.triangles.size(),
+    const ImportedPartAnswer row{part.name, partFileName(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
     requireNotRead((fs::path(given.out) / row.file).string(), {given.cad});
     out.write(row.file, stlBytes(part.mesh));

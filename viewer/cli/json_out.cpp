@@ -6,6 +6,7 @@
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/check_fields.h"
 #include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/plan_fields.h"
 #include "vps_scenes/result_fields.h"
 #include "vps_scenes/trade_fields.h"
 
@@ -229,6 +230,27 @@ std::string toJson(const std::string& scene, const scenes::FidelityChoice& choic
   Json json = {{"scene", scene}};
   addFields(json, choice, scenes::kChoiceFields);
   return text(json);
+}
+
+namespace {
+
+Json wayFaults(const std::vector<scenes::WayFault>& faults) {
+  Json list = Json::array();
+  for (const scenes::WayFault& fault : faults) list.push_back(toObject(fault, scenes::kWayFaultFields));
+  return list;
+}
+
+}  // namespace
+
+std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults) {
+  Json json = {{"wall", toObject(plan, scenes::kPlanWallFields)}};
+  addFields(json, plan, scenes::kPlanFields);
+  json["way_faults"] = wayFaults(faults);
+  return text(json);
+}
+
+std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>& faults) {
+  return text({{"scene", scene}, {"way_faults", wayFaults(faults)}});
 }
 
 std::string toJson(const scenes::CheckResult& result) {

@@ -12,6 +12,7 @@
 #include "vps/wrench.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/plan.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
 
@@ -101,6 +102,8 @@ std::string toJson(const SnapshotAnswer& answer);
 std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);
 std::string toJson(const scenes::CheckResult& result);
+std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults);
+std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>& faults);
 std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice);
 std::string toJson(const device::DualArmCharacter& character, const device::DualArmFile& file);
 

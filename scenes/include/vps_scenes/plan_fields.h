@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of a plan as JSON shows them.
+#pragma once
+
+#include "vps_scenes/check_fields.h"
+#include "vps_scenes/plan.h"
+
+namespace vps::scenes::inline v0 {
+
+inline constexpr auto kPlannedPoseFields = std::make_tuple(
+    field("position_m", &Pose::p, "of the motion of the world that brings the part there from its target"),
+    field("rotation_xyzw", &Pose::quaternion, "of the same motion"));
+
+inline constexpr auto kPlannedStepFields = std::make_tuple(
+    field("name", &PlannedStep::name, "of the part, or of the subassembly, which has a scene of its own"),
+    field("parts", &PlannedStep::parts, "the part, or those of the subassembly"),
+    field("way", &PlannedStep::kind, "`straight`, `screw`, or `legs`: several straight or turning ones"),
+    list("before", &PlannedStep::before_W, kPlannedPoseFields),
+    field("insertion", &PlannedStep::insertion_W,
+          "unit direction of the last leg, in the world; 0 for a turn"),
+    field("lead_m", &PlannedStep::lead_m, "of a screw: its way in one turn; negative: left-hand"),
+    field("is_carried", &PlannedStep::is_carried,
+          "something in place keeps it from falling; false: its step says `holds`"),
+    field("falling", &PlannedStep::falling, "parts in place that nothing else carries until it is there"));
+static_assert(coversAllMembers<PlannedStep>(kPlannedStepFields));
+
+inline constexpr auto kPlannedOrderFields =
+    std::make_tuple(field("before", &PlannedOrder::before, "this step comes before"),
+                    field("after", &PlannedOrder::after, "this one"),
+                    field("reason", &PlannedOrder::reason,
+                          "`way`: later it has no way; `carries`: the later one stands on it"));
+static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
+
+inline constexpr auto kBlockedPartFields =
+    std::make_tuple(field("name", &BlockedPart::name, "a part that was not taken off"),
+                    field("by", &BlockedPart::by, "what stops it in the directions that were tried"));
+static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
+
+inline constexpr auto kPlannedAssemblyFields = std::make_tuple(
+    field("name", &PlannedAssembly::name, "the assembly, or a subassembly"),
+    field("fixed", &PlannedAssembly::fixed, "parts with which it begins; the blocked ones are among them"),
+    field("fixed_reason", &PlannedAssembly::fixed_reason, "why it begins with the first, in words"),
+    list("steps", &PlannedAssembly::steps, kPlannedStepFields),
+    list("order", &PlannedAssembly::order, kPlannedOrderFields),
+    list("blocked", &PlannedAssembly::blocked, kBlockedPartFields));
+static_assert(coversAllMembers<PlannedAssembly>(kPlannedAssemblyFields));
+
+inline constexpr auto kPlanFields =
+    std::make_tuple(field("assembly", &PlanResult::assembly, "what was planned"),
+                    field("blocked_count", &PlanResult::blocked, "parts that were not taken off"),
+                    list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
+                    list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
+                    list("uncertain", &PlanResult::uncertain, kCheckedPairFields));
+inline constexpr auto kPlanWallFields =
+    std::make_tuple(field("check_s", &PlanResult::check_wall_s, "time to check the parts as drawn"),
+                    field("plan_s", &PlanResult::plan_wall_s, "time to take them apart"));
+
+inline constexpr auto kWayFaultFields =
+    std::make_tuple(field("part", &WayFault::part, "the part that moves"),
+                    field("against", &WayFault::against, "the part in place that its way leads through"),
+                    field("depth_m", &WayFault::depth_m, "greatest depth on the way"),
+                    field("allowed_m", &WayFault::allowed_m, "depth at the target, and 10 um"),
+                    field("at_m", &WayFault::at_W, "where, in the world"));
+static_assert(coversAllMembers<WayFault>(kWayFaultFields));
+
+}  // namespace vps::scenes::inline v0

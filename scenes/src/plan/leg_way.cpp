@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <numbers>
+
+#include "plan/way.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::size_t kMostLegs = 4;
+constexpr std::size_t kMostPlaces = 96;
+constexpr double kLeastLeg = 0.02;  // of the part's size: less is play
+constexpr double kTurn_rad = 2 * std::numbers::pi;
+/// Stops within a leg, as shares of it. assumed: a room beside a leg is wider than an eighth of it
+constexpr std::array kStops = {1.0, 0.5, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125};
+
+struct Place {
+  Pose X_W;  ///< motion of the world that brings the part there
+  std::vector<Leg> legs;
+};
+
+class LegSearch {
+ public:
+  LegSearch(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held)
+      : motions_(motions), part_(part), held_(held), home_(motions.parts()[part]) {
+    size_m_ = home_.box_W.size().norm();
+    for (const std::size_t d : motions.axesOf(part))
+      straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
+    for (const CheckedFit& fit : motions.fitsOf(part)) {
+      if (fit.kind != FitKind::Shaft || hasTurnAbout(fit)) continue;
+      for (const double sign : {1.0, -1.0}) turns_.push_back({sign * fit.axis_W, fit.at_W, true});
+    }
+  }
+
+  std::optional<Way> find() {
+    std::deque<Place> waiting{{Pose(), {}}};
+    seen_.push_back(Pose());
+    while (!waiting.empty()) {
+      const Place place = waiting.front();
+      waiting.pop_front();
+      if (std::optional<Way> way = expand(place, waiting)) return way;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  [[nodiscard]] bool hasTurnAbout(const CheckedFit& fit) const {
+    return std::ranges::any_of(turns_, [&](const Motion& turn) {
+      const Vec3 between = fit.at_W - turn.center;
+      return turn.direction.cross(fit.axis_W).norm() < 1e-6 &&
+             turn.direction.cross(between).norm() < 1e-6 * size_m_;
+    });
+  }
+
+  /// A way if the part leaves straight from there; else adds the places that it comes to.
+  std::optional<Way> expand(const Place& from, std::deque<Place>& waiting) {
+    const PlacedSurface placed = displaced(home_, from.X_W);
+    const MotionSearch search = motions_.search(placed, part_, held_);
+    std::vector<std::pair<Motion, double>> legs;
+    for (const Motion& motion : straight_) {
+      const Reach reach = search.reach(motion, motions_.leave_m());
+      if (!reach.is_stopped) {
+        Way way{WayKind::Legs, from.legs, kNoDirection, 0};
+        way.legs.push_back({motion, motions_.leave_m()});
+        return way;
+      }
+      if (reach.s > kLeastLeg * size_m_) legs.emplace_back(motion, reach.s);
+    }
+    if (from.legs.size() + 1 >= kMostLegs) return std::nullopt;
+    for (const Motion& motion : turns_) {
+      const double s = search.reach(motion, kTurn_rad).s;
+      if (s > kLeastLeg) legs.emplace_back(motion, s);
+    }
+    for (const double share : kStops)
+      for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
+    return std::nullopt;
+  }
+
+  void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {
+    if (seen_.size() >= kMostPlaces) return;
+    const Pose X_W = leg.motion.at(leg.s) * from.X_W;
+    const Vec3 center_W = home_.box_W.center();
+    const bool is_known = std::ranges::any_of(seen_, [&](const Pose& other) {
+      return (other * center_W - X_W * center_W).norm() < kLeastLeg * size_m_ &&
+             rotationVector(other.R.transpose() * X_W.R).norm() < kLeastLeg;
+    });
+    if (is_known) return;
+    seen_.push_back(X_W);
+    waiting.push_back({X_W, from.legs});
+    waiting.back().legs.push_back(leg);
+  }
+
+  const PairMotions& motions_;
+  std::size_t part_;
+  const std::vector<std::size_t>& held_;
+  const PlacedSurface& home_;
+  double size_m_ = 0;
+  std::vector<Motion> straight_, turns_;
+  std::vector<Pose> seen_;
+};
+
+}  // namespace
+
+std::optional<Way> legWay(const PairMotions& motions, std::size_t part,
+                          const std::vector<std::size_t>& held) {
+  return LegSearch(motions, part, held).find();
+}
+
+}  // namespace vps::scenes::inline v0

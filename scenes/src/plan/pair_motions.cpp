@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan/pair_motions.h"
+
+#include <algorithm>
+
+#include "check/on_cores.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
+
+}  // namespace
+
+std::size_t Directions::add(const Vec3& d) {
+  constexpr double kSameDirection = 1e-10;  // squared
+  for (std::size_t i = 0; i < vectors_.size(); ++i)
+    if ((vectors_[i] - d).squaredNorm() < kSameDirection) return i;
+  vectors_.push_back(d);
+  vectors_.emplace_back(-d);
+  return vectors_.size() - 2;
+}
+
+PlacedSurface displaced(const PlacedSurface& part, const Pose& X_W) {
+  PlacedSurface out = part;
+  out.X_WP = X_W * part.X_WP;
+  out.box_W = Box();
+  for (const Vec3& p : part.surface->mesh().vertices) out.box_W.add(out.X_WP * p);
+  return out;
+}
+
+PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                         const Vec3& up_W, const Progress& progress)
+    : parts_(parts), axes_(parts.size()), fits_(parts.size()) {
+  up_ = directions_.add(up_W.normalized());
+  Box all;
+  for (const PlacedSurface& part : parts) {
+    all.add(part.box_W.min);
+    all.add(part.box_W.max);
+  }
+  leave_m_ = 2 * all.size().norm();
+  findDirections(checked);
+  findNear(checked, progress);
+  known_ = std::vector<std::atomic<std::uint8_t>>(parts.size() * (parts.size() - 1) / 2 * directions_.size());
+}
+
+void PairMotions::findDirections(const CheckResult& checked) {
+  for (int axis = 0; axis < 3; ++axis) directions_.add(Vec3::Unit(axis));
+  const std::size_t common = directions_.size();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    for (std::size_t d = 0; d < common; ++d) axes_[i].push_back(d);
+    const auto add = [&](const Vec3& v) {
+      const std::size_t d = directions_.add(v);
+      for (const std::size_t one : {d, Directions::opposite(d)})
+        if (std::ranges::find(axes_[i], one) == axes_[i].end()) axes_[i].push_back(one);
+    };
+    for (const CheckedFit& fit : checked.fits) {
+      if (fit.shaft != parts_[i].name && fit.bore != parts_[i].name) continue;
+      fits_[i].push_back(fit);
+      add(fit.along_W.normalized());
+      if (fit.kind == FitKind::Key) add(fit.axis_W.cross(fit.along_W).normalized());
+    }
+    for (int axis = 0; axis < 3; ++axis) add(parts_[i].X_WP.R.col(axis));
+  }
+  for (const Vec3& d : makeSphere(1, 1).vertices) around_.push_back(directions_.add(d.normalized()));
+}
+
+void PairMotions::findNear(const CheckResult& checked, const Progress& progress) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
+  for (const CheckedPair& pair : checked.pairs)
+    near_[std::minmax(index[pair.a], index[pair.b])].crossing_m = pair.interference_depth_m + pair.error_m;
+  std::vector<std::pair<const Pair, Near>*> all;
+  for (auto& one : near_) all.push_back(&one);
+  const Vec3 down_W = -directions_[up_];
+  forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
+    auto& [pair, near] = *all[i];
+    near.search = std::make_unique<const MotionSearch>(
+        parts_[pair.first], std::vector<const PlacedSurface*>{&parts_[pair.second]},
+        std::vector<double>{near.crossing_m});
+    const auto falls = [&](const Vec3& d) {
+      return !near.search->reach({d, Vec3::Zero(), false}, kFall_m).is_stopped;
+    };
+    near.is_first_carried = !falls(down_W);
+    near.is_second_carried = !falls(-down_W);
+  });
+}
+
+std::size_t PairMotions::slot(std::size_t a, std::size_t b, std::size_t direction) const {
+  return (b * (b - 1) / 2 + a) * directions_.size() + direction;
+}
+
+bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t direction) const {
+  // The first of a pair moves: that the second moves is the same, backwards.
+  if (held < part) return stops(part, held, Directions::opposite(direction));
+  std::atomic<std::uint8_t>& known = known_[slot(part, held, direction)];
+  if (const std::uint8_t now = known.load(std::memory_order_relaxed); now != Unknown) return now == Stops;
+  const Motion motion{directions_[direction], Vec3::Zero(), false};
+  const auto near = near_.find({part, held});
+  const bool is_stopped = near != near_.end()
+                              ? near->second.search->reach(motion, leave_m_).is_stopped
+                              : search(parts_[part], part, {held}).reach(motion, leave_m_).is_stopped;
+  known.store(is_stopped ? Stops : Passes, std::memory_order_relaxed);
+  return is_stopped;
+}
+
+bool PairMotions::carries(std::size_t held, std::size_t part) const {
+  const auto near = near_.find(std::minmax(held, part));
+  if (near == near_.end()) return false;
+  return part < held ? near->second.is_first_carried : near->second.is_second_carried;
+}
+
+MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,
+                                 const std::vector<std::size_t>& held) const {
+  std::vector<const PlacedSurface*> surfaces;
+  std::vector<double> crossing_m;
+  for (const std::size_t h : held) {
+    surfaces.push_back(&parts_[h]);
+    const auto near = near_.find(std::minmax(h, part));
+    crossing_m.push_back(near == near_.end() ? 0 : near->second.crossing_m);
+  }
+  return {placed, std::move(surfaces), crossing_m};
+}
+
+}  // namespace vps::scenes::inline v0

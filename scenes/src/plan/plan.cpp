@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "core/wall_clock.h"
+#include "plan/base_part.h"
+#include "plan/precedence.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::inline v0 {
+
+const char* toText(WayKind kind) {
+  switch (kind) {
+    case WayKind::Straight:
+      return "straight";
+    case WayKind::Screw:
+      return "screw";
+    case WayKind::Legs:
+      return "legs";
+  }
+  return "";
+}
+
+const char* toText(OrderReason reason) {
+  return reason == OrderReason::Way ? "way" : "carries";
+}
+
+std::size_t PlanResult::steps() const {
+  return std::accumulate(assemblies.begin(), assemblies.end(), std::size_t{0},
+                         [](std::size_t sum, const PlannedAssembly& one) { return sum + one.steps.size(); });
+}
+
+std::size_t PlanResult::blocked() const {
+  return std::accumulate(
+      assemblies.begin(), assemblies.end(), std::size_t{0},
+      [](std::size_t sum, const PlannedAssembly& one) { return sum + one.blocked.size(); });
+}
+
+namespace {
+
+/// How far a box goes along d until it has left another one; 0 if it never meets it.
+double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
+  constexpr double kAcross = 1e-9;  // rounding of a direction along an axis
+  double apart_m = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double ahead_m = held.max[axis] - moving.min[axis], behind_m = moving.max[axis] - held.min[axis];
+    if (std::abs(d[axis]) < kAcross) {
+      if (ahead_m < 0 || behind_m < 0) return 0;
+      continue;
+    }
+    apart_m = std::min(apart_m, std::max(0.0, d[axis] > 0 ? ahead_m : behind_m) / std::abs(d[axis]));
+  }
+  return apart_m;
+}
+
+/// How far parts go on their last leg until they have left the boxes of all that stay, and half as far as
+/// they are long.
+double leavingDistance(const PairMotions& motions, const Removal& removal,
+                       const std::vector<std::size_t>& held) {
+  const Vec3& d = removal.way.legs.back().motion.direction;
+  const Pose X_W = cornersOf(removal.way).back();
+  double far_m = 0, own_m = 0;
+  for (const std::size_t part : removal.parts) {
+    const PlacedSurface placed = displaced(motions.parts()[part], X_W);
+    own_m = std::max(own_m, d.cwiseAbs().dot(placed.box_W.size()));
+    for (const std::size_t h : held)
+      far_m = std::max(far_m, leavingDistance(placed.box_W, motions.parts()[h].box_W, d));
+  }
+  return far_m + 0.5 * own_m;
+}
+
+class Planner {
+ public:
+  Planner(const PairMotions& motions, const Progress& progress) : motions_(motions), progress_(progress) {
+    for (const PlacedSurface& part : motions.parts()) names_.insert(part.name);
+  }
+
+  /// Plans the members, and the subassemblies that they need, after it.
+  void plan(const std::string& name, const std::vector<std::size_t>& members, std::vector<std::size_t> fixed,
+            std::string reason, std::vector<PlannedAssembly>& out) {
+    if (fixed.empty()) {
+      const BasePart base = proposedBase(motions_, members);
+      fixed = {base.part};
+      reason = base.reason;
+    }
+    const Disassembly apart = takeApart(motions_, members, fixed, progress_);
+    PlannedAssembly planned{name, {}, std::move(reason), {}, {}, {}};
+    for (const std::size_t part : apart.fixed) planned.fixed.push_back(nameOf(part));
+    for (const Disassembly::Blocked& blocked : apart.blocked) {
+      planned.fixed.push_back(nameOf(blocked.part));
+      planned.blocked.push_back({nameOf(blocked.part), {}});
+      for (const std::size_t by : blocked.by) planned.blocked.back().by.push_back(nameOf(by));
+    }
+    std::vector<std::string> names;
+    std::vector<std::size_t> held = apart.fixed;
+    for (const Disassembly::Blocked& blocked : apart.blocked) held.push_back(blocked.part);
+    for (std::size_t i = apart.removals.size(); i-- > 0;) {
+      planned.steps.push_back(stepOf(apart.removals[i], held));
+      names.insert(names.begin(), planned.steps.back().name);
+      held.insert(held.end(), apart.removals[i].parts.begin(), apart.removals[i].parts.end());
+    }
+    planned.order = precedence(motions_, apart, names);
+    out.push_back(std::move(planned));
+    for (std::size_t i = apart.removals.size(); i-- > 0;)
+      if (apart.removals[i].parts.size() > 1) plan(names[i], apart.removals[i].parts, {}, "", out);
+  }
+
+ private:
+  [[nodiscard]] const std::string& nameOf(std::size_t part) const { return motions_.parts()[part].name; }
+
+  std::string newName() {
+    for (int i = 1;; ++i)
+      if (const std::string name = "subassembly_" + std::to_string(i); names_.insert(name).second)
+        return name;
+  }
+
+  PlannedStep stepOf(const Removal& removal, const std::vector<std::size_t>& held) {
+    const Way& way = removal.way;
+    PlannedStep step;
+    step.name = removal.parts.size() == 1 ? nameOf(removal.parts.front()) : newName();
+    for (const std::size_t part : removal.parts) step.parts.push_back(nameOf(part));
+    step.kind = way.kind;
+    step.lead_m = way.lead_m;
+    step.is_carried = removal.is_carried;
+    for (const std::size_t part : removal.falling) step.falling.push_back(nameOf(part));
+    const Vec3& out_W = way.legs.back().motion.direction;
+    const double out_m = leavingDistance(motions_, removal, held);
+    step.insertion_W = way.kind == WayKind::Legs ? insertionOf(way) : Vec3(-out_W);
+    if (way.kind == WayKind::Screw) {  // a hand turns a screw by itself
+      step.before_W = {Pose::translation(out_m * out_W)};
+      return step;
+    }
+    std::vector<Pose> corners = cornersOf(way);
+    step.before_W = {Pose::translation(out_m * out_W) * corners.back()};
+    for (std::size_t i = corners.size(); i-- > 1;) {
+      step.before_W.push_back(corners[i]);
+      appendTurn(way.legs[i - 1], corners[i - 1], step.before_W);
+    }
+    return step;
+  }
+
+  static Vec3 insertionOf(const Way& way) {
+    return way.legs.front().motion.is_turn ? Vec3(Vec3::Zero()) : Vec3(-way.legs.front().motion.direction);
+  }
+
+  /// Poses between, so that none is more than an eighth of a turn from the next.
+  static void appendTurn(const Leg& leg, const Pose& from_W, std::vector<Pose>& out) {
+    if (!leg.motion.is_turn) return;
+    constexpr double kMost_rad = 0.79;
+    const int pieces = static_cast<int>(std::ceil(leg.s / kMost_rad));
+    for (int k = pieces - 1; k > 0; --k) out.push_back(leg.motion.at(leg.s * k / pieces) * from_W);
+  }
+
+  const PairMotions& motions_;
+  const Progress& progress_;
+  std::set<std::string> names_;
+};
+
+std::vector<std::size_t> indicesOf(const std::vector<std::string>& names,
+                                   const std::vector<DrawnPart>& parts) {
+  std::vector<std::size_t> out;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(parts, name, &DrawnPart::name);
+    if (found == parts.end())
+      throw LoadError("", "", "'" + name + "' is to be fixed, but is not the name of a part");
+    out.push_back(static_cast<std::size_t>(found - parts.begin()));
+  }
+  std::ranges::sort(out);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+}  // namespace
+
+PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
+                        const PlanSettings& settings, const Progress& progress) {
+  if (parts.empty()) throw LoadError("", name, "has no parts to plan");
+  const std::vector<std::size_t> fixed = indicesOf(settings.fixed, parts);
+  double begun_s = wallSeconds();
+  PlanResult result;
+  result.assembly = name;
+  CheckSettings check;
+  check.has_play = false;
+  const CheckResult checked = checkAssembly(name, parts, check, progress);
+  for (const CheckedPair& pair : checked.pairs) {
+    if (pair.state >= PairState::PressFit) result.overlaps.push_back(pair);
+    if (pair.is_uncertain) result.uncertain.push_back(pair);
+  }
+  result.check_wall_s = wallSeconds() - begun_s;
+  begun_s = wallSeconds();
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
+  const PairMotions motions(placed, checked, settings.up_W, progress);
+  std::vector<std::size_t> members(parts.size());
+  std::iota(members.begin(), members.end(), std::size_t{0});
+  Planner(motions, progress).plan(name, members, fixed, "as asked for", result.assemblies);
+  result.plan_wall_s = wallSeconds() - begun_s;
+  return result;
+}
+
+PlanResult planAssembly(const Scene& scene, PlanSettings settings, const Progress& progress) {
+  if (scene.gravity_W.norm() > 0) settings.up_W = -scene.gravity_W.normalized();
+  const std::vector<DrawnPart> drawn = drawnParts(scene);
+  std::vector<DrawnPart> parts;
+  const bool is_named = !settings.fixed.empty();
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (scene.parts[i].is_scenery) continue;
+    parts.push_back(drawn[i]);
+    if (!is_named && scene.parts[i].is_fixed) settings.fixed.push_back(drawn[i].name);
+  }
+  return planAssembly(scene.name, parts, settings, progress);
+}
+
+}  // namespace vps::scenes::inline v0

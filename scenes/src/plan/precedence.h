@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which step has to come before which, and why.
+#pragma once
+
+#include "plan/take_apart.h"
+
+namespace vps::scenes::inline v0 {
+
+/// @param names  of the removals, in their order
+std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
+                                     const std::vector<std::string>& names);
+
+}  // namespace vps::scenes::inline v0

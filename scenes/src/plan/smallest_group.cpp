@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "check/on_cores.h"
+#include "plan/take_apart.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// All that a part pushes along in a direction, itself among them; empty if a fixed part is among them, or if
+/// they are at least `most`.
+std::vector<std::size_t> pushedBy(const PairMotions& motions, const std::vector<std::size_t>& remaining,
+                                  const std::vector<std::size_t>& fixed, std::size_t part,
+                                  std::size_t direction, std::size_t most) {
+  std::vector<std::size_t> pushed{part};
+  for (std::size_t i = 0; i < pushed.size(); ++i)
+    for (const std::size_t held : remaining) {
+      if (std::ranges::find(pushed, held) != pushed.end() || !motions.stops(held, pushed[i], direction))
+        continue;
+      if (std::ranges::binary_search(fixed, held) || pushed.size() + 1 >= most) return {};
+      pushed.push_back(held);
+    }
+  std::ranges::sort(pushed);
+  return pushed;
+}
+
+}  // namespace
+
+Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
+                      const std::vector<std::size_t>& fixed) {
+  const Directions& directions = motions.directions();
+  std::vector<std::vector<std::size_t>> of_direction(directions.size());
+  forEachOnCores(directions.size(), {}, "", [&](std::size_t d) {
+    std::vector<std::size_t>& least = of_direction[d];
+    for (const std::size_t part : remaining) {
+      if (std::ranges::binary_search(fixed, part)) continue;
+      const std::size_t most = least.empty() ? remaining.size() : least.size();
+      const std::vector<std::size_t> found = pushedBy(motions, remaining, fixed, part, d, most);
+      if (!found.empty()) least = found;
+    }
+  });
+  Removal best;
+  const auto isBetter = [&](std::size_t d) {
+    if (best.parts.empty()) return true;
+    const auto key = [&](std::size_t size, std::size_t of) {
+      return std::pair(size, slopeOf(motions, directions[of]));
+    };
+    return key(of_direction[d].size(), d) < key(best.parts.size(), best.way.direction);
+  };
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    if (of_direction[d].empty() || !isBetter(d)) continue;
+    best.parts = of_direction[d];
+    best.way = {WayKind::Straight, {{{directions[d], Vec3::Zero(), false}, motions.leave_m()}}, d, 0};
+  }
+  return best;
+}
+
+}  // namespace vps::scenes::inline v0

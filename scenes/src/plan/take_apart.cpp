@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan/take_apart.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "check/on_cores.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+std::vector<std::size_t> without(const std::vector<std::size_t>& all, const std::vector<std::size_t>& some) {
+  std::vector<std::size_t> out;
+  std::ranges::set_difference(all, some, std::back_inserter(out));
+  return out;
+}
+
+class TakingApart {
+ public:
+  TakingApart(const PairMotions& motions, std::vector<std::size_t> members, std::vector<std::size_t> fixed)
+      : motions_(motions), remaining_(std::move(members)), fixed_(std::move(fixed)) {
+    std::ranges::sort(remaining_);
+    std::ranges::sort(fixed_);
+    stopped_by_.resize(motions.parts().size());
+    screws_.resize(motions.parts().size());
+  }
+
+  Disassembly run(const Progress& progress) {
+    Disassembly out{fixed_, {}, {}};
+    const std::size_t count = remaining_.size() - fixed_.size();
+    std::size_t off = 0;
+    while (remaining_.size() > fixed_.size()) {
+      Removal removal = next();
+      if (removal.parts.empty()) break;
+      remaining_ = without(remaining_, removal.parts);
+      last_ = removal.way.direction;
+      off += removal.parts.size();
+      out.removals.push_back(std::move(removal));
+      if (progress) progress("taking apart", static_cast<double>(off) / static_cast<double>(count));
+    }
+    for (const std::size_t part : without(remaining_, fixed_)) out.blocked.push_back(blockedOf(part));
+    return out;
+  }
+
+ private:
+  using Score = std::tuple<std::size_t, int, int, int, double, std::size_t>;
+
+  Removal next() {
+    if (Removal found = straight(); !found.parts.empty() && found.falling.empty()) return found;
+    if (Removal found = alone([&](std::size_t part) { return screwOf(part); }); !found.parts.empty())
+      return found;
+    if (Removal found = straight(); !found.parts.empty()) return found;
+    if (Removal found = smallestGroup(motions_, remaining_, fixed_); !found.parts.empty())
+      return completed(std::move(found));
+    return alone([&](std::size_t part) { return legWay(motions_, part, without(remaining_, {part})); });
+  }
+
+  Removal straight() {
+    return alone([&](std::size_t part) { return straightWay(part); });
+  }
+
+  /// The best of all parts that have a way by themselves.
+  template <class WayOf>
+  Removal alone(WayOf wayOf) {
+    const std::vector<std::size_t> parts = without(remaining_, fixed_);
+    std::vector<std::optional<Way>> ways(parts.size());
+    forEachOnCores(parts.size(), {}, "", [&](std::size_t i) { ways[i] = wayOf(parts[i]); });
+    Removal best;
+    Score least;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (!ways[i]) continue;
+      Removal one = completed({{parts[i]}, std::move(*ways[i]), false, {}});
+      const Score score = scoreOf(one);
+      if (!best.parts.empty() && least <= score) continue;
+      best = std::move(one);
+      least = score;
+    }
+    return best;
+  }
+
+  /// The best direction in which a part leaves all that remain; the likely ones first.
+  std::optional<Way> straightWay(std::size_t part) {
+    for (const std::vector<std::size_t>* directions : {&motions_.axesOf(part), &motions_.around()}) {
+      std::optional<std::size_t> best;
+      for (const std::size_t d : *directions)
+        if (leaves(part, d) && (!best || rank(d) < rank(*best))) best = d;
+      if (!best) continue;
+      const Motion motion{motions_.directions()[*best], Vec3::Zero(), false};
+      return Way{WayKind::Straight, {{motion, motions_.leave_m()}}, *best, 0};
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::pair<int, int> rank(std::size_t d) const {
+    return {slopeOf(motions_, motions_.directions()[d]), last_ == d ? 0 : 1};
+  }
+
+  /// What stopped it before is asked first.
+  bool leaves(std::size_t part, std::size_t direction) {
+    std::size_t& by = stopped_by_[part][direction];
+    const auto isRemaining = [&](std::size_t p) { return std::ranges::binary_search(remaining_, p); };
+    if (by != 0 && isRemaining(by - 1)) return false;
+    for (const std::size_t held : remaining_) {
+      if (held == part || !motions_.stops(held, part, direction)) continue;
+      by = held + 1;
+      return false;
+    }
+    return true;
+  }
+
+  /// Searched again only when a part has gone that could have been in the way.
+  std::optional<Way> screwOf(std::size_t part) {
+    Screw& known = screws_[part];
+    if (known.is_known && (known.way || known.among == remaining_.size())) return known.way;
+    known = {true, remaining_.size(), screwWay(motions_, part, without(remaining_, {part}))};
+    return known.way;
+  }
+
+  Removal completed(Removal removal) const {
+    const std::vector<std::size_t> rest = without(remaining_, removal.parts);
+    const auto isCarried = [&](std::size_t part, const std::vector<std::size_t>& by) {
+      return std::ranges::any_of(by, [&](std::size_t held) { return motions_.carries(held, part); });
+    };
+    removal.is_carried =
+        std::ranges::any_of(removal.parts, [&](std::size_t part) { return isCarried(part, rest); });
+    for (const std::size_t part : without(rest, fixed_))
+      if (isCarried(part, removal.parts) && !isCarried(part, without(rest, {part})))
+        removal.falling.push_back(part);
+    return removal;
+  }
+
+  [[nodiscard]] Score scoreOf(const Removal& removal) const {
+    const Box& box = motions_.parts()[removal.parts.front()].box_W;
+    const double height_m = motions_.directions()[motions_.up()].dot(box.center());
+    return {removal.falling.size(),
+            static_cast<int>(removal.way.kind),
+            slopeOf(motions_, removal.way.legs.back().motion.direction),
+            last_ == removal.way.direction ? 0 : 1,
+            -height_m,
+            removal.parts.front()};
+  }
+
+  [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {
+    Disassembly::Blocked blocked{part, {}};
+    // Those that it meets are named; where it meets none, as a link in a chain, all that stop it.
+    for (const bool has_to_meet : {true, false}) {
+      for (const std::size_t held : remaining_) {
+        if (held == part || (has_to_meet && !motions_.areNear(held, part))) continue;
+        if (std::ranges::any_of(motions_.axesOf(part),
+                                [&](std::size_t d) { return motions_.stops(held, part, d); }))
+          blocked.by.push_back(held);
+      }
+      if (!blocked.by.empty()) return blocked;
+    }
+    return blocked;
+  }
+
+  struct Screw {
+    bool is_known = false;
+    std::size_t among = 0;  ///< so many parts remained
+    std::optional<Way> way;
+  };
+  const PairMotions& motions_;
+  std::vector<std::size_t> remaining_, fixed_;
+  std::vector<std::map<std::size_t, std::size_t>>
+      stopped_by_;  ///< by part and direction: one more than a part
+  std::vector<Screw> screws_;
+  std::size_t last_ = 0;
+};
+
+}  // namespace
+
+int slopeOf(const PairMotions& motions, const Vec3& direction_W) {
+  const double rise = motions.directions()[motions.up()].dot(direction_W);
+  constexpr double kSideways = 1e-3;
+  if (rise > 1 - kSideways) return 0;
+  return rise > -kSideways ? 1 : 2;
+}
+
+Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
+                      const std::vector<std::size_t>& fixed, const Progress& progress) {
+  return TakingApart(motions, members, fixed).run(progress);
+}
+
+}  // namespace vps::scenes::inline v0

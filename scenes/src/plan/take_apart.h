@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The order in which parts leave an assembly.
+#pragma once
+
+#include <vector>
+
+#include "plan/way.h"
+
+namespace vps::scenes::inline v0 {
+
+/// One part, or several that leave as one.
+struct Removal {
+  std::vector<std::size_t> parts;  ///< ascending
+  Way way;
+  bool is_carried = false;
+  std::vector<std::size_t> falling;  ///< what stays and loses the last part that carried it
+};
+
+struct Disassembly {
+  std::vector<std::size_t> fixed;
+  std::vector<Removal> removals;
+  struct Blocked {
+    std::size_t part;
+    std::vector<std::size_t> by;
+  };
+  std::vector<Blocked> blocked;
+};
+
+/// Takes parts off the fixed ones, one after the other, by rules in this order: what makes nothing fall;
+/// straight before screws; upwards before sideways before down; in the direction of the one before; the
+/// highest; the first. Where no part leaves alone, the smallest set that leaves straight as one does; where
+/// none does, ways of several legs are searched. What is left in the end is blocked. On all cores.
+Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
+                      const std::vector<std::size_t>& fixed, const Progress& progress);
+
+/// The smallest set of parts without a fixed one that leaves straight, with its direction: for each part and
+/// direction all that it would push along, of which it needs the least. Empty if there is none.
+Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
+                      const std::vector<std::size_t>& fixed);
+
+/// Sort key of directions: up, sideways, down.
+int slopeOf(const PairMotions& motions, const Vec3& direction_W);
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small assemblies with a known order, for tests of planning. All of them are unions of convex prisms.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "scenes/scene_part.h"
+#include "support/lathe.h"
+#include "vps/load_error.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes {
+
+inline DrawnPart at(const std::string& name, const Mesh& mesh, const Vec3& p_W) {
+  return {name, mesh, Pose::translation(p_W), {}, false};
+}
+
+inline Scene sceneOf(const std::vector<DrawnPart>& parts) {
+  Scene scene;
+  scene.name = "test";
+  for (const DrawnPart& part : parts) {
+    scene.parts.push_back(scenePart(part.name, part.mesh, Vec3::Zero(), false));
+    scene.parts.back().X_WP = part.X_WP;
+  }
+  return scene;
+}
+
+inline Mesh block(const Vec3& min, const Vec3& max) {
+  return transformed(makeBox(max - min), Pose::translation(0.5 * (min + max)));
+}
+
+/// A convex polygon of (x, z), counter-clockwise seen from -y, along y from -half to half.
+inline Mesh prismAlongY(const std::vector<std::array<double, 2>>& polygon, double half_m) {
+  Mesh mesh;
+  const auto n = static_cast<std::uint32_t>(polygon.size());
+  for (const double y : {-half_m, half_m})
+    for (const auto& [x, z] : polygon) mesh.vertices.emplace_back(x, y, z);
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    mesh.triangles.push_back({0, i, i + 1});
+    mesh.triangles.push_back({n, n + i + 1, n + i});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t k = (i + 1) % n;
+    mesh.triangles.push_back({i, n + i, n + k});
+    mesh.triangles.push_back({i, n + k, k});
+  }
+  return mesh;
+}
+
+/// A square cup that stands on z = 0, open at the top.
+inline Mesh cup(double size_m, double wall_m) {
+  const double h = size_m / 2, in = h - wall_m;
+  Mesh mesh = block({-h, -h, 0}, {h, h, wall_m});
+  append(mesh, block({-h, -h, 0}, {-in, h, size_m}));
+  append(mesh, block({in, -h, 0}, {h, h, size_m}));
+  append(mesh, block({-h, -h, 0}, {h, -in, size_m}));
+  append(mesh, block({-h, in, 0}, {h, h, size_m}));
+  return mesh;
+}
+
+inline Mesh blindHole() {
+  return test::lathe({{0, -5e-3}, {10e-3, -5e-3}, {10e-3, 20e-3}, {4.02e-3, 20e-3}, {4.02e-3, 0}, {0, 0}},
+                     96);
+}
+
+/// A tail that is wider below, 20 mm long, with 0.1 mm to each side.
+inline Mesh dovetailTail() {
+  return prismAlongY({{-9.9e-3, 0}, {9.9e-3, 0}, {5.9e-3, 8e-3}, {-5.9e-3, 8e-3}}, 10e-3);
+}
+inline Mesh dovetailGroove() {
+  Mesh mesh = block({-20e-3, -15e-3, -10e-3}, {20e-3, 15e-3, -0.05e-3});
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<std::array<double, 2>> wall = {
+        {side * 10.5e-3, -1e-3}, {side * 20e-3, -1e-3}, {side * 20e-3, 8e-3}, {side * 6e-3, 8e-3}};
+    if (side < 0) std::ranges::reverse(wall);
+    append(mesh, prismAlongY(wall, 15e-3));
+  }
+  return mesh;
+}
+
+/// A torus around z.
+inline Mesh ring(double radius_m, double thick_m) {
+  std::vector<std::array<double, 2>> profile;
+  for (int i = 0; i < 16; ++i) {
+    const double a = 2 * std::numbers::pi * i / 16;
+    profile.push_back({radius_m + thick_m * std::cos(a), thick_m * std::sin(a)});
+  }
+  return test::lathe(profile, 48);
+}
+
+/// A box of 40 x 14 x 15 mm with a roof over x < 20 mm.
+inline Mesh roofedBox() {
+  Mesh mesh = block({-0.002, -0.01, -0.005}, {0.04, 0.01, 0.0005});
+  append(mesh, block({-0.002, -0.01, -0.005}, {0, 0.01, 0.015}));
+  append(mesh, block({0.035, -0.01, -0.005}, {0.04, 0.01, 0.015}));
+  append(mesh, block({-0.002, -0.01, -0.005}, {0.04, -0.0055, 0.015}));
+  append(mesh, block({-0.002, 0.0055, -0.005}, {0.04, 0.01, 0.015}));
+  append(mesh, block({-0.002, -0.01, 0.012}, {0.02, 0.01, 0.015}));
+  return mesh;
+}
+
+/// A part of a ring, from one angle to another; each facet is a convex prism.
+inline Mesh ringPiece(double inner_m, double outer_m, double low_m, double high_m, double from_deg,
+                      double to_deg) {
+  Mesh mesh;
+  const int pieces = static_cast<int>(std::ceil((to_deg - from_deg) / 7.5));
+  const auto point = [&](int i, double r, double z) {
+    const double a = (from_deg + (to_deg - from_deg) * i / pieces) * std::numbers::pi / 180;
+    mesh.vertices.emplace_back(r * std::cos(a), r * std::sin(a), z);
+  };
+  for (int i = 0; i <= pieces; ++i) {
+    point(i, inner_m, low_m), point(i, outer_m, low_m), point(i, outer_m, high_m), point(i, inner_m, high_m);
+  }
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i < pieces; ++i) {
+    const std::uint32_t at = 4 * static_cast<std::uint32_t>(i), next = at + 4;
+    for (std::uint32_t k = 0; k < 4; ++k) quad(at + k, next + k, next + (k + 1) % 4, at + (k + 1) % 4);
+  }
+  const auto end = static_cast<std::uint32_t>(4 * pieces);
+  quad(0, 1, 2, 3);
+  quad(end + 3, end + 2, end + 1, end);
+  return mesh;
+}
+
+/// A plug of 5 mm radius with one lug to x, and a socket with a lip above the lug, which is open for the lug
+/// a quarter of a turn on; stops at both ends of that turn.
+inline Mesh bayonetPlug() {
+  Mesh mesh = transformed(makeCylinder(5e-3, 20e-3, 96), Pose::translation({0, 0, 10e-3}));
+  append(mesh, ringPiece(4.5e-3, 7e-3, 2e-3, 4e-3, -15, 15));
+  return mesh;
+}
+inline Mesh bayonetSocket() {
+  Mesh mesh = transformed(makeCylinder(10e-3, 5e-3, 96), Pose::translation({0, 0, -2.55e-3}));
+  for (const auto& [from, to] : {std::pair(-17.0, 107.0), std::pair(107.0, 343.0)}) {
+    const bool is_room = from < 0;
+    append(mesh, ringPiece(is_room ? 7.1e-3 : 5.05e-3, 10e-3, -0.5e-3, 4.1e-3, from, to));
+  }
+  append(mesh, ringPiece(5.05e-3, 10e-3, 4.05e-3, 7e-3, -17.5, 73));
+  append(mesh, ringPiece(7.1e-3, 10e-3, 4.05e-3, 7e-3, 72.5, 107.5));
+  append(mesh, ringPiece(5.05e-3, 10e-3, 4.05e-3, 7e-3, 107, 343));
+  return mesh;
+}
+
+/// A pocket of 40.2 x 20.2 mm, and two blocks that fill it: the tongue of one reaches into the other.
+inline Mesh pocket() {
+  Mesh mesh = block({-0.025, -0.015, -0.005}, {0.025, 0.015, 0});
+  append(mesh, block({-0.025, -0.015, -0.005}, {-0.0201, 0.015, 0.02}));
+  append(mesh, block({0.0201, -0.015, -0.005}, {0.025, 0.015, 0.02}));
+  append(mesh, block({-0.025, -0.015, -0.005}, {0.025, -0.0101, 0.02}));
+  append(mesh, block({-0.025, 0.0101, -0.005}, {0.025, 0.015, 0.02}));
+  return mesh;
+}
+inline Mesh tongue() {
+  Mesh mesh = block({-0.02, -0.01, 0}, {0, 0.01, 0.03});
+  append(mesh, block({-0.001, -0.01, 0.0105}, {0.01, 0.01, 0.0195}));
+  return mesh;
+}
+inline Mesh grooved() {
+  Mesh mesh = block({0.0001, -0.01, 0}, {0.02, 0.01, 0.01});
+  append(mesh, block({0.0001, -0.01, 0.02}, {0.02, 0.01, 0.03}));
+  append(mesh, block({0.0105, -0.01, 0.005}, {0.02, 0.01, 0.025}));
+  return mesh;
+}
+
+}  // namespace vps::scenes

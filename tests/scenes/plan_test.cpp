@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Orders and ways of assemblies of which both are known.
+#include "vps_scenes/plan.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scenes/assemblies_to_plan.h"
+#include "support/screw.h"
+
+namespace vps::scenes {
+namespace {
+
+std::vector<std::string> stepsOf(const PlannedAssembly& assembly) {
+  std::vector<std::string> names;
+  for (const PlannedStep& step : assembly.steps) names.push_back(step.name);
+  return names;
+}
+bool has(const std::vector<PlannedOrder>& order, const std::string& before, const std::string& after) {
+  return std::ranges::any_of(
+      order, [&](const PlannedOrder& one) { return one.before == before && one.after == after; });
+}
+using Names = std::vector<std::string>;
+
+/// No way of the plan leads through a part, by a measure that is not the search's.
+void expectFreeWays(const std::vector<DrawnPart>& parts, const PlanResult& plan) {
+  for (const Scene& scene : plannedScenes(sceneOf(parts), plan))
+    for (const WayFault& fault : checkWays(scene))
+      ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m;
+}
+
+TEST(Plan, ABlockOnAPlateComesFromAbove) {
+  const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.assemblies.size(), 1U);
+  const PlannedAssembly& whole = plan.assemblies.front();
+  EXPECT_EQ(whole.fixed, Names{"plate"});
+  ASSERT_EQ(stepsOf(whole), Names{"block"});
+  const PlannedStep& step = whole.steps.front();
+  EXPECT_EQ(step.kind, WayKind::Straight);
+  EXPECT_LT((step.insertion_W - Vec3(0, 0, -1)).norm(), 1e-12);
+  // Half its own height above the plate, on which it stands.
+  ASSERT_EQ(step.before_W.size(), 1U);
+  EXPECT_NEAR(step.before_W.front().p.z(), 0.01, 1e-9);
+  EXPECT_TRUE(step.is_carried);
+  EXPECT_EQ(plan.blocked(), 0U);
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, NestedCupsGoFromTheOutsideIn) {
+  const std::vector<DrawnPart> parts = {
+      at("core", makeBox(Vec3::Constant(0.008)), {0, 0, 0.007}), at("cup 2", cup(0.02, 0.001), {0, 0, 0.002}),
+      at("cup 3", cup(0.03, 0.001), {0, 0, 0.001}), at("cup 1", cup(0.01, 0.0005), {0, 0, 0.003}),
+      at("cup 4", cup(0.04, 0.001), {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"cup 4"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  EXPECT_EQ(stepsOf(plan.assemblies.front()), (Names{"cup 3", "cup 2", "cup 1", "core"}));
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, APegInABlindHoleHasOneDirection) {
+  const std::vector<DrawnPart> parts = {at("block", blindHole(), {0, 0, 0}),
+                                        at("peg", makeCylinder(4e-3, 0.02, 96), {0, 0, 0.01})};
+  // It lies on its side: what is up does not decide.
+  std::vector<DrawnPart> turned = parts;
+  const Pose X_W(rotationFromVector({1.2, 0.3, -0.4}), {0.01, 0.02, 0.03});
+  for (DrawnPart& part : turned) part.X_WP = X_W * part.X_WP;
+  for (const auto& [drawn, axis_W] :
+       {std::pair(parts, Vec3(0, 0, 1)), std::pair(turned, Vec3(X_W.R.col(2)))}) {
+    const PlanResult plan = planAssembly("test", drawn);
+    ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"peg"});
+    EXPECT_LT((plan.assemblies.front().steps.front().insertion_W + axis_W).norm(), 1e-6);
+    expectFreeWays(drawn, plan);
+  }
+}
+
+TEST(Plan, ADovetailSlidesAlongItsGroove) {
+  const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),
+                                        at("tail", dovetailTail(), {0, 0, 0})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"tail"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_EQ(step.kind, WayKind::Straight);
+  EXPECT_NEAR(std::abs(step.insertion_W.y()), 1, 1e-9);
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, ALidComesAfterWhatItCovers) {
+  const std::vector<DrawnPart> parts = {at("lid", makeBox(Vec3(0.04, 0.04, 0.004)), {0, 0, 0.042}),
+                                        at("cup", cup(0.04, 0.002), {0, 0, 0}),
+                                        at("part", makeBox(Vec3::Constant(0.01)), {0.005, 0, 0.007})};
+  PlanSettings settings;
+  settings.fixed = {"cup"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  EXPECT_EQ(stepsOf(plan.assemblies.front()), (Names{"part", "lid"}));
+  EXPECT_TRUE(has(plan.assemblies.front().order, "part", "lid"));
+  EXPECT_NE(planDot(plan).find("\"0/part\" -> \"0/lid\""), std::string::npos);
+}
+
+// All three could be taken off in any order, but the lower ones carry the upper ones.
+TEST(Plan, WhatStandsOnOthersComesAfterThem) {
+  const Mesh brick = makeBox(Vec3(0.02, 0.02, 0.01));
+  const std::vector<DrawnPart> parts = {at("second", brick, {0, 0, 0.02}), at("third", brick, {0, 0, 0.03}),
+                                        at("first", brick, {0, 0, 0.01}),
+                                        at("floor", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
+  const PlanResult plan = planAssembly("test", parts);
+  EXPECT_EQ(stepsOf(plan.assemblies.front()), (Names{"first", "second", "third"}));
+}
+
+TEST(Plan, AScrewTurnsOutOfItsNut) {
+  test::ThreadShape thread;
+  thread.clearance_m = 0;
+  thread.columns = 48;
+  thread.rows_per_pitch = 16;
+  test::ThreadShape nut = thread;
+  nut.length_m = 8e-3;
+  nut.clearance_m = 0.1e-3;
+  const std::vector<DrawnPart> parts = {at("nut", test::makeNut(nut, 0.011), {0, 0, 0}),
+                                        at("rod", test::makeThreadedRod(thread), {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"nut"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"rod"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_EQ(step.kind, WayKind::Screw);
+  EXPECT_NEAR(step.lead_m, thread.pitch_m, 1e-6);
+  EXPECT_NEAR(std::abs(step.insertion_W.z()), 1, 1e-6);
+  const std::vector<Scene> scenes = plannedScenes(sceneOf(parts), plan);
+  EXPECT_EQ(scenes.front().steps.front().motion, StepMotion::Screw);
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, LinksOfAChainAreBlockedByEachOther) {
+  const Mesh link = ring(0.02, 0.003);
+  const std::vector<DrawnPart> parts = {
+      at("one", link, {0, 0, 0}),
+      {"two", link, Pose(rotationFromVector({std::numbers::pi / 2, 0, 0}), {0.02, 0, 0}), {}, false},
+      at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, -0.04})};
+  PlanSettings settings;
+  settings.fixed = {"plate"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(plan.assemblies.size(), 2U);  // they leave the plate as one, and then not each other
+  EXPECT_EQ(plan.assemblies[0].steps.front().parts, (Names{"one", "two"}));
+  EXPECT_TRUE(plan.assemblies[0].blocked.empty());
+  const PlannedAssembly& links = plan.assemblies[1];
+  EXPECT_TRUE(links.steps.empty());
+  ASSERT_EQ(links.blocked.size(), 1U);
+  EXPECT_EQ(links.blocked.front().by.size(), 1U);
+  EXPECT_EQ(plan.blocked(), 1U);
+}
+
+TEST(Plan, ABlockUnderARoofSlidesAndThenRises) {
+  const std::vector<DrawnPart> parts = {at("housing", roofedBox(), {0, 0, 0}),
+                                        at("block", makeBox(Vec3::Constant(0.01)), {0.006, 0, 0.006})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"block"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_EQ(step.kind, WayKind::Legs);
+  ASSERT_EQ(step.before_W.size(), 2U);  // above the opening, then in it
+  EXPECT_GT(step.before_W[0].p.z(), 0.01);
+  EXPECT_GT(step.before_W[1].p.x(), 0.018 - 0.005 + 0.005 - 0.006);
+  EXPECT_NEAR(step.before_W[1].p.z(), 0, 1e-6);
+  expectFreeWays(parts, plan);
+}
+
+// The same with the opening closed.
+TEST(Plan, ABlockInAClosedHousingIsBlocked) {
+  Mesh closed = roofedBox();
+  append(closed, block({0.015, -0.01, 0.012}, {0.04, 0.01, 0.015}));
+  const std::vector<DrawnPart> parts = {at("housing", closed, {0, 0, 0}),
+                                        at("block", makeBox(Vec3::Constant(0.01)), {0.006, 0, 0.006})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.assemblies.front().blocked.size(), 1U);
+  EXPECT_EQ(plan.assemblies.front().blocked.front().name, "block");
+  EXPECT_EQ(plan.assemblies.front().blocked.front().by, Names{"housing"});
+}
+
+TEST(Plan, ABayonetTurnsBeforeItLeaves) {
+  const std::vector<DrawnPart> parts = {at("socket", bayonetSocket(), {0, 0, 0}),
+                                        at("plug", bayonetPlug(), {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"socket"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"plug"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_EQ(step.kind, WayKind::Legs);
+  double turned_rad = 0;
+  for (const Pose& X_W : step.before_W) turned_rad = std::max(turned_rad, rotationVector(X_W.R).norm());
+  EXPECT_GT(turned_rad, 0.7);
+  expectFreeWays(parts, plan);
+}
+
+// The tongue of one is in the groove of the other, and walls keep them from parting: they go in as one.
+TEST(Plan, PartsThatLockEachOtherInAPocketAreASubassembly) {
+  const std::vector<DrawnPart> parts = {at("pocket", pocket(), {0, 0, 0}), at("left", tongue(), {0, 0, 0}),
+                                        at("right", grooved(), {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"pocket"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(plan.assemblies.size(), 2U);
+  const PlannedStep& step = plan.assemblies[0].steps.front();
+  EXPECT_EQ(step.parts, (Names{"left", "right"}));
+  EXPECT_LT((step.insertion_W - Vec3(0, 0, -1)).norm(), 1e-9);
+  ASSERT_EQ(plan.assemblies[1].steps.size(), 1U);
+  EXPECT_NEAR(std::abs(plan.assemblies[1].steps.front().insertion_W.x()), 1, 1e-9);
+  EXPECT_EQ(plan.blocked(), 0U);
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, AnOverlapAsDrawnIsReportedAndHoldsNothingBack) {
+  const std::vector<DrawnPart> parts = {at("block", blindHole(), {0, 0, 0}),
+                                        at("peg", makeCylinder(4.1e-3, 0.02, 96), {0, 0, 0.01})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.overlaps.size(), 1U);
+  EXPECT_NEAR(plan.overlaps.front().interference_depth_m, 0.08e-3, 0.01e-3);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"peg"});
+  EXPECT_LT((plan.assemblies.front().steps.front().insertion_W + Vec3::UnitZ()).norm(), 1e-6);
+}
+
+TEST(Plan, OnePartNeedsNoStepsAndNoPartsAreRefused) {
+  const PlanResult plan = planAssembly("test", {at("block", makeBox(Vec3::Ones()), {0, 0, 0})});
+  EXPECT_EQ(plan.steps() + plan.blocked(), 0U);
+  EXPECT_THROW(planAssembly("test", std::vector<DrawnPart>()), LoadError);
+  PlanSettings settings;
+  settings.fixed = {"nobody"};
+  EXPECT_THROW(planAssembly("test", {at("block", makeBox(Vec3::Ones()), {0, 0, 0})}, settings), LoadError);
+}
+
+TEST(Plan, AnyNumberOfThreadsGivesTheSamePlan) {
+  const std::vector<DrawnPart> parts = {at("pocket", pocket(), {0, 0, 0}), at("left", tongue(), {0, 0, 0}),
+                                        at("right", grooved(), {0, 0, 0}),
+                                        at("lid", makeBox(Vec3(0.05, 0.05, 0.005)), {0, 0, 0.0325})};
+  const auto run = [&](std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return planAssembly("test", parts);
+  };
+  const PlanResult one = run(1), four = run(4);
+  EXPECT_EQ(planDot(one), planDot(four));
+  for (std::size_t a = 0; a < one.assemblies.size(); ++a)
+    for (std::size_t i = 0; i < one.assemblies[a].steps.size(); ++i)
+      EXPECT_EQ(one.assemblies[a].steps[i].before_W.front().p,
+                four.assemblies[a].steps[i].before_W.front().p);
+}
+
+TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
+  const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts)).front();
+  EXPECT_TRUE(checkWays(scene).empty());
+  scene.steps.front().X_WP_start.p.z() -= 0.0603;  // from below, through the plate
+  const std::vector<WayFault> faults = checkWays(scene);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults.front().part, "block");
+  EXPECT_EQ(faults.front().against, "plate");
+  EXPECT_NEAR(faults.front().depth_m, 0.005, 0.6e-3);  // in the middle of 10 mm, at one of 24 poses
+}
+
+}  // namespace
+}  // namespace vps::scenes

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "part_file_name.h"
+
+#include <cctype>
+
+namespace vps::viewer::inline v0 {
+
+std::string partFileName(const std::string& name, std::set<std::string>& taken) {
+  std::string stem;
+  for (const unsigned char c : name)
+    stem += std::isalnum(c) || c == '-' || c == '_' ? static_cast<char>(c) : '_';
+  if (stem.empty()) stem = "part";
+  std::string file = stem + ".stl";
+  for (int i = 2; !taken.insert(file).second; ++i) file = stem + "_" + std::to_string(i) + ".stl";
+  return file;
+}
+
+}  // namespace vps::viewer::inline v0

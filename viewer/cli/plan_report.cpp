@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plan_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "table.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    out += (i > 0 ? ", '" : "'") + names[i] + "'";
+  if (names.size() > kShown) out += " and " + std::to_string(names.size() - kShown) + " more";
+  return out;
+}
+
+/// "-z" for an axis of the world, else three numbers.
+std::string directionText(const Vec3& d) {
+  constexpr double kAlong = 1e-6;
+  if (d.isZero(0)) return "turn";
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(d[axis]) > 1 - kAlong) return std::string(d[axis] > 0 ? "+" : "-") + "xyz"[axis];
+  return fixed(d.x(), 2) + ", " + fixed(d.y(), 2) + ", " + fixed(d.z(), 2);
+}
+
+std::string wayText(const scenes::PlannedStep& step) {
+  if (step.kind == scenes::WayKind::Screw) return "screw, lead " + fixed(1e3 * step.lead_m, 3) + " mm";
+  if (step.kind == scenes::WayKind::Legs) return std::to_string(step.before_W.size()) + " legs";
+  return toText(step.kind);
+}
+
+std::string needsText(const scenes::PlannedAssembly& assembly, const scenes::PlannedStep& step) {
+  std::vector<std::string> before;
+  for (const scenes::PlannedOrder& one : assembly.order)
+    if (one.after == step.name) before.push_back(one.before);
+  return before.empty() ? "" : "after " + listed(before);
+}
+
+std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
+  std::string out =
+      assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
+  Table table({"step", "<part", "<way", "<moves", "<stays", "<order"});
+  for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
+    const scenes::PlannedStep& step = assembly.steps[i];
+    const std::string name = step.parts.size() == 1 ? step.name : step.name + " (" + listed(step.parts) + ")";
+    table.add({std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
+               step.is_carried ? "by itself" : "held", needsText(assembly, step)});
+  }
+  if (!assembly.steps.empty()) out += table.text();
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (!step.falling.empty())
+      out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
+  for (const scenes::BlockedPart& blocked : assembly.blocked)
+    out += "'" + blocked.name + "' cannot be taken off: " +
+           (blocked.by.empty() ? std::string("no way was found") : "it is stopped by " + listed(blocked.by)) +
+           ".\n";
+  return out;
+}
+
+}  // namespace
+
+std::string planTables(const scenes::PlanResult& plan) {
+  std::string out;
+  for (const scenes::PlannedAssembly& assembly : plan.assemblies)
+    out += (out.empty() ? "" : "\n") + assemblyTable(assembly);
+  if (!plan.overlaps.empty()) out += "\n";
+  for (const scenes::CheckedPair& pair : plan.overlaps)
+    out += "'" + pair.a + "' and '" + pair.b + "' overlap by " + fixed(1e3 * pair.interference_depth_m, 3) +
+           " mm as drawn; on their ways they may overlap as much.\n";
+  for (const scenes::CheckedPair& pair : plan.uncertain)
+    out += "Whether '" + pair.a + "' and '" + pair.b +
+           "' overlap cannot be told, because a part has no inside there; their surfaces were used.\n";
+  return out;
+}
+
+std::string planHeadline(const scenes::PlanResult& plan) {
+  std::string out =
+      plan.assembly + ": " + std::to_string(plan.steps()) + (plan.steps() == 1 ? " step" : " steps");
+  if (const std::size_t subs = plan.assemblies.size() - 1; subs > 0)
+    out += ", " + std::to_string(subs) + (subs == 1 ? " subassembly" : " subassemblies");
+  const std::size_t blocked = plan.blocked();
+  out += blocked == 0 ? std::string(", all parts planned")
+                      : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " blocked";
+  return out + " in " + fixed(plan.check_wall_s + plan.plan_wall_s, 1) + " s";
+}
+
+std::string inWords(const scenes::WayFault& fault) {
+  return "the way of '" + fault.part + "' leads through '" + fault.against + "', " +
+         fixed(1e3 * fault.depth_m, 3) + " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " +
+         fixed(1e3 * fault.at_W.y(), 2) + ", " + fixed(1e3 * fault.at_W.z(), 2) + ") mm (" +
+         fixed(1e3 * fault.allowed_m, 3) + " mm allowed); give other way_points, or another order";
+}
+
+}  // namespace vps::viewer::inline v0

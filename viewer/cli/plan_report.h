@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Output of `vps plan`: tables and sentences.
+#pragma once
+
+#include <string>
+
+#include "vps_scenes/plan.h"
+
+namespace vps::viewer::inline v0 {
+
+/// The steps of all assemblies, and what cannot be taken apart.
+std::string planTables(const scenes::PlanResult& plan);
+/// The answer in a sentence.
+std::string planHeadline(const scenes::PlanResult& plan);
+/// "the way of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
+std::string inWords(const scenes::WayFault& fault);
+
+}  // namespace vps::viewer::inline v0
