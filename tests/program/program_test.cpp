@@ -16,8 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"check",  "assemble", "replay", "simulate", "query", "import",
-                                         "export", "snapshot", "view",   "explain",  "trade", "device"};
+const std::vector<std::string> kReady = {"check",   "plan",   "assemble", "replay",   "simulate",
+                                         "query",   "import", "export",   "snapshot", "view",
+                                         "explain", "trade",  "device"};
 const std::vector<std::string> kPlanned = {"render", "watch"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {

@@ -13,6 +13,7 @@
 
 #include "scene/read_fields.h"
 #include "vps_scenes/check_fields.h"
+#include "vps_scenes/plan_fields.h"
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/trade_fields.h"
 
@@ -211,6 +212,9 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
                head + resultLines("pairs[].", kCheckedPairFields) +
                    resultLines("fits[].", kCheckedFitFields) + resultLines("parts[].", kCheckedPartFields) +
                    resultLines("wall.", kCheckWallFields));
+  checkSection(readme, "plan",
+               head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
+                   resultLines("wall.", kPlanWallFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }
 

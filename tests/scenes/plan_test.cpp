@@ -30,7 +30,8 @@ using Names = std::vector<std::string>;
 void expectFreeWays(const std::vector<DrawnPart>& parts, const PlanResult& plan) {
   for (const Scene& scene : plannedScenes(sceneOf(parts), plan))
     for (const WayFault& fault : checkWays(scene))
-      ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m;
+      ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m << " at "
+                    << fault.at_W.transpose();
 }
 
 TEST(Plan, ABlockOnAPlateComesFromAbove) {

@@ -89,11 +89,13 @@ PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<st
 }
 
 MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
-                           const std::vector<double>& crossing_m)
+                           const std::vector<double>& crossing_m, CrossingDepth depth)
     : part_(part) {
   for (std::size_t i = 0; i < held.size(); ++i) {
     const Pose X_HM = held[i]->X_WP.inverse() * part.X_WP;
-    held_.push_back({held[i], X_HM, restOf(part, *held[i], X_HM, crossing_m[i])});
+    held_.push_back({held[i], X_HM,
+                     depth == CrossingDepth::UpToMost ? kRest_m + crossing_m[i]
+                                                      : restOf(part, *held[i], X_HM, crossing_m[i])});
   }
 }
 

@@ -35,6 +35,12 @@ struct PassingFacets {
                 const TriangleTree& tree);
 };
 
+/// How deep the facets of a pair may be in each other.
+enum class CrossingDepth {
+  AsDrawn,   ///< as deep as they are where the part stands: exact play
+  UpToMost,  ///< up to the given depth anywhere: what meshes of flush curved faces allow on a long way
+};
+
 /// The motions of one part, with the others held where they stand.
 ///
 /// Conservative advancement: from a pose, each pair of triangles has a way on which it stays apart
@@ -45,9 +51,9 @@ class MotionSearch {
   /// How deep the facets of parts that rest on each other may be in each other.
   static constexpr double kRest_m = 0.1e-6;
 
-  /// @param crossing_m by pair of the part and each held one: facets may cross as deep as drawn, up to this
+  /// @param crossing_m by pair of the part and each held one: facets may cross by no more than this
   MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
-               const std::vector<double>& crossing_m);
+               const std::vector<double>& crossing_m, CrossingDepth depth = CrossingDepth::AsDrawn);
 
   /// @param motion in the world
   [[nodiscard]] Reach reach(const Motion& motion, double most) const;

@@ -74,6 +74,9 @@ class LegSearch {
       const double s = search.reach(motion, kTurn_rad).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
+    // Where it was stopped it can be as deep as is allowed: back to where it is free.
+    for (auto& [motion, s] : legs)
+      s = std::max(0.0, s - 2 * search.rest_m() / (motion.is_turn ? 0.5 * size_m_ : 1));
     for (const double share : kStops)
       for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
     return std::nullopt;

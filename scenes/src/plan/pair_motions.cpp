@@ -11,6 +11,27 @@ namespace {
 
 constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
 
+/// How deep parts may be in each other on a way, beyond what is drawn and its error: facets of curved faces
+/// of one size cross by more than their chords where they slide along each other. Half of the 10 um that a
+/// step may penetrate, and a thousandth of small parts. A search with 1 um took ten times as long.
+double touchOf(const PlacedSurface& a, const PlacedSurface& b) {
+  constexpr double kTouch_m = 5e-6, kShare = 1e-3;
+  return std::min(
+      {kTouch_m, kShare * a.surface->box().size().norm(), kShare * b.surface->box().size().norm()});
+}
+
+/// Whether a plane across an axis of the world parts two boxes, but for some depth, while one of them goes
+/// all the way along d. A search along faces that lie on each other takes a second where they have many
+/// edges.
+bool staysBeside(const Box& moving, const Box& held, const Vec3& d, double depth_m, double way_m) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double nearer_m = way_m * d[axis];
+    if (moving.min[axis] - held.max[axis] + depth_m + std::min(0.0, nearer_m) >= 0) return true;
+    if (held.min[axis] - moving.max[axis] + depth_m - std::max(0.0, nearer_m) >= 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::size_t Directions::add(const Vec3& d) {
@@ -69,8 +90,11 @@ void PairMotions::findDirections(const CheckResult& checked) {
 void PairMotions::findNear(const CheckResult& checked, const Progress& progress) {
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
-  for (const CheckedPair& pair : checked.pairs)
-    near_[std::minmax(index[pair.a], index[pair.b])].crossing_m = pair.interference_depth_m + pair.error_m;
+  for (const CheckedPair& pair : checked.pairs) {
+    const Pair key = std::minmax(index[pair.a], index[pair.b]);
+    near_[key].crossing_m =
+        pair.interference_depth_m + pair.error_m + touchOf(parts_[key.first], parts_[key.second]);
+  }
   std::vector<std::pair<const Pair, Near>*> all;
   for (auto& one : near_) all.push_back(&one);
   const Vec3 down_W = -directions_[up_];
@@ -78,12 +102,10 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
     auto& [pair, near] = *all[i];
     near.search = std::make_unique<const MotionSearch>(
         parts_[pair.first], std::vector<const PlacedSurface*>{&parts_[pair.second]},
-        std::vector<double>{near.crossing_m});
-    const auto falls = [&](const Vec3& d) {
-      return !near.search->reach({d, Vec3::Zero(), false}, kFall_m).is_stopped;
-    };
-    near.is_first_carried = !falls(down_W);
-    near.is_second_carried = !falls(-down_W);
+        std::vector<double>{near.crossing_m}, CrossingDepth::UpToMost);
+    near.probes = ContactProbes(parts_[pair.first], parts_[pair.second], near.crossing_m);
+    near.is_first_carried = near.stops({down_W, Vec3::Zero(), false}, kFall_m);
+    near.is_second_carried = near.stops({-down_W, Vec3::Zero(), false}, kFall_m);
   });
 }
 
@@ -98,9 +120,12 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
   if (const std::uint8_t now = known.load(std::memory_order_relaxed); now != Unknown) return now == Stops;
   const Motion motion{directions_[direction], Vec3::Zero(), false};
   const auto near = near_.find({part, held});
-  const bool is_stopped = near != near_.end()
-                              ? near->second.search->reach(motion, leave_m_).is_stopped
-                              : search(parts_[part], part, {held}).reach(motion, leave_m_).is_stopped;
+  const bool is_near = near != near_.end();
+  const double depth_m = is_near ? near->second.crossing_m : touchOf(parts_[part], parts_[held]);
+  const bool is_stopped =
+      !staysBeside(parts_[part].box_W, parts_[held].box_W, motion.direction, depth_m, leave_m_) &&
+      (is_near ? near->second.stops(motion, leave_m_)
+               : search(parts_[part], part, {held}).reach(motion, leave_m_).is_stopped);
   known.store(is_stopped ? Stops : Passes, std::memory_order_relaxed);
   return is_stopped;
 }
@@ -118,9 +143,9 @@ MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,
   for (const std::size_t h : held) {
     surfaces.push_back(&parts_[h]);
     const auto near = near_.find(std::minmax(h, part));
-    crossing_m.push_back(near == near_.end() ? 0 : near->second.crossing_m);
+    crossing_m.push_back(near == near_.end() ? touchOf(parts_[h], parts_[part]) : near->second.crossing_m);
   }
-  return {placed, std::move(surfaces), crossing_m};
+  return {placed, std::move(surfaces), crossing_m, CrossingDepth::UpToMost};
 }
 
 }  // namespace vps::scenes::inline v0

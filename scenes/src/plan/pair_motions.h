@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/motion_search.h"
+#include "plan/contact_probes.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -61,7 +62,12 @@ class PairMotions {
   struct Near {
     double crossing_m = 0;  ///< how deep they may be in each other
     std::unique_ptr<const MotionSearch> search;
+    ContactProbes probes;
     bool is_first_carried = false, is_second_carried = false;
+    /// Of a straight motion of the first.
+    [[nodiscard]] bool stops(const Motion& motion, double most_m) const {
+      return probes.areStopped(motion.direction) || search->reach(motion, most_m).is_stopped;
+    }
   };
   [[nodiscard]] std::size_t slot(std::size_t a, std::size_t b, std::size_t direction) const;
   void findDirections(const CheckResult& checked);

@@ -135,11 +135,13 @@ class Planner {
       step.before_W = {Pose::translation(out_m * out_W)};
       return step;
     }
-    std::vector<Pose> corners = cornersOf(way);
+    const std::vector<Pose> corners = cornersOf(way);
+    const PlacedSurface& part = motions_.parts()[removal.parts.front()];
+    const Vec3 center_W = part.X_WP * massProperties(part.surface->mesh()).com;
     step.before_W = {Pose::translation(out_m * out_W) * corners.back()};
     for (std::size_t i = corners.size(); i-- > 1;) {
       step.before_W.push_back(corners[i]);
-      appendTurn(way.legs[i - 1], corners[i - 1], step.before_W);
+      appendTurn(way.legs[i - 1], corners[i - 1], center_W, step.before_W);
     }
     return step;
   }
@@ -148,11 +150,14 @@ class Planner {
     return way.legs.front().motion.is_turn ? Vec3(Vec3::Zero()) : Vec3(-way.legs.front().motion.direction);
   }
 
-  /// Poses between, so that none is more than an eighth of a turn from the next.
-  static void appendTurn(const Leg& leg, const Pose& from_W, std::vector<Pose>& out) {
+  /// Poses between, at most an eighth of a turn apart, and so that the part's centre, which a hand moves on a
+  /// straight line from one to the next, stays within 2 um of its circle.
+  static void appendTurn(const Leg& leg, const Pose& from_W, const Vec3& center_W, std::vector<Pose>& out) {
     if (!leg.motion.is_turn) return;
-    constexpr double kMost_rad = 0.79;
-    const int pieces = static_cast<int>(std::ceil(leg.s / kMost_rad));
+    constexpr double kMost_rad = 0.79, kLeast_rad = 0.05, kOff_m = 2e-6;
+    const double radius_m = leg.motion.direction.cross(from_W * center_W - leg.motion.center).norm();
+    const double sag_rad = 2 * std::acos(std::max(-1.0, 1 - kOff_m / std::max(radius_m, kOff_m)));
+    const int pieces = static_cast<int>(std::ceil(leg.s / std::clamp(sag_rad, kLeast_rad, kMost_rad)));
     for (int k = pieces - 1; k > 0; --k) out.push_back(leg.motion.at(leg.s * k / pieces) * from_W);
   }
 

@@ -2,6 +2,8 @@
 #include "plan/take_apart.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 
@@ -45,7 +47,7 @@ class TakingApart {
   }
 
  private:
-  using Score = std::tuple<std::size_t, int, int, int, double, std::size_t>;
+  using Score = std::tuple<std::size_t, int, int, int, double, double, std::size_t>;
 
   Removal next() {
     if (Removal found = straight(); !found.parts.empty() && found.falling.empty()) return found;
@@ -82,13 +84,13 @@ class TakingApart {
 
   /// The best direction in which a part leaves all that remain; the likely ones first.
   std::optional<Way> straightWay(std::size_t part) {
-    for (const std::vector<std::size_t>* directions : {&motions_.axesOf(part), &motions_.around()}) {
-      std::optional<std::size_t> best;
-      for (const std::size_t d : *directions)
-        if (leaves(part, d) && (!best || rank(d) < rank(*best))) best = d;
-      if (!best) continue;
-      const Motion motion{motions_.directions()[*best], Vec3::Zero(), false};
-      return Way{WayKind::Straight, {{motion, motions_.leave_m()}}, *best, 0};
+    for (std::vector<std::size_t> directions : {motions_.axesOf(part), motions_.around()}) {
+      std::ranges::stable_sort(directions, {}, [&](std::size_t d) { return rank(d); });
+      for (const std::size_t d : directions) {
+        if (!leaves(part, d)) continue;
+        const Motion motion{motions_.directions()[d], Vec3::Zero(), false};
+        return Way{WayKind::Straight, {{motion, motions_.leave_m()}}, d, 0};
+      }
     }
     return std::nullopt;
   }
@@ -138,8 +140,21 @@ class TakingApart {
             static_cast<int>(removal.way.kind),
             slopeOf(motions_, removal.way.legs.back().motion.direction),
             last_ == removal.way.direction ? 0 : 1,
+            -loosenessOf(removal.parts.front()),
             -height_m,
             removal.parts.front()};
+  }
+
+  /// Clearance of its tightest fit with a part that remains, to a micrometre; infinite without one.
+  [[nodiscard]] double loosenessOf(std::size_t part) const {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const CheckedFit& fit : motions_.fitsOf(part)) {
+      const std::string& own = motions_.parts()[part].name;
+      const std::string& mate = fit.shaft == own ? fit.bore : fit.shaft;
+      if (std::ranges::any_of(remaining_, [&](std::size_t p) { return motions_.parts()[p].name == mate; }))
+        least_m = std::min(least_m, std::round(1e6 * fit.diametral_clearance_m) * 1e-6);
+    }
+    return least_m;
   }
 
   [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {

@@ -28,8 +28,9 @@ struct Disassembly {
 
 /// Takes parts off the fixed ones, one after the other, by rules in this order: what makes nothing fall;
 /// straight before screws; upwards before sideways before down; in the direction of the one before; the
-/// highest; the first. Where no part leaves alone, the smallest set that leaves straight as one does; where
-/// none does, ways of several legs are searched. What is left in the end is blocked. On all cores.
+/// loosest fit, so that pins are in place before what they locate; the highest; the first. Where no part
+/// leaves alone, the smallest set that leaves straight as one does; where none does, ways of several legs are
+/// searched. What is left in the end is blocked. On all cores.
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
