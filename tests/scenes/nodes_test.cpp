@@ -39,7 +39,7 @@ Ran runTwoPins(const std::string& file = "") {
   render.session = session();
   Ran ran;
   std::thread device([&ran, name = render.session] {
-    ran.device = deviceNode({name, nullptr, {}, false, false});
+    ran.device = deviceNode({name, "", nullptr, {}, false, false});
   });
   ran.result = renderNode(scene, render, file);
   device.join();
@@ -108,13 +108,13 @@ TEST(Nodes, ASecondDeviceIsRefusedInWords) {
   render.session = name;
   render.stop = &stop;
   std::string refused;
-  std::thread first([&] { deviceNode({name, &stop, {}, false, false}); });
+  std::thread first([&] { deviceNode({name, "", &stop, {}, false, false}); });
   std::thread second;
   render.after_step = [&](double) {
     if (second.joinable()) return;
     second = std::thread([&] {
       try {
-        deviceNode({name, &stop, {}, false, false});
+        deviceNode({name, "", &stop, {}, false, false});
       } catch (const LoadError& error) {
         refused = error.what();
       }

@@ -70,29 +70,27 @@ class ChildProcess {
 /// The three nodes of one session.
 class NodeProcesses {
  public:
-  NodeProcesses(std::string program, std::string scene, std::string session, std::filesystem::path folder)
+  NodeProcesses(std::string program, std::string scene, std::string session, std::filesystem::path folder,
+                std::string network = "")
       : program_(std::move(program)),
         scene_(std::move(scene)),
         session_(std::move(session)),
-        folder_(std::move(folder)) {}
+        folder_(std::move(folder)),
+        network_(std::move(network)) {}
 
   void startRender() {
-    render = ChildProcess({program_, "render", scene_, "--session", session_, "--no-pictures", "--out",
-                           (folder_ / "out").string(), "--json", (folder_ / "run.json").string()},
-                          (folder_ / "render.txt").string());
+    render = start({program_, "render", scene_, "--no-pictures", "--out", (folder_ / "out").string(),
+                    "--json", (folder_ / "run.json").string()},
+                   "render.txt");
   }
-  void startDevice() {
-    device = ChildProcess({program_, "device", "--session", session_, "--stay"},
-                          (folder_ / "device.txt").string());
-  }
-  void startWatch() {
-    watch = ChildProcess({program_, "watch", "--session", session_}, (folder_ / "watch.txt").string());
-  }
+  void startDevice() { device = start({program_, "device", "--stay"}, "device.txt"); }
+  void startWatch() { watch = start({program_, "watch"}, "watch.txt"); }
 
   /// Joins the session as one more watcher; waits for it.
   bool join(double limit_s = 30) {
     watcher.reset();
-    return waitFor([this] { return (watcher = scenes::SessionWatcher::join(session_)) != nullptr; }, limit_s);
+    return waitFor([this] { return (watcher = scenes::SessionWatcher::join(session_, network_)) != nullptr; },
+                   limit_s);
   }
   /// Until the hand holds a part, and force can flow.
   bool waitForHold(double limit_s = 30) {
@@ -150,8 +148,15 @@ class NodeProcesses {
   std::unique_ptr<scenes::SessionWatcher> watcher;
 
  private:
+  [[nodiscard]] ChildProcess start(std::vector<std::string> words, const std::string& output) const {
+    words.insert(words.end(), {"--session", session_});
+    if (!network_.empty()) words.insert(words.end(), {"--network", network_});
+    return {std::move(words), (folder_ / output).string()};
+  }
+
   std::string program_, scene_, session_;
   std::filesystem::path folder_;
+  std::string network_;  ///< interface; empty: shared memory
 };
 
 }  // namespace vps::test

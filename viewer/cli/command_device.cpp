@@ -29,6 +29,7 @@ struct DeviceArguments {
   std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
   std::string json;
   std::string session;  ///< empty: none
+  std::string network;
   bool rearms = false, stays = false;
 };
 
@@ -180,6 +181,7 @@ int listKinds() {
 int runNode(const DeviceArguments& given) {
   scenes::DeviceNodeOptions options;
   options.session = given.session;
+  options.network = given.network;
   options.stop = &stopRequested();
   options.say = [](const std::string& words) { say(words); };
   options.rearms = given.rearms;
@@ -238,6 +240,7 @@ void addDevice(CommandLine& line) {
       ->needs(characterise);
   CLI::Option* session =
       addSessionOption(command, given->session)->excludes(characterise)->excludes("--list");
+  addNetworkOption(command, given->network)->needs(session);
   command
       .add_flag("--auto-rearm", given->rearms,
                 "when the render node was lost and is back, let force return by itself; simulated devices "

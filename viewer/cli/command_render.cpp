@@ -21,7 +21,7 @@ namespace {
 
 struct RenderArguments {
   SceneArguments scene;
-  std::string session = kDefaultSession;
+  std::string session = kDefaultSession, network;
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
@@ -42,6 +42,7 @@ int runRender(const RenderArguments& given) {
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   setModelOptions(options, bar, cache, given.scene.models_everything);
   options.session = given.session;
+  options.network = given.network;
   options.keep_going = !given.stops_at_failure;
   options.stop = &stopRequested();
   options.degrades = given.sheds_load;
@@ -76,6 +77,7 @@ void addRender(CommandLine& line) {
       "vps render scenes/bearing_block/scene.toml --session demo", [given] { return runRender(*given); });
   addSceneOptions(command, given->scene);
   addSessionOption(command, given->session);
+  addNetworkOption(command, given->network);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");

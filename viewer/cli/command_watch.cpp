@@ -17,7 +17,7 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 struct WatchArguments {
-  std::string session = kDefaultSession;
+  std::string session = kDefaultSession, network;
   double rate_hz = 1;  ///< lines a second about the part in hand; 0: none
 };
 
@@ -91,7 +91,8 @@ class Watching {
 int runWatch(const WatchArguments& given) {
   bool has_said = false;
   while (!stopRequested()) {
-    const std::unique_ptr<scenes::SessionWatcher> watcher = scenes::SessionWatcher::join(given.session);
+    const std::unique_ptr<scenes::SessionWatcher> watcher =
+        scenes::SessionWatcher::join(given.session, given.network);
     if (watcher == nullptr) {
       if (!has_said) say("waiting for the session '" + given.session + "', which vps render starts");
       has_said = true;
@@ -120,6 +121,7 @@ void addWatch(CommandLine& line) {
       line, "watch", "follows a session of vps render: its steps, the part in hand, forces and verdict",
       "vps watch --session demo", [given] { return runWatch(*given); });
   addSessionOption(command, given->session);
+  addNetworkOption(command, given->network);
   command.add_option("--rate", given->rate_hz, "lines a second about the part in hand; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));

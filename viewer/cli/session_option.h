@@ -9,6 +9,15 @@ namespace vps::viewer::inline v0 {
 
 inline constexpr const char* kDefaultSession = "default";
 
+/// Adds --network.
+inline CLI::Option* addNetworkOption(CLI::App& command, std::string& network) {
+  return command
+      .add_option("--network", network,
+                  "meet over UDP through this network interface, in place of shared memory; lo: this machine "
+                  "only. Beyond it, whoever reaches the interface can read and move everything")
+      ->type_name("INTERFACE");
+}
+
 /// Adds --session.
 inline CLI::Option* addSessionOption(CLI::App& command, std::string& session) {
   return command.add_option("--session", session, "name by which the nodes on this machine find each other")

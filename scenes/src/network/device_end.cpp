@@ -15,10 +15,15 @@ namespace {
 
 constexpr std::chrono::microseconds kReplyPoll{100};
 constexpr std::chrono::milliseconds kJoinPoll{2};
+constexpr double kAgain_s = 0.2;  // a request without a reply is sent again: the peer may not have been found
 constexpr double kReplyLimit_s = 5;  // assumed: planning a step takes milliseconds
 
 std::int64_t now_ns() {
   return device::monotonicClock().now_ns();
+}
+
+double since_s(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(now_ns() - ns);
 }
 
 bool isSameDevice(const HelloMessage& a, const HelloMessage& b) {
@@ -37,6 +42,8 @@ DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<vo
     : link_(link), stop_(stop), say_(std::move(say)), writer_(link.sessionId()), buffer_(kLongestMessage) {}
 
 void DeviceEnd::welcome(const HelloMessage& hello) {
+  const std::uint64_t sender = hello_reader_.envelope().sender;
+  if (sender == sender_) return;  // it says so until it is asked for something
   const std::string name = hello.name.data();
   if (first_ && !isSameDevice(*first_, hello)) {
     say_("the device '" + name + "' joined in place of '" + first_->name.data() +
@@ -44,7 +51,7 @@ void DeviceEnd::welcome(const HelloMessage& hello) {
     return;
   }
   if (!first_) first_ = hello;
-  const std::uint64_t sender = hello_reader_.envelope().sender;
+  sender_ = sender;
   for (MessageReader* reader : {&reply_reader_, &state_reader_, &log_reader_}) reader->bindTo(sender);
   is_present_ = true;
   ++joins_;
@@ -92,20 +99,27 @@ const HapticMessage* DeviceEnd::takeState() {
 }
 
 double DeviceEnd::silence_s() const {
-  return 1e-9 * static_cast<double>(now_ns() - heard_ns_);
+  return since_s(heard_ns_);
 }
 
-bool DeviceEnd::request(const RequestMessage& request) {
+bool DeviceEnd::request(const RequestMessage& request, const std::function<void()>& wait) {
   const int joins = joins_;
-  link_.send(Channel::Request, writer_.write(request));
+  const std::string bytes(writer_.write(request));
+  link_.send(Channel::Request, bytes);
   const std::uint64_t number = writer_.number(MessageKind::Request);
-  const std::int64_t sent_ns = now_ns();
+  const std::int64_t begun_ns = now_ns();
+  std::int64_t sent_ns = begun_ns;
   for (;;) {
     poll();
     if (joins_ != joins) return false;
     if (reply_.request == number) break;
     if (isStopped() || !isPresent()) return false;
-    if (1e-9 * static_cast<double>(now_ns() - sent_ns) > kReplyLimit_s) return false;
+    if (since_s(begun_ns) > kReplyLimit_s) return false;
+    if (since_s(sent_ns) > kAgain_s) {
+      sent_ns = now_ns();
+      link_.send(Channel::Request, bytes);
+    }
+    wait();
     std::this_thread::sleep_for(kReplyPoll);
   }
   heard_ns_ = now_ns();

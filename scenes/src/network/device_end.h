@@ -41,7 +41,8 @@ class DeviceEnd {
 
   /// Sends a request and waits until it is carried out. False: the device was lost meanwhile, or the run is
   /// stopped.
-  bool request(const RequestMessage& request);
+  /// @param wait  called from time to time meanwhile
+  bool request(const RequestMessage& request, const std::function<void()>& wait);
   /// What the hand did after the last request.
   [[nodiscard]] std::uint8_t handAfterRequest() const { return reply_.hand; }
 
@@ -62,6 +63,8 @@ class DeviceEnd {
   [[nodiscard]] std::string refusals() const;
   [[nodiscard]] bool isStopped() const { return stop_ != nullptr && stop_->load(); }
   void say(const std::string& words) const { say_(words); }
+  /// See Link.
+  [[nodiscard]] std::optional<PeerTiming> timing() const { return link_.timing(NodeRole::Device); }
 
  private:
   void welcome(const HelloMessage& hello);
@@ -74,6 +77,7 @@ class DeviceEnd {
   std::vector<char> buffer_;
   std::optional<HelloMessage> first_;
   bool is_present_ = false;
+  std::uint64_t sender_ = 0;  ///< of the device's messages
   int joins_ = 0;
   HapticMessage state_;
   ReplyMessage reply_;

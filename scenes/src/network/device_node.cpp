@@ -96,8 +96,8 @@ class DeviceSession {
 
   /// True: the session has ended in good order, or the user stops.
   bool run() {
-    sayHello();
     for (int polls = 1;; ++polls) {
+      if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
       takeRequests();
       if (polls % kPollsPerTimes == 0) sendTimes();
       if (options_.stop != nullptr && options_.stop->load()) return finish(true);
@@ -145,10 +145,13 @@ class DeviceSession {
   void takeRequests() {
     for (std::string_view bytes; !(bytes = link_.receive(Channel::Request, buffer_)).empty();) {
       RequestMessage request;
-      if (reader_.read(bytes, request) != Reading::Good) continue;
+      const Reading reading = reader_.read(bytes, request);
+      if (reading == Reading::Replayed) link_.send(Channel::Reply, writer_.write(reply_));  // it was lost
+      if (reading != Reading::Good) continue;
+      has_request_ = true;
       carryOut(request);
-      link_.send(Channel::Reply,
-                 writer_.write(ReplyMessage{reader_.envelope().number, device::toByte(side_->state())}));
+      reply_ = {reader_.envelope().number, device::toByte(side_->state())};
+      link_.send(Channel::Reply, writer_.write(reply_));
     }
   }
   void carryOut(const RequestMessage& request) {
@@ -192,6 +195,8 @@ class DeviceSession {
   MessageWriter writer_;         ///< of this thread
   MessageWriter haptic_writer_;  ///< of the haptic thread: other kinds of messages
   MessageReader reader_;
+  ReplyMessage reply_;  ///< the last one
+  bool has_request_ = false;
   std::vector<char> buffer_;
   Scene scene_;
   std::unique_ptr<Hand> hand_;
@@ -212,7 +217,7 @@ DeviceNodeResult deviceNode(const DeviceNodeOptions& options) {
   DeviceNodeResult result;
   bool has_said = false;
   while (options.stop == nullptr || !options.stop->load()) {
-    const std::unique_ptr<Link> link = joinSession(options.session, NodeRole::Device);
+    const std::unique_ptr<Link> link = joinSession(options.session, NodeRole::Device, options.network);
     if (link == nullptr) {
       if (!has_said) say("waiting for " + sessionWords(options.session) + ", which vps render starts");
       has_said = true;

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "network/broadcast_ring.h"
 #include "network/shared_region.h"
 
 namespace vps::scenes::inline v0 {
@@ -39,6 +40,26 @@ constexpr NodeRole writerOf(Channel channel) {
 /// Longest message of any channel, a snapshot of a scene with many parts.
 inline constexpr std::size_t kLongestMessage = 64 * 1024;
 
+/// Where a node keeps the messages of each channel until they are read.
+inline constexpr std::array<RingShape, kChannels> kChannelShapes = {{
+    {16, 1024},            // Haptic
+    {16, 1024},            // Physics
+    {4, kLongestMessage},  // Snapshot
+    {64, 1024},            // Request
+    {64, 1024},            // Reply
+    {1U << 15U, 256},      // Log: 6 s of a loop at 1.6 kHz
+    {256, 1024},           // News
+}};
+
+/// How a peer on another machine is reached.
+struct PeerTiming {
+  double round_trip_s = 0;           ///< the longest of the last ones
+  double clock_offset_s = 0;         ///< what the peer's monotonic clock is ahead
+  double clock_error_s = 0;          ///< bound of that
+  double clock_drift = 0;            ///< its rate, less 1
+  std::uint64_t contradictions = 0;  ///< times that it gave and that cannot be
+};
+
 /// send() and receive() neither throw, allocate, lock nor wait. A channel is used by one thread at a time.
 class Link {
  public:
@@ -61,6 +82,8 @@ class Link {
   [[nodiscard]] virtual std::uint64_t sessionId() const = 0;
   /// The render node has ended the session in good order.
   [[nodiscard]] virtual bool hasEnded() const = 0;
+  /// Empty in one machine, and while nothing is known.
+  [[nodiscard]] virtual std::optional<PeerTiming> timing(NodeRole) const { return {}; }
   /// The scene, as its archive; the caller checks it.
   [[nodiscard]] virtual std::string sceneBytes() const = 0;
 
@@ -74,5 +97,17 @@ std::unique_ptr<Link> makeSession(const std::string& session, std::string_view s
 /// For the other nodes: null where there is no such session now. Throws LoadError where it is of another
 /// version of this program, or another device has joined it.
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role);
+
+/// The same over UDP, through the network interface of that name ("lo", "eth0"); empty: in shared memory.
+/// Waits up to a second for a session to be found. Throws LoadError also where this build has no network.
+std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
+                                  const std::string& interface);
+std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const std::string& interface);
+
+/// Over UDP only; in dds/.
+std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string_view scene_bytes,
+                                         const std::string& interface);
+std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
+                                         const std::string& interface);
 
 }  // namespace vps::scenes::inline v0

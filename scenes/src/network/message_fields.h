@@ -215,4 +215,14 @@ void fields(NewsMessage& m, V& visit) {
   visit(m.text);
 }
 
+template <typename V>
+void fields(BeatMessage& m, V& visit) {
+  visit.choice(m.role, 3);
+  visit(m.session);
+  visit(m.has_ended);
+  visit(m.peer);
+  visit(m.peer_sent_ns);
+  visit(m.received_ns);
+}
+
 }  // namespace vps::scenes::inline v0::wire

@@ -2,6 +2,7 @@
 #include "network/messages.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <random>
 
@@ -37,6 +38,8 @@ template <>
 constexpr MessageKind kKindOf<SnapshotMessage> = MessageKind::Snapshot;
 template <>
 constexpr MessageKind kKindOf<NewsMessage> = MessageKind::News;
+template <>
+constexpr MessageKind kKindOf<BeatMessage> = MessageKind::Beat;
 
 /// What both directions share: how a field is made of numbers.
 template <typename Self>
@@ -58,6 +61,7 @@ class Visit {
     double value = x.value_or(0);
     self().flag(has_value);
     self().number(value);
+    if (!has_value && std::bit_cast<std::uint64_t>(value) != 0) self().refuse();
     x = has_value ? std::optional(value) : std::nullopt;
   }
   template <std::size_t N>
@@ -271,6 +275,7 @@ MESSAGE(TimesMessage)
 MESSAGE(LogMessage)
 MESSAGE(SnapshotMessage)
 MESSAGE(NewsMessage)
+MESSAGE(BeatMessage)
 #undef MESSAGE
 
 }  // namespace vps::scenes::inline v0

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "network/shared_region.h"
 #include "vps_device/coupling_port.h"
 #include "vps_device/operator.h"
 #include "vps_device/run_log.h"
@@ -34,6 +35,7 @@ enum class MessageKind : std::uint16_t {
   Log,
   Snapshot,
   News,
+  Beat,
 };
 
 /// At the start of each message.
@@ -117,6 +119,16 @@ struct NewsMessage {
   Verdict verdict = Verdict::NotShown;
   double time_s = 0;             ///< simulated
   std::array<char, 512> text{};  ///< zero-terminated
+};
+
+/// That a node lives, over a network; each 5 ms. It sends the last beat of each peer back, for the clocks.
+struct BeatMessage {
+  NodeRole role = NodeRole::Render;
+  std::uint64_t session = 0;  ///< Link::sessionId()
+  bool has_ended = false;
+  std::uint64_t peer = 0;         ///< whose beat is sent back; 0: none
+  std::int64_t peer_sent_ns = 0;  ///< by the peer's clock
+  std::int64_t received_ns = 0;   ///< by the sender's
 };
 
 /// What became of the bytes of a message.

@@ -139,10 +139,14 @@ class RemoteDriver final : public ClockedDriver {
   void keep(const HandCommand& command);
   /// False: the device was lost meanwhile.
   bool ask(const RequestMessage& request) {
-    if (!end_.request(request)) return false;
+    if (!end_.request(request, [this] { showThatPhysicsLives(); })) return false;
     known_state_ = device::stateFromByte(end_.handAfterRequest());
     return true;
   }
+  /// While a request is on its way physics stands still. The part does so, too, and its state is as new as
+  /// the proxy's, so that the loop does not take it for stalled. Not while a run is recorded, since a replay
+  /// knows the states of steps only.
+  void showThatPhysicsLives();
   /// A device that is lost before it has carried out the request is told so when it is back.
   void askUntilDone(const RequestMessage& request) {
     if (!ask(request) && !end_.isStopped()) waitAndRestore();
@@ -181,6 +185,17 @@ class RemoteDriver final : public ClockedDriver {
   int joins_;
   std::uint64_t interruptions_ = 0;
 };
+
+void RemoteDriver::showThatPhysicsLives() {
+  if (!is_running_ || !part_.part.is_coupled || log_ != nullptr) return;
+  const HapticMessage* message = end_.takeState();
+  if (message == nullptr) return;
+  device::PhysicsState state = part_;
+  state.part.time_s = message->state.report.time_s;
+  state.part.V_W = state.held.V_WP = {};
+  state.stored_J.reset();
+  end_.send(state);
+}
 
 void RemoteDriver::keep(const HandCommand& command) {
   switch (command.what) {

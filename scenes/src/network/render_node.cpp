@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The render node: physics, contact and procedure, with the hand in another process.
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <cstring>
+#include <thread>
 
 #include "network/device_end.h"
 #include "procedure/assembly_run.h"
@@ -46,19 +49,41 @@ std::string wordsOf(const StepResult& step) {
          (step.reason.empty() ? std::string() : ": " + step.reason);
 }
 
-void requirePossible(const Scene& scene, const RenderOptions& options) {
+void requirePossible(const Scene& scene, const RenderOptions& options, const std::string& file) {
   requireSteps(scene);
+  if (!options.network.empty() && !file.empty())
+    throw LoadError(file, "",
+                    "a run over a network cannot be replayed bit for bit; record it with the device on this "
+                    "machine, without --network");
   if (!options.has_local_contact) return;
   throw LoadError(scene.file, "",
                   "local contact needs the parts' models where the haptic loop runs; leave it out, or use "
                   "vps assemble --real-time");
 }
 
+/// From a state of the proxy to the answer to it. Gains follow from it, and it is said.
+double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
+  if (options.network.empty()) return 0;
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries; ++i) {
+    if (const std::optional<PeerTiming> timing = end.timing()) {
+      char words[160];
+      std::snprintf(words, sizeof words,
+                    "the device answers within %.2f ms; its clock is %.6f s ahead, within %.0f us",
+                    1e3 * timing->round_trip_s, timing->clock_offset_s, 1e6 * timing->clock_error_s);
+      end.say(words);
+      return timing->round_trip_s;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  throw LoadError("", "", "the device's answers do not come; check --network on both machines");
+}
+
 }  // namespace
 
 AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::string& file) {
-  requirePossible(scene, given);
-  const std::unique_ptr<Link> link = makeSession(given.session, sceneToBytes(scene));
+  requirePossible(scene, given, file);
+  const std::unique_ptr<Link> link = makeSession(given.session, sceneToBytes(scene), given.network);
   Broadcast* broadcast = nullptr;
   DeviceEnd end(*link, given.stop, [&](const std::string& words) {
     if (given.say) given.say(words);
@@ -85,7 +110,13 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   if (!end.waitForDevice()) return result;
 
   const std::unique_ptr<Hand> hand = remoteHand(end, scene);
-  device::LoopSettings settings = loopSettings(scene, hand->device());
+  device::LoopSettings settings = loopSettings(scene, hand->device(), networkDelay_s(end, given));
+  if (!given.network.empty()) {
+    char words[120];
+    std::snprintf(words, sizeof words, "so the coupling has %.0f N/m and %.1f N m/rad",
+                  settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
+    end.say(words);
+  }
   settings.physics_limit_s = peerPhysicsLimit_s(1 / scene.fidelity.physics_rate_hz);
   if (file.empty()) {
     result = runProcedure(scene, *hand, nullptr, settings, options);

@@ -26,8 +26,8 @@ struct SessionWatcher::Work {
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
 SessionWatcher::~SessionWatcher() = default;
 
-std::unique_ptr<SessionWatcher> SessionWatcher::join(const std::string& session) {
-  std::unique_ptr<Link> link = joinSession(session, NodeRole::Watch);
+std::unique_ptr<SessionWatcher> SessionWatcher::join(const std::string& session, const std::string& network) {
+  std::unique_ptr<Link> link = joinSession(session, NodeRole::Watch, network);
   if (link == nullptr) return nullptr;
   return std::unique_ptr<SessionWatcher>(
       new SessionWatcher(std::make_unique<Work>(std::move(link), session)));

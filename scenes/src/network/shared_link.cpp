@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstring>
 
-#include "network/broadcast_ring.h"
 #include "network/link.h"
 #include "network/messages.h"
 #include "vps/load_error.h"
@@ -12,16 +11,6 @@
 namespace vps::scenes::inline v0 {
 
 namespace {
-
-constexpr std::array<RingShape, kChannels> kShapes = {{
-    {16, 1024},            // Haptic
-    {16, 1024},            // Physics
-    {4, kLongestMessage},  // Snapshot
-    {64, 1024},            // Request
-    {64, 1024},            // Reply
-    {1U << 15U, 256},      // Log: 6 s of a loop at 1.6 kHz
-    {256, 1024},           // News
-}};
 
 constexpr std::uint64_t kMagic = 0x76707331'00000000;  // "vps1", and the version of the messages
 constexpr std::uint64_t kScheme = kMagic | kMessageVersion;
@@ -33,7 +22,7 @@ enum Head : std::size_t { kState, kSchemeWord, kIdentity, kSceneSize, kHeadWords
 
 constexpr std::size_t offsetOf(std::size_t channel) {
   std::size_t words = kHeadWords;
-  for (std::size_t i = 0; i < channel; ++i) words += kShapes[i].words();
+  for (std::size_t i = 0; i < channel; ++i) words += kChannelShapes[i].words();
   return words;
 }
 constexpr std::size_t kSceneOffset = 8 * offsetOf(kChannels);  // [bytes]
@@ -45,9 +34,9 @@ class SharedLink final : public Link {
     for (std::size_t i = 0; i < kChannels; ++i) {
       SharedWord* ring = words + offsetOf(i);
       if (writerOf(static_cast<Channel>(i)) == role)
-        writers_[i] = RingWriter(ring, kShapes[i]);
+        writers_[i] = RingWriter(ring, kChannelShapes[i]);
       else
-        readers_[i] = RingReader(ring, kShapes[i]);
+        readers_[i] = RingReader(ring, kChannelShapes[i]);
     }
     // Requests and logs of an earlier device are nobody's now; a watcher begins with what comes.
     if (role == NodeRole::Device) reader(Channel::Request).skip();
@@ -131,6 +120,16 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
   if (role == NodeRole::Device && !region.take(NodeRole::Device))
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
   return std::make_unique<SharedLink>(std::move(region), role);
+}
+
+std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
+                                  const std::string& interface) {
+  return interface.empty() ? makeSession(session, scene_bytes)
+                           : makeNetworkSession(session, scene_bytes, interface);
+}
+
+std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const std::string& interface) {
+  return interface.empty() ? joinSession(session, role) : joinNetworkSession(session, role, interface);
 }
 
 }  // namespace vps::scenes::inline v0

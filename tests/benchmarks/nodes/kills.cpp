@@ -30,10 +30,10 @@ std::string counts(const char* name, const Tally& tally) {
 
 }  // namespace
 
-bool killRows(int kills) {
+bool killRows(int kills, const std::string& network) {
   const test::TemporaryFolder folder;
   test::NodeProcesses nodes(VPS_PROGRAM, VPS_SCENE_FOLDER "/peg_in_hole/scene.toml",
-                            "bench-" + std::to_string(getpid()), folder.path());
+                            "bench-" + std::to_string(getpid()), folder.path(), network);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> wait_s(0.05, 0.5);
   std::array<Tally, 3> tallies;
@@ -46,7 +46,7 @@ bool killRows(int kills) {
   for (int i = 0; i < kills; ++i) {
     Tally& tally = tallies[static_cast<std::size_t>(i % 3)];
     // Every few kills a run may have come to its end: the next one is begun.
-    if (!nodes.join(1) || !nodes.waitForHold(5)) {
+    if (!nodes.join(network.empty() ? 1 : 4) || !nodes.waitForHold(5)) {
       nodes.render.wait();
       nodes.startRender();
       if (!nodes.join() || !nodes.waitForHold()) break;
@@ -90,11 +90,12 @@ bool killRows(int kills) {
       safe_s.empty() ? 0.0 : 1e3 * safe_s[safe_s.size() / 2], safe_s.empty() ? 0.0 : 1e3 * safe_s.back(),
       safe_s.size(), static_cast<long>(late), unsafe);
   const bool is_safe = !safe_s.empty() && late == 0 && unsafe == 0;
-  printRow("kill -9, device safe", "20 ms", words, is_safe);
+  const std::string how = network.empty() ? ", shared memory" : ", UDP on " + network;
+  printRow("kill -9, device safe" + how, "20 ms", words, is_safe);
   const bool has_resumed = std::all_of(tallies.begin(), tallies.end(),
                                        [](const Tally& t) { return t.resumed == t.kills && t.kills > 0; });
   printRow(
-      "kill -9 of each node in turn, " + std::to_string(kills) + " times", "the session resumes",
+      "kill -9 of each node in turn, " + std::to_string(kills) + " times" + how, "the session resumes",
       counts("render", tallies[0]) + ", " + counts("device", tallies[1]) + ", " + counts("watch", tallies[2]),
       has_resumed);
   printRow("shared segments during and after", "1 and 0",

@@ -13,7 +13,10 @@ void printRow(const std::string& what, const std::string& bar, const std::string
 bool latencyRows(double seconds);
 /// A scene in three processes and in one, by the clock.
 bool runRows(const std::string& scene);
+/// The same with device and render in two network namespaces, joined by a wire without and with faults.
+bool wireRows(const std::string& scene);
 /// kill -9 of each node in turn.
-bool killRows(int kills);
+/// @param network  interface; empty: shared memory
+bool killRows(int kills, const std::string& network);
 
 }  // namespace vps::bench

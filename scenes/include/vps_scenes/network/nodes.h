@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The three nodes of one system, each in a process of its own: the render node computes physics and contact,
-// the device's node drives the device and the haptic loop, and any number of watchers look on. Nodes of one
-// machine meet in shared memory, by the name of a session, and are readable by their user only.
+// the device's node drives the device and the haptic loop, and any number of watchers look on. Nodes meet
+// by the name of a session, in shared memory that their user alone can read, or over UDP.
 #pragma once
 
 #include <atomic>
@@ -24,6 +24,9 @@ using Say = std::function<void(const std::string&)>;
 
 struct RenderOptions : AssembleOptions {
   std::string session = "default";
+  /// The interface through which the nodes meet by UDP: "lo" for this machine only, or one to other machines,
+  /// which then can read and move everything in the session. Empty: shared memory. The same in all nodes.
+  std::string network;
   Say say;                      ///< may be empty
   double picture_rate_hz = 60;  ///< snapshots for the watchers, in simulated time
 };
@@ -37,6 +40,7 @@ VPS_SCENES_API AssembleResult renderNode(Scene& scene, const RenderOptions& opti
 
 struct DeviceNodeOptions {
   std::string session = "default";
+  std::string network;  ///< as in RenderOptions
   const std::atomic<bool>* stop = nullptr;
   Say say;  ///< may be empty
   /// After the render node was lost and is back, force returns by itself. Otherwise a device that a person
@@ -80,7 +84,7 @@ struct SessionForce {
 class VPS_SCENES_API SessionWatcher {
  public:
   /// Null: there is no such session now. Throws LoadError where it cannot be watched.
-  static std::unique_ptr<SessionWatcher> join(const std::string& session);
+  static std::unique_ptr<SessionWatcher> join(const std::string& session, const std::string& network = "");
   ~SessionWatcher();
 
   [[nodiscard]] const Scene& scene() const;
