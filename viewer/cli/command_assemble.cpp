@@ -10,11 +10,9 @@
 #include "progress_bar.h"
 #include "run_report.h"
 #include "scene_arguments.h"
-#include "table.h"
 #include "terminal.h"
 #include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
-#include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
 #include "vps_viewer/verdict_words.h"
@@ -35,30 +33,6 @@ struct AssembleArguments {
   bool has_local_contact = false;
   bool sheds_load = true;  ///< in real time
 };
-
-/// One line for each change of the load level.
-std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
-  std::string lines;
-  for (const scenes::LoadLevelChange& change : load_changes)
-    lines += "load shedding: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
-             change.is + ", since " + change.why + "; " + scenes::describeCost(change) + "\n";
-  return lines;
-}
-
-/// The periods and times of the haptic loop and of physics, one line each.
-std::string describe(const scenes::AssembleResult& result) {
-  const scenes::RealTimeResult& timing = *result.real_time;
-  const auto us = [](double value) { return fixed(value, 0) + " us"; };
-  return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
-         fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
-         us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
-         std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
-         us(timing.worst_us) + ", because of " + timing.worst_cause +
-         "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
-         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
-         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
-         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
-}
 
 int runAssemble(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
@@ -104,22 +78,11 @@ int runAssemble(const AssembleArguments& given) {
 
   printSteps(result);
   for (const std::string& note : notes) warn(note);
-  if (result.real_time) {
-    for (const std::string& words : result.real_time->warnings) warn(words);
-    std::fputs(describe(result).c_str(), stdout);
-  }
+  printTiming(result);
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   if (const std::string ease = easeWords(result); !ease.empty()) std::printf("%s\n", ease.c_str());
   std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
-  switch (result.verdict) {
-    case scenes::Verdict::Fits:
-      return kGood;
-    case scenes::Verdict::Blocked:
-      return kBad;
-    case scenes::Verdict::NotShown:
-      break;
-  }
-  return kNotShown;
+  return statusOf(result.verdict);
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "vps_device/loop.h"
@@ -14,12 +16,22 @@
 
 namespace vps::scenes::inline v0 {
 
+class HapticDriver;
+
+/// Receives each safety fault, in words.
+using ReportFault = std::function<void(const std::string&)>;
+
 /// Device and hand together.
 class Hand {
  public:
   virtual ~Hand() = default;
+  /// For a hand whose loop is in another process: the driver that reaches it. Null for all others. Arguments
+  /// as of makeRealTimeDriver().
+  virtual std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
+                                                   const ReportFault& report, device::RunLog* log);
   virtual device::Device& device() = 0;
-  /// Plans a step that starts at time now_s. May allocate; may run concurrently with step(), on another
+  /// Plans a step that starts at time now_s. The task's way points are those of the scene's step that are
+  /// still ahead of the part. May allocate; may run concurrently with step(), on another
   /// thread.
   virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   /// Starts what was prepared. As step(), never allocates.

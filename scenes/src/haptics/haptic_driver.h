@@ -71,9 +71,6 @@ class HapticDriver {
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };
 
-/// Receives each safety fault, in words.
-using ReportFault = std::function<void(const std::string&)>;
-
 /// @param device  the hand's own, or a tap on it; all arguments outlive the driver
 std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,
                                                  device::CouplingPort& port,

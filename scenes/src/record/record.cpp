@@ -15,7 +15,7 @@ AssembleResult assembleAndRecord(Scene& scene, const std::string& file, const As
                     "--local-contact");
   const std::unique_ptr<Hand> hand = makeHand(scene, options.is_real_time);
   const device::LoopSettings settings = loopSettings(scene, hand->device());
-  RunRecord record(file, scene, hand->device(), settings.gains, options);
+  RunRecord record(file, scene, hand->device(), settings, options);
   AssembleResult result = runProcedure(scene, *hand, &record, settings, options);
   if (options.stop == nullptr || !options.stop->load()) record.finish();
   return result;
