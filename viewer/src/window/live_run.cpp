@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "vps_device/device_kinds.h"
 #include "vps_scenes/record.h"
 
 namespace vps::viewer::inline v0 {
@@ -16,11 +17,22 @@ double wallSeconds() {
 
 }  // namespace
 
+bool isByPerson(const std::string& kind) {
+  const device::DeviceKind* found = device::findDeviceKind(kind);
+  return found != nullptr && !found->isSimulated();
+}
+
 LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::function<void()> on_news)
     : scene_(std::move(scene)),
       on_news_(std::move(on_news)),
       speed_(settings.speed),
       is_paused_(settings.is_paused) {
+  if (!settings.hand.empty()) scene_.device.kind = settings.hand;
+  is_by_clock_ = isByPerson(scene_.device.kind);
+  if (is_by_clock_) {
+    is_paused_ = false;
+    for (scenes::SceneStep& step : scene_.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
+  }
   tap_.give = [this](scenes::Snapshot&& snapshot) {
     {
       const std::lock_guard lock(mutex_);
@@ -42,6 +54,7 @@ LiveRun::~LiveRun() {
 }
 
 void LiveRun::pause(bool is_paused) {
+  if (is_by_clock_) return;
   {
     const std::lock_guard lock(mutex_);
     is_paused_ = is_paused;
@@ -57,6 +70,7 @@ bool LiveRun::isPaused() const {
 }
 
 void LiveRun::oneStep() {
+  if (is_by_clock_) return;
   {
     const std::lock_guard lock(mutex_);
     ++steps_allowed_;
@@ -83,6 +97,7 @@ void LiveRun::keepTime(double time_s) {
   std::unique_lock lock(mutex_);
   status_.time_s = time_s;
   ++status_.steps;
+  if (is_by_clock_) return;
   if (is_paused_ && steps_allowed_ == 0) {
     wake_.wait(lock, [this] { return stop_ || !is_paused_ || steps_allowed_ > 0; });
     is_clock_set_ = false;
@@ -116,6 +131,8 @@ void LiveRun::run(const LiveSettings& settings) {
   };
   options.stop = &stop_;
   options.tap = &tap_;
+  options.is_real_time = is_by_clock_;
+  options.wish = settings.wish;
   options.after_step = [this](double time_s) { keepTime(time_s); };
   options.on_step = [this](const scenes::AssembleResult& so_far) {
     const std::lock_guard lock(mutex_);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -21,7 +22,14 @@ struct LiveSettings {
   bool is_paused = false;       ///< begins paused
   double speed = 1;             ///< of simulated time by the clock; 0: as fast as it goes
   scenes::ModelOptions models;  ///< progress is replaced
+  std::string hand;             ///< kind of device that moves the part; empty: the scene's. See isByPerson()
+  std::shared_ptr<device::HandleWish> wish;  ///< of the mouse
 };
+
+/// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
+/// take kPersonTimeout_s at most.
+[[nodiscard]] VPS_VIEWER_API bool isByPerson(const std::string& kind);
+inline constexpr double kPersonTimeout_s = 600;  ///< assumed: longer than a person tries
 
 /// What is known of a run, for those who watch.
 struct LiveStatus {
@@ -35,7 +43,8 @@ struct LiveStatus {
   scenes::AssembleResult result;
 };
 
-/// Runs in simulated time, so that pausing, single steps, its speed, and being watched change no bit of it.
+/// With a virtual operator it runs in simulated time, so that pausing, single steps, its speed, and being
+/// watched change no bit of it. With a person it runs by the clock.
 class VPS_VIEWER_API LiveRun {
  public:
   /// @param scene    a copy of its own, whose models it builds
@@ -48,6 +57,7 @@ class VPS_VIEWER_API LiveRun {
 
   void pause(bool is_paused);
   [[nodiscard]] bool isPaused() const;
+  [[nodiscard]] bool isByClock() const { return is_by_clock_; }
   /// Of a paused run: one physics step.
   void oneStep();
   /// Asks for a snapshot at the end of the next physics step.
@@ -71,6 +81,7 @@ class VPS_VIEWER_API LiveRun {
   LiveStatus status_;
   double speed_;
   bool is_paused_;
+  bool is_by_clock_ = false;
   int steps_allowed_ = 0;                  ///< while paused
   double clock_s_ = 0, clock_time_s_ = 0;  ///< wall and simulated time when it went on last
   bool is_clock_set_ = false;
