@@ -93,6 +93,10 @@ class RealTimeDriver final : public ClockedDriver {
     return timesOf(all.tick, all.missed);
   }
   std::optional<RealTimeResult> realTime() override;
+  void passEvents(const std::function<void(const device::DeviceEvent&)>& to) override {
+    for (const device::DeviceEvent& event : reported_) to(event);
+    reported_.clear();
+  }
 
  protected:
   void command(device::SyncEventKind what) override {
@@ -147,13 +151,16 @@ class RealTimeDriver final : public ClockedDriver {
 
   // The physics thread.
   void countFaults() {
-    for (device::DeviceEvent event; events_.pop(event);)
+    for (device::DeviceEvent event; events_.pop(event);) {
       result_.faults += device::severityOf(event.kind) == device::Severity::Fault;
+      if (reported_.size() < device::DeviceEventQueue::kCapacity) reported_.push_back(event);
+    }
   }
 
   device::CouplingPort& port_;
   double physics_s_;
   device::DeviceEventQueue events_;
+  std::vector<device::DeviceEvent> reported_;  ///< popped, and not passed on yet
   HapticLog haptic_log_;
   device::TappedDevice tapped_;
   std::atomic<std::uint8_t> state_{device::toByte({})};  ///< of the hand, by its thread
