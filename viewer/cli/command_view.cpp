@@ -63,6 +63,7 @@ void addView(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::Range(64, 16384));
   command.add_flag("--dark", window.is_dark, "dark panels");
+  command.add_flag("!--silent", window.has_sound, "no sound");
   command.add_flag("--run", window.runs, "run the procedure at once");
   command
       .add_option(

@@ -33,7 +33,18 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
     is_paused_ = false;
     for (scenes::SceneStep& step : scene_.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
   }
+  if (settings.has_sound) {
+    std::string why;
+    if (std::unique_ptr<SoundOutput> output = openSoundOutput(SoundSettings{}.rate_hz, why))
+      sound_ = std::make_unique<LiveSound>(scene_, std::move(output));
+    if (!why.empty()) messages_.push_back(why);
+  }
   tap_.give = [this](scenes::Snapshot&& snapshot) {
+    if (sound_) {
+      sound_->hear(snapshot);
+      tap_.is_wanted = true;
+      if (!is_asked_.exchange(false)) return;
+    }
     {
       const std::lock_guard lock(mutex_);
       newest_ = std::move(snapshot);
@@ -75,11 +86,13 @@ void LiveRun::oneStep() {
     const std::lock_guard lock(mutex_);
     ++steps_allowed_;
   }
+  is_asked_ = true;
   tap_.is_wanted = true;
   wake_.notify_one();
 }
 
 void LiveRun::ask() {
+  is_asked_ = true;
   tap_.is_wanted = true;
 }
 
@@ -91,6 +104,24 @@ std::optional<scenes::Snapshot> LiveRun::take() {
 LiveStatus LiveRun::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
+}
+
+void LiveRun::report(const device::DeviceEvent& event) {
+  if (sound_) sound_->beep(device::beepOf(event.kind));
+  std::string words = toText(event.kind);
+  if (const std::string remedy = remedyOf(event.kind); !remedy.empty()) words.append("; ").append(remedy);
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kMost = 50;
+  if (messages_.size() < kMost && (messages_.empty() || messages_.back() != words))
+    messages_.push_back(words);
+}
+
+std::vector<std::string> LiveRun::takeMessages() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> taken = std::exchange(messages_, {});
+  if (sound_)
+    if (std::string news = sound_->takeNews(); !news.empty()) taken.push_back(std::move(news));
+  return taken;
 }
 
 void LiveRun::keepTime(double time_s) {
@@ -131,6 +162,7 @@ void LiveRun::run(const LiveSettings& settings) {
   };
   options.stop = &stop_;
   options.tap = &tap_;
+  options.on_device_event = [this](const device::DeviceEvent& event) { report(event); };
   options.is_real_time = is_by_clock_;
   options.wish = settings.wish;
   options.after_step = [this](double time_s) { keepTime(time_s); };

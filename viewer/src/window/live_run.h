@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "sound/live_sound.h"
 #include "vps_scenes/assemble.h"
 #include "vps_viewer/export.h"
 
@@ -24,6 +25,7 @@ struct LiveSettings {
   scenes::ModelOptions models;  ///< progress is replaced
   std::string hand;             ///< kind of device that moves the part; empty: the scene's. See isByPerson()
   std::shared_ptr<device::HandleWish> wish;  ///< of the mouse
+  bool has_sound = true;                     ///< where there is a sound card
 };
 
 /// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
@@ -62,12 +64,15 @@ class VPS_VIEWER_API LiveRun {
   void oneStep();
   /// Asks for a snapshot at the end of the next physics step.
   void ask();
+  /// What the device and the sound card reported since the last call, in words.
+  [[nodiscard]] std::vector<std::string> takeMessages();
   /// The newest snapshot, once.
   [[nodiscard]] std::optional<scenes::Snapshot> take();
   [[nodiscard]] LiveStatus status() const;
 
  private:
   void run(const LiveSettings& settings);
+  void report(const device::DeviceEvent& event);
   /// On the run's thread, after each physics step: waits while paused, or ahead of the clock.
   void keepTime(double time_s);
 
@@ -78,6 +83,9 @@ class VPS_VIEWER_API LiveRun {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<scenes::Snapshot> newest_;
+  std::vector<std::string> messages_;
+  std::unique_ptr<LiveSound> sound_;   ///< null: silent
+  std::atomic<bool> is_asked_{false};  ///< a snapshot, by the window; with sound the run gives one each step
   LiveStatus status_;
   double speed_;
   bool is_paused_;

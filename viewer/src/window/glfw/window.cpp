@@ -49,6 +49,7 @@ void startOrStopRun(Session& session, GlfwWindow& window) {
   settings.models = session.options.models;
   settings.hand = session.run_hand = session.hand;
   settings.wish = session.drag.wish();
+  settings.has_sound = session.options.has_sound;
   session.view.is_playing = false;
   session.run_line = {};
   session.run_line.chapters = {{"before the first step", 0, ""}};
@@ -79,6 +80,7 @@ void addToCurves(Session& session, const scenes::Snapshot& shot) {
 
 void followRun(Session& session) {
   session.status = session.run->status();
+  for (const std::string& words : session.run->takeMessages()) session.say(words);
   for (std::size_t i = 0; i < session.status.result.steps.size(); ++i)
     if (i + 1 < session.run_line.chapters.size())
       session.run_line.chapters[i + 1].verdict = words(session.status.result.steps[i].verdict);
