@@ -17,6 +17,7 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 constexpr int kBuffers = 8;
+constexpr std::size_t kAtStart = 3;  // buffers. assumed: 15 ms bridge what a desktop's threads are late
 constexpr double kBuffer_s = 5e-3;  // so that at most 40 ms wait, and usually one or two buffers do
 
 /// A queue of short buffers on one source.
@@ -43,8 +44,13 @@ class OpenAlOutput final : public SoundOutput {
   void write(std::span<const float> samples) override {
     alcMakeContextCurrent(context_);  // of the process: this program has one
     for (const float x : samples) pending_.push_back(static_cast<std::int16_t>(std::lround(32767 * x)));
-    reclaim();
     const auto size = static_cast<std::size_t>(kBuffer_s * rate_hz_);
+    ALint state = 0;
+    alGetSourcei(source_, AL_SOURCE_STATE, &state);
+    reclaim();
+    // A source that stopped, since nothing came in time, begins again with a few buffers, or it would stop at
+    // once; and what is queued on it before counts as played.
+    if (state != AL_PLAYING && pending_.size() < kAtStart * size) return;
     std::size_t at = 0;
     for (; at + size <= pending_.size() && !free_.empty(); at += size) {
       const ALuint buffer = free_.back();
@@ -54,11 +60,10 @@ class OpenAlOutput final : public SoundOutput {
       alSourceQueueBuffers(source_, 1, &buffer);
     }
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
+    // What is late is dropped, so that sound does not lag behind the picture.
     if (pending_.size() > size)
       pending_.erase(pending_.begin(), pending_.end() - static_cast<std::ptrdiff_t>(size));
-    ALint state = 0;
-    alGetSourcei(source_, AL_SOURCE_STATE, &state);
-    if (state != AL_PLAYING && free_.size() <= kBuffers - 2) alSourcePlay(source_);
+    if (state != AL_PLAYING) alSourcePlay(source_);
   }
   [[nodiscard]] bool isThere() const override {
     if (alcIsExtensionPresent(device_, "ALC_EXT_disconnect") == ALC_FALSE) return true;
