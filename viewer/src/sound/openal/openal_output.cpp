@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kBuffers = 8;
 constexpr std::size_t kAtStart = 3;  // buffers. assumed: 15 ms bridge what a desktop's threads are late
-constexpr double kBuffer_s = 5e-3;  // so that at most 40 ms wait, and usually one or two buffers do
+constexpr double kBuffer_s = 5e-3;   // so that at most 40 ms wait, and usually one or two buffers do
 
 /// A queue of short buffers on one source.
 class OpenAlOutput final : public SoundOutput {
