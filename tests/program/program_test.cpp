@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"check",  "assemble", "replay",   "simulate", "query",
-                                         "import", "export",   "snapshot", "view",     "explain",
-                                         "trade",  "render",   "device",   "watch"};
+const std::vector<std::string> kReady = {"check",  "assemble", "replay", "simulate", "query",   "import",
+                                         "export", "snapshot", "video",  "view",     "explain", "trade",
+                                         "render", "device",   "watch",  "calibrate"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   const std::string overview = run("--help").out;

@@ -276,13 +276,14 @@ device::DeviceOptions personOptions(const Scene& scene) {
   return options;
 }
 
-std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKind& kind) {
+std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKind& kind,
+                                      const device::DeviceOptions& options) {
   const auto refuse = [&](const std::string& why) {
     throw LoadError(scene.file, "",
                     "device '" + std::string(kind.name) + "': " + why + "; " + std::string(kind.remedy));
   };
   if (const std::string missing = kind.missing(); !missing.empty()) refuse(missing);
-  std::unique_ptr<device::Device> device = kind.open(personOptions(scene));
+  std::unique_ptr<device::Device> device = kind.open(options);
   const auto end = std::chrono::steady_clock::now() + kConnect;
   while (device->read().status != Status::Ok) {
     if (std::chrono::steady_clock::now() > end) refuse("does not answer");
@@ -329,14 +330,17 @@ std::unique_ptr<HapticDriver> Hand::makeDriver(const device::LoopSettings&, doub
   return nullptr;
 }
 
-std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time) {
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
+                               std::shared_ptr<device::HandleWish> wish) {
   const device::DeviceKind& kind = kindOf(scene);
   if (kind.isSimulated()) return simulatedHand(scene);
   if (!is_real_time)
     throw LoadError(scene.file, "",
                     "device '" + scene.device.kind +
                         "' is moved by a person, which simulated time cannot wait for; add --real-time");
-  return connectedPerson(scene, kind);
+  device::DeviceOptions options = personOptions(scene);
+  options.wish = std::move(wish);
+  return connectedPerson(scene, kind, options);
 }
 
 std::unique_ptr<Hand> simulatedHand(const Scene& scene) {

@@ -11,6 +11,7 @@
 
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
+#include "vps_device/pulled_handle.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/scene.h"
 
@@ -61,7 +62,9 @@ inline constexpr double kHandReturn_s = 1.5;  ///< duration of the hand's way ba
 /// The hand for the scene's [device] kind. Throws LoadError for an unknown kind, a path that a simulated
 /// device cannot reach, and a device that a person moves where the run is not in real time or the device does
 /// not answer within 3 s.
-std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time);
+/// @param wish  of the mouse; null: there is none
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
+                               std::shared_ptr<device::HandleWish> wish = nullptr);
 
 /// A simulated device and the virtual operator. Throws LoadError as makeHand().
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);

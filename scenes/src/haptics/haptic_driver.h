@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptics/hand.h"
+#include "vps_device/device_events.h"
 #include "vps_device/loop.h"
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
@@ -67,6 +68,8 @@ class HapticDriver {
   [[nodiscard]] virtual bool isByClock() const = 0;
   [[nodiscard]] virtual device::PassivityObserver passivity() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
+  /// Passes on, by the physics thread, what the loop reported since the last call.
+  virtual void passEvents(const std::function<void(const device::DeviceEvent&)>& /*to*/) {}
   /// Figures that exist only in real time.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };

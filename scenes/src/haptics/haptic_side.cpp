@@ -105,8 +105,15 @@ void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
 }
 
 void HapticSide::countFaults() {
-  for (device::DeviceEvent event; events_.pop(event);)
+  for (device::DeviceEvent event; events_.pop(event);) {
     result_.faults += device::severityOf(event.kind) == device::Severity::Fault;
+    if (reported_.size() < device::DeviceEventQueue::kCapacity) reported_.push_back(event);
+  }
+}
+
+void HapticSide::passEvents(const std::function<void(const device::DeviceEvent&)>& to) {
+  for (const device::DeviceEvent& event : reported_) to(event);
+  reported_.clear();
 }
 
 TickTimes HapticSide::times() const {

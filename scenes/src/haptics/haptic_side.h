@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <vector>
 
 #include "haptics/hand_command.h"
@@ -43,8 +44,10 @@ class HapticSide {
   /// The loop's state while it does not run.
   [[nodiscard]] device::HapticState loopState() { return loop_.loop().state(); }
 
-  /// Takes the loop's events out of their queue.
+  /// Takes the loop's events out of their queue; they wait for passEvents(), as many as the queue holds.
   void countFaults();
+  /// Passes on what was taken since the last call.
+  void passEvents(const std::function<void(const device::DeviceEvent&)>& to);
   [[nodiscard]] std::uint64_t missed() const { return loop_.statistics().summary().missed; }
   [[nodiscard]] TickTimes times() const;
   /// What the haptic side knows of it.
@@ -60,6 +63,7 @@ class HapticSide {
   Hand& hand_;
   device::RunLog& log_;
   device::DeviceEventQueue events_;
+  std::vector<device::DeviceEvent> reported_;  ///< taken, and not passed on yet
   device::TappedDevice tapped_;
   std::atomic<std::uint8_t> state_{device::toByte({})};  ///< of the hand, by its thread
   static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "the haptic thread must not wait for a lock");

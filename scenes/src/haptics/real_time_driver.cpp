@@ -65,6 +65,9 @@ class RealTimeDriver final : public ClockedDriver {
     result.behind_s = clock_.behind_s();
     return result;
   }
+  void passEvents(const std::function<void(const device::DeviceEvent&)>& to) override {
+    side_.passEvents(to);
+  }
 
  protected:
   void command(const HandCommand& command) override {

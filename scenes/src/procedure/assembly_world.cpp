@@ -175,9 +175,17 @@ bool AssemblyWorld::advance(bool is_settling) {
     shedLoad();
   }
   step();
+  passEvents();
   if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false))
     options_.tap->give(snapshotOf(*this));
   return true;
+}
+
+void AssemblyWorld::passEvents() {
+  if (!options_.on_device_event) return;
+  driver_->passEvents(options_.on_device_event);
+  if (device::DeviceEventQueue* own = tapped_.ownEvents())
+    for (device::DeviceEvent event; own->pop(event);) options_.on_device_event(event);
 }
 
 void AssemblyWorld::step() {
