@@ -11,9 +11,9 @@ programs=("${@:2}")
 .ci/install
 if [[ $preset == fuzz ]]; then
   cmake --preset core -B build/fuzz -DVPS_COMPONENTS="plugin;vdb;device;bullet" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DVPS_SANITIZE=address,undefined -DVPS_TESTS=ON >/dev/null
-  cmake --build build/fuzz --target fuzz_ply fuzz_vdb fuzz_mesh fuzz_mcap fuzz_recording fuzz_scene fuzz_device fuzz_bullet
+  cmake --build build/fuzz --target fuzz_ply fuzz_vdb fuzz_mesh fuzz_mcap fuzz_recording fuzz_scene fuzz_device fuzz_messages fuzz_bullet
   export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
-  for reader in ply vdb mesh mcap recording scene device bullet; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
+  for reader in ply vdb mesh mcap recording scene device messages bullet; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
   exit
 fi
 # The same settings as those of scenes/demo.sh, so that both share one build; CI adds VPS_WERROR=ON.

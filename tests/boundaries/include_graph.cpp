@@ -54,6 +54,7 @@ std::vector<Rule> rules() {
        {"viewer/src/window/glfw/"}},
       {"OpenVDB is used in the .vdb reader and writer only", {"openvdb/", "nanovdb/"}, {"plugin/src/vdb/"}},
       {"libspnav and SDL are used in their drivers only", {"spnav", "SDL"}, {"device/src/drivers/"}},
+      {"Cyclone DDS is used in the link over UDP only", {"dds/"}, {"scenes/src/network/dds/"}},
       {"CAD libraries are used in the importers only",
        {"assimp/", "Inventor/", "TopoDS", "STEPCAF", "IGESCAF", "XCAFDoc"},
        {"scenes/src/import/", "scenes/bearing_block/generate.cpp"}},

@@ -82,7 +82,7 @@ HeapResult dropHeap(const SceneSettings& settings) {
     if (shape) result.points += static_cast<double>(shape->models().shell->size()) / result.bodies;
   }
   result.asleep_s = -1;
-  const int steps = settings.is_short ? 4000 : 20'000;
+  const int steps = settings.is_short ? 8000 : 20'000;
   const auto asleep = [&] {
     return static_cast<int>(
         std::count_if(parts.begin(), parts.end(), [](const Placed& p) { return !p.body->isActive(); }));

@@ -17,7 +17,7 @@ struct HeapResult {
   double our_share = 0;           ///< share of all time in the narrow phase and the solver
 };
 
-/// Twenty seconds (short: ten bodies, four seconds). Sleeping is enabled, below 5 mm/s and 0.2 rad/s.
+/// Twenty seconds (short: ten bodies, eight seconds). Sleeping is enabled, below 5 mm/s and 0.2 rad/s.
 HeapResult dropHeap(const SceneSettings& settings);
 
 /// The engine for this scene: shells of about 5,000 points.

@@ -16,7 +16,7 @@ TEST(TurnSearch, FindsAHoleThatIsTurnedFartherThanSightSays) {
                                    [](const PegScene& s) { return std::string_view(s.name) == "turned"; });
   ASSERT_NE(turned, all.end());
   int searched = 0;
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (std::uint64_t seed = 5; seed <= 7; ++seed) {  // those before find it by tilt or spiral
     scenes::Scene scene = turned->make(seed);
     scenes::AssembleOptions options;
     options.judge_stride = 1000;

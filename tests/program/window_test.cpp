@@ -170,6 +170,50 @@ TEST_F(Window, ARunThatIsWatchedIsRecordedWithTheSameBits) {
   EXPECT_EQ(close(), 0);
 }
 
+TEST_F(Window, APegThatIsDraggedIntoItsHoleByTheMouseIsMountedRecordedAndReplayed) {
+  const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
+  open(scene + " --hand mouse --record dragged.mcap");
+  xdotool("key 2");  // from the front, where down on the screen is down in the scene
+  // Where the peg's middle is, and where it is once mounted: the camera is that of the tour's first picture.
+  const scenes::Scene loaded = scenes::loadScene(scene);
+  const viewer::RenderScene drawn = viewer::drawnMeshes(loaded);
+  const scenes::SceneStep& step = loaded.steps[0];
+  ASSERT_TRUE(soon([&] { return !outputOf("ls '" + folder_.string() + "' | grep unfinished").empty(); }));
+  scenes::Snapshot taken;
+  taken.step = 0;
+  taken.has_target = true;
+  taken.target_part = step.part;
+  taken.X_WP_target = step.X_WP_target;
+  taken.bodies = {{step.part, step.X_WP_start, scenes::BodyRole::InHand}};
+  std::this_thread::sleep_for(2s);  // the first snapshot of the run is shown
+  xdotool("key f");
+  const viewer::Camera camera =
+      viewer::cameraFor(viewer::standardViews()[1], viewer::snapshotBounds(drawn, taken), kPicture);
+  const Vec3 middle_P = bounds(loaded.parts[step.part].part.mesh).center();
+  const auto from = camera.project(step.X_WP_start * middle_P, kPicture.width, kPicture.height);
+  const auto to = camera.project(step.X_WP_target * middle_P, kPicture.width, kPicture.height);
+  // Once the peg is in the mouth it is pushed aside too, by half a millimetre, so that the wall guides it.
+  const auto at = [&](double share) {
+    constexpr int kAside_px = 4;
+    return std::to_string(std::lround(from[0]) + (share > 0.7 ? kAside_px : 0)) + " " +
+           std::to_string(std::lround(from[1] + share * (to[1] - from[1])));
+  };
+  xdotool("mousemove " + at(0) + " mousedown 1");
+  std::this_thread::sleep_for(500ms);
+  for (int i = 1; i <= 50; ++i) {
+    xdotool("mousemove " + at(1.04 * i / 50));  // a millimetre into the bottom, which stops the peg
+    std::this_thread::sleep_for(30ms);
+  }
+  EXPECT_TRUE(soon([&] { return fs::exists(folder_ / "dragged.mcap"); })) << "the step is not done";
+  xdotool("mouseup 1");
+  EXPECT_EQ(close(), 0);
+  const Ran replayed = run("replay dragged.mcap --json replayed.json --out replayed");
+  EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
+  EXPECT_NE(replayed.out.find("fits"), std::string::npos) << replayed.out;
+  EXPECT_EQ(replayed.out.find("by contact: no"), std::string::npos) << replayed.out;
+  EXPECT_NE(replayed.out.find("the same bits"), std::string::npos) << replayed.out;
+}
+
 TEST_F(Window, ClosingAWindowWithARunStopsTheRun) {
   open(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml --run");
   std::this_thread::sleep_for(2s);
@@ -183,6 +227,7 @@ TEST_F(Program, AWindowWithoutADisplayIsRefusedInWords) {
   expectRefused("view scene.toml", "no window can be opened");
   expectRefused("view missing.toml", "missing.toml");
   expectRefused("view scene.toml --width 0", "--width");
+  expectRefused("view scene.toml --hand spoon", "known are dual_arm");
 }
 
 TEST_F(Window, ADisplayWithAnOldOpenGlIsRefusedInWords) {

@@ -94,7 +94,7 @@ std::string refusal(const std::string& kind, bool is_real_time) {
 }
 
 TEST(PersonHand, ADeviceThatAPersonMovesIsRefusedInSimulatedTime) {
-  for (const char* kind : {"space_mouse", "game_controller"})
+  for (const char* kind : {"space_mouse", "game_controller", "mouse"})
     EXPECT_NE(refusal(kind, false).find("add --real-time"), std::string::npos) << refusal(kind, false);
 }
 
@@ -107,8 +107,32 @@ TEST(PersonHand, ASpaceMouseWithoutADaemonIsRefusedWithTheRemedy) {
   EXPECT_TRUE(!has_library || words.find("start spacenavd") != std::string::npos) << words;
 }
 
+TEST(PersonHand, TheMouseWithoutAWindowIsRefusedWithTheRemedy) {
+  EXPECT_NE(refusal("mouse", true).find("vps view SCENE --hand mouse"), std::string::npos)
+      << refusal("mouse", true);
+}
+
+TEST(PersonHand, AMouseThatIsDraggedPutsThePartDownByContact) {
+  Scene scene = setDown();
+  scene.device.kind = "mouse";
+  AssembleOptions options;
+  options.is_real_time = true;
+  options.wish = std::make_shared<device::HandleWish>();
+  // Once the clutch has closed, dragged to 1 mm below its start: 0.8 mm into the plate.
+  options.after_step = [&](double time_s) {
+    if (time_s > 0.6) options.wish->write(Pose::translation({0, 0, -1e-3}));
+  };
+  const AssembleResult result = assemble(scene, options);
+  ASSERT_EQ(result.steps.size(), 1u);
+  EXPECT_TRUE(result.completed) << result.steps[0].failure_reason;
+  EXPECT_GE(result.steps[0].impacts + result.steps[0].slides, 1) << "the plate stopped it";
+  // Spring of the cursor (3 kN/m) and coupling in series over at most 0.8 mm, and the box's weight.
+  EXPECT_LT(result.steps[0].peak_force_N, 3000 * 0.8e-3 + 0.1);
+  EXPECT_GT(result.steps[0].peak_force_N, 0.5);
+}
+
 TEST(PersonHand, AnUnknownKindIsRefusedWithTheKnownOnes) {
-  EXPECT_NE(refusal("spoon", false).find("dual_arm, ideal_dual_arm, space_mouse, game_controller"),
+  EXPECT_NE(refusal("spoon", false).find("dual_arm, ideal_dual_arm, space_mouse, game_controller, mouse"),
             std::string::npos)
       << refusal("spoon", false);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "haptics/haptic_log.h"
+#include "scenes/two_pins.h"
 #include "support/kept_log.h"
 #include "support/no_alloc.h"
 #include "support/recorded.h"
@@ -13,30 +14,6 @@
 
 namespace vps::scenes {
 namespace {
-
-/// Two pins that are set down next to each other on a plate: a change of parts, and a fixed field that is
-/// built while the loop runs.
-Scene twoPins() {
-  Scene scene;
-  scene.file = "scene.toml";
-  scene.parts.resize(3);
-  scene.parts[0].part = {"plate", makeBox({20e-3, 10e-3, 2e-3}), {}, {}};
-  scene.parts[0].is_fixed = true;
-  scene.steps.resize(2);
-  for (std::size_t i = 0; i < 2; ++i) {
-    scene.parts[i + 1].part = {i == 0 ? "left" : "right", makeBox({2e-3, 2e-3, 2e-3}), {}, {}};
-    const double x_m = i == 0 ? -5e-3 : 5e-3;
-    scene.steps[i].part = i + 1;
-    scene.steps[i].X_WP_target = Pose::translation({x_m, 0, 2e-3});
-    scene.steps[i].tolerance_m = 0.5e-3;  // nothing guides the pin across: five deviations of sight
-    scene.steps[i].X_WP_start = Pose::translation({x_m, 0, 2.2e-3});
-  }
-  scene.fidelity.haptic_rate_hz = 500;
-  scene.fidelity.physics_rate_hz = 200;  // no multiple: the threads exchange state at irregular phases
-  scene.release_s = 0.1;
-  scene.hand.aim_error_m = 0.05e-3;
-  return scene;
-}
 
 /// Recorded once for all tests: it runs in real time.
 const test::Recorded& realTimeRecording() {

@@ -85,6 +85,19 @@ TEST(Verdict, TheToleranceIsStatedOrTheClearancePlusTwentyMicrometres) {
   EXPECT_DOUBLE_EQ(assemble(scene).steps[0].tolerance_m, 33e-6);
 }
 
+// Let go beside the cup it falls 20 m in two seconds, which is not how far the hand was from its target.
+TEST(Verdict, AStepThatTheHandGaveUpHasTheErrorOfThatMoment) {
+  Scene scene = pegInCup();
+  scene.steps[0].X_WP_start.p.x() += 30 * kMm;
+  scene.steps[0].timeout_s = 0.3;
+  scene.release_s = 2;
+  const StepResult step = assemble(scene).steps[0];
+  EXPECT_EQ(step.verdict, Verdict::NotShown);
+  EXPECT_NE(step.reason.find("gave up"), std::string::npos) << step.reason;
+  EXPECT_LT(step.final_error_m, 50 * kMm);
+  EXPECT_GT(step.final_error_m, 1 * kMm);
+}
+
 TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
   Scene scene = pegInCup(80e-6);
   const AssembleResult result = assemble(scene);

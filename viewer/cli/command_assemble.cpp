@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps assemble: brings the parts together by contact, and writes report, pictures and data.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "command.h"
 #include "json_out.h"
@@ -10,13 +12,12 @@
 #include "progress_bar.h"
 #include "run_report.h"
 #include "scene_arguments.h"
-#include "table.h"
 #include "terminal.h"
 #include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
-#include "vps_scenes/load_level.h"
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
+#include "vps_viewer/sound.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
@@ -28,6 +29,7 @@ struct AssembleArguments {
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
+  std::string sound;   ///< WAV file of what it sounds like; empty: none
   int tries = 1;
   bool has_pictures = true;
   bool stops_at_failure = false;
@@ -36,34 +38,41 @@ struct AssembleArguments {
   bool sheds_load = true;  ///< in real time
 };
 
-/// One line for each change of the load level.
-std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
-  std::string lines;
-  for (const scenes::LoadLevelChange& change : load_changes)
-    lines += "load shedding: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
-             change.is + ", since " + change.why + "; " + scenes::describeCost(change) + "\n";
-  return lines;
-}
+/// Hears every physics step of a run.
+class HeardRun {
+ public:
+  HeardRun(const scenes::Scene& scene, scenes::AssembleOptions& options) : sound_(scene) {
+    tap_.is_wanted = true;
+    tap_.give = [this](scenes::Snapshot&& shot) {
+      sound_.hear(shot);
+      tap_.is_wanted = true;
+    };
+    options.tap = &tap_;
+    options.on_device_event = [this](const device::DeviceEvent& event) {
+      sound_.beep(device::beepOf(event.kind));
+    };
+  }
+  void write(OutputFile& file) {
+    double full_scale_Pa = 0;
+    file.write(wavBytes(sound_.take(), sound_.rate_hz(), &full_scale_Pa));
+    // Sound pressure level: in decibels above 20 uPa.
+    if (full_scale_Pa > 0)
+      std::printf("sound: at most %s dB at half a metre\n",
+                  fixed(20 * std::log10(0.708 * full_scale_Pa / 20e-6), 0).c_str());
+    else
+      std::printf("sound: none, since nothing touched\n");
+  }
 
-/// The periods and times of the haptic loop and of physics, one line each.
-std::string describe(const scenes::AssembleResult& result) {
-  const scenes::RealTimeResult& timing = *result.real_time;
-  const auto us = [](double value) { return fixed(value, 0) + " us"; };
-  return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
-         fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
-         us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
-         std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
-         us(timing.worst_us) + ", because of " + timing.worst_cause +
-         "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
-         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
-         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
-         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
-}
+ private:
+  RunSound sound_;
+  scenes::SnapshotTap tap_;
+};
 
 int runAssemble(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
   OutputFolder out(given.out);
   OutputFile json(given.json, {file});
+  OutputFile wav(given.sound, {file});
   ProgressBar bar;
   requireNotRead(given.record, {file});
   scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record});
@@ -76,6 +85,8 @@ int runAssemble(const AssembleArguments& given) {
   options.is_real_time = given.is_real_time;
   options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
+  std::optional<HeardRun> heard;
+  if (!given.sound.empty()) heard.emplace(scene, options);
   const std::string unfinished = given.out + "/unfinished.json";
   options.on_step = [&](const scenes::AssembleResult& so_far) { writeWholeFile(unfinished, toJson(so_far)); };
   const auto run = [&] {
@@ -101,25 +112,15 @@ int runAssemble(const AssembleArguments& given) {
   std::filesystem::remove(unfinished);
   json.write(toJson(result));
   bar.clear();
+  if (heard) heard->write(wav);
 
   printSteps(result);
   for (const std::string& note : notes) warn(note);
-  if (result.real_time) {
-    for (const std::string& words : result.real_time->warnings) warn(words);
-    std::fputs(describe(result).c_str(), stdout);
-  }
+  printTiming(result);
   if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
   if (const std::string ease = easeWords(result); !ease.empty()) std::printf("%s\n", ease.c_str());
   std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
-  switch (result.verdict) {
-    case scenes::Verdict::Fits:
-      return kGood;
-    case scenes::Verdict::Blocked:
-      return kBad;
-    case scenes::Verdict::NotShown:
-      break;
-  }
-  return kNotShown;
+  return statusOf(result.verdict);
 }
 
 }  // namespace
@@ -145,6 +146,12 @@ void addAssemble(CommandLine& line) {
                   "record the run with its scene and meshes (MCAP), for vps replay")
       ->type_name("FILE");
   command
+      .add_option(
+          "--sound", given->sound,
+          "write what the run sounds like (WAV): strikes and rubbing of the parts, beeps of the device")
+      ->type_name("FILE")
+      ->excludes("--real-time");
+  command
       .add_option("--tries", given->tries,
                   "run with this many seeds of the virtual operator, in parallel; one success is enough, and "
                   "the share that succeeds is the ease of assembly")
@@ -152,7 +159,8 @@ void addAssemble(CommandLine& line) {
       ->capture_default_str()
       ->excludes("--real-time")
       ->excludes("--local-contact")
-      ->excludes("--record");
+      ->excludes("--record")
+      ->excludes("--sound");
   addJsonOption(command, given->json);
 }
 

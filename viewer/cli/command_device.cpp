@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps device --characterise: Table 1 and figure 5 of the paper for the simulated dual arm.
 // vps device --list: the kinds of device.
+// vps device --session NAME: the device's node of a run that vps render computes.
 #include <cstdio>
 #include <memory>
 
@@ -8,11 +9,13 @@
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "session_option.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/character.h"
+#include "vps_scenes/network/nodes.h"
 #include "vps_viewer/device_plot.h"
 
 namespace vps::viewer::inline v0 {
@@ -25,6 +28,9 @@ struct DeviceArguments {
   std::string parameters;        ///< parameter file over the built-in device; empty: none
   std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
   std::string json;
+  std::string session;  ///< empty: none
+  std::string network;
+  bool rearms = false, stays = false;
 };
 
 constexpr const char* kNone = "";
@@ -172,12 +178,29 @@ int listKinds() {
   return kGood;
 }
 
+int runNode(const DeviceArguments& given) {
+  scenes::DeviceNodeOptions options;
+  options.session = given.session;
+  options.network = given.network;
+  options.stop = &stopRequested();
+  options.say = [](const std::string& words) { say(words); };
+  options.rearms = given.rearms;
+  options.stays = given.stays;
+  const scenes::DeviceNodeResult result = scenes::deviceNode(options);
+  std::printf("%llu ticks, %llu periods missed, %llu safety faults, %llu messages refused\n",
+              static_cast<unsigned long long>(result.ticks), static_cast<unsigned long long>(result.missed),
+              static_cast<unsigned long long>(result.faults),
+              static_cast<unsigned long long>(result.refused));
+  return kGood;
+}
+
 int runDevice(const DeviceArguments& given) {
   if (given.is_list) return listKinds();
+  if (!given.session.empty()) return runNode(given);
   if (!given.is_characterise)
-    throw LoadError(
-        "", "",
-        "the device node is not implemented yet; use vps device --characterise for the dual arm's figures");
+    throw LoadError("", "",
+                    "say what to do: --session NAME joins a run of vps render, --list names the kinds of "
+                    "device, --characterise prints the dual arm's figures");
   const std::vector<std::string> inputs = {given.parameters};
   OutputFile json(given.json, inputs);
   const device::DualArmFile file =
@@ -202,7 +225,7 @@ void addDevice(CommandLine& line) {
   const auto given = std::make_shared<DeviceArguments>();
   CLI::App& command = addCommand(
       line, "device",
-      "lists device kinds, or prints the dual arm's figures and the paper's; the device node is planned",
+      "drives the device of a run of vps render; lists device kinds; prints the dual arm's figures",
       "vps device --characterise --json dual_arm.json --plot figure5", [given] { return runDevice(*given); });
   CLI::Option* characterise = command.add_flag("--characterise", given->is_characterise,
                                                "compute Table 1 and figure 5 of the paper for the dual arm");
@@ -215,6 +238,15 @@ void addDevice(CommandLine& line) {
       ->capture_default_str()
       ->type_name("NAME")
       ->needs(characterise);
+  CLI::Option* session =
+      addSessionOption(command, given->session)->excludes(characterise)->excludes("--list");
+  addNetworkOption(command, given->network)->needs(session);
+  command
+      .add_flag("--auto-rearm", given->rearms,
+                "when the render node was lost and is back, let force return by itself; simulated devices "
+                "always do")
+      ->needs(session);
+  command.add_flag("--stay", given->stays, "wait for the next session when one has ended")->needs(session);
   addJsonOption(command, given->json);
   command.get_option("--json")->needs(characterise);
 }

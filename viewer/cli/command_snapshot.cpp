@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps snapshot: a picture of the finished assembly without a display, and its difference from an earlier one.
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -10,9 +12,13 @@
 #include "output.h"
 #include "scene_arguments.h"
 #include "vps/load_error.h"
+#include "vps/solid.h"
+#include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/image.h"
+#include "vps_viewer/model_meshes.h"
 #include "vps_viewer/renderer.h"
+#include "vps_viewer/stereo.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -25,6 +31,10 @@ struct SnapshotArguments {
   std::string view = "iso";
   bool has_section = false;
   int tolerance = 2;
+  std::string display;  ///< display file; empty: one picture from `view`
+  std::string stereo = "mono";
+  std::string eye_distance;  ///< in the scene; empty: a thirtieth of the distance
+  std::vector<std::string> show;
 };
 
 /// The directions from the scene to the eye.
@@ -87,28 +97,121 @@ bool compareWith(const Image& wanted, const Image& image, const SnapshotArgument
   return is_equal;
 }
 
+/// A picture with the file to write it to.
+struct NamedPicture {
+  std::string suffix;  ///< before the file's extension; empty: none
+  Image image;
+};
+
+StereoMode stereoMode(const std::string& name) {
+  for (const StereoMode mode : stereoModes())
+    if (name == toText(mode)) return mode;
+  return StereoMode::Mono;
+}
+
+/// A thirtieth of the distance to what is looked at: a common rule of stereo photographers, with which most
+/// people have no trouble.
+constexpr double kEyeShare = 1.0 / 30;
+
+std::vector<NamedPicture> renderFor(const SnapshotArguments& given, Renderer& renderer,
+                                    const scenes::Snapshot& snapshot, const Camera& camera,
+                                    const DrawOptions& options) {
+  const StereoMode mode = stereoMode(given.stereo);
+  std::vector<NamedPicture> pictures;
+  if (!given.display.empty()) {
+    const scenes::Display display = scenes::loadDisplay(given.display);
+    for (ScreenPicture& picture : renderDisplay(renderer, snapshot, display, options, mode))
+      pictures.push_back({"_" + picture.name, std::move(picture.image)});
+    return pictures;
+  }
+  if (mode == StereoMode::Mono) return {{"", renderer.render(snapshot, camera, options)}};
+  const double distance_m = (camera.eye_W - camera.target_W).norm();
+  const double eyes_m = given.eye_distance.empty()
+                            ? kEyeShare * distance_m
+                            : scenes::lengthFromText(given.eye_distance, "--eye-distance");
+  const EyePair eyes = eyesOf(camera, eyes_m, double(options.width) / options.height);
+  std::vector<Image> images = renderStereo(renderer, snapshot, eyes, options, mode);
+  if (images.size() == 1) return {{"", std::move(images[0])}};
+  return {{"_left", std::move(images[0])}, {"_right", std::move(images[1])}};
+}
+
+/// Pointshells and voxels in place of the parts (figures 7 and 8 of the paper): where both are shown, points
+/// of the parts that a step moves and voxels of the others, as contact uses them.
+class ModelView {
+ public:
+  ModelView(const scenes::Scene& scene, const std::vector<std::string>& show, RenderScene& drawn) {
+    const auto has = [&](const char* word) {
+      return std::find(show.begin(), show.end(), word) != show.end();
+    };
+    const bool has_points = has("points"), has_voxels = has("voxels");
+    if (!has_points && !has_voxels) return;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+      const scenes::ScenePart& part = scene.parts[i];
+      const bool is_moved = std::any_of(scene.steps.begin(), scene.steps.end(),
+                                        [i](const scenes::SceneStep& step) { return step.part == i; });
+      const bool shows_points = has_points && (!has_voxels || is_moved);
+      const Solid solid(part.part.mesh, part.part.name);
+      meshes_.push_back(std::make_unique<TintedMesh>());
+      TintedMesh& shown = *meshes_.back();
+      if (shows_points)
+        shown.mesh =
+            pointMesh(buildPointShell(solid, {.spacing_m = scene.fidelity.spacing_m}, part.part.name));
+      else
+        shown = voxelMesh(buildVoxMap(solid, {.voxel_m = scene.fidelity.voxel_m}, part.part.name));
+      drawn[i].mesh = &shown.mesh;
+      if (!shown.tints.empty()) drawn[i].vertex_colors = &shown.tints;
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<TintedMesh>> meshes_;
+};
+
+std::string withSuffix(const std::string& file, const std::string& suffix) {
+  const std::filesystem::path path(file);
+  return (path.parent_path() / (path.stem().string() + suffix + path.extension().string())).string();
+}
+
+void writePictures(const SnapshotArguments& given, const std::vector<NamedPicture>& pictures) {
+  for (const NamedPicture& picture : pictures) {
+    OutputFile file(withSuffix(given.out, picture.suffix), {given.scene, given.compare, given.display});
+    savePng(picture.image, file.partial());
+    file.commit();
+    if (!picture.suffix.empty()) std::printf("%s\n", withSuffix(given.out, picture.suffix).c_str());
+  }
+}
+
 int runSnapshot(const SnapshotArguments& given) {
   if (given.out.empty() && given.compare.empty())
     throw LoadError("", "", "give -o FILE.png, --compare IMAGE, or both");
   if (!given.difference.empty() && given.compare.empty())
     throw LoadError("", "", "--difference needs --compare IMAGE");
+  const bool is_one = given.display.empty() && stereoMode(given.stereo) != StereoMode::Spectral;
+  if (!given.compare.empty() && !is_one)
+    throw LoadError("", "", "--compare needs one picture, and --display and --stereo spectral make several");
   DrawOptions options;
   const auto [width, height] = sizeFromText(given.size);
   options.width = width;
   options.height = height;
-  const std::vector<std::string> inputs = {given.scene, given.compare};
-  OutputFile out(given.out, inputs), difference(given.difference, inputs), json(given.json, inputs);
+  const std::vector<std::string> inputs = {given.scene, given.compare, given.display};
+  OutputFile out(is_one ? given.out : "", inputs), difference(given.difference, inputs),
+      json(given.json, inputs);
   // Loaded before rendering, so that a missing image is reported at once.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
   const scenes::Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
-  const RenderScene drawn = drawnMeshes(scene);
+  RenderScene drawn = drawnMeshes(scene);
+  const ModelView models(scene, given.show, drawn);
+  // Each point and each cube has edges of its own, which would darken the picture.
+  if (!given.show.empty()) options.show_edges = false;
   const scenes::Snapshot snapshot = finished(scene);
   const Box box = snapshotBounds(drawn, snapshot);
   if (given.has_section) options.cut = CutPlane{.p_W = box.center(), .n_W = -Vec3::UnitY()};
   Camera camera = frameScene(box, views().at(given.view), 0.5, double(width) / height);
   if (given.view == "top" || given.view == "bottom") camera.up_W = Vec3::UnitY();
-  const Image image = Renderer(drawn).render(snapshot, camera, options);
+  Renderer renderer(drawn);
+  const std::vector<NamedPicture> pictures = renderFor(given, renderer, snapshot, camera, options);
+  const Image& image = pictures.front().image;
 
   SnapshotAnswer answer{.scene = given.scene, .width = width, .height = height};
   bool is_equal = true;
@@ -119,9 +222,11 @@ int runSnapshot(const SnapshotArguments& given) {
       difference.commit();
     }
   }
-  if (!given.out.empty()) {
+  if (!given.out.empty() && is_one) {
     savePng(image, out.partial());
     out.commit();
+  } else if (!given.out.empty()) {
+    writePictures(given, pictures);
   }
   json.write(toJson(answer));
   return is_equal ? kGood : kBad;
@@ -144,6 +249,27 @@ void addSnapshot(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::IsMember(viewNames()));
   command.add_flag("--section", given->has_section, "cut away the front half");
+  std::vector<std::string> modes;
+  for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
+  command.add_option("--stereo", given->stereo, "how the pictures of both eyes are brought to a screen")
+      ->capture_default_str()
+      ->check(CLI::IsMember(modes));
+  command
+      .add_option("--eye-distance", given->eye_distance,
+                  "between the eyes, in the scene (2mm); without it a thirtieth of the distance")
+      ->type_name("LENGTH");
+  command
+      .add_option("--display", given->display,
+                  "display file (TOML): one picture for each of its screens and viewers, NAME_SCREEN.png")
+      ->type_name("FILE")
+      ->excludes("--eye-distance");
+  command
+      .add_option(
+          "--show", given->show,
+          "the models of contact in place of the parts: points, voxels, or points,voxels (points of the "
+          "parts that a step moves)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"points", "voxels"}));
   command.add_option("--compare", given->compare, "exit with status 1 if the picture differs from this one")
       ->type_name("IMAGE");
   command

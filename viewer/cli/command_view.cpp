@@ -8,6 +8,7 @@
 #include "scene_arguments.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps_device/device_kinds.h"
 #include "vps_viewer/window.h"
 
 namespace vps::viewer::inline v0 {
@@ -25,14 +26,20 @@ int runView(const ViewArguments& given) {
   WindowOptions window = given.window;
   window.stop = &stopRequested();
   if (lowerExtension(file) == ".mcap") {
-    if (window.runs || !window.record.empty())
-      throw LoadError(file, "", "is a recording; --run and --record are for scenes");
+    if (window.runs || !window.record.empty() || !window.hand.empty())
+      throw LoadError(file, "", "is a recording; --run, --hand and --record are for scenes");
     viewRecording(device::loadRecording(file), window);
     return kGood;
   }
   requireNotRead(window.record, {file});
   const scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record});
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  if (!window.hand.empty()) {
+    if (device::findDeviceKind(window.hand) == nullptr)
+      throw LoadError("", "",
+                      "--hand '" + window.hand + "' is not known; known are " + device::deviceKindNames());
+    window.runs = true;
+  }
   window.models.cache = cache ? &*cache : nullptr;
   window.models.models_everything = given.scene.models_everything;
   viewScene(scene, window);
@@ -56,7 +63,14 @@ void addView(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::Range(64, 16384));
   command.add_flag("--dark", window.is_dark, "dark panels");
+  command.add_flag("!--silent", window.has_sound, "no sound");
   command.add_flag("--run", window.runs, "run the procedure at once");
+  command
+      .add_option(
+          "--hand", window.hand,
+          "run the procedure at once, the part moved by this kind of device (vps device --list): mouse, "
+          "space_mouse, game_controller, dual_arm, ...")
+      ->type_name("KIND");
   command
       .add_option("--speed", window.speed,
                   "of playing and of a run, by the clock; of a run, 0: as fast as it goes")

@@ -3,9 +3,11 @@
 
 #include <cstdio>
 
+#include "command.h"
 #include "json_out.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps_scenes/load_level.h"
 #include "vps_scenes/result_fields.h"
 #include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
@@ -26,7 +28,49 @@ std::string tableOf(const std::vector<scenes::StepResult>& steps) {
   return table.text();
 }
 
+/// One line for each change of the load level.
+std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
+  std::string lines;
+  for (const scenes::LoadLevelChange& change : load_changes)
+    lines += "load shedding: at " + fixed(change.time_s, 2) + " s " + (change.is_done ? "" : "(not done) ") +
+             change.is + ", since " + change.why + "; " + scenes::describeCost(change) + "\n";
+  return lines;
+}
+
+/// The periods and times of the haptic loop and of physics, one line each.
+std::string describe(const scenes::AssembleResult& result) {
+  const scenes::RealTimeResult& timing = *result.real_time;
+  const auto us = [](double value) { return fixed(value, 0) + " us"; };
+  return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
+         fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
+         us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
+         std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
+         us(timing.worst_us) + ", because of " + timing.worst_cause +
+         "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
+         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
+         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
+         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
+}
+
 }  // namespace
+
+void printTiming(const scenes::AssembleResult& result) {
+  if (!result.real_time) return;
+  for (const std::string& words : result.real_time->warnings) warn(words);
+  std::fputs(describe(result).c_str(), stdout);
+}
+
+int statusOf(scenes::Verdict verdict) {
+  switch (verdict) {
+    case scenes::Verdict::Fits:
+      return kGood;
+    case scenes::Verdict::Blocked:
+      return kBad;
+    case scenes::Verdict::NotShown:
+      break;
+  }
+  return kNotShown;
+}
 
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files) {

@@ -24,4 +24,10 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
 /// Prints the table of steps, and a line for each problem of a step.
 void printSteps(const scenes::AssembleResult& result);
 
+/// Of a run by the clock: prints warnings, rates and missed periods.
+void printTiming(const scenes::AssembleResult& result);
+
+/// The program's exit status.
+int statusOf(scenes::Verdict verdict);
+
 }  // namespace vps::viewer::inline v0

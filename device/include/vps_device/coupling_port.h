@@ -11,6 +11,7 @@
 
 #include "vps/coupling_law.h"
 #include "vps/triple_buffer.h"
+#include "vps_device/export.h"
 #include "vps_device/safety.h"
 
 namespace vps::device::inline v0 {
@@ -75,10 +76,27 @@ struct PhysicsState {
   HeldPart held;
 };
 
+/// Physics in another process: takes the place of CouplingPort::physics. The haptic thread calls it, so that
+/// it never throws, allocates, locks or waits.
+class VPS_DEVICE_API RemotePhysics {
+ public:
+  virtual ~RemotePhysics() = default;
+  /// Replaces `state` by the newest state, if there is a newer one than at the last call.
+  virtual void receive(PhysicsState& state) noexcept = 0;
+  /// Passes on the state after a tick.
+  virtual void send(const HapticState& state) noexcept = 0;
+
+ protected:
+  RemotePhysics() = default;
+  RemotePhysics(const RemotePhysics&) = default;
+  RemotePhysics& operator=(const RemotePhysics&) = default;
+};
+
 /// Each side reads the other's latest state without waiting. Each buffer has one writer and one reader.
 struct CouplingPort {
   TripleBuffer<HapticState> haptic;    ///< written by the haptic thread
-  TripleBuffer<PhysicsState> physics;  ///< written by the physics thread
+  TripleBuffer<PhysicsState> physics;  ///< written by the physics thread; not used with `remote`
+  RemotePhysics* remote = nullptr;     ///< null: physics is in this process
 };
 
 }  // namespace vps::device::inline v0

@@ -7,6 +7,7 @@
 #include "vps/pose.h"
 #include "vps/status.h"
 #include "vps/wrench.h"
+#include "vps_device/device_events.h"
 #include "vps_device/export.h"
 
 namespace vps::device::inline v0 {
@@ -66,6 +67,9 @@ class VPS_DEVICE_API Device {
 
   /// Clears a fault that the device itself has latched. The next pose may be anywhere.
   virtual void rearm() noexcept {}
+
+  /// What the device itself reports, for one reader; null: nothing.
+  [[nodiscard]] virtual DeviceEventQueue* ownEvents() noexcept { return nullptr; }
 
   [[nodiscard]] virtual DeviceLimits limits() const noexcept = 0;
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "vps_device/export.h"
+#include "vps_device/pulled_handle.h"
 #include "vps_device/simulated_device.h"
 
 namespace vps::device::inline v0 {
@@ -23,6 +24,7 @@ struct DeviceOptions {
   Pose X_DH_start;                     ///< of a simulated device
   /// Box about D's origin that the handle can reach, for devices under rate control, whose range is free.
   Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);
+  std::shared_ptr<HandleWish> wish;  ///< of the mouse, from its window
 };
 
 /// Exactly one of `open` and `simulate` is set.

@@ -102,6 +102,7 @@ class VPS_DEVICE_API TappedDevice final : public Device {
   [[nodiscard]] DeviceLimits limits() const noexcept override { return inner_.limits(); }
   [[nodiscard]] std::string_view name() const noexcept override { return inner_.name(); }
   void rearm() noexcept override { inner_.rearm(); }
+  [[nodiscard]] DeviceEventQueue* ownEvents() noexcept override { return inner_.ownEvents(); }
 
  private:
   Device& inner_;

@@ -9,7 +9,8 @@ namespace vps::device::inline v0 {
 
 // Built explicitly: a linker drops self-registering objects of a static library.
 std::span<const DeviceKind> deviceKinds() {
-  static const std::array kinds = {dualArmKind(), idealDualArmKind(), spaceMouseKind(), gameControllerKind()};
+  static const std::array kinds = {dualArmKind(), idealDualArmKind(), spaceMouseKind(), gameControllerKind(),
+                                   mouseKind()};
   return kinds;
 }
 

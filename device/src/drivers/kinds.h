@@ -11,6 +11,7 @@ DeviceKind dualArmKind();
 DeviceKind idealDualArmKind();
 DeviceKind spaceMouseKind();
 DeviceKind gameControllerKind();
+DeviceKind mouseKind();
 
 inline RateSettings rateSettings(const DeviceOptions& options) {
   RateSettings settings;

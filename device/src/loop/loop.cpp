@@ -84,7 +84,10 @@ void HapticLoop::watchPhysics(double dt_s) noexcept {
 
 void HapticLoop::receivePart() noexcept {
   const std::int32_t step_before = received_.step;
-  received_ = port_->physics.read();
+  if (port_->remote != nullptr)
+    port_->remote->receive(received_);
+  else
+    received_ = port_->physics.read();
   if (received_.step != step_before && received_.stored_J) observeStoredEnergy(*received_.stored_J, 0);
 }
 
@@ -132,7 +135,9 @@ const TickReport& HapticLoop::tickWithReceivedPart(double elapsed_s) noexcept {
   report_.F_hand_W = rotated(settings_.map.X_WD.R, report_.F_hand_D);
   ++ticks_;
   ++counts_[std::min(static_cast<std::size_t>(report_.status), kStatusCount - 1)];
-  port_->haptic.write(state());
+  const HapticState now = state();
+  port_->haptic.write(now);
+  if (port_->remote != nullptr) port_->remote->send(now);
   return report_;
 }
 

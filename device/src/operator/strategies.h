@@ -45,7 +45,7 @@ class TiltIn final : public Strategy {
   Held touch_;
 };
 
-/// Slides over the surface in an Archimedean spiral until the part drops.
+/// Slides the part over the surface in an Archimedean spiral until it drops.
 class SpiralSearch final : public Strategy {
  public:
   void start(const Situation& situation, const Feel& feel) noexcept override;
@@ -53,6 +53,7 @@ class SpiralSearch final : public Strategy {
 
  private:
   double angle_rad_ = 0, wait_s_ = 0, level_m_ = 0;
+  Vec3 center_m_ = Vec3::Zero(), lead_m_ = Vec3::Zero();  ///< of the spiral; of the hand before the part
 };
 
 /// Turns about the axis of insertion, to and fro and farther each time, pressed lightly on the surface, until

@@ -16,10 +16,19 @@
 
 namespace vps::inline v0 {
 
-/// Reads as another number on a machine of the other byte order.
-inline constexpr std::uint32_t kByteOrder = 0x01020304;
-
 using Digest = std::array<std::uint64_t, 2>;
+
+/// The first bytes of every file.
+struct CacheFileStart {
+  std::array<char, 8> magic;
+  std::uint32_t version;
+  std::uint32_t byte_order = 0x01020304;  ///< reads as another number on a machine of the other byte order
+  Digest key = {};
+
+  [[nodiscard]] bool isOfSameVersion(const CacheFileStart& other) const {
+    return version == other.version && byte_order == other.byte_order;
+  }
+};
 
 class Hash {
  public:

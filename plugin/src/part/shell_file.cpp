@@ -13,10 +13,7 @@ constexpr std::uint32_t kShellVersion = 1;
 constexpr std::array<char, 8> kShellMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
 
 struct ShellHeader {
-  std::array<char, 8> magic = kShellMagic;
-  std::uint32_t version = kShellVersion;
-  std::uint32_t byte_order = kByteOrder;
-  Digest key = {};
+  CacheFileStart start = {kShellMagic, kShellVersion};
   double spacing_m = 0;
   std::uint64_t points = 0;
 };
@@ -42,8 +39,8 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
   ShellHeader header;
   if (!reader.isGood()) return why = "cannot be read", std::nullopt;
   reader.read(&header, sizeof header);
-  if (!reader.isGood() || header.magic != kShellMagic) return why = "is not a pointshell", std::nullopt;
-  if (header.version != kShellVersion || header.byte_order != kByteOrder)
+  if (!reader.isGood() || header.start.magic != kShellMagic) return why = "is not a pointshell", std::nullopt;
+  if (!header.start.isOfSameVersion(ShellHeader().start))
     return why = "is of another version of this program", std::nullopt;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
@@ -52,7 +49,7 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
   if (error || size < kFrame || (size - kFrame) % kPointBytes != 0 ||
       (size - kFrame) / kPointBytes != header.points)
     return why = "is damaged or cut short", std::nullopt;
-  if (header.key != key) return why = "is of another part", std::nullopt;
+  if (header.start.key != key) return why = "is of another part", std::nullopt;
   PointShell shell;
   shell.spacing_m = header.spacing_m;
   shell.points.resize(header.points);
@@ -71,7 +68,7 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
 
 bool writeShell(const PointShell& shell, const std::filesystem::path& file, const Digest& key) {
   ShellHeader header;
-  header.key = key;
+  header.start.key = key;
   header.spacing_m = shell.spacing_m;
   header.points = shell.size();
   HashedWriter writer(file);

@@ -23,10 +23,7 @@ constexpr std::uint32_t kVersion = 6;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 
 struct Header {
-  std::array<char, 8> magic = kMagic;
-  std::uint32_t version = kVersion;
-  std::uint32_t byte_order = kByteOrder;
-  Digest key = {};
+  CacheFileStart start = {kMagic, kVersion};
   double voxel_m = 0, band_m = 0;
   std::array<double, 6> bounds_m = {};
   std::array<std::int32_t, 3> low = {}, size = {};
@@ -75,6 +72,27 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
          header.bricks * kBrickStride * sizeof(NodeValue) + sizeof(Digest);
 }
 
+constexpr const char *kMapEnding = ".voxmap", *kShellEnding = ".shell";
+
+/// What the file holds; where there is none, or none that can be trusted, it is made and kept.
+/// @param read   (file, why), nothing and a reason if the file cannot be trusted
+/// @param write  (what was made, file), true if it is written
+template <class What, class Read, class Make, class Write>
+What readOrMake(CacheFolder& folder, const fs::path& file, Read read, Make make, Write write) {
+  std::error_code error;
+  if (fs::exists(file, error)) {
+    std::string why;
+    if (std::optional<What> kept = read(file, why)) {
+      CacheFolder::touch(file);
+      return std::move(*kept);
+    }
+    folder.warn(file, why + "; built again");
+  }
+  What made = make();
+  folder.keep(file, [&](const fs::path& to) { return write(made, to); });
+  return made;
+}
+
 bool areNamesGood(const VoxLayout& layout) {
   const std::uint64_t end = layout.pool->size() * kBrickStride;
   for (const std::uint32_t brick : layout.bricks)
@@ -94,13 +112,13 @@ class VoxMapCacheFile {
     if (!reader.isGood()) return why = "cannot be read", std::nullopt;
     Header header;
     reader.read(&header, sizeof header);
-    if (!reader.isGood() || header.magic != kMagic) return why = "is not a voxmap", std::nullopt;
-    if (header.version != kVersion || header.byte_order != kByteOrder)
+    if (!reader.isGood() || header.start.magic != kMagic) return why = "is not a voxmap", std::nullopt;
+    if (!header.start.isOfSameVersion(Header().start))
       return why = "is of another version of this program", std::nullopt;
     std::error_code error;
     const std::uintmax_t size = fs::file_size(file, error);
     if (error || bytesOf(header) != size) return why = "is damaged or cut short", std::nullopt;
-    if (header.key != key) return why = "is of another part", std::nullopt;
+    if (header.start.key != key) return why = "is of another part", std::nullopt;
     std::optional<VoxMap> map = readBody(reader, header, report);
     if (!map) why = "is damaged";
     return map;
@@ -109,7 +127,7 @@ class VoxMapCacheFile {
   static bool write(const VoxMap& map, const MeshReport& report, const fs::path& file, const Digest& key) {
     const VoxLayout& layout = *VoxMapAccess::layout(map);
     Header header;
-    header.key = key;
+    header.start.key = key;
     header.voxel_m = map.voxel_m();
     header.band_m = map.band_m();
     for (int k = 0; k < 3; ++k) {
@@ -165,11 +183,11 @@ VoxMapCache::VoxMapCache(fs::path folder, Warn warn, std::uint64_t limit_bytes)
     : folder_(std::make_shared<CacheFolder>(std::move(folder), std::move(warn), limit_bytes)) {}
 
 fs::path VoxMapCache::fileOf(const Mesh& mesh, const VoxMapSettings& settings) const {
-  return folder_->fileOf(nameOf(keyOf(mesh, settings)) + ".voxmap");
+  return folder_->fileOf(nameOf(keyOf(mesh, settings)) + kMapEnding);
 }
 
 fs::path VoxMapCache::shellFileOf(const Mesh& mesh, const PointShellSettings& settings) const {
-  return folder_->fileOf(nameOf(shellKeyOf(mesh, settings)) + ".shell");
+  return folder_->fileOf(nameOf(shellKeyOf(mesh, settings)) + kShellEnding);
 }
 
 VoxMap VoxMapCache::build(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part,
@@ -188,40 +206,24 @@ VoxMap VoxMapCache::build(const Mesh& mesh, const Solid& solid, const VoxMapSett
 VoxMap VoxMapCache::readOrBuild(const Mesh& mesh, const VoxMapSettings& settings, MeshReport* report,
                                 const std::function<VoxMap(MeshReport&)>& make) const {
   const Digest key = keyOf(mesh, settings);
-  const fs::path file = fileOf(mesh, settings);
   MeshReport found;
-  std::error_code error;
-  if (fs::exists(file, error)) {
-    std::string why;
-    if (const std::optional<VoxMap> map = VoxMapCacheFile::read(file, key, found, why)) {
-      CacheFolder::touch(file);
-      if (report != nullptr) *report = found;
-      return *map;
-    }
-    folder_->warn(file, why + "; built again");
-  }
-  const VoxMap map = make(found);
+  VoxMap map = readOrMake<VoxMap>(
+      *folder_, folder_->fileOf(nameOf(key) + kMapEnding),
+      [&](const fs::path& file, std::string& why) { return VoxMapCacheFile::read(file, key, found, why); },
+      [&] { return make(found); },
+      [&](const VoxMap& made, const fs::path& to) { return VoxMapCacheFile::write(made, found, to, key); });
   if (report != nullptr) *report = found;
-  folder_->keep(file, [&](const fs::path& to) { return VoxMapCacheFile::write(map, found, to, key); });
   return map;
 }
 
 PointShell VoxMapCache::buildShell(const Mesh& mesh, const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part) const {
   const Digest key = shellKeyOf(mesh, settings);
-  const fs::path file = shellFileOf(mesh, settings);
-  std::error_code error;
-  if (fs::exists(file, error)) {
-    std::string why;
-    if (std::optional<PointShell> shell = readShell(file, key, why)) {
-      CacheFolder::touch(file);
-      return std::move(*shell);
-    }
-    folder_->warn(file, why + "; built again");
-  }
-  PointShell shell = buildPointShell(solid, settings, part);
-  folder_->keep(file, [&](const fs::path& to) { return writeShell(shell, to, key); });
-  return shell;
+  return readOrMake<PointShell>(
+      *folder_, folder_->fileOf(nameOf(key) + kShellEnding),
+      [&](const fs::path& file, std::string& why) { return readShell(file, key, why); },
+      [&] { return buildPointShell(solid, settings, part); },
+      [&](const PointShell& made, const fs::path& to) { return writeShell(made, to, key); });
 }
 
 }  // namespace vps::inline v0

@@ -5,7 +5,10 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 
+#include "vps_device/device_events.h"
+#include "vps_device/pulled_handle.h"
 #include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
@@ -38,6 +41,12 @@ struct AssembleOptions : ModelOptions {
   /// Called by the physics thread after each step, with the simulated time. May be empty.
   std::function<void(double time_s)> after_step;
   SnapshotTap* tap = nullptr;  ///< may be null
+  /// Called by the physics thread with each fault, warning and notice of the loop and of a simulated arm. May
+  /// be empty.
+  std::function<void(const device::DeviceEvent&)> on_device_event;
+  /// Of a run by hand with [device] kind = "mouse": where the window's cursor wants the handle. Null: a run
+  /// with that kind is refused.
+  std::shared_ptr<device::HandleWish> wish;
   /// Called after each step of the procedure with the result so far, whose sums are not filled in yet. May be
   /// empty.
   std::function<void(const AssembleResult&)> on_step;

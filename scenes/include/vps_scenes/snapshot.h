@@ -28,6 +28,8 @@ struct ContactMark {
   Vec3 p_W = Vec3::Zero();
   Vec3 n_W = Vec3::Zero();
   double depth_m = 0;
+  double force_N = 0;          ///< along the normal, averaged over the physics step
+  Vec3 slip_W = Vec3::Zero();  ///< [m/s] along the faces, of the part that n_W points to on the other
 };
 
 struct Snapshot {

@@ -9,34 +9,6 @@ void ClockedDriver::publish(const device::PhysicsState& state) {
   store(numbered);
 }
 
-void ClockedDriver::carryOut(device::HapticLoop& loop, device::SyncEventKind what) noexcept {
-  switch (what) {
-    case device::SyncEventKind::Begin:
-      return hand_.begin();
-    case device::SyncEventKind::GoBack:
-      return hand_.goBack(next_step_);
-    case device::SyncEventKind::Recentre:
-      return hand_.recentre();
-    case device::SyncEventKind::GoOn:
-      return hand_.goOn();
-    case device::SyncEventKind::HandOver:
-      return loop.handOver(X_WG_);
-    case device::SyncEventKind::OpenClutch:
-      return loop.disengage();
-    case device::SyncEventKind::CloseClutch:
-      return loop.engage();
-    case device::SyncEventKind::LetGo:
-      return loop.release();
-    case device::SyncEventKind::Rearm:
-      return loop.rearm();
-    case device::SyncEventKind::Tick:
-    case device::SyncEventKind::Step:
-    case device::SyncEventKind::Settled:
-    case device::SyncEventKind::Paused:
-      return;
-  }
-}
-
 void ClockedDriver::rearmIfFaulted() {
   if (view_.safety.fault == device::SafetyFault::None) return;
   command(device::SyncEventKind::Rearm);

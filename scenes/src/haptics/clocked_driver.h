@@ -3,6 +3,7 @@
 // loop.
 #pragma once
 
+#include "haptics/hand_command.h"
 #include "haptics/haptic_driver.h"
 #include "vps_device/run_log.h"
 
@@ -15,21 +16,14 @@ class ClockedDriver : public HapticDriver {
   [[nodiscard]] const device::LoopSettings& settings() const final { return settings_; }
   [[nodiscard]] bool isByClock() const final { return true; }
 
-  void handOver(const Pose& X_WG) final {
-    X_WG_ = X_WG;
-    command(device::SyncEventKind::HandOver);
-  }
+  void handOver(const Pose& X_WG) final { command({device::SyncEventKind::HandOver, X_WG, 0, 0, {}}); }
   void openClutch() final { command(device::SyncEventKind::OpenClutch); }
   void closeClutch() final { command(device::SyncEventKind::CloseClutch); }
   void begin(const device::OperatorTask& task, std::size_t step, double now_s) final {
-    hand_.prepare(task, step, now_s);
-    command(device::SyncEventKind::Begin);
+    command({device::SyncEventKind::Begin, {}, step, now_s, task});
   }
   void letGo() final { command(device::SyncEventKind::LetGo); }
-  void goBack(std::size_t next) final {
-    next_step_ = next;
-    command(device::SyncEventKind::GoBack);
-  }
+  void goBack(std::size_t next) final { command({device::SyncEventKind::GoBack, {}, next, 0, {}}); }
   void recentre() final { command(device::SyncEventKind::Recentre); }
   void goOn() final { command(device::SyncEventKind::GoOn); }
 
@@ -39,29 +33,25 @@ class ClockedDriver : public HapticDriver {
   device::PassivityObserver passivity() final { return view_.passivity; }
 
  protected:
-  ClockedDriver(Hand& hand, const device::LoopSettings& settings, const ReportFault& report)
-      : hand_(hand), settings_(settings), report_fault_(report) {}
+  ClockedDriver(const device::LoopSettings& settings, const ReportFault& report)
+      : settings_(settings), report_fault_(report) {}
 
   /// Returns when the command has been carried out.
-  virtual void command(device::SyncEventKind what) = 0;
+  virtual void command(const HandCommand& command) = 0;
+  void command(device::SyncEventKind what) { command({what, {}, 0, 0, {}}); }
   /// Passes a state with its step number on to the loop.
   virtual void store(const device::PhysicsState& state) = 0;
 
-  /// Carries out a command, on the thread that runs the loop. Never allocates.
-  void carryOut(device::HapticLoop& loop, device::SyncEventKind what) noexcept;
   /// As a person does between steps.
   void rearmIfFaulted();
   /// Takes over the loop's state; reports a new safety fault.
   void setView(const device::HapticState& view);
 
-  Hand& hand_;
   device::LoopSettings settings_;
   device::HapticState view_;  ///< the loop as of the last advance()
 
  private:
   ReportFault report_fault_;
-  Pose X_WG_;                  ///< argument of HandOver
-  std::size_t next_step_ = 0;  ///< argument of GoBack
   std::int32_t published_ = 0;
   std::uint64_t reported_faults_ = 0;
 };

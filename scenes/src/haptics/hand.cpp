@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "haptics/haptic_driver.h"
 #include "haptics/path_segments.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
@@ -114,8 +115,11 @@ class SimulatedHand final : public Hand {
   void prepare(const device::OperatorTask& task, std::size_t step, double now_s) override {
     next_ = device::VirtualOperator(habitsOf(scene_.hand, step));
     device::OperatorTask reachable = task;
-    reachable.way_points = segments_[step].way_points;
-    reachable.index_points = segments_[step].index_points;
+    const std::size_t all = scene_.steps[step].way_points.size();
+    const PathSegments ahead = withoutPassed(segments_[step], all - std::min(all, task.way_points.size()));
+    reachable.way_points = ahead.way_points;
+    reachable.index_points = ahead.index_points;
+    next_segment_ = segments_[step].index_points.size() - ahead.index_points.size();
     reachable.screw.handle_rad = turnRange_rad(plant_->limits().workspace_rad);
     next_.begin(reachable, now_s);
     next_s_ = now_s;
@@ -126,7 +130,7 @@ class SimulatedHand final : public Hand {
     std::swap(operator_, next_);  // no allocation; the old operator is freed by the next prepare()
     time_s_ = next_s_;
     step_ = next_step_;
-    segment_ = 0;
+    segment_ = next_segment_;
     is_at_work_ = true;
   }
 
@@ -196,7 +200,7 @@ class SimulatedHand final : public Hand {
   std::unique_ptr<device::SimulatedDevice> plant_;
   device::VirtualOperator operator_, next_;
   double next_s_ = 0;
-  std::size_t next_step_ = 0, step_ = 0, segment_ = 0;
+  std::size_t next_step_ = 0, step_ = 0, next_segment_ = 0, segment_ = 0;
   double time_s_ = 0;              ///< of the run
   double back_s_ = kHandReturn_s;  ///< since the way back began
   bool is_at_work_ = false;
@@ -272,13 +276,14 @@ device::DeviceOptions personOptions(const Scene& scene) {
   return options;
 }
 
-std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKind& kind) {
+std::unique_ptr<Hand> connectedPerson(const Scene& scene, const device::DeviceKind& kind,
+                                      const device::DeviceOptions& options) {
   const auto refuse = [&](const std::string& why) {
     throw LoadError(scene.file, "",
                     "device '" + std::string(kind.name) + "': " + why + "; " + std::string(kind.remedy));
   };
   if (const std::string missing = kind.missing(); !missing.empty()) refuse(missing);
-  std::unique_ptr<device::Device> device = kind.open(personOptions(scene));
+  std::unique_ptr<device::Device> device = kind.open(options);
   const auto end = std::chrono::steady_clock::now() + kConnect;
   while (device->read().status != Status::Ok) {
     if (std::chrono::steady_clock::now() > end) refuse("does not answer");
@@ -320,14 +325,22 @@ class RecordedHand final : public Hand {
 
 }  // namespace
 
-std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time) {
+std::unique_ptr<HapticDriver> Hand::makeDriver(const device::LoopSettings&, double, const ReportFault&,
+                                               device::RunLog*) {
+  return nullptr;
+}
+
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
+                               std::shared_ptr<device::HandleWish> wish) {
   const device::DeviceKind& kind = kindOf(scene);
   if (kind.isSimulated()) return simulatedHand(scene);
   if (!is_real_time)
     throw LoadError(scene.file, "",
                     "device '" + scene.device.kind +
                         "' is moved by a person, which simulated time cannot wait for; add --real-time");
-  return connectedPerson(scene, kind);
+  device::DeviceOptions options = personOptions(scene);
+  options.wish = std::move(wish);
+  return connectedPerson(scene, kind, options);
 }
 
 std::unique_ptr<Hand> simulatedHand(const Scene& scene) {

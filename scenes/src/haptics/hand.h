@@ -4,22 +4,35 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
+#include "vps_device/pulled_handle.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
 
+class HapticDriver;
+
+/// Receives each safety fault, in words.
+using ReportFault = std::function<void(const std::string&)>;
+
 /// Device and hand together.
 class Hand {
  public:
   virtual ~Hand() = default;
+  /// For a hand whose loop is in another process: the driver that reaches it. Null for all others. Arguments
+  /// as of makeRealTimeDriver().
+  virtual std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
+                                                   const ReportFault& report, device::RunLog* log);
   virtual device::Device& device() = 0;
-  /// Plans a step that starts at time now_s. May allocate; may run concurrently with step(), on another
+  /// Plans a step that starts at time now_s. The task's way points are those of the scene's step that are
+  /// still ahead of the part. May allocate; may run concurrently with step(), on another
   /// thread.
   virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   /// Starts what was prepared. As step(), never allocates.
@@ -49,7 +62,9 @@ inline constexpr double kHandReturn_s = 1.5;  ///< duration of the hand's way ba
 /// The hand for the scene's [device] kind. Throws LoadError for an unknown kind, a path that a simulated
 /// device cannot reach, and a device that a person moves where the run is not in real time or the device does
 /// not answer within 3 s.
-std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time);
+/// @param wish  of the mouse; null: there is none
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
+                               std::shared_ptr<device::HandleWish> wish = nullptr);
 
 /// A simulated device and the virtual operator. Throws LoadError as makeHand().
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);

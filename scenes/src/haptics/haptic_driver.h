@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptics/hand.h"
+#include "vps_device/device_events.h"
 #include "vps_device/loop.h"
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
@@ -67,12 +68,11 @@ class HapticDriver {
   [[nodiscard]] virtual bool isByClock() const = 0;
   [[nodiscard]] virtual device::PassivityObserver passivity() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
+  /// Passes on, by the physics thread, what the loop reported since the last call.
+  virtual void passEvents(const std::function<void(const device::DeviceEvent&)>& /*to*/) {}
   /// Figures that exist only in real time.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };
-
-/// Receives each safety fault, in words.
-using ReportFault = std::function<void(const std::string&)>;
 
 /// @param device  the hand's own, or a tap on it; all arguments outlive the driver
 std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,

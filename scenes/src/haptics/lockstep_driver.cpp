@@ -12,7 +12,7 @@ class LockstepDriver final : public HapticDriver {
                  const device::LoopSettings& settings, int ticks_per_step, const ReportFault& report)
       : hand_(hand),
         port_(port),
-        loop_(device, port, settings),
+        loop_(device, port, withEvents(settings)),
         ticks_per_step_(ticks_per_step),
         report_fault_(report),
         clock_(settings.period_s) {}
@@ -59,7 +59,15 @@ class LockstepDriver final : public HapticDriver {
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }
 
+  void passEvents(const std::function<void(const device::DeviceEvent&)>& to) override {
+    for (device::DeviceEvent event; events_.pop(event);) to(event);
+  }
+
  private:
+  device::LoopSettings withEvents(device::LoopSettings settings) {
+    settings.events = &events_;
+    return settings;
+  }
   void reportFaults() {
     const device::SafetyState& safety = loop_.safety();
     if (safety.faults == reported_faults_) return;
@@ -69,6 +77,7 @@ class LockstepDriver final : public HapticDriver {
 
   Hand& hand_;
   device::CouplingPort& port_;
+  device::DeviceEventQueue events_;
   device::HapticLoop loop_;
   int ticks_per_step_;
   ReportFault report_fault_;

@@ -225,4 +225,28 @@ PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspac
   return one;
 }
 
+PathSegments withoutPassed(const PathSegments& segments, std::size_t passed) {
+  PathSegments ahead;
+  const auto isIndexPoint = [&](std::size_t i) {
+    return std::find(segments.index_points.begin(), segments.index_points.end(), i) !=
+           segments.index_points.end();
+  };
+  std::size_t segment = 0;
+  for (std::size_t i = 0; i < segments.way_points.size(); ++i) {
+    const bool is_index_point = isIndexPoint(i);
+    if (passed > 0) {
+      if (is_index_point)
+        ++segment;
+      else
+        --passed;
+      continue;
+    }
+    if (is_index_point) ahead.index_points.push_back(ahead.way_points.size());
+    ahead.way_points.push_back(segments.way_points[i]);
+  }
+  ahead.X_DH_start.assign(segments.X_DH_start.begin() + static_cast<std::ptrdiff_t>(segment),
+                          segments.X_DH_start.end());
+  return ahead;
+}
+
 }  // namespace vps::scenes::inline v0

@@ -33,6 +33,9 @@ struct Workspace {
 /// turn apart, since the direction in which the hand turns is then not defined.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace);
 
+/// The segments that are left once the part has passed this many of the step's own way points.
+PathSegments withoutPassed(const PathSegments& segments, std::size_t passed);
+
 /// How far a handle that turns by handle_rad to each side is turned before it is grasped again.
 double turnRange_rad(double handle_rad);
 

@@ -16,7 +16,8 @@ class ReplayedDriver final : public ClockedDriver {
   ReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events, device::Device& device,
                  device::CouplingPort& port, const device::LoopSettings& settings, const ReportFault& report,
                  device::RunLog& log)
-      : ClockedDriver(hand, settings, report),
+      : ClockedDriver(settings, report),
+        hand_(hand),
         port_(port),
         loop_(device, port, settings),
         device_(device),
@@ -38,8 +39,14 @@ class ReplayedDriver final : public ClockedDriver {
   }
 
   bool advance() override {
-    // After a departure from the recording, events that do not fit are skipped.
-    while (next_ < sync_events_.size() && !tickUntil(device::SyncEventKind::Step)) ++next_;
+    // A loop in another process was re-armed while physics went on. After a departure from the recording,
+    // events that do not fit are skipped.
+    while (next_ < sync_events_.size() && !tickUntil(device::SyncEventKind::Step)) {
+      if (isAt(device::SyncEventKind::Rearm))
+        command({device::SyncEventKind::Rearm, {}, 0, 0, {}});
+      else
+        ++next_;
+    }
     if (!isAt(device::SyncEventKind::Step)) return false;
     logEvent(device::SyncEventKind::Step);
     setView(port_.haptic.read());  // as the last tick left it, without the commands since
@@ -56,10 +63,11 @@ class ReplayedDriver final : public ClockedDriver {
   std::optional<RealTimeResult> realTime() override { return {}; }
 
  protected:
-  void command(device::SyncEventKind what) override {
-    const bool is_recorded = tickUntil(what);
-    carryOut(loop_, what);
-    if (is_recorded) logEvent(what);
+  void command(const HandCommand& command) override {
+    prepare(hand_, command);
+    const bool is_recorded = tickUntil(command.what);
+    carryOut(hand_, loop_, command);
+    if (is_recorded) logEvent(command.what);
   }
   void store(const device::PhysicsState& state) override { states_.push_back(state); }
 
@@ -99,6 +107,7 @@ class ReplayedDriver final : public ClockedDriver {
                                event.snapshot, kind});
   }
 
+  Hand& hand_;
   device::CouplingPort& port_;
   device::HapticLoop loop_;
   device::Device& device_;

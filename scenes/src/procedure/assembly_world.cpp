@@ -63,12 +63,13 @@ AssemblyWorld::AssemblyWorld(Scene& scene, const ModelPlan& plan, Hand& hand, de
 
 std::unique_ptr<HapticDriver> AssemblyWorld::makeDriver(Hand& hand, device::LoopSettings settings,
                                                         const ReportFault& on_fault) {
+  if (auto driver = hand.makeDriver(settings, dt_s_, on_fault, log_)) return driver;
   if (options_.has_local_contact) settings.local = &local_;
   if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, on_fault, log_);
   device::Device& device = log_ != nullptr ? tapped_ : hand.device();
   if (std::vector<device::SyncEvent> sync_events = hand.sync_events();
       !sync_events.empty() && log_ != nullptr) {
-    settings.physics_limit_s = physicsLimit_s(dt_s_);
+    if (!(settings.physics_limit_s > 0)) settings.physics_limit_s = physicsLimit_s(dt_s_);
     return makeReplayedDriver(hand, std::move(sync_events), device, port_, settings, on_fault, *log_);
   }
   return makeLockstepDriver(hand, device, port_, settings, ticksPerStep(scene_), on_fault);
@@ -174,9 +175,17 @@ bool AssemblyWorld::advance(bool is_settling) {
     shedLoad();
   }
   step();
+  passEvents();
   if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false))
     options_.tap->give(snapshotOf(*this));
   return true;
+}
+
+void AssemblyWorld::passEvents() {
+  if (!options_.on_device_event) return;
+  driver_->passEvents(options_.on_device_event);
+  if (device::DeviceEventQueue* own = tapped_.ownEvents())
+    for (device::DeviceEvent event; own->pop(event);) options_.on_device_event(event);
 }
 
 void AssemblyWorld::step() {

@@ -104,6 +104,7 @@ class AssemblyWorld {
   void startLocalContact();
   /// Models the other fixed parts if the moving part comes near the border of its region.
   void keepCovered();
+  void passEvents();
   void shedLoad();
   void step();
 

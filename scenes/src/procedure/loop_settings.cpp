@@ -8,10 +8,10 @@
 
 namespace vps::scenes::inline v0 {
 
-device::LoopSettings loopSettings(const Scene& scene, const device::Device& device) {
+device::LoopSettings loopSettings(const Scene& scene, const device::Device& device, double delay_s) {
   const device::DeviceLimits limits = device.limits();
   device::LoopSettings settings;
-  settings.gains = passiveGains(scene, limits, scene.fidelity.physics_rate_hz);
+  settings.gains = passiveGains(scene, limits, scene.fidelity.physics_rate_hz, delay_s);
   const CouplingWishes& wishes = scene.coupling;
   settings.gains.k_N_per_m = wishes.k_N_per_m.value_or(settings.gains.k_N_per_m);
   settings.gains.b_Ns_per_m = wishes.b_Ns_per_m.value_or(settings.gains.b_Ns_per_m);
@@ -29,11 +29,13 @@ device::LoopSettings loopSettings(const Scene& scene, const device::Device& devi
   return settings;
 }
 
-CouplingGains passiveGains(const Scene& scene, const device::DeviceLimits& limits, double physics_rate_hz) {
+CouplingGains passiveGains(const Scene& scene, const device::DeviceLimits& limits, double physics_rate_hz,
+                           double delay_s) {
   device::CouplingTiming timing;
   timing.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
   timing.physics_rate_hz = physics_rate_hz;
   timing.scale = scene.device.scale;
+  timing.delay_s = delay_s;
   return device::deriveGains(limits, timing);
 }
 

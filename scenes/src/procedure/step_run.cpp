@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "core/insertion_axis.h"
@@ -123,8 +124,9 @@ bool isHeldAfter(const SceneStep& step, const StepResult& result) {
   return step.is_held || result.press_needed_N > 0;
 }
 
-/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
-void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
+/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped;
+/// and where the part was when the hand gave up, if it did.
+std::optional<Pose> work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
   startHaptics(world);
   HapticDriver& driver = world.driver();
   const auto advanceIn = [&](TracePhase phase) {
@@ -137,7 +139,7 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
   const auto regrasp = [&] { return advanceIn(is_screw ? TracePhase::Insert : TracePhase::Reach); };
   const auto press = [&] { return advanceIn(TracePhase::Press); };
   const ClutchWork clutch(driver, [&world] { return world.handStep_s(); });
-  if (!clutch.takeHold(reach)) return;
+  if (!clutch.takeHold(reach)) return std::nullopt;
   driver.begin(taskOf(world, step, result.tolerance_m), static_cast<std::size_t>(world.state().step),
                world.state().time_s);
   trace.forgetPhase();
@@ -150,16 +152,21 @@ void work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResu
     world.reportProgress(0.8 * std::min(1.0, elapsed_s / step.timeout_s * 2));
     if (phase != device::OperatorPhase::Regrasp) continue;
     ++result.index_count;
-    if (!clutch.index(regrasp)) return;
+    if (!clutch.index(regrasp)) return std::nullopt;
     trace.logPhase(world);
   }
-  if (driver.phase() == device::OperatorPhase::Failed) noteContact(world, result);
-  if (!clutch.comeFree(press)) return;
-  if (isHeldAfter(step, result)) return;  // what holds it has it before the hand lets go
+  std::optional<Pose> X_WP_given_up;
+  if (driver.phase() == device::OperatorPhase::Failed) {
+    noteContact(world, result);
+    X_WP_given_up = world.movingPose();
+  }
+  if (!clutch.comeFree(press)) return X_WP_given_up;
+  if (isHeldAfter(step, result)) return X_WP_given_up;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
   });
+  return X_WP_given_up;
 }
 
 /// The released part is watched for scene.release_s unless its step says that it is held, at least until the
@@ -204,7 +211,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   world.take(index);
   trace.beginStep(world);
   trace.logEvent(world, device::RunEventKind::Take, "takes '" + result.part + "'");
-  work(world, trace, step, result);
+  const std::optional<Pose> X_WP_given_up = work(world, trace, step, result);
   world.pauseLocalContact();
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
     ++(episode.is_slide ? result.slides : result.impacts);
@@ -220,7 +227,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
   rest(world, trace, result);
   world.reportProgress(0.9);
-  judgeCompletion(world, step, world.movingPose(), result);
+  // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
+  judgeCompletion(world, step, X_WP_given_up.value_or(world.movingPose()), result);
   settleStep(world, trace.takeSamples(), result);
   judgeStep(result, world.scene().hand.force_limit_N);
   return result;

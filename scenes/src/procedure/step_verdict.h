@@ -13,7 +13,7 @@ double penetrationLimit_m(const SceneStep& step);
 
 /// Sets final_error_m, final_error_rad, completed and failure_reason: the step is completed when the hand
 /// reports that it is done and the part, now at rest, is within the step's tolerances.
-/// @param X_WP  of the part, after its rest
+/// @param X_WP  of the part, after its rest, or where the hand gave up
 void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
 
 /// Sets verdict and reason from the rest of a step's result.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/replay.h"
 
+#include <charconv>
+
 #include "procedure/assembly_run.h"
 #include "record/run_record.h"
 #include "record/scene_archive.h"
@@ -41,7 +43,9 @@ ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options
   device::Recording recording(run);
   device::ReplayCheck check(run);
   const std::unique_ptr<Hand> hand = recordedHand(recording);
-  const device::LoopSettings settings = loopSettings(replayed.scene, hand->device());
+  device::LoopSettings settings = loopSettings(replayed.scene, hand->device());
+  const std::string limit_s = about(run, kPhysicsLimit);
+  std::from_chars(limit_s.data(), limit_s.data() + limit_s.size(), settings.physics_limit_s);
   replayed.result = runProcedure(replayed.scene, *hand, &check, settings, assembling);
   replayed.departure = check.departure();
   replayed.equal = check.equal();

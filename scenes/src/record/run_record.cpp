@@ -58,8 +58,9 @@ std::map<std::string, std::string> aboutRun(const Scene& scene, const std::strin
   return about;
 }
 
-device::RecordingHead headOf(const Scene& scene, const device::Device& device, const CouplingGains& gains,
-                             const AssembleOptions& options) {
+device::RecordingHead headOf(const Scene& scene, const device::Device& device,
+                             const device::LoopSettings& settings, const AssembleOptions& options) {
+  const CouplingGains& gains = settings.gains;
   Scene chosen = scene;
   chosen.coupling = {gains.k_N_per_m,     gains.b_Ns_per_m,  gains.k_Nm_per_rad,
                      gains.b_Nms_per_rad, gains.max_force_N, gains.max_torque_Nm};
@@ -68,14 +69,15 @@ device::RecordingHead headOf(const Scene& scene, const device::Device& device, c
   head.limits = device.limits();
   head.attachments = {{kSceneAttachment, "application/octet-stream", sceneToBytes(chosen)}};
   head.about = aboutRun(chosen, head.attachments[0].data, options);
+  if (settings.physics_limit_s > 0) head.about[kPhysicsLimit] = inFull(settings.physics_limit_s);
   return head;
 }
 
 }  // namespace
 
 RunRecord::RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
-                     const CouplingGains& gains, const AssembleOptions& options)
-    : recorder_(file, headOf(scene, device, gains, options), kRingEntries),
+                     const device::LoopSettings& settings, const AssembleOptions& options)
+    : recorder_(file, headOf(scene, device, settings, options), kRingEntries),
       warn_(options.warn),
       waits_(!options.is_real_time) {}
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "vps/coupling_law.h"
+#include "vps_device/loop.h"
 #include "vps_device/recorder.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/scene.h"
@@ -14,6 +14,8 @@ namespace vps::scenes::inline v0 {
 
 /// Name of the attachment that holds the scene.
 inline constexpr const char* kSceneAttachment = "scene.vps";
+/// Of the head: device::LoopSettings::physics_limit_s, where it was not the default of a run by the clock.
+inline constexpr const char* kPhysicsLimit = "physics_limit_s";
 
 /// When the recorder's ring is full, a run in simulated time waits. A run in real time does not: the
 /// recording then states that it ends there.
@@ -22,7 +24,7 @@ class RunRecord final : public device::RunLog {
   /// The head states program, scene, seeds, fidelity and choices. Its scene prescribes the coupling gains
   /// that were chosen, so that a replay does not choose again. Throws as Recorder.
   RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
-            const CouplingGains& gains, const AssembleOptions& options);
+            const device::LoopSettings& settings, const AssembleOptions& options);
   /// Without finish(): reports through options.warn where the unfinished recording is.
   ~RunRecord() override;
 

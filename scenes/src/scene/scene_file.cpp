@@ -10,6 +10,7 @@
 
 #include "scene/read_fields.h"
 #include "scene/screw_keys.h"
+#include "scene/toml_text.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
@@ -21,30 +22,6 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string readWhole(const std::string& file) {
-  std::error_code error;
-  if (!fs::exists(file, error)) throw LoadError(file, "", "no such file; name a scene file (scene.toml)");
-  if (fs::is_directory(file, error))
-    throw LoadError(file, "", "is a folder; name the scene file in it (scene.toml)");
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw LoadError(file, "", "cannot be read; check its permissions");
-  return text.str();
-}
-
-toml::table parseToml(const std::string& text, const std::string& file) {
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    std::string words(error.description());
-    // The message stays on one line, whatever the file holds.
-    std::replace_if(
-        words.begin(), words.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-    throw LoadError(file + ":" + std::to_string(error.source().begin.line), "", "not valid TOML: " + words);
-  }
-}
 
 float linearFromSrgb(double s) {  // IEC 61966-2-1
   return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
@@ -391,7 +368,7 @@ class SceneReader {
 }  // namespace
 
 Scene loadScene(const std::string& file) {
-  const toml::table root = parseToml(readWhole(file), file);
+  const toml::table root = parseToml(readTomlText(file, "scene file", "scene.toml"), file);
   return SceneReader(root, file).read();
 }
 

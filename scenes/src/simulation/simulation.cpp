@@ -332,13 +332,26 @@ const VoxMap* Simulation::fixedMap() const {
 
 namespace {
 
+/// Calls visit(point, manifold) for every contact point of the last step.
+template <typename Visit>
+void forEachContactOfPair(btCollisionDispatcher& dispatcher, const Visit& visit) {
+  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    for (int j = 0; j < manifold.getNumContacts(); ++j) visit(manifold.getContactPoint(j), manifold);
+  }
+}
 /// Calls visit(point) for every contact point of the last step.
 template <typename Visit>
 void forEachContact(btCollisionDispatcher& dispatcher, const Visit& visit) {
-  for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-    for (int j = 0; j < manifold.getNumContacts(); ++j) visit(manifold.getContactPoint(j));
-  }
+  forEachContactOfPair(dispatcher,
+                       [&](const btManifoldPoint& point, const btPersistentManifold&) { visit(point); });
+}
+
+/// Velocity of the body's material at p_W.
+Vec3 velocityAt(const btCollisionObject& object, const btVector3& p_W) {
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (body == nullptr) return Vec3::Zero();
+  return bullet::fromBt(body->getVelocityInLocalPoint(p_W - body->getCenterOfMassPosition()));
 }
 
 }  // namespace
@@ -366,11 +379,16 @@ double Simulation::forceAcross_N(const Vec3& axis_W) const {
 
 void Simulation::contactMarks(std::vector<ContactMark>& marks) const {
   marks.clear();
-  forEachContact(world_->dispatcher, [&](const btManifoldPoint& point) {
-    if (point.getAppliedImpulse() <= 0) return;
-    marks.push_back({bullet::fromBt(point.getPositionWorldOnB()), bullet::fromBt(point.m_normalWorldOnB),
-                     std::max(0.0, -static_cast<double>(point.getDistance()))});
-  });
+  forEachContactOfPair(
+      world_->dispatcher, [&](const btManifoldPoint& point, const btPersistentManifold& pair) {
+        if (point.getAppliedImpulse() <= 0) return;
+        const btVector3& p_W = point.getPositionWorldOnB();
+        const Vec3 n_W = bullet::fromBt(point.m_normalWorldOnB);
+        const Vec3 v_W = velocityAt(*pair.getBody0(), p_W) - velocityAt(*pair.getBody1(), p_W);
+        marks.push_back({bullet::fromBt(p_W), n_W, std::max(0.0, -static_cast<double>(point.getDistance())),
+                         static_cast<double>(point.getAppliedImpulse()) / world_->dt_s,
+                         v_W - n_W * n_W.dot(v_W)});
+      });
 }
 
 std::size_t Simulation::contactsLeftOut() const {

@@ -16,7 +16,9 @@ struct WindowOptions {
   int width = 1280, height = 720;
   bool is_dark = false;
   bool runs = false;              ///< begins with a run of the procedure instead of the tour
+  std::string hand;               ///< kind of device that moves the part in a run; empty: the scene's
   double speed = 1;               ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
+  bool has_sound = true;          ///< of a run, where there is a sound card
   std::string record;             ///< file in which a run is recorded; empty: none
   std::string pictures = "view";  ///< saved pictures are PICTURES_1.png, ...
   scenes::ModelOptions models;    ///< of a run

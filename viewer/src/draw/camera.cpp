@@ -21,8 +21,14 @@ Pose Camera::pose() const {
 
 std::array<double, 2> Camera::project(const Vec3& p_W, int width, int height) const {
   const Vec3 p_C = pose().inverse() * p_W;
-  const double scale = 0.5 * height / (std::tan(0.5 * fov_rad) * -p_C.z());
-  return {0.5 * width + scale * p_C.x(), 0.5 * height - scale * p_C.y()};
+  const auto [half_x, half_y] = halfView(width, height);
+  const double x = (p_C.x() / -p_C.z() - shift_x) / half_x, y = (p_C.y() / -p_C.z() - shift_y) / half_y;
+  return {0.5 * width * (1 + x), 0.5 * height * (1 - y)};
+}
+
+std::array<double, 2> Camera::halfView(int width, int height) const {
+  const double half_y = std::tan(0.5 * fov_rad);
+  return {half_y * (aspect > 0 ? aspect : static_cast<double>(width) / height), half_y};
 }
 
 Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad, double aspect, double margin) {

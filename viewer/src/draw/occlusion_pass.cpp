@@ -26,6 +26,7 @@ void renderOcclusion(const Picture& picture) {
   const gl::Program& occlusion = picture.gl.programs.occlusion;
   occlusion.set("geometry", 0);
   occlusion.set("half_view", view.half_view);
+  occlusion.set("view_shift", view.shift);
   occlusion.set("radius_m", radius_m);
   occlusion.set("projection", view.projection);
   glBindTextureUnit(1, picture.gl.shadows.key.id());

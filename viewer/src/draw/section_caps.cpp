@@ -32,7 +32,8 @@ ScreenBox boxOnScreen(const DrawnBody& body, const View& view) {
       reaches_eye = true;
       continue;
     }
-    const Eigen::Array2d ndc = p_C.head<2>().array() / (-p_C.z() * view.half_view.cast<double>().array());
+    const Eigen::Array2d ndc = (p_C.head<2>().array() / -p_C.z() - view.shift.cast<double>().array()) /
+                               view.half_view.cast<double>().array();
     low = low.min(ndc);
     high = high.max(ndc);
   }

@@ -140,6 +140,7 @@ inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;
 uniform vec2 half_view;  // tan of half the angles of view
+uniform vec2 view_shift;  // of the picture's middle
 uniform float radius_m;
 uniform mat4 projection;
 uniform sampler2DShadow shadow_map;
@@ -161,7 +162,7 @@ void main() {
   vec4 g = texture(geometry, uv);
   reaching = vec2(1);
   if (g.w > -1e-9 || g.w < -1e8) return;
-  vec3 p = vec3((2.0 * uv - 1.0) * half_view * -g.w, g.w);
+  vec3 p = vec3(((2.0 * uv - 1.0) * half_view + view_shift) * -g.w, g.w);
   vec3 n = g.xyz;
   float lit = keyLight(p, n);
   p += n * radius_m * 0.03;

@@ -12,8 +12,11 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector2f;
 
-Matrix4f perspectiveProjection(const Vector2f& half_view, double near_m, double far_m) {
+Matrix4f perspectiveProjection(const Vector2f& half_view, const Vector2f& shift, double near_m,
+                               double far_m) {
   Matrix4f m = Matrix4f::Zero();
+  m(0, 2) = shift.x() / half_view.x();
+  m(1, 2) = shift.y() / half_view.y();
   m(0, 0) = 1 / half_view.x();
   m(1, 1) = 1 / half_view.y();
   m(2, 2) = static_cast<float>(-(far_m + near_m) / (far_m - near_m));
@@ -38,10 +41,11 @@ void setLens(View& view, const Camera& camera, const DrawOptions& options) {
   view.near_m = static_cast<float>(near_m);
   const double tan_y = std::tan(0.5 * camera.fov_rad);
   view.detail_m = std::min(view.radius_m, 1.5 * tan_y * (camera.eye_W - camera.target_W).norm());
-  view.half_view =
-      Vector2f(static_cast<float>(tan_y * options.width / options.height), static_cast<float>(tan_y));
+  const auto [half_x, half_y] = camera.halfView(options.width, options.height);
+  view.half_view = Vector2f(static_cast<float>(half_x), static_cast<float>(half_y));
+  view.shift = Vector2f(static_cast<float>(camera.shift_x), static_cast<float>(camera.shift_y));
   // The floor extends beyond the box, so the far plane lies further out than the box requires.
-  view.projection = perspectiveProjection(view.half_view, near_m, far_m + 3 * view.radius_m);
+  view.projection = perspectiveProjection(view.half_view, view.shift, near_m, far_m + 3 * view.radius_m);
 }
 
 void setFloor(View& view, const Box& box_W, const Camera& camera) {

@@ -13,7 +13,8 @@ inline const Eigen::Vector4f kNoCut(0, 0, 0, 1);
 struct View {
   Pose X_CW;
   Eigen::Matrix4f projection = Eigen::Matrix4f::Identity();
-  Eigen::Vector2f half_view;  ///< tan of half the angles of view
+  Eigen::Vector2f half_view;                        ///< tan of half the angles of view
+  Eigen::Vector2f shift = Eigen::Vector2f::Zero();  ///< of the picture's middle, likewise
   float near_m = 0;
   Eigen::Vector3f up_C;
   Vec3 center_C;

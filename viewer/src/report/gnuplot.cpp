@@ -1,83 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/gnuplot.h"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
-#include <sstream>
 
+#include "report/run_program.h"
 #include "vps/write_file.h"
-
-extern char** environ;
 
 namespace vps::viewer::inline v0 {
 namespace {
 
 constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install gnuplot-nox)";
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
-
-std::string contents(std::FILE* file) {
-  std::rewind(file);
-  std::string text;
-  char chunk[1024];
-  while (const std::size_t count = std::fread(chunk, 1, sizeof chunk, file)) text.append(chunk, count);
-  return text;
-}
-
 /// Runs gnuplot on a script. Returns nothing on success, and otherwise the reason of the failure.
 std::string run(const std::string& script) {
-  // Unnamed files instead of pipes: a full pipe could deadlock, and an early end of gnuplot would raise
-  // SIGPIPE.
-  const File input(std::tmpfile()), messages(std::tmpfile());
-  if (!input || !messages) return std::string("no temporary file: ") + std::strerror(errno);
-  if (std::fwrite(script.data(), 1, script.size(), input.get()) != script.size() ||
-      std::fflush(input.get()) != 0)
-    return std::string("no temporary file: ") + std::strerror(errno);
-  std::rewind(input.get());
-
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, fileno(input.get()), 0);
-  posix_spawn_file_actions_adddup2(&actions, fileno(messages.get()), 1);
-  posix_spawn_file_actions_adddup2(&actions, fileno(messages.get()), 2);
-  char name[] = "gnuplot";
-  char* arguments[] = {name, nullptr};
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, name, &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    return error == ENOENT ? kMissing : std::string("gnuplot cannot run: ") + std::strerror(error);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) return kMissing;
-  return "gnuplot failed: " + contents(messages.get()).substr(0, 400);
+  return runProgram({"gnuplot"}, script, kMissing);
 }
 
 }  // namespace
 
 bool hasGnuplot() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (::access((folder + "/gnuplot").c_str(), X_OK) == 0) return true;
-  return false;
+  return hasProgram("gnuplot");
 }
 
 namespace gnuplot {

@@ -23,8 +23,10 @@ Vec3 atTargetDepth(const Camera& camera, const PixelPlace& at, PictureSize size)
 }  // namespace
 
 Ray rayThrough(const Camera& camera, const PixelPlace& at, PictureSize size) {
-  const double scale = 2 * std::tan(0.5 * camera.fov_rad) / std::max(1, size.height);
-  const Vec3 d_C(scale * (at[0] - 0.5 * size.width), -scale * (at[1] - 0.5 * size.height), -1);
+  const int width = std::max(1, size.width), height = std::max(1, size.height);
+  const auto [half_x, half_y] = camera.halfView(width, height);
+  const Vec3 d_C(camera.shift_x + half_x * (2 * at[0] / width - 1),
+                 camera.shift_y - half_y * (2 * at[1] / height - 1), -1);
   const Pose X_WC = camera.pose();
   return {camera.eye_W, (X_WC.R * d_C).normalized()};
 }

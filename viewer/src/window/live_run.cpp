@@ -5,6 +5,7 @@
 #include <chrono>
 #include <utility>
 
+#include "vps_device/device_kinds.h"
 #include "vps_scenes/record.h"
 
 namespace vps::viewer::inline v0 {
@@ -16,12 +17,34 @@ double wallSeconds() {
 
 }  // namespace
 
+bool isByPerson(const std::string& kind) {
+  const device::DeviceKind* found = device::findDeviceKind(kind);
+  return found != nullptr && !found->isSimulated();
+}
+
 LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::function<void()> on_news)
     : scene_(std::move(scene)),
       on_news_(std::move(on_news)),
       speed_(settings.speed),
       is_paused_(settings.is_paused) {
+  if (!settings.hand.empty()) scene_.device.kind = settings.hand;
+  is_by_clock_ = isByPerson(scene_.device.kind);
+  if (is_by_clock_) {
+    is_paused_ = false;
+    for (scenes::SceneStep& step : scene_.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
+  }
+  if (settings.has_sound) {
+    std::string why;
+    if (std::unique_ptr<SoundOutput> output = openSoundOutput(SoundSettings{}.rate_hz, why))
+      sound_ = std::make_unique<LiveSound>(scene_, std::move(output));
+    if (!why.empty()) messages_.push_back(why);
+  }
   tap_.give = [this](scenes::Snapshot&& snapshot) {
+    if (sound_) {
+      sound_->hear(snapshot);
+      tap_.is_wanted = true;
+      if (!is_asked_.exchange(false)) return;
+    }
     {
       const std::lock_guard lock(mutex_);
       newest_ = std::move(snapshot);
@@ -42,6 +65,7 @@ LiveRun::~LiveRun() {
 }
 
 void LiveRun::pause(bool is_paused) {
+  if (is_by_clock_) return;
   {
     const std::lock_guard lock(mutex_);
     is_paused_ = is_paused;
@@ -57,15 +81,18 @@ bool LiveRun::isPaused() const {
 }
 
 void LiveRun::oneStep() {
+  if (is_by_clock_) return;
   {
     const std::lock_guard lock(mutex_);
     ++steps_allowed_;
   }
+  is_asked_ = true;
   tap_.is_wanted = true;
   wake_.notify_one();
 }
 
 void LiveRun::ask() {
+  is_asked_ = true;
   tap_.is_wanted = true;
 }
 
@@ -79,10 +106,29 @@ LiveStatus LiveRun::status() const {
   return status_;
 }
 
+void LiveRun::report(const device::DeviceEvent& event) {
+  if (sound_) sound_->beep(device::beepOf(event.kind));
+  std::string words = toText(event.kind);
+  if (const std::string remedy = remedyOf(event.kind); !remedy.empty()) words.append("; ").append(remedy);
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kMost = 50;
+  if (messages_.size() < kMost && (messages_.empty() || messages_.back() != words))
+    messages_.push_back(words);
+}
+
+std::vector<std::string> LiveRun::takeMessages() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> taken = std::exchange(messages_, {});
+  if (sound_)
+    if (std::string news = sound_->takeNews(); !news.empty()) taken.push_back(std::move(news));
+  return taken;
+}
+
 void LiveRun::keepTime(double time_s) {
   std::unique_lock lock(mutex_);
   status_.time_s = time_s;
   ++status_.steps;
+  if (is_by_clock_) return;
   if (is_paused_ && steps_allowed_ == 0) {
     wake_.wait(lock, [this] { return stop_ || !is_paused_ || steps_allowed_ > 0; });
     is_clock_set_ = false;
@@ -116,6 +162,9 @@ void LiveRun::run(const LiveSettings& settings) {
   };
   options.stop = &stop_;
   options.tap = &tap_;
+  options.on_device_event = [this](const device::DeviceEvent& event) { report(event); };
+  options.is_real_time = is_by_clock_;
+  options.wish = settings.wish;
   options.after_step = [this](double time_s) { keepTime(time_s); };
   options.on_step = [this](const scenes::AssembleResult& so_far) {
     const std::lock_guard lock(mutex_);

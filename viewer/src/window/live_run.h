@@ -5,12 +5,14 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "sound/live_sound.h"
 #include "vps_scenes/assemble.h"
 #include "vps_viewer/export.h"
 
@@ -21,7 +23,15 @@ struct LiveSettings {
   bool is_paused = false;       ///< begins paused
   double speed = 1;             ///< of simulated time by the clock; 0: as fast as it goes
   scenes::ModelOptions models;  ///< progress is replaced
+  std::string hand;             ///< kind of device that moves the part; empty: the scene's. See isByPerson()
+  std::shared_ptr<device::HandleWish> wish;  ///< of the mouse
+  bool has_sound = true;                     ///< where there is a sound card
 };
+
+/// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
+/// take kPersonTimeout_s at most.
+[[nodiscard]] VPS_VIEWER_API bool isByPerson(const std::string& kind);
+inline constexpr double kPersonTimeout_s = 600;  ///< assumed: longer than a person tries
 
 /// What is known of a run, for those who watch.
 struct LiveStatus {
@@ -35,7 +45,8 @@ struct LiveStatus {
   scenes::AssembleResult result;
 };
 
-/// Runs in simulated time, so that pausing, single steps, its speed, and being watched change no bit of it.
+/// With a virtual operator it runs in simulated time, so that pausing, single steps, its speed, and being
+/// watched change no bit of it. With a person it runs by the clock.
 class VPS_VIEWER_API LiveRun {
  public:
   /// @param scene    a copy of its own, whose models it builds
@@ -48,16 +59,20 @@ class VPS_VIEWER_API LiveRun {
 
   void pause(bool is_paused);
   [[nodiscard]] bool isPaused() const;
+  [[nodiscard]] bool isByClock() const { return is_by_clock_; }
   /// Of a paused run: one physics step.
   void oneStep();
   /// Asks for a snapshot at the end of the next physics step.
   void ask();
+  /// What the device and the sound card reported since the last call, in words.
+  [[nodiscard]] std::vector<std::string> takeMessages();
   /// The newest snapshot, once.
   [[nodiscard]] std::optional<scenes::Snapshot> take();
   [[nodiscard]] LiveStatus status() const;
 
  private:
   void run(const LiveSettings& settings);
+  void report(const device::DeviceEvent& event);
   /// On the run's thread, after each physics step: waits while paused, or ahead of the clock.
   void keepTime(double time_s);
 
@@ -68,9 +83,13 @@ class VPS_VIEWER_API LiveRun {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<scenes::Snapshot> newest_;
+  std::vector<std::string> messages_;
+  std::unique_ptr<LiveSound> sound_;   ///< null: silent
+  std::atomic<bool> is_asked_{false};  ///< a snapshot, by the window; with sound the run gives one each step
   LiveStatus status_;
   double speed_;
   bool is_paused_;
+  bool is_by_clock_ = false;
   int steps_allowed_ = 0;                  ///< while paused
   double clock_s_ = 0, clock_time_s_ = 0;  ///< wall and simulated time when it went on last
   bool is_clock_set_ = false;

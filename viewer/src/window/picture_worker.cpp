@@ -89,6 +89,11 @@ void PictureWorker::drawAll(Renderer& renderer) {
   using Clock = std::chrono::steady_clock;
   // A full picture takes the place of drafts for a second at most, so it waits until the view has rested.
   constexpr auto kRest = std::chrono::milliseconds(150);
+  // Drafts that take longer than a picture of a moving view may (20 a second) have fewer pixels. assumed: a
+  // third of them across still shows what moves where. Between the two times nothing changes.
+  constexpr double kSlowDraft_s = 0.05, kFastDraft_s = 0.015;
+  constexpr int kMostShrink = 3;
+  int shrink = 1;
   PictureRequest asked;
   bool has_draft = false;  // of `asked`, and it is not drawn in full yet
   for (;;) {
@@ -107,9 +112,17 @@ void PictureWorker::drawAll(Renderer& renderer) {
     DrawOptions options = asked.options;
     options.is_draft = is_draft;
     if (is_draft) options.supersampling = 1;
+    Camera camera = asked.camera;
+    if (is_draft && shrink > 1) {
+      camera.aspect = double(options.width) / options.height;  // the same view, although sizes are rounded
+      options.width = std::max(16, options.width / shrink);
+      options.height = std::max(16, options.height / shrink);
+    }
     const Clock::time_point begun = Clock::now();
-    Image image = renderer.render(asked.snapshot, asked.camera, options);
+    Image image = renderer.render(asked.snapshot, camera, options);
     const double wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    if (is_draft && wall_s > kSlowDraft_s && shrink < kMostShrink) ++shrink;
+    if (is_draft && wall_s < kFastDraft_s && shrink > 1) --shrink;
     {
       const std::lock_guard lock(mutex_);
       done_ = DrawnPicture{std::move(image), is_draft, wall_s};

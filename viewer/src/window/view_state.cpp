@@ -68,6 +68,7 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{Action::ToStart, "Home", "to the start"},
       KeyBinding{Action::ToEnd, "End", "to the end"},
       KeyBinding{Action::RunLive, "R", "runs the procedure, or goes back to the tour"},
+      KeyBinding{Action::TakeByMouse, "H", "takes the parts in hand by the mouse, or goes back to the tour"},
       KeyBinding{Action::OneStep, "N", "of a paused run: one physics step"},
       KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
       KeyBinding{Action::Deselect, "Escape", "deselects the part"},
@@ -76,12 +77,18 @@ std::span<const KeyBinding> keyBindings() {
 }
 
 std::span<const KeyBinding> mouseBindings() {
-  static constexpr std::array kMouse = {KeyBinding{Action::Help, "left drag", "orbits"},
-                                        KeyBinding{Action::Help, "middle or right drag", "pans"},
-                                        KeyBinding{Action::Help, "wheel", "zooms at the cursor"},
-                                        KeyBinding{Action::Help, "left click", "picks a part"},
-                                        KeyBinding{Action::Help, "Ctrl + left drag", "moves the section"},
-                                        KeyBinding{Action::Help, "Ctrl + right drag", "tilts the section"}};
+  static constexpr std::array kMouse = {
+      KeyBinding{Action::Help, "left drag", "orbits"},
+      KeyBinding{Action::Help, "middle or right drag", "pans"},
+      KeyBinding{Action::Help, "wheel", "zooms at the cursor"},
+      KeyBinding{Action::Help, "left click", "picks a part"},
+      KeyBinding{Action::Help, "Ctrl + left drag", "moves the section"},
+      KeyBinding{Action::Help, "Ctrl + right drag", "tilts the section"},
+      KeyBinding{Action::Help, "by hand, on the part in hand:", ""},
+      KeyBinding{Action::Help, "left drag", "moves it along the screen"},
+      KeyBinding{Action::Help, "Shift + left drag, wheel", "moves it in depth"},
+      KeyBinding{Action::Help, "right drag", "turns it"},
+      KeyBinding{Action::Help, "Shift + right drag", "turns it about the line of sight"}};
   return kMouse;
 }
 
@@ -152,6 +159,9 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::RunLive:
       state.wants_run = true;
+      break;
+    case Action::TakeByMouse:
+      state.wants_mouse = true;
       break;
     case Action::OneStep:
       state.wants_one_step = true;

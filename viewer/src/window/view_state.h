@@ -37,6 +37,7 @@ enum class Action {
   ToStart,
   ToEnd,
   RunLive,
+  TakeByMouse,
   OneStep,
   SavePicture,
   Deselect,
@@ -64,7 +65,8 @@ struct ViewState {
   double speed = 1;  ///< of playing, 1: real time
   bool shows_help = false, is_dark = false;
   // What the window carries out and clears.
-  bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false;
+  bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
+       wants_mouse = false;
 };
 
 /// @param box_W  around what is shown

@@ -53,6 +53,7 @@ class VPS_DEVICE_API SimulatedDualArm final : public SimulatedDevice {
   [[nodiscard]] const DualArmPlant& plant() const noexcept { return plant_; }
   [[nodiscard]] DualArmController& controller() noexcept { return controller_; }
   [[nodiscard]] DeviceEventQueue& events() noexcept { return events_; }
+  [[nodiscard]] DeviceEventQueue* ownEvents() noexcept override { return &events_; }
 
  private:
   DeviceEventQueue events_;

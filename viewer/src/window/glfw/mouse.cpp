@@ -26,26 +26,65 @@ void dragOnPicture(Session& session, const ImGuiIO& io) {
   }
 }
 
+void zoomAt(Session& session, const PixelPlace& at, float clicks) {
+  const double size_m = session.box_W().size().norm();
+  zoom(session.view.camera, std::pow(1.2, clicks), at, session.area.size, 1e-3 * size_m, 20 * size_m);
+}
+
+std::optional<PickedPlace> pickAt(const Session& session, const PixelPlace& at) {
+  return pick(session.drawn, session.placed, session.view.draw,
+              rayThrough(session.view.camera, at, session.area.size));
+}
+
+/// A press on the part in hand grabs it, and it stays grabbed until all buttons are up.
+void grabOrLetGo(Session& session, const ImGuiIO& io, const PixelPlace& at) {
+  const bool is_pressed =
+      ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  if (is_pressed && !io.KeyCtrl && !session.drag.isGrabbed() && session.view.explode == 0) {
+    const scenes::BodySnapshot* body = partInHand(session.shown);
+    const std::optional<PickedPlace> place = pickAt(session, at);
+    if (body != nullptr && place && place->part == body->part) session.drag.grab(place->p_W, session.shown);
+  }
+  const bool is_down =
+      ImGui::IsMouseDown(ImGuiMouseButton_Left) || ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  if (session.drag.isGrabbed() && !is_down) session.drag.letGo(session.shown);
+}
+
+void dragPart(Session& session, const ImGuiIO& io) {
+  const PixelPlace drag = {io.MouseDelta.x, io.MouseDelta.y};
+  const bool turns = ImGui::IsMouseDown(ImGuiMouseButton_Right);
+  const HandMotion motion = turns ? (io.KeyShift ? HandMotion::Twist : HandMotion::Turn)
+                                  : (io.KeyShift ? HandMotion::Depth : HandMotion::Across);
+  if (drag[0] != 0 || drag[1] != 0) session.drag.drag(session.view.camera, drag, session.area.size, motion);
+  constexpr double kWheelStep = 0.01;  // of the scene's size
+  if (io.MouseWheel != 0)
+    session.drag.pull(session.view.camera, kWheelStep * io.MouseWheel * session.box_W().size().norm());
+}
+
+/// A press and its release at one place, with nothing in between.
+bool isClick(const ImGuiIO& io) {
+  constexpr float kClick_px = 3;  // a press that moved farther is a drag, also where it came back
+  return ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.KeyCtrl &&
+         io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px;
+}
+
 }  // namespace
 
 void useMouse(Session& session) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantCaptureMouse || session.area.size.width <= 0) return;
   const PixelPlace at = {io.MousePos.x - session.area.x, io.MousePos.y - session.area.y};
-  dragOnPicture(session, io);
-  if (io.MouseWheel != 0) {
-    const double size_m = session.box_W().size().norm();
-    zoom(session.view.camera, std::pow(1.2, io.MouseWheel), at, session.area.size, 1e-3 * size_m,
-         20 * size_m);
+  if (session.drag.isGrabbed()) {  // also over the panels
+    dragPart(session, io);
+    return grabOrLetGo(session, io, at);
   }
-  constexpr float kClick_px = 3;  // a press that moves farther is a drag
-  const bool is_click = ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
-                        ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0).x == 0 &&
-                        std::hypot(io.MousePos.x - io.MouseClickedPos[0].x,
-                                   io.MousePos.y - io.MouseClickedPos[0].y) < kClick_px;
-  if (is_click && !io.KeyCtrl)
-    session.view.picked = pick(session.drawn, session.placed, session.view.draw,
-                               rayThrough(session.view.camera, at, session.area.size));
+  if (io.WantCaptureMouse || session.area.size.width <= 0) return;
+  if (session.isByMouse()) {
+    grabOrLetGo(session, io, at);
+    if (session.drag.isGrabbed()) return;
+  }
+  dragOnPicture(session, io);
+  if (io.MouseWheel != 0) zoomAt(session, at, io.MouseWheel);
+  if (isClick(io)) session.view.picked = pickAt(session, at);
 }
 
 }  // namespace vps::viewer::inline v0

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "vps_device/device_kinds.h"
 #include "vps_viewer/verdict_words.h"
 #include "window/glfw/session.h"
 #include "window/section_drag.h"
@@ -94,6 +95,22 @@ void drawTicks(const char* name, const scenes::TickTimes& times) {
   ImGui::Text("  longest %.0f µs, %llu missed", times.max_us, static_cast<unsigned long long>(times.missed));
 }
 
+/// The kinds of device by which a run is made.
+void drawHands(Session& session) {
+  if (!ImGui::BeginCombo("hand", session.hand.c_str())) return;
+  for (const device::DeviceKind& kind : device::deviceKinds()) {
+    const bool is_chosen = session.hand == kind.name;
+    if (ImGui::Selectable(kind.name.data(), is_chosen)) session.hand = kind.name;
+    if (ImGui::IsItemHovered()) {
+      const std::string missing = kind.missing();
+      const std::string words = std::string(kind.description) +
+                                (missing.empty() ? "" : "\n" + missing + "; " + std::string(kind.remedy));
+      ImGui::SetTooltip("%s", words.c_str());
+    }
+  }
+  ImGui::EndCombo();
+}
+
 void drawRun(Session& session) {
   if (!ImGui::CollapsingHeader("Run", ImGuiTreeNodeFlags_DefaultOpen)) return;
   if (!session.run) {
@@ -101,6 +118,7 @@ void drawRun(Session& session) {
       ImGui::TextDisabled("a recording");
       return;
     }
+    drawHands(session);
     session.view.wants_run |= ImGui::Button("run the procedure");
     return;
   }
@@ -116,13 +134,17 @@ void drawRun(Session& session) {
   wrapped(status.doing);
   ImGui::ProgressBar(static_cast<float>(status.share), ImVec2(-1, 0));
   ImGui::Text("%.3f s, %zu physics steps", status.time_s, status.steps);
-  if (ImGui::Button(session.run->isPaused() ? "go on" : "pause"))
-    session.run->pause(!session.run->isPaused());
-  if (session.run->isPaused()) {
+  if (session.run->isByClock()) {
+    ImGui::TextDisabled("by the clock, with %s", session.run_hand.c_str());
+  } else {
+    if (ImGui::Button(session.run->isPaused() ? "go on" : "pause"))
+      session.run->pause(!session.run->isPaused());
+    if (session.run->isPaused()) {
+      ImGui::SameLine();
+      session.view.wants_one_step |= ImGui::Button("one step");
+    }
     ImGui::SameLine();
-    session.view.wants_one_step |= ImGui::Button("one step");
   }
-  ImGui::SameLine();
   session.view.wants_run |= ImGui::Button("stop");
 }
 

@@ -42,10 +42,14 @@ void startOrStopRun(Session& session, GlfwWindow& window) {
     session.view.time_s = 0;
     return;
   }
+  session.drag = HandDrag(session.scene.device.scale);
   LiveSettings settings;
   settings.record = session.options.record;
   settings.speed = session.options.speed;
   settings.models = session.options.models;
+  settings.hand = session.run_hand = session.hand;
+  settings.wish = session.drag.wish();
+  settings.has_sound = session.options.has_sound;
   session.view.is_playing = false;
   session.run_line = {};
   session.run_line.chapters = {{"before the first step", 0, ""}};
@@ -76,11 +80,13 @@ void addToCurves(Session& session, const scenes::Snapshot& shot) {
 
 void followRun(Session& session) {
   session.status = session.run->status();
+  for (const std::string& words : session.run->takeMessages()) session.say(words);
   for (std::size_t i = 0; i < session.status.result.steps.size(); ++i)
     if (i + 1 < session.run_line.chapters.size())
       session.run_line.chapters[i + 1].verdict = words(session.status.result.steps[i].verdict);
   if (std::optional<scenes::Snapshot> shot = session.run->take()) {
     if (!session.status.is_over) addToCurves(session, *shot);
+    session.drag.watch(*shot);
     session.shown = std::move(*shot);
     session.run->ask();
   }
@@ -130,6 +136,7 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
                                               session.area.y + static_cast<float>(session.area.size.height)});
+  drawHandMarks(session);
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
   window.present();
@@ -142,6 +149,11 @@ void carryOut(Session& session, GlfwWindow& window) {
       session.say("a recording is not run; vps replay does");
     else
       startOrStopRun(session, window);
+  }
+  if (std::exchange(view.wants_mouse, false)) {
+    session.hand = "mouse";
+    view.wants_run = true;
+    return carryOut(session, window);
   }
   if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
 }

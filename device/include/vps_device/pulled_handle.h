@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A handle that exists only in the program: a spring pulls it to where a cursor is, in six degrees of
+// freedom.
+#pragma once
+
+#include <memory>
+
+#include "vps/triple_buffer.h"
+#include "vps_device/device.h"
+#include "vps_device/export.h"
+
+namespace vps::device::inline v0 {
+
+/// Where a cursor wants the handle, as one thread says and another reads. Neither waits.
+using HandleWish = TripleBuffer<Pose>;  ///< X_DH
+
+struct PulledHandleSettings {
+  double k_N_per_m = 3000;   ///< of the spring. assumed: 3 mm for its greatest force
+  double k_Nm_per_rad = 25;  ///< assumed: 2 degrees for its greatest torque
+  double b_Ns_per_m = 30;    ///< of the handle in its surroundings. assumed: 0.33 m/s at the greatest force
+  double b_Nms_per_rad = 0.25;  ///< assumed: 4 rad/s at the greatest torque
+  double force_N = 10;    ///< greatest pull. assumed: between the virtual operator's press and its limit
+  double torque_Nm = 1;   ///< greatest turn of the spring. assumed: the dual arm's continuous torque
+  double rate_hz = 1000;  ///< of the loop that reads
+};
+
+/// The handle has no inertia. Damped by its surroundings it moves under the spring and under the force on the
+/// hand:  b v = pull + f,  pull = k (p_wish - p), limited. So it stands still where a part meets a wall, and
+/// the pull is what the hand exerts. Deterministic: same calls, same bits. Nothing allocates.
+class VPS_DEVICE_API PulledHandle {
+ public:
+  explicit PulledHandle(const PulledHandleSettings& settings = {}) : settings_(settings) {}
+
+  /// The handle at time now_s, after the force on the hand since the last call was F_Ho_D. Without progress
+  /// of time it does not move; a gap counts as at most 20 ms. What is not finite counts as none.
+  const DeviceSample& step(const Pose& X_DH_wish, const Wrench& F_Ho_D, double now_s) noexcept;
+  [[nodiscard]] DeviceLimits limits() const noexcept;
+
+ private:
+  PulledHandleSettings settings_;
+  DeviceSample sample_;
+  bool has_time_ = false;
+};
+
+/// The mouse as a device: a PulledHandle by the clock, which a window's thread pulls through `wish`.
+VPS_DEVICE_API std::unique_ptr<Device> openMouse(std::shared_ptr<HandleWish> wish,
+                                                 const PulledHandleSettings& settings = {});
+
+}  // namespace vps::device::inline v0

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "haptics/hand_command.h"
+
+namespace vps::scenes::inline v0 {
+
+void prepare(Hand& hand, const HandCommand& command) {
+  if (command.what == device::SyncEventKind::Begin) hand.prepare(command.task, command.step, command.now_s);
+}
+
+void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) noexcept {
+  switch (command.what) {
+    case device::SyncEventKind::Begin:
+      return hand.begin();
+    case device::SyncEventKind::GoBack:
+      return hand.goBack(command.step);
+    case device::SyncEventKind::Recentre:
+      return hand.recentre();
+    case device::SyncEventKind::GoOn:
+      return hand.goOn();
+    case device::SyncEventKind::HandOver:
+      return loop.handOver(command.X_WG);
+    case device::SyncEventKind::OpenClutch:
+      return loop.disengage();
+    case device::SyncEventKind::CloseClutch:
+      return loop.engage();
+    case device::SyncEventKind::LetGo:
+      return loop.release();
+    case device::SyncEventKind::Rearm:
+      return loop.rearm();
+    case device::SyncEventKind::Tick:
+    case device::SyncEventKind::Step:
+    case device::SyncEventKind::Settled:
+    case device::SyncEventKind::Paused:
+      return;
+  }
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "network/clock_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::int64_t kSpan_ns = 250'000'000;  // of which the shortest round trip is kept
+constexpr double kMostDrift = 1e-3;             // assumed: ten times what a bad quartz has
+constexpr int kStep = 20;  // this many contradictions in a row: the clock there was set, so begin anew
+
+double between_s(std::int64_t from_ns, std::int64_t to_ns) {
+  return 1e-9 * static_cast<double>(to_ns - from_ns);
+}
+
+}  // namespace
+
+void ClockEstimate::add(const ClockExchange& exchange) noexcept {
+  const Point now{exchange.t3_ns, exchange.offset_s(), exchange.roundTrip_s()};
+  bool contradicts = !(now.round_trip_s >= 0);
+  if (kept_ > 0 && !contradicts) {
+    const Point& last = point(0);
+    const double may_differ_s = 0.5 * (now.round_trip_s + last.round_trip_s) +
+                                kMostDrift * std::abs(between_s(last.here_ns, now.here_ns));
+    contradicts = std::abs(now.offset_s - last.offset_s) > may_differ_s;
+  }
+  if (contradicts) {
+    ++contradictions_;
+    if (++contradictions_in_a_row_ >= kStep) kept_ = 0;
+    return;
+  }
+  contradictions_in_a_row_ = 0;
+  const bool is_same_span = kept_ > 0 && point(0).here_ns / kSpan_ns == now.here_ns / kSpan_ns;
+  if (is_same_span) {
+    if (now.round_trip_s <= point(0).round_trip_s) points_[newest_] = now;
+    return;
+  }
+  newest_ = (newest_ + 1) % kPoints;
+  points_[newest_] = now;
+  kept_ = std::min(kept_ + 1, kPoints);
+}
+
+// Least squares through the kept points; with a single one the drift is not known and taken as none.
+double ClockEstimate::drift() const noexcept {
+  if (kept_ < 2) return 0;
+  double t_mean = 0, o_mean = 0;
+  const std::int64_t zero_ns = point(0).here_ns;
+  const auto count = static_cast<double>(kept_);
+  for (std::size_t i = 0; i < kept_; ++i) {
+    t_mean += between_s(zero_ns, point(i).here_ns) / count;
+    o_mean += (point(i).offset_s - point(0).offset_s) / count;
+  }
+  double both = 0, square = 0;
+  for (std::size_t i = 0; i < kept_; ++i) {
+    const double t_s = between_s(zero_ns, point(i).here_ns) - t_mean;
+    both += t_s * (point(i).offset_s - point(0).offset_s - o_mean);
+    square += t_s * t_s;
+  }
+  return square > 0 ? std::clamp(both / square, -kMostDrift, kMostDrift) : 0;
+}
+
+double ClockEstimate::offset_s(std::int64_t here_ns) const noexcept {
+  if (kept_ == 0) return 0;
+  const double rate = drift();
+  double mean_s = 0;
+  for (std::size_t i = 0; i < kept_; ++i)
+    mean_s += (point(i).offset_s + rate * between_s(point(i).here_ns, here_ns)) / static_cast<double>(kept_);
+  return mean_s;
+}
+
+double ClockEstimate::error_s() const noexcept {
+  double worst_s = 0;
+  for (std::size_t i = 0; i < kept_; ++i) worst_s = std::max(worst_s, 0.5 * point(i).round_trip_s);
+  return worst_s;
+}
+
+}  // namespace vps::scenes::inline v0

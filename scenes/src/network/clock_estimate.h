@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Offset and drift of another machine's clock, from messages that go there and back.
+//
+//   here   t0 ----------------------- t3      offset = ((t1 - t0) + (t2 - t3)) / 2
+//               \                   /         error  <= half of the round trip (t3 - t0) - (t2 - t1)
+//   there        t1 ----------- t2
+//
+// The error is greatest where one way took all of the time, so exchanges with a short round trip are worth
+// most: of each quarter of a second only the shortest is kept. Source: [Mills 1991], clock filter.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace vps::scenes::inline v0 {
+
+/// The four times of an exchange [ns], t0 and t3 by the clock here, t1 and t2 by the one there.
+struct ClockExchange {
+  std::int64_t t0_ns = 0, t1_ns = 0, t2_ns = 0, t3_ns = 0;
+
+  [[nodiscard]] double roundTrip_s() const noexcept {
+    return 1e-9 * static_cast<double>((t3_ns - t0_ns) - (t2_ns - t1_ns));
+  }
+  [[nodiscard]] double offset_s() const noexcept {
+    return 0.5e-9 * static_cast<double>((t1_ns - t0_ns) + (t2_ns - t3_ns));
+  }
+};
+
+/// Used by one thread. Never allocates.
+class ClockEstimate {
+ public:
+  /// Takes an exchange in order of its t3. One whose round trip is negative, or whose clock is farther off
+  /// than any drift explains, is not used but counted.
+  void add(const ClockExchange& exchange) noexcept;
+
+  [[nodiscard]] bool isKnown() const noexcept { return kept_ > 0; }
+  /// What the clock there is ahead at that time by the clock here.
+  [[nodiscard]] double offset_s(std::int64_t here_ns) const noexcept;
+  /// Bound of its error at the last exchange, if the clock there does not lie.
+  [[nodiscard]] double error_s() const noexcept;
+  /// Rate of the clock there against the one here, less 1.
+  [[nodiscard]] double drift() const noexcept;
+  /// Exchanges that contradict the ones before.
+  [[nodiscard]] std::uint64_t contradictions() const noexcept { return contradictions_; }
+
+ private:
+  struct Point {
+    std::int64_t here_ns = 0;
+    double offset_s = 0, round_trip_s = 0;
+  };
+  static constexpr std::size_t kPoints = 16;  ///< 4 s
+
+  [[nodiscard]] const Point& point(std::size_t age) const noexcept {
+    return points_[(newest_ + kPoints - age) % kPoints];
+  }
+
+  std::array<Point, kPoints> points_{};
+  std::size_t newest_ = 0, kept_ = 0;
+  std::uint64_t contradictions_ = 0;
+  int contradictions_in_a_row_ = 0;
+};
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The link over UDP. The threads of a node use rings of their own process, as in shared memory; a thread of
+// the link passes them to DDS, and threads of DDS fill them. So no haptic thread calls DDS, which locks and
+// allocates.
+#include <semaphore.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "network/clock_estimate.h"
+#include "network/dds/topics.h"
+#include "network/link.h"
+#include "network/messages.h"
+#include "vps/load_error.h"
+#include "vps_device/detail/bytes.h"
+#include "vps_device/metronome.h"
+#include "vps_device/periodic_thread.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::int64_t kBeat_ns = 5'000'000;
+constexpr double kAlive_s = 0.1;  ///< a node whose last beat is older is lost
+constexpr double kFind_s = 1;     ///< for a session to be found
+constexpr int kPriority = 75;     // assumed: below the haptic loop's 80, above physics' 70
+constexpr std::size_t kTrips = 64;
+constexpr std::size_t kSceneHead = 16;
+
+std::int64_t now_ns() {
+  return device::monotonicClock().now_ns();
+}
+double since_s(std::int64_t ns) {
+  return 1e-9 * static_cast<double>(now_ns() - ns);
+}
+
+Delivery deliveryOf(Channel channel) {
+  return isState(channel) ? Delivery::Newest : Delivery::Reliable;
+}
+const char* nameOf(Channel channel) {
+  constexpr std::array<const char*, kChannels> kNames = {"haptic", "physics", "snapshot", "request",
+                                                         "reply",  "log",     "news"};
+  return kNames[static_cast<std::size_t>(channel)];
+}
+
+/// What is known of another node.
+struct Peer {
+  NodeRole role = NodeRole::Watch;
+  std::uint64_t session = 0;
+  bool has_ended = false;
+  std::int64_t sent_ns = 0;   ///< its last beat, by its clock
+  std::int64_t heard_ns = 0;  ///< and by ours
+  ClockEstimate clock;
+  std::vector<double> trips_s;  ///< the last ones
+  std::size_t next_trip = 0;
+};
+
+class DdsLink final : public Link {
+ public:
+  DdsLink(const std::string& session, NodeRole role, const std::string& interface)
+      : role_(role), writer_(newSender()), participant_(interface) {
+    sem_init(&wake_, 0, 0);
+    std::string prefix = "vps/" + session + "/";
+    std::replace(prefix.begin(), prefix.end(), '-', '/');  // names of topics have no -
+    beats_in_.emplace(participant_, prefix + "beat", Delivery::Newest,
+                      [this](std::string_view bytes) { takeBeat(bytes); });
+    beats_out_.emplace(participant_, prefix + "beat", Delivery::Newest, nullptr);
+    for (std::size_t i = 0; i < kChannels; ++i) addChannel(static_cast<Channel>(i), prefix);
+    if (role != NodeRole::Render)
+      scene_.emplace(participant_, prefix + "scene", Delivery::Kept, [this](std::string_view bytes) {
+        const std::lock_guard lock(mutex_);
+        scenes_[device::ByteReader(bytes).get<std::uint64_t>()] = bytes;
+      });
+    else
+      scene_.emplace(participant_, prefix + "scene", Delivery::Kept, nullptr);
+  }
+  ~DdsLink() override {
+    if (pump_.joinable()) {
+      is_ending_ = true;
+      sem_post(&wake_);
+      pump_.join();
+    }
+    beats_in_.reset();  // no thread of DDS calls this object any more
+    scene_.reset();
+    for (std::optional<DdsTopic>& topic : topics_) topic.reset();
+    sem_destroy(&wake_);
+  }
+
+  /// Opens a session of one's own.
+  void open(std::string_view scene_bytes) {
+    session_ = writer_.sender();
+    std::string bytes;
+    device::ByteWriter w(bytes);
+    w.put(session_.load());
+    w.put(std::uint64_t{kMessageVersion});
+    w.bytes(scene_bytes);
+    scene_->write(bytes);
+  }
+  void start() {
+    pump_ = std::thread([this] { pump(); });
+  }
+  /// Waits for a render node. False: there is none, or its scene has not come.
+  bool find() {
+    for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < kFind_s;) {
+      {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [sender, peer] : peers_)
+          if (peer.role == NodeRole::Render && !peer.has_ended && scenes_.contains(peer.session))
+            session_ = peer.session;
+      }
+      if (session_ != 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+
+  bool send(Channel channel, std::string_view message) noexcept override {
+    const bool is_sent = writers_[static_cast<std::size_t>(channel)].write(message);
+    sem_post(&wake_);  // does not wait
+    return is_sent;
+  }
+  std::string_view receive(Channel channel, std::span<char> buffer) noexcept override {
+    RingReader& reader = readers_[static_cast<std::size_t>(channel)];
+    return isState(channel) ? reader.latest(buffer) : reader.next(buffer);
+  }
+  [[nodiscard]] std::uint64_t lost(Channel channel) const noexcept override {
+    return readers_[static_cast<std::size_t>(channel)].lost();
+  }
+  [[nodiscard]] bool isAlive(NodeRole role) const override {
+    const std::lock_guard lock(mutex_);
+    return std::any_of(peers_.begin(), peers_.end(), [&](const auto& entry) {
+      const Peer& peer = entry.second;
+      return peer.role == role && peer.session == session_ && !peer.has_ended &&
+             since_s(peer.heard_ns) < kAlive_s;
+    });
+  }
+  [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
+  [[nodiscard]] bool hasEnded() const override {
+    const std::lock_guard lock(mutex_);
+    return std::any_of(peers_.begin(), peers_.end(), [&](const auto& entry) {
+      return entry.second.role == NodeRole::Render && entry.second.session == session_ &&
+             entry.second.has_ended;
+    });
+  }
+  [[nodiscard]] std::optional<PeerTiming> timing(NodeRole role) const override;
+  [[nodiscard]] std::string sceneBytes() const override {
+    const std::lock_guard lock(mutex_);
+    const auto found = scenes_.find(session_);
+    if (found == scenes_.end() || found->second.size() < kSceneHead) return {};
+    return found->second.substr(kSceneHead);
+  }
+  [[nodiscard]] bool isSameVersion() const {
+    const std::lock_guard lock(mutex_);
+    const auto found = scenes_.find(session_);
+    if (found == scenes_.end() || found->second.size() < kSceneHead) return false;
+    return device::ByteReader(std::string_view(found->second).substr(8)).get<std::uint64_t>() ==
+           kMessageVersion;
+  }
+
+ private:
+  void addChannel(Channel channel, const std::string& prefix) {
+    const auto i = static_cast<std::size_t>(channel);
+    rings_[i] = std::make_unique<SharedWord[]>(kChannelShapes[i].words());
+    SharedWord* ring = rings_[i].get();
+    writers_[i] = RingWriter(ring, kChannelShapes[i]);
+    readers_[i] = RingReader(ring, kChannelShapes[i]);
+    const bool is_out = writerOf(channel) == role_;
+    std::function<void(std::string_view)> receive;
+    if (!is_out) receive = [this, i](std::string_view bytes) { writers_[i].write(bytes); };
+    topics_[i].emplace(participant_, prefix + nameOf(channel), deliveryOf(channel), std::move(receive));
+  }
+  void pump();
+  void passOn();
+  void sendBeats();
+  void takeBeat(std::string_view bytes);
+
+  NodeRole role_;
+  MessageWriter writer_;  ///< of beats
+  DdsParticipant participant_;
+  std::array<std::unique_ptr<SharedWord[]>, kChannels> rings_;
+  std::array<RingWriter, kChannels> writers_;
+  std::array<RingReader, kChannels> readers_;
+  std::atomic<std::uint64_t> session_{0};
+  mutable std::mutex mutex_;  ///< of what follows; no haptic thread takes it
+  std::map<std::uint64_t, Peer> peers_;
+  std::map<std::uint64_t, std::string> scenes_;
+  std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
+  sem_t wake_{};
+  std::atomic<bool> is_ending_{false};
+  // After all that threads of DDS use.
+  std::array<std::optional<DdsTopic>, kChannels> topics_;
+  std::optional<DdsTopic> beats_in_, beats_out_, scene_;
+  std::thread pump_;
+};
+
+std::optional<PeerTiming> DdsLink::timing(NodeRole role) const {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [sender, peer] : peers_) {
+    if (peer.role != role || peer.session != session_ || peer.trips_s.size() < kTrips / 4) continue;
+    return PeerTiming{*std::max_element(peer.trips_s.begin(), peer.trips_s.end()),
+                      peer.clock.offset_s(now_ns()), peer.clock.error_s(), peer.clock.drift(),
+                      peer.clock.contradictions()};
+  }
+  return {};
+}
+
+void DdsLink::pump() {
+  device::requestRealTime(kPriority, false);
+  std::int64_t next_beat_ns = now_ns();
+  while (!is_ending_) {
+    passOn();
+    if (now_ns() >= next_beat_ns) {
+      sendBeats();
+      next_beat_ns = now_ns() + kBeat_ns;
+    }
+    timespec until{};
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += kBeat_ns;
+    if (until.tv_nsec >= 1'000'000'000) {
+      until.tv_nsec -= 1'000'000'000;
+      ++until.tv_sec;
+    }
+    sem_timedwait(&wake_, &until);
+    while (sem_trywait(&wake_) == 0) {
+    }
+  }
+  passOn();
+  for (int i = 0; i < 3; ++i) sendBeats();  // best effort: that one of them arrives
+}
+
+void DdsLink::passOn() {
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    if (writerOf(channel) != role_) continue;
+    while (true) {
+      const std::string_view bytes = receive(channel, buffer_);
+      if (bytes.empty()) break;
+      topics_[i]->write(bytes);
+    }
+  }
+}
+
+void DdsLink::sendBeats() {
+  std::vector<BeatMessage> beats;
+  {
+    const std::lock_guard lock(mutex_);
+    BeatMessage beat{role_, session_, is_ending_ && role_ == NodeRole::Render, 0, 0, 0};
+    for (auto& [sender, peer] : peers_) {
+      if (since_s(peer.heard_ns) > kAlive_s || peer.sent_ns == 0) continue;
+      beat.peer = sender;
+      beat.peer_sent_ns = peer.sent_ns;
+      beat.received_ns = peer.heard_ns;
+      beats.push_back(beat);
+    }
+    if (beats.empty()) beats.push_back(beat);
+  }
+  for (const BeatMessage& beat : beats) beats_out_->write(writer_.write(beat));
+}
+
+void DdsLink::takeBeat(std::string_view bytes) {
+  const std::int64_t heard_ns = now_ns();
+  MessageReader reader;
+  BeatMessage beat;
+  if (reader.read(bytes, beat) != Reading::Good) return;
+  const Envelope& envelope = reader.envelope();
+  if (envelope.sender == writer_.sender()) return;  // one's own
+  const std::lock_guard lock(mutex_);
+  constexpr std::size_t kMostPeers = 64;  // a flood of senders takes no more memory than this
+  if (!peers_.contains(envelope.sender) && peers_.size() >= kMostPeers)
+    std::erase_if(peers_, [](const auto& entry) { return since_s(entry.second.heard_ns) > kAlive_s; });
+  if (!peers_.contains(envelope.sender) && peers_.size() >= kMostPeers) return;
+  Peer& peer = peers_[envelope.sender];
+  peer.role = beat.role;
+  peer.session = beat.session;
+  peer.has_ended = peer.has_ended || beat.has_ended;
+  peer.sent_ns = envelope.time_ns;
+  peer.heard_ns = heard_ns;
+  if (beat.peer != writer_.sender()) return;
+  const ClockExchange exchange{beat.peer_sent_ns, beat.received_ns, envelope.time_ns, heard_ns};
+  peer.clock.add(exchange);
+  if (peer.trips_s.size() < kTrips)
+    peer.trips_s.push_back(exchange.roundTrip_s());
+  else
+    peer.trips_s[peer.next_trip++ % kTrips] = exchange.roundTrip_s();
+}
+
+}  // namespace
+
+std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string_view scene_bytes,
+                                         const std::string& interface) {
+  requireSessionName(session);
+  {
+    DdsLink other(session, NodeRole::Watch, interface);
+    other.start();
+    if (other.find() && other.isAlive(NodeRole::Render))
+      throw LoadError("", "",
+                      sessionWords(session) + ": another vps render runs it; choose another --session");
+  }
+  auto link = std::make_unique<DdsLink>(session, NodeRole::Render, interface);
+  link->open(scene_bytes);
+  link->start();
+  return link;
+}
+
+std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
+                                         const std::string& interface) {
+  requireSessionName(session);
+  auto link = std::make_unique<DdsLink>(session, role, interface);
+  link->start();
+  if (!link->find()) return nullptr;
+  if (!link->isSameVersion())
+    throw LoadError("", "",
+                    sessionWords(session) +
+                        " is run by another version of vps render; use the same version for all nodes");
+  if (role == NodeRole::Device && link->isAlive(NodeRole::Device))
+    throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
+  return link;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// In place of dds_link.cpp where Cyclone DDS is missing.
+#include "network/link.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+[[noreturn]] void refuseNetwork() {
+  throw LoadError("", "",
+                  "this build has no network, only shared memory; leave out --network, or build with Cyclone "
+                  "DDS (Debian: cyclonedds-dev)");
+}
+
+}  // namespace
+
+std::unique_ptr<Link> makeNetworkSession(const std::string&, std::string_view, const std::string&) {
+  refuseNetwork();
+}
+std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const std::string&) {
+  refuseNetwork();
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "network/dds/topics.h"
+
+#include <cctype>
+#include <cstddef>
+#include <map>
+#include <mutex>
+
+#include "vps/load_error.h"
+#include "vps_device/periodic_thread.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// struct Message { sequence<octet> bytes; }, as DDS lays it out.
+struct Message {
+  dds_sequence_t bytes;
+};
+constexpr std::uint32_t code(unsigned a, unsigned b, unsigned c) {
+  return a | b | c;
+}
+constexpr std::uint32_t kOperations[] = {code(DDS_OP_ADR, DDS_OP_TYPE_SEQ, DDS_OP_SUBTYPE_1BY),
+                                         offsetof(Message, bytes), DDS_OP_RTS};
+constexpr dds_topic_descriptor_t kType = {.m_size = sizeof(Message),
+                                          .m_align = alignof(Message),
+                                          .m_flagset = 0,
+                                          .m_nkeys = 0,
+                                          .m_typename = "vps_node::Message",
+                                          .m_keys = nullptr,
+                                          .m_nops = 2,
+                                          .m_ops = kOperations,
+                                          .m_meta = "",
+                                          .type_information = {},
+                                          .type_mapping = {},
+                                          .restrict_data_representation = 0};
+
+void require(dds_return_t result, const char* what) {
+  if (result >= 0) return;
+  throw LoadError("", "",
+                  std::string("the network: ").append(what).append(": ").append(dds_strretcode(-result)));
+}
+
+bool isLoopback(const std::string& interface) {
+  return interface == "lo";
+}
+
+/// A thread of DDS that receives gets priority, where the system allows it.
+void raiseThisThread() {
+  constexpr int kPriority = 76;  // below the haptic loop's 80, above the threads that use what came
+  thread_local bool has_asked = false;
+  if (!has_asked) device::requestRealTime(kPriority, false);
+  has_asked = true;
+}
+
+/// One domain for each interface and process; a domain cannot be made twice.
+dds_domainid_t domainOf(const std::string& interface) {
+  static std::mutex mutex;
+  static std::map<std::string, dds_domainid_t> domains;
+  const std::lock_guard lock(mutex);
+  const auto found = domains.find(interface);
+  if (found != domains.end()) return found->second;
+  for (const char c : interface)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != ':' && c != '-' && c != '_')
+      throw LoadError("", "", "--network " + interface + " names no network interface; `ip link` lists them");
+  // Loopback has no multicast, so the participants look for each other at the ports of the first few.
+  const std::string find =
+      isLoopback(interface)
+          ? "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
+            "</ParticipantIndex><MaxAutoParticipantIndex>16</MaxAutoParticipantIndex><Peers><Peer "
+            "Address=\"127.0.0.1\"/></Peers></Discovery>"
+          : "</General>";
+  const std::string settings =
+      "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"" + interface +
+      "\"/></Interfaces>" + find + "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>";
+  // Domains of different interfaces are apart on one machine; on the wire all have the same ports as domain 0
+  // of their interface would have.
+  const dds_domainid_t domain = isLoopback(interface) ? 77 : 78;
+  require(dds_create_domain(domain, settings.c_str()), ("interface " + interface).c_str());
+  domains[interface] = domain;
+  return domain;
+}
+
+struct Qos {
+  explicit Qos(Delivery delivery) {
+    if (delivery == Delivery::Newest) {
+      dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+      dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);  // until a thread of DDS has taken them
+    } else {
+      dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+      dds_qset_history(qos, delivery == Delivery::Kept ? DDS_HISTORY_KEEP_LAST : DDS_HISTORY_KEEP_ALL, 1);
+    }
+    dds_qset_durability(
+        qos, delivery == Delivery::Kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+  }
+  ~Qos() { dds_delete_qos(qos); }
+  Qos(const Qos&) = delete;
+  Qos& operator=(const Qos&) = delete;
+  dds_qos_t* qos = dds_create_qos();
+};
+
+}  // namespace
+
+DdsParticipant::DdsParticipant(const std::string& interface)
+    : entity_(dds_create_participant(domainOf(interface), nullptr, nullptr)) {
+  require(entity_, ("interface " + interface).c_str());
+}
+
+DdsParticipant::~DdsParticipant() {
+  dds_delete(entity_);
+}
+
+struct DdsTopic::Work {
+  static void onData(dds_entity_t reader, void* self) { static_cast<Work*>(self)->take(reader); }
+  void take(dds_entity_t reader) {
+    raiseThisThread();
+    const std::lock_guard lock(mutex);
+    for (;;) {
+      void* sample = nullptr;
+      dds_sample_info_t info{};
+      const dds_return_t count = dds_take(reader, &sample, &info, 1, 1);
+      if (count <= 0) return;
+      if (info.valid_data) {
+        const auto* message = static_cast<const Message*>(sample);
+        receive({reinterpret_cast<const char*>(message->bytes._buffer), message->bytes._length});
+      }
+      dds_return_loan(reader, &sample, count);
+    }
+  }
+
+  std::mutex mutex;
+  std::function<void(std::string_view)> receive;
+  dds_entity_t topic = 0, end = 0;
+};
+
+DdsTopic::DdsTopic(const DdsParticipant& participant, const std::string& name, Delivery delivery,
+                   std::function<void(std::string_view)> receive)
+    : work_(std::make_unique<Work>()) {
+  const Qos qos(delivery);
+  work_->topic = dds_create_topic(participant.entity(), &kType, name.c_str(), nullptr, nullptr);
+  require(work_->topic, "topic");
+  work_->receive = std::move(receive);
+  if (!work_->receive) {
+    work_->end = dds_create_writer(participant.entity(), work_->topic, qos.qos, nullptr);
+    require(work_->end, "writer");
+    return;
+  }
+  dds_listener_t* listener = dds_create_listener(work_.get());
+  dds_lset_data_available(listener, &Work::onData);
+  work_->end = dds_create_reader(participant.entity(), work_->topic, qos.qos, listener);
+  dds_delete_listener(listener);
+  require(work_->end, "reader");
+}
+
+DdsTopic::~DdsTopic() {
+  dds_delete(work_->end);  // waits for a call of the listener
+  dds_delete(work_->topic);
+}
+
+void DdsTopic::write(std::string_view bytes) {
+  Message message{};
+  message.bytes._maximum = message.bytes._length = static_cast<std::uint32_t>(bytes.size());
+  message.bytes._buffer = reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes.data()));
+  dds_write(work_->end, &message);
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Topics of a session in DDS, as C++ objects.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace vps::scenes::inline v0 {
+
+/// A participant in a domain of one network interface. Throws LoadError where the system refuses.
+class DdsParticipant {
+ public:
+  explicit DdsParticipant(const std::string& interface);
+  ~DdsParticipant();
+  DdsParticipant(const DdsParticipant&) = delete;
+  DdsParticipant& operator=(const DdsParticipant&) = delete;
+  [[nodiscard]] dds_entity_t entity() const { return entity_; }
+
+ private:
+  dds_entity_t entity_ = 0;
+};
+
+enum class Delivery {
+  Newest,    ///< best effort, and only the last one counts
+  Reliable,  ///< each one, in order
+  Kept,      ///< reliable; the last one is given to those who come later
+};
+
+/// Bytes that are published, or received, under a name. In IDL: struct Message { sequence<octet> bytes; };
+class DdsTopic {
+ public:
+  /// @param receive  called by a thread of DDS, one call at a time; empty: the topic is written
+  DdsTopic(const DdsParticipant& participant, const std::string& name, Delivery delivery,
+           std::function<void(std::string_view bytes)> receive);
+  ~DdsTopic();
+  DdsTopic(const DdsTopic&) = delete;
+  DdsTopic& operator=(const DdsTopic&) = delete;
+
+  void write(std::string_view bytes);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The device's node, as the render node sees it: who it is, its newest state, and requests to it.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptics/hand.h"
+#include "network/link.h"
+#include "network/messages.h"
+
+namespace vps::scenes::inline v0 {
+
+/// Used by the physics thread.
+class DeviceEnd {
+ public:
+  /// @param link  of the render node; outlives this object
+  /// @param say   notes for the user and the watchers
+  DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say);
+
+  /// Waits until a device has joined, or rejoined. False: stopped.
+  bool waitForDevice();
+  /// Reads what has come.
+  void poll();
+
+  /// Of the device that joined first. Those that take its place have the same.
+  [[nodiscard]] const HelloMessage& hello() const { return *first_; }
+  /// How often a device has joined so far.
+  [[nodiscard]] int joins() const { return joins_; }
+  /// A device is in the session and has said what it is.
+  [[nodiscard]] bool isPresent() const { return is_present_ && link_.isAlive(NodeRole::Device); }
+
+  /// The newest state, once; null: none since the last call.
+  const HapticMessage* takeState();
+  /// How long no state has come.
+  [[nodiscard]] double silence_s() const;
+
+  /// Sends a request and waits until it is carried out. False: the device was lost meanwhile, or the run is
+  /// stopped.
+  /// @param wait  called from time to time meanwhile
+  bool request(const RequestMessage& request, const std::function<void()>& wait);
+  /// What the hand did after the last request.
+  [[nodiscard]] std::uint8_t handAfterRequest() const { return reply_.hand; }
+
+  /// Sends a state of the part.
+  void send(const device::PhysicsState& state);
+  /// Sends a snapshot or news to the watchers.
+  void send(const SnapshotMessage& snapshot);
+  void send(const NewsMessage& news);
+
+  [[nodiscard]] const TimesMessage& times() const { return times_; }
+  /// Entries of the device's log that have come. Each once.
+  template <typename Each>
+  void takeLog(const Each& each) {
+    for (std::string_view bytes; !(bytes = link_.receive(Channel::Log, buffer_)).empty();)
+      if (log_reader_.read(bytes, log_) == Reading::Good) each(log_.number, log_.entry);
+  }
+  /// What came and was refused, in words; empty: nothing.
+  [[nodiscard]] std::string refusals() const;
+  [[nodiscard]] bool isStopped() const { return stop_ != nullptr && stop_->load(); }
+  void say(const std::string& words) const { say_(words); }
+  /// See Link.
+  [[nodiscard]] std::optional<PeerTiming> timing() const { return link_.timing(NodeRole::Device); }
+
+ private:
+  void welcome(const HelloMessage& hello);
+
+  Link& link_;
+  const std::atomic<bool>* stop_;
+  std::function<void(const std::string&)> say_;
+  MessageWriter writer_;
+  MessageReader hello_reader_, reply_reader_, state_reader_, log_reader_;
+  std::vector<char> buffer_;
+  std::optional<HelloMessage> first_;
+  bool is_present_ = false;
+  std::uint64_t sender_ = 0;  ///< of the device's messages
+  int joins_ = 0;
+  HapticMessage state_;
+  ReplyMessage reply_;
+  TimesMessage times_;
+  LogMessage log_;
+  std::int64_t heard_ns_ = 0;  ///< when the last state came
+};
+
+/// A hand in the device's node: its driver sends each command there.
+/// @param end  outlives the hand; a device has joined
+std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene);
+
+/// How long a node may be silent before it counts as lost: the force on the hand is zero by then.
+inline constexpr double kPeerLimit_s = 0.02;
+/// In the device's node: how old a physics state may be. The rest of the limit is left for the tick that
+/// finds it. At slow physics three steps.
+double peerPhysicsLimit_s(double physics_s);
+
+}  // namespace vps::scenes::inline v0

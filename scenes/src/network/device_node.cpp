@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The device's node: the haptic side of a run, with physics at the other end of a link.
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "haptics/haptic_side.h"
+#include "network/device_end.h"
+#include "procedure/loop_settings.h"
+#include "record/scene_archive.h"
+#include "vps/load_error.h"
+#include "vps_device/device_kinds.h"
+#include "vps_scenes/network/nodes.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::chrono::microseconds kRequestPoll{200};  // assumed: below a haptic period
+constexpr std::chrono::milliseconds kSessionPoll{10};
+constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s and a few ticks
+constexpr int kPollsPerLook = 25;                    // whether the render node lives: each 5 ms
+constexpr int kPollsPerTimes = 500;                  // each 0.1 s
+
+/// The haptic thread's end of the link. Each message is read into, and written from, memory of its own.
+class RemotePort final : public device::RemotePhysics {
+ public:
+  RemotePort(Link& link, MessageWriter& writer, const std::atomic<std::uint8_t>*& hand)
+      : link_(link), writer_(writer), hand_(hand), buffer_(kLongestMessage) {
+    reader_.bindTo(link.sessionId());
+  }
+
+  void receive(device::PhysicsState& state) noexcept override {
+    const std::string_view bytes = link_.receive(Channel::Physics, buffer_);
+    if (bytes.empty()) return;
+    if (reader_.read(bytes, message_) == Reading::Good)
+      state = message_.state;
+    else
+      refused_.fetch_add(1, std::memory_order_relaxed);
+  }
+  void send(const device::HapticState& state) noexcept override {
+    const std::uint8_t hand = hand_ != nullptr ? hand_->load(std::memory_order_relaxed) : 0;
+    link_.send(Channel::Haptic, writer_.write(HapticMessage{state, hand}));
+  }
+  [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
+
+ private:
+  Link& link_;
+  MessageWriter& writer_;
+  const std::atomic<std::uint8_t>*& hand_;
+  std::vector<char> buffer_;
+  MessageReader reader_;
+  PhysicsMessage message_;
+  std::atomic<std::uint64_t> refused_{0};
+};
+
+/// Sends the haptic thread's entries, if the render node records.
+class LinkLog final : public device::RunLog {
+ public:
+  LinkLog(Link& link, MessageWriter& writer) : link_(link), writer_(writer) {}
+  void setOn(bool is_on) { is_on_.store(is_on, std::memory_order_relaxed); }
+  void add(const device::LogEntry& entry) noexcept override {
+    if (is_on_.load(std::memory_order_relaxed))
+      link_.send(Channel::Log, writer_.write(LogMessage{number_++, entry}));
+  }
+
+ private:
+  Link& link_;
+  MessageWriter& writer_;
+  std::atomic<bool> is_on_{false};
+  std::uint32_t number_ = 0;
+};
+
+/// One session, from joining it until it ends or its render node is lost.
+class DeviceSession {
+ public:
+  DeviceSession(Link& link, const DeviceNodeOptions& options, DeviceNodeResult& result)
+      : options_(options),
+        result_(result),
+        link_(link),
+        sender_(newSender()),
+        writer_(sender_),
+        haptic_writer_(sender_),
+        buffer_(kLongestMessage),
+        scene_(sceneFromBytes(link.sceneBytes(), sessionWords(options.session))),
+        hand_(makeHand(scene_, true)),
+        log_(link, haptic_writer_),
+        remote_(link, haptic_writer_, hand_state_) {
+    reader_.bindTo(link.sessionId());
+    port_.remote = &remote_;
+    const double physics_s = 1 / scene_.fidelity.physics_rate_hz;
+    side_.emplace(*hand_, port_, loopSettings(scene_, hand_->device()),
+                  HapticTiming{2 * physics_s, peerPhysicsLimit_s(physics_s)}, log_);
+    hand_state_ = &side_->stateByte();
+  }
+
+  /// True: the session has ended in good order, or the user stops.
+  bool run() {
+    for (int polls = 1;; ++polls) {
+      if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
+      takeRequests();
+      if (polls % kPollsPerTimes == 0) sendTimes();
+      if (options_.stop != nullptr && options_.stop->load()) return finish(true);
+      if (polls % kPollsPerLook == 0) {
+        if (link_.hasEnded()) return finish(true);
+        if (!link_.isAlive(NodeRole::Render)) {
+          // The loop finds by itself that the part's state is too old, and says so to those who watch.
+          std::this_thread::sleep_for(kUntilSafe);
+          return finish(link_.hasEnded());
+        }
+      }
+      std::this_thread::sleep_for(kRequestPoll);
+    }
+  }
+  [[nodiscard]] std::string deviceName() const { return std::string(hand_->device().name()); }
+
+ private:
+  void sayHello() {
+    HelloMessage hello;
+    hello.limits = hand_->device().limits();
+    const std::string_view name = hand_->device().name();
+    std::memcpy(hello.name.data(), name.data(), std::min(name.size(), hello.name.size() - 1));
+    const device::DeviceKind* kind = device::findDeviceKind(scene_.device.kind);
+    hello.may_rearm = options_.rearms || (kind != nullptr && kind->isSimulated());
+    link_.send(Channel::Reply, writer_.write(hello));
+  }
+  void sendTimes() {
+    const RealTimeResult timing = side_->realTime();
+    TimesMessage times;
+    times.tick = side_->times();
+    times.late = timing.late;
+    times.response = timing.response;
+    for (std::size_t i = 0; i < times.missed_by.size(); ++i) times.missed_by[i] = timing.missed_by[i].second;
+    times.stale_ticks = timing.stale_ticks;
+    times.worst_tick = timing.worst_tick;
+    times.worst_us = timing.worst_us;
+    times.faults = timing.faults;
+    for (int i = 0; i < device::kTickCauses; ++i)
+      if (timing.worst_cause == toText(static_cast<device::TickCause>(i)))
+        times.worst_cause = static_cast<std::uint8_t>(i);
+    times.has_priority = timing.has_priority;
+    times.has_locked_memory = timing.has_locked_memory;
+    link_.send(Channel::Reply, writer_.write(times));
+  }
+  void takeRequests() {
+    for (std::string_view bytes; !(bytes = link_.receive(Channel::Request, buffer_)).empty();) {
+      RequestMessage request;
+      const Reading reading = reader_.read(bytes, request);
+      if (reading == Reading::Replayed) link_.send(Channel::Reply, writer_.write(reply_));  // it was lost
+      if (reading != Reading::Good) continue;
+      has_request_ = true;
+      carryOut(request);
+      reply_ = {reader_.envelope().number, device::toByte(side_->state())};
+      link_.send(Channel::Reply, writer_.write(reply_));
+    }
+  }
+  void carryOut(const RequestMessage& request) {
+    switch (request.kind) {
+      case RequestKind::Start:
+        return side_->start();
+      case RequestKind::Stop:
+        side_->stop();
+        return sendTimes();
+      case RequestKind::Setup:
+        log_.setOn(request.keeps_log);
+        return side_->setGains(request.gains);
+      case RequestKind::Command:
+        break;
+    }
+    if (request.step > scene_.steps.size()) return;  // GoBack names the step after the last one, too
+    HandCommand command{request.command, request.X_WG, request.step, request.now_s, request.task};
+    if (command.what == device::SyncEventKind::Begin) {
+      if (request.step == scene_.steps.size()) return;
+      const std::vector<Pose>& all = scene_.steps[request.step].way_points;
+      const std::size_t ahead = std::min<std::size_t>(request.way_points_left, all.size());
+      command.task.way_points.assign(all.end() - static_cast<std::ptrdiff_t>(ahead), all.end());
+    }
+    side_->carryOut(command);
+  }
+  bool finish(bool has_ended) {
+    side_->stop();
+    sendTimes();
+    const TickTimes times = side_->times();
+    result_.ticks += times.count;
+    result_.missed += times.missed;
+    result_.faults += side_->realTime().faults;
+    result_.refused += remote_.refused() + reader_.refused();
+    return has_ended;
+  }
+
+  const DeviceNodeOptions& options_;
+  DeviceNodeResult& result_;
+  Link& link_;
+  std::uint64_t sender_;
+  MessageWriter writer_;         ///< of this thread
+  MessageWriter haptic_writer_;  ///< of the haptic thread: other kinds of messages
+  MessageReader reader_;
+  ReplyMessage reply_;  ///< the last one
+  bool has_request_ = false;
+  std::vector<char> buffer_;
+  Scene scene_;
+  std::unique_ptr<Hand> hand_;
+  LinkLog log_;
+  const std::atomic<std::uint8_t>* hand_state_ = nullptr;
+  RemotePort remote_;
+  device::CouplingPort port_;
+  std::optional<HapticSide> side_;
+};
+
+}  // namespace
+
+DeviceNodeResult deviceNode(const DeviceNodeOptions& options) {
+  requireSessionName(options.session);
+  const auto say = [&options](const std::string& words) {
+    if (options.say) options.say(words);
+  };
+  DeviceNodeResult result;
+  bool has_said = false;
+  while (options.stop == nullptr || !options.stop->load()) {
+    const std::unique_ptr<Link> link = joinSession(options.session, NodeRole::Device, options.network);
+    if (link == nullptr) {
+      if (!has_said) say("waiting for " + sessionWords(options.session) + ", which vps render starts");
+      has_said = true;
+      std::this_thread::sleep_for(kSessionPoll);
+      continue;
+    }
+    has_said = false;
+    ++result.sessions;
+    DeviceSession session(*link, options, result);
+    say("the device '" + session.deviceName() + "' joins " + sessionWords(options.session));
+    if (!session.run()) {
+      ++result.lost;
+      say("the render node is lost; the force is zero until it is back");
+      continue;
+    }
+    if (!options.stays) break;
+  }
+  return result;
+}
+
+}  // namespace vps::scenes::inline v0

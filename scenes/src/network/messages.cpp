@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "network/messages.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "network/link.h"
+#include "network/message_fields.h"
+#include "vps_device/detail/bytes.h"
+#include "vps_device/metronome.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr double kLargest = 1e12;        // of any number that a node sends in good faith
+constexpr double kRotationError = 1e-6;  // assumed: far above rounding, far below what is felt
+constexpr std::size_t kEnvelopeBytes = 28;
+constexpr std::uint32_t kLongestList = 1024;  // bodies, or contacts, of a snapshot; the rest is left out
+
+template <typename Message>
+constexpr MessageKind kKindOf = MessageKind::Haptic;
+template <>
+constexpr MessageKind kKindOf<PhysicsMessage> = MessageKind::Physics;
+template <>
+constexpr MessageKind kKindOf<RequestMessage> = MessageKind::Request;
+template <>
+constexpr MessageKind kKindOf<ReplyMessage> = MessageKind::Reply;
+template <>
+constexpr MessageKind kKindOf<HelloMessage> = MessageKind::Hello;
+template <>
+constexpr MessageKind kKindOf<TimesMessage> = MessageKind::Times;
+template <>
+constexpr MessageKind kKindOf<LogMessage> = MessageKind::Log;
+template <>
+constexpr MessageKind kKindOf<SnapshotMessage> = MessageKind::Snapshot;
+template <>
+constexpr MessageKind kKindOf<NewsMessage> = MessageKind::News;
+template <>
+constexpr MessageKind kKindOf<BeatMessage> = MessageKind::Beat;
+
+/// What both directions share: how a field is made of numbers.
+template <typename Self>
+class Visit {
+ public:
+  void operator()(Vec3& x) {
+    for (double& component : x) self().number(component);
+  }
+  void operator()(Twist& x) { (*this)(x.w), (*this)(x.v); }
+  void operator()(Wrench& x) { (*this)(x.tau), (*this)(x.f); }
+  void operator()(Pose& x) {
+    for (double& entry : x.R.reshaped()) self().number(entry);
+    (*this)(x.p);
+    self().checkRotation(x.R);
+  }
+  void operator()(bool& x) { self().flag(x); }
+  void operator()(std::optional<double>& x) {
+    bool has_value = x.has_value();
+    double value = x.value_or(0);
+    self().flag(has_value);
+    self().number(value);
+    if (!has_value && std::bit_cast<std::uint64_t>(value) != 0) self().refuse();
+    x = has_value ? std::optional(value) : std::nullopt;
+  }
+  template <std::size_t N>
+  void operator()(std::array<char, N>& text) {
+    self().text(text.data(), N);
+  }
+  template <typename T>
+  requires std::is_arithmetic_v<T>
+  void operator()(T& x) { self().number(x); }
+  void unchecked(bool on) { is_unchecked_ = on; }
+  void alternative(device::LogEntry& entry) {
+    std::uint8_t index = static_cast<std::uint8_t>(entry.index());
+    choice(index, 5);
+    self().become(entry, index);
+    const auto visit = [this](auto& e) {
+      using T = std::remove_reference_t<decltype(e)>;
+      if constexpr (!std::is_same_v<T, device::RunEvent> && !std::is_same_v<T, device::RunTrace>)
+        wire::fields(e, self());
+    };
+    std::visit(visit, entry);
+  }
+  template <typename Enum>
+  void choice(Enum& e, unsigned count) {
+    std::uint8_t byte = static_cast<std::uint8_t>(e);
+    self().number(byte);
+    if (byte >= count) return self().refuse();
+    e = static_cast<Enum>(byte);
+  }
+
+ protected:
+  bool is_unchecked_ = false;
+
+ private:
+  Self& self() { return static_cast<Self&>(*this); }
+};
+
+class Put : public Visit<Put> {
+ public:
+  explicit Put(std::string& out) : writer_(out) {}
+  void number(double x) { writer_.put(x); }
+  void number(std::int32_t x) { writer_.put(x); }
+  void number(std::int64_t x) { writer_.put(static_cast<std::uint64_t>(x)); }
+  template <std::unsigned_integral T>
+  void number(T x) {
+    writer_.put(x);
+  }
+  void flag(bool x) { writer_.put(static_cast<std::uint8_t>(x)); }
+  void text(const char* bytes, std::size_t size) { writer_.bytes({bytes, size}); }
+  void become(device::LogEntry&, std::uint8_t) {}
+  void checkRotation(const Mat3&) {}
+  void refuse() {}
+  template <typename List, typename Each>
+  void list(List& items, const Each& each) {
+    const std::size_t count = std::min<std::size_t>(items.size(), kLongestList);
+    writer_.put(static_cast<std::uint32_t>(count));
+    for (std::size_t i = 0; i < count; ++i) each(items[i]);
+  }
+
+ private:
+  device::ByteWriter writer_;
+};
+
+class Get : public Visit<Get> {
+ public:
+  explicit Get(std::string_view bytes) : reader_(bytes) {}
+  [[nodiscard]] bool isAllRead() const { return reader_.isGood() && reader_.left() == 0; }
+  [[nodiscard]] bool isGood() const { return is_good_; }
+
+  void number(double& x) {
+    x = reader_.getDouble();
+    if (!is_unchecked_ && !(std::abs(x) <= kLargest)) refuse();
+  }
+  void number(std::int32_t& x) { x = reader_.getInt(); }
+  void number(std::int64_t& x) { x = static_cast<std::int64_t>(reader_.get<std::uint64_t>()); }
+  template <std::unsigned_integral T>
+  void number(T& x) {
+    x = reader_.get<T>();
+  }
+  void flag(bool& x) {
+    const std::uint8_t byte = reader_.get<std::uint8_t>();
+    if (byte > 1) refuse();
+    x = byte == 1;
+  }
+  void text(char* bytes, std::size_t size) {
+    const std::string_view read = reader_.take(size);
+    std::copy(read.begin(), read.end(), bytes);
+    if (read.find('\0') == std::string_view::npos) refuse();
+  }
+  void become(device::LogEntry& entry, std::uint8_t index) {
+    if (index == 0)
+      entry = device::DeviceSample{};
+    else if (index == 1)
+      entry = device::WrittenWrench{};
+    else if (index == 4)
+      entry = device::SyncEvent{};
+    else
+      refuse();
+  }
+  void checkRotation(const Mat3& R) {
+    if (is_unchecked_) return;
+    const bool is_rotation =
+        (R * R.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff() <= kRotationError && R.determinant() > 0;
+    if (!is_rotation) refuse();
+  }
+  void refuse() { is_good_ = false; }
+  template <typename List, typename Each>
+  void list(List& items, const Each& each) {
+    const auto count = reader_.get<std::uint32_t>();
+    items.clear();
+    if (count > kLongestList) return refuse();
+    for (std::uint32_t i = 0; i < count && reader_.isGood(); ++i) each(items.emplace_back());
+  }
+
+ private:
+  device::ByteReader reader_;
+  bool is_good_ = true;
+};
+
+}  // namespace
+
+const char* toText(Reading reading) {
+  switch (reading) {
+    case Reading::Good:
+      return "good";
+    case Reading::BadSize:
+      return "of the wrong size";
+    case Reading::BadVersion:
+      return "of another version";
+    case Reading::BadKind:
+      return "of another kind";
+    case Reading::BadValue:
+      return "with values out of range";
+    case Reading::WrongSender:
+      return "of another sender";
+    case Reading::Replayed:
+      return "sent before";
+  }
+  return "unknown";
+}
+
+MessageWriter::MessageWriter(std::uint64_t sender) : sender_(sender) {
+  out_.reserve(kLongestMessage);
+}
+
+template <typename Message>
+std::string_view MessageWriter::write(const Message& message) noexcept {
+  constexpr MessageKind kKind = kKindOf<Message>;
+  out_.clear();
+  Put put(out_);
+  put.number(static_cast<std::uint16_t>(kKind));
+  put.number(kMessageVersion);
+  Envelope envelope{sender_, ++numbers_[static_cast<std::size_t>(kKind)], device::monotonicClock().now_ns()};
+  wire::fields(envelope, put);
+  wire::fields(const_cast<Message&>(message), put);  // Put changes nothing
+  return out_;
+}
+
+MessageKind kindOf(std::string_view bytes) noexcept {
+  return static_cast<MessageKind>(device::ByteReader(bytes).get<std::uint16_t>());
+}
+
+template <typename Message>
+Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
+  constexpr MessageKind kKind = kKindOf<Message>;
+  const Reading reading = [&] {
+    if (bytes.size() < kEnvelopeBytes) return Reading::BadSize;
+    device::ByteReader head(bytes);
+    if (head.get<std::uint16_t>() != static_cast<std::uint16_t>(kKind)) return Reading::BadKind;
+    if (head.get<std::uint16_t>() != kMessageVersion) return Reading::BadVersion;
+    Get get(bytes.substr(4));
+    Envelope envelope;
+    wire::fields(envelope, get);
+    if (sender_ != 0 && envelope.sender != sender_) return Reading::WrongSender;
+    Message read = message;
+    wire::fields(read, get);
+    if (!get.isAllRead()) return get.isGood() ? Reading::BadSize : Reading::BadValue;
+    if (!get.isGood()) return Reading::BadValue;
+    std::uint64_t& last = numbers_[static_cast<std::size_t>(kKind)];
+    if (envelope.number <= last && envelope.sender == envelope_.sender) return Reading::Replayed;
+    last = envelope.number;
+    envelope_ = envelope;
+    message = std::move(read);
+    return Reading::Good;
+  }();
+  ++counts_[static_cast<std::size_t>(reading)];
+  return reading;
+}
+
+std::uint64_t MessageReader::refused() const noexcept {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 1; i < kReadings; ++i) sum += counts_[i];
+  return sum;
+}
+
+std::uint64_t newSender() {
+  std::random_device random;
+  std::uint64_t sender = 0;
+  while (sender == 0) sender = std::uint64_t{random()} << 32U | random();
+  return sender;
+}
+
+#define MESSAGE(Type)                                                         \
+  template std::string_view MessageWriter::write<Type>(const Type&) noexcept; \
+  template Reading MessageReader::read<Type>(std::string_view, Type&) noexcept;
+MESSAGE(HapticMessage)
+MESSAGE(PhysicsMessage)
+MESSAGE(RequestMessage)
+MESSAGE(ReplyMessage)
+MESSAGE(HelloMessage)
+MESSAGE(TimesMessage)
+MESSAGE(LogMessage)
+MESSAGE(SnapshotMessage)
+MESSAGE(NewsMessage)
+MESSAGE(BeatMessage)
+#undef MESSAGE
+
+}  // namespace vps::scenes::inline v0

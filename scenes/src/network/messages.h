@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The messages between nodes: versioned, without pointers, least significant byte first. Each is of a fixed
+// size, except snapshots, which grow with the scene.
+//
+// Bytes from a peer are never trusted: size, version, number, and every value are checked before use.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "network/shared_region.h"
+#include "vps_device/coupling_port.h"
+#include "vps_device/operator.h"
+#include "vps_device/run_log.h"
+#include "vps_device/tick_statistics.h"
+#include "vps_scenes/result.h"
+#include "vps_scenes/snapshot.h"
+
+namespace vps::scenes::inline v0 {
+
+/// Of all messages together; nodes of other versions are refused when they join.
+inline constexpr std::uint16_t kMessageVersion = 1;
+
+enum class MessageKind : std::uint16_t {
+  Haptic = 1,
+  Physics,
+  Request,
+  Reply,
+  Hello,
+  Times,
+  Log,
+  Snapshot,
+  News,
+  Beat,
+};
+
+/// At the start of each message.
+struct Envelope {
+  std::uint64_t sender = 0;  ///< a number that no other process has
+  std::uint64_t number = 0;  ///< of the message, counted by its sender for each kind, from 1
+  std::int64_t time_ns = 0;  ///< of sending, by the sender's monotonic clock
+};
+
+/// The loop after a tick, and what the hand does.
+struct HapticMessage {
+  device::HapticState state;
+  std::uint8_t hand = 0;  ///< device::toByte(OperatorState)
+};
+
+struct PhysicsMessage {
+  device::PhysicsState state;
+};
+
+enum class RequestKind : std::uint8_t {
+  Command,  ///< of the physics thread to hand and loop
+  Start,    ///< the loop
+  Stop,     ///< the loop
+  Setup,    ///< gains, and whether what the loop does is sent on Channel::Log
+};
+
+/// Asks the device's node for something. A part's way points are in the scene, which both nodes have.
+struct RequestMessage {
+  RequestKind kind = RequestKind::Command;
+  device::SyncEventKind command = device::SyncEventKind::Tick;
+  bool keeps_log = false;       ///< of Setup
+  Pose X_WG{};                  ///< of HandOver
+  std::uint32_t step = 0;       ///< of Begin and GoBack
+  double now_s = 0;             ///< of Begin
+  device::OperatorTask task{};  ///< of Begin, without its way points
+  /// Of Begin: how many way points of the scene's step are still ahead of the part.
+  std::uint32_t way_points_left = 0;
+  CouplingGains gains{};  ///< of Setup
+};
+
+struct ReplyMessage {
+  std::uint64_t request = 0;  ///< the number of the request that was carried out
+  std::uint8_t hand = 0;      ///< after it
+};
+
+/// The device's node when it joins.
+struct HelloMessage {
+  device::DeviceLimits limits;
+  std::array<char, 64> name{};  ///< of the device, zero-terminated
+  bool may_rearm = false;       ///< after a lost peer, the render node may re-arm the loop
+};
+
+/// How the device's node keeps time.
+struct TimesMessage {
+  TickTimes tick, late, response;
+  std::array<std::uint64_t, device::kTickCauses> missed_by{};
+  std::uint64_t stale_ticks = 0, worst_tick = 0, faults = 0;
+  double worst_us = 0;
+  std::uint8_t worst_cause = 0;
+  bool has_priority = false, has_locked_memory = false;
+};
+
+struct LogMessage {
+  std::uint32_t number = 0;  ///< of the entry; those that were lost leave a gap
+  device::LogEntry entry;    ///< a DeviceSample, a WrittenWrench or a SyncEvent
+};
+
+struct SnapshotMessage {
+  Snapshot snapshot;
+};
+
+enum class NewsKind : std::uint8_t {
+  Note,
+  StepDone,
+  Ended,  ///< the run
+};
+
+struct NewsMessage {
+  NewsKind kind = NewsKind::Note;
+  std::int32_t step = -1;
+  Verdict verdict = Verdict::NotShown;
+  double time_s = 0;             ///< simulated
+  std::array<char, 512> text{};  ///< zero-terminated
+};
+
+/// That a node lives, over a network; each 5 ms. It sends the last beat of each peer back, for the clocks.
+struct BeatMessage {
+  NodeRole role = NodeRole::Render;
+  std::uint64_t session = 0;  ///< Link::sessionId()
+  bool has_ended = false;
+  std::uint64_t peer = 0;         ///< whose beat is sent back; 0: none
+  std::int64_t peer_sent_ns = 0;  ///< by the peer's clock
+  std::int64_t received_ns = 0;   ///< by the sender's
+};
+
+/// What became of the bytes of a message.
+enum class Reading : std::uint8_t {
+  Good,
+  BadSize,
+  BadVersion,
+  BadKind,
+  BadValue,  ///< not finite, out of range, or a rotation that is none
+  WrongSender,
+  Replayed,  ///< its number is not above the last one of its kind
+};
+inline constexpr std::size_t kReadings = 7;
+const char* toText(Reading reading);
+
+/// Writes messages without allocating: `out` keeps its room from one message to the next.
+class MessageWriter {
+ public:
+  /// @param sender  Envelope::sender
+  explicit MessageWriter(std::uint64_t sender);
+
+  /// The bytes, which stay until the next call. The time is that of the call.
+  template <typename Message>
+  std::string_view write(const Message& message) noexcept;
+  /// Number of the last message of a kind.
+  [[nodiscard]] std::uint64_t number(MessageKind kind) const noexcept {
+    return numbers_[static_cast<std::size_t>(kind)];
+  }
+  [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
+
+ private:
+  std::string out_;
+  std::uint64_t sender_;
+  std::array<std::uint64_t, 16> numbers_{};
+};
+
+/// Reads messages and counts what was refused.
+class MessageReader {
+ public:
+  /// Refuses all senders but this one, whose messages begin at any number.
+  void bindTo(std::uint64_t sender) noexcept {
+    sender_ = sender;
+    numbers_ = {};
+  }
+  /// Good: `message` has the values. Otherwise it is unchanged. Allocates for snapshots only.
+  template <typename Message>
+  Reading read(std::string_view bytes, Message& message) noexcept;
+
+  /// Of the last good message.
+  [[nodiscard]] const Envelope& envelope() const noexcept { return envelope_; }
+  [[nodiscard]] const std::array<std::uint64_t, kReadings>& counts() const noexcept { return counts_; }
+  [[nodiscard]] std::uint64_t refused() const noexcept;
+
+ private:
+  std::uint64_t sender_ = 0;  ///< 0: any
+  std::array<std::uint64_t, 16> numbers_{};
+  Envelope envelope_;
+  std::array<std::uint64_t, kReadings> counts_{};
+};
+
+/// The kind that a message claims to be.
+MessageKind kindOf(std::string_view bytes) noexcept;
+
+/// A number for Envelope::sender.
+std::uint64_t newSender();
+
+}  // namespace vps::scenes::inline v0

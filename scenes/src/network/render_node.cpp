@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The render node: physics, contact and procedure, with the hand in another process.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <thread>
+
+#include "network/device_end.h"
+#include "procedure/assembly_run.h"
+#include "record/run_record.h"
+#include "record/scene_archive.h"
+#include "vps/load_error.h"
+#include "vps_scenes/network/nodes.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// Tells the watchers what happens, from the physics thread.
+class Broadcast {
+ public:
+  Broadcast(DeviceEnd& end, const RenderOptions& options)
+      : end_(end), period_s_(1 / options.picture_rate_hz) {
+    tap_.give = [this](Snapshot&& snapshot) { end_.send(SnapshotMessage{std::move(snapshot)}); };
+  }
+
+  SnapshotTap* tap() { return &tap_; }
+  void afterStep(double time_s) {
+    time_s_ = time_s;
+    if (time_s < next_s_) return;
+    next_s_ = std::max(next_s_ + period_s_, time_s);
+    tap_.is_wanted = true;
+  }
+  void tell(NewsKind kind, int step, Verdict verdict, const std::string& text) {
+    NewsMessage news{kind, step, verdict, time_s_, {}};
+    std::memcpy(news.text.data(), text.data(), std::min(text.size(), news.text.size() - 1));
+    end_.send(news);
+  }
+
+ private:
+  DeviceEnd& end_;
+  SnapshotTap tap_;
+  double period_s_, next_s_ = 0, time_s_ = 0;
+};
+
+std::string wordsOf(const StepResult& step) {
+  return "'" + step.part + "' " + toText(step.verdict) +
+         (step.reason.empty() ? std::string() : ": " + step.reason);
+}
+
+void requirePossible(const Scene& scene, const RenderOptions& options, const std::string& file) {
+  requireSteps(scene);
+  if (!options.network.empty() && !file.empty())
+    throw LoadError(file, "",
+                    "a run over a network cannot be replayed bit for bit; record it with the device on this "
+                    "machine, without --network");
+  if (!options.has_local_contact) return;
+  throw LoadError(scene.file, "",
+                  "local contact needs the parts' models where the haptic loop runs; leave it out, or use "
+                  "vps assemble --real-time");
+}
+
+/// From a state of the proxy to the answer to it. Gains follow from it, and it is said.
+double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
+  if (options.network.empty()) return 0;
+  constexpr int kTries = 200;
+  for (int i = 0; i < kTries; ++i) {
+    if (const std::optional<PeerTiming> timing = end.timing()) {
+      char words[160];
+      std::snprintf(words, sizeof words,
+                    "the device answers within %.2f ms; its clock is %.6f s ahead, within %.0f us",
+                    1e3 * timing->round_trip_s, timing->clock_offset_s, 1e6 * timing->clock_error_s);
+      end.say(words);
+      return timing->round_trip_s;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  throw LoadError("", "", "the device's answers do not come; check --network on both machines");
+}
+
+}  // namespace
+
+AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::string& file) {
+  requirePossible(scene, given, file);
+  const std::unique_ptr<Link> link = makeSession(given.session, sceneToBytes(scene), given.network);
+  Broadcast* broadcast = nullptr;
+  DeviceEnd end(*link, given.stop, [&](const std::string& words) {
+    if (given.say) given.say(words);
+    if (broadcast != nullptr) broadcast->tell(NewsKind::Note, -1, Verdict::NotShown, words);
+  });
+  Broadcast all(end, given);
+  broadcast = &all;
+
+  AssembleOptions options = given;
+  options.is_real_time = true;
+  options.tap = all.tap();
+  options.after_step = [&](double time_s) {
+    all.afterStep(time_s);
+    if (given.after_step) given.after_step(time_s);
+  };
+  options.on_step = [&](const AssembleResult& so_far) {
+    all.tell(NewsKind::StepDone, static_cast<int>(so_far.steps.size()) - 1, so_far.steps.back().verdict,
+             wordsOf(so_far.steps.back()));
+    if (given.on_step) given.on_step(so_far);
+  };
+  end.say(sessionWords(given.session) + " waits for a device: vps device --session " + given.session);
+  AssembleResult result;
+  result.scene = scene.name;
+  if (!end.waitForDevice()) return result;
+
+  const std::unique_ptr<Hand> hand = remoteHand(end, scene);
+  device::LoopSettings settings = loopSettings(scene, hand->device(), networkDelay_s(end, given));
+  if (!given.network.empty()) {
+    char words[120];
+    std::snprintf(words, sizeof words, "so the coupling has %.0f N/m and %.1f N m/rad",
+                  settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
+    end.say(words);
+  }
+  settings.physics_limit_s = peerPhysicsLimit_s(1 / scene.fidelity.physics_rate_hz);
+  if (file.empty()) {
+    result = runProcedure(scene, *hand, nullptr, settings, options);
+  } else {
+    RunRecord record(file, scene, hand->device(), settings, options);
+    result = runProcedure(scene, *hand, &record, settings, options);
+    if (given.stop == nullptr || !given.stop->load()) record.finish();
+  }
+  all.tell(NewsKind::Ended, -1, result.verdict, toText(result.verdict));
+  return result;
+}
+
+}  // namespace vps::scenes::inline v0

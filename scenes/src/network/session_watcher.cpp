@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <vector>
+
+#include "network/link.h"
+#include "network/messages.h"
+#include "record/scene_archive.h"
+#include "vps_scenes/network/nodes.h"
+
+namespace vps::scenes::inline v0 {
+
+struct SessionWatcher::Work {
+  explicit Work(std::unique_ptr<Link> joined, const std::string& session)
+      : link(std::move(joined)),
+        scene(sceneFromBytes(link->sceneBytes(), sessionWords(session))),
+        buffer(kLongestMessage) {
+    reader.bindTo(link->sessionId());
+  }
+
+  std::unique_ptr<Link> link;
+  Scene scene;
+  std::vector<char> buffer;
+  MessageReader reader;         ///< of the render node
+  MessageReader device_reader;  ///< of any device
+};
+
+SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
+SessionWatcher::~SessionWatcher() = default;
+
+std::unique_ptr<SessionWatcher> SessionWatcher::join(const std::string& session, const std::string& network) {
+  std::unique_ptr<Link> link = joinSession(session, NodeRole::Watch, network);
+  if (link == nullptr) return nullptr;
+  return std::unique_ptr<SessionWatcher>(
+      new SessionWatcher(std::make_unique<Work>(std::move(link), session)));
+}
+
+const Scene& SessionWatcher::scene() const {
+  return work_->scene;
+}
+
+std::optional<Snapshot> SessionWatcher::takeSnapshot() {
+  SnapshotMessage message;
+  const std::string_view bytes = work_->link->receive(Channel::Snapshot, work_->buffer);
+  if (bytes.empty() || work_->reader.read(bytes, message) != Reading::Good) return {};
+  const std::size_t parts = work_->scene.parts.size();
+  for (const BodySnapshot& body : message.snapshot.bodies)
+    if (body.part >= parts) return {};
+  if (message.snapshot.has_target && message.snapshot.target_part >= parts) return {};
+  return std::move(message.snapshot);
+}
+
+std::optional<SessionNews> SessionWatcher::takeNews() {
+  NewsMessage message;
+  const std::string_view bytes = work_->link->receive(Channel::News, work_->buffer);
+  if (bytes.empty() || work_->reader.read(bytes, message) != Reading::Good) return {};
+  return SessionNews{static_cast<SessionNews::Kind>(message.kind), message.step, message.verdict,
+                     message.time_s, message.text.data()};
+}
+
+std::optional<SessionForce> SessionWatcher::takeForce() {
+  HapticMessage message;
+  const std::string_view bytes = work_->link->receive(Channel::Haptic, work_->buffer);
+  if (bytes.empty() || work_->device_reader.read(bytes, message) != Reading::Good) return {};
+  const device::HapticState& state = message.state;
+  return SessionForce{state.report.time_s, work_->device_reader.envelope().time_ns, state.report.F_hand_W,
+                      state.proxy.is_coupled, state.safety.fault != device::SafetyFault::None};
+}
+
+bool SessionWatcher::hasEnded() const {
+  return work_->link->hasEnded();
+}
+bool SessionWatcher::isOver() const {
+  return hasEnded() || !work_->link->isAlive(NodeRole::Render);
+}
+bool SessionWatcher::hasDevice() const {
+  return work_->link->isAlive(NodeRole::Device);
+}
+std::uint64_t SessionWatcher::refused() const {
+  return work_->reader.refused() + work_->device_reader.refused();
+}
+
+}  // namespace vps::scenes::inline v0

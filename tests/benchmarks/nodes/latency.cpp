@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How long a state takes from the device's node to the render node and its answer back. The render node's
+// side answers at once, so that the link alone is measured.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "network/link.h"
+#include "network/messages.h"
+#include "rows.h"
+#include "vps_device/metronome.h"
+#include "vps_device/periodic_thread.h"
+
+namespace vps::bench {
+
+namespace {
+
+using namespace scenes;
+
+constexpr std::int64_t kPeriod_ns = 625'000;  // 1600 Hz
+constexpr const char* kSession = "bench-latency";
+
+std::int64_t now_ns() {
+  return device::monotonicClock().now_ns();
+}
+
+/// One end of the link with what it needs to write and read.
+struct End {
+  End(std::unique_ptr<Link> joined, std::uint64_t sender) : link(std::move(joined)), writer(sender) {}
+
+  void sendHaptic(std::int32_t tick) {
+    haptic.state.tick = tick;
+    link->send(Channel::Haptic, writer.write(haptic));
+  }
+  bool takeHaptic() {
+    const std::string_view bytes = link->receive(Channel::Haptic, buffer);
+    return !bytes.empty() && reader.read(bytes, haptic) == Reading::Good;
+  }
+  void sendPhysics(std::int32_t step) {
+    physics.state.step = step;
+    link->send(Channel::Physics, writer.write(physics));
+  }
+  bool takePhysics() {
+    const std::string_view bytes = link->receive(Channel::Physics, buffer);
+    return !bytes.empty() && reader.read(bytes, physics) == Reading::Good;
+  }
+
+  std::unique_ptr<Link> link;
+  MessageWriter writer;
+  MessageReader reader;
+  HapticMessage haptic;
+  PhysicsMessage physics;
+  std::vector<char> buffer = std::vector<char>(kLongestMessage);
+};
+
+/// Between two looks at a link whose threads need a processor, too.
+void pauseFor(const std::string& network) {
+  constexpr std::int64_t kLook_ns = 10'000;
+  if (!network.empty()) device::monotonicClock().sleepUntil(now_ns() + kLook_ns);
+}
+
+/// The render node's side, until it is killed.
+[[noreturn]] void echo(End& end, const std::string& network) {
+  device::requestRealTime(70, false);
+  for (;;) {
+    if (!end.takeHaptic()) {
+      pauseFor(network);
+      continue;
+    }
+    end.sendPhysics(end.haptic.state.tick);
+    // A thread with priority that never sleeps is held back by the system.
+    device::monotonicClock().sleepUntil(now_ns() + kPeriod_ns / 2);
+  }
+}
+
+struct Times {
+  explicit Times(std::vector<std::int64_t> ns) : all(std::move(ns)) { std::sort(all.begin(), all.end()); }
+  [[nodiscard]] double us(double share) const {
+    const auto rank = static_cast<std::size_t>(share * static_cast<double>(all.size() - 1));
+    return 1e-3 * static_cast<double>(all[rank]);
+  }
+  std::vector<std::int64_t> all;
+};
+
+/// Calls `exchange` at 1600 Hz, with its number, and times it.
+template <typename Exchange>
+Times timed(double seconds, const Exchange& exchange) {
+  device::Metronome metronome(kPeriod_ns, device::monotonicClock());
+  metronome.start();
+  std::vector<std::int64_t> ns;
+  const auto count = static_cast<std::int32_t>(1e9 * seconds / kPeriod_ns);
+  ns.reserve(static_cast<std::size_t>(count));
+  for (std::int32_t i = 1; i <= count; ++i) {
+    metronome.wait();
+    const std::int64_t begun_ns = now_ns();
+    exchange(i);
+    ns.push_back(now_ns() - begun_ns);
+  }
+  return Times(std::move(ns));
+}
+
+/// The render node's side in a process of its own, and this process's side.
+struct Ends {
+  explicit Ends(const std::string& network) {
+    other = fork();
+    if (other == 0) {
+      End render(makeSession(kSession, "no scene", network), 1);
+      echo(render, network);
+    }
+    std::unique_ptr<Link> link;
+    while ((link = joinSession(kSession, NodeRole::Device, network)) == nullptr) usleep(1000);
+    device.emplace(std::move(link), 2);
+  }
+  ~Ends() {
+    kill(other, SIGKILL);
+    waitpid(other, nullptr, 0);
+  }
+  pid_t other = 0;
+  std::optional<End> device;
+};
+
+/// The same calls in one process.
+Times bareTimes(double seconds) {
+  End render(makeSession("bench-bare", "no scene"), 1);
+  End device(joinSession("bench-bare", NodeRole::Device), 2);
+  return timed(seconds, [&](std::int32_t i) {
+    device.sendHaptic(i);
+    render.takeHaptic();
+    render.sendPhysics(i);
+    device.takePhysics();
+  });
+}
+
+bool latencyRow(const std::string& network, double seconds, const Times& bare, double p50_bar_us,
+                double p99_bar_us) {
+  Ends ends(network);
+  End& device = *ends.device;
+  int unanswered = 0;
+  device.sendHaptic(0);
+  usleep(300'000);  // so that both have found each other
+  device::requestRealTime(80, false);
+  const Times both = timed(seconds, [&](std::int32_t i) {
+    device.sendHaptic(i);
+    const std::int64_t end_ns = now_ns() + kPeriod_ns;
+    while (!device.takePhysics() || device.physics.state.step != i) {
+      pauseFor(network);
+      if (now_ns() < end_ns) continue;
+      ++unanswered;
+      return;
+    }
+  });
+  device::leaveRealTime();
+
+  char words[240], bar[80];
+  std::snprintf(words, sizeof words,
+                "p50 %.1f us, p99 %.1f us, p99.9 %.1f us; %d of %zu not within a period; bare calls p50 %.1f "
+                "us, p99 %.1f us",
+                both.us(0.5), both.us(0.99), both.us(0.999), unanswered, both.all.size(), bare.us(0.5),
+                bare.us(0.99));
+  std::snprintf(bar, sizeof bar, "p50 <= %.0f us, p99 <= %.0f us beyond bare calls", p50_bar_us, p99_bar_us);
+  const bool is_reached =
+      both.us(0.5) - bare.us(0.5) <= p50_bar_us && both.us(0.99) - bare.us(0.99) <= p99_bar_us;
+  printRow("device to render and back, 1600 Hz, " + (network.empty() ? "shared memory" : "UDP on " + network),
+           bar, words, is_reached);
+  return is_reached;
+}
+
+}  // namespace
+
+bool latencyRows(double seconds) {
+  device::requestRealTime(80, false);
+  const Times bare = bareTimes(seconds);
+  device::leaveRealTime();
+  const bool is_shared_good = latencyRow("", seconds, bare, 20, 60);
+  return latencyRow("lo", seconds, bare, 100, 250) && is_shared_good;
+}
+
+}  // namespace vps::bench

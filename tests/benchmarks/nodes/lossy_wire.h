@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two network namespaces that are joined by a wire which loses, delays, swaps and doubles packets. For
+// machines whose kernel has no netem.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <thread>
+
+namespace vps::bench {
+
+struct WireFaults {
+  double loss = 0;      ///< share of packets, each way
+  double delay_s = 0;   ///< one way
+  double jitter_s = 0;  ///< added, evenly drawn: packets overtake each other
+  double doubled = 0;   ///< share of packets that come twice
+};
+
+/// Namespaces "vpsbench-a" and "vpsbench-b" with an interface "wire" each. Throws std::runtime_error where
+/// the system does not allow that.
+class LossyWire {
+ public:
+  explicit LossyWire(const WireFaults& faults);
+  ~LossyWire();
+  LossyWire(const LossyWire&) = delete;
+  LossyWire& operator=(const LossyWire&) = delete;
+
+  /// Bytes and packets that were put on the wire, with all headers, both ways.
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
+  [[nodiscard]] std::uint64_t packets() const { return packets_; }
+
+ private:
+  void carry();
+
+  WireFaults faults_;
+  int ends_[2] = {-1, -1};
+  std::atomic<std::uint64_t> bytes_{0}, packets_{0};
+  std::atomic<bool> is_ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace vps::bench

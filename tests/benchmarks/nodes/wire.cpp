@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Device and render on two machines, which are network namespaces here, joined by a wire with faults.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "lossy_wire.h"
+#include "rows.h"
+#include "support/node_processes.h"
+#include "support/temporary_folder.h"
+
+namespace vps::bench {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kInjectedBar_J = 1e-3;
+
+std::vector<std::string> inSpace(const std::string& side, std::vector<std::string> words) {
+  words.insert(words.begin(), {"/usr/sbin/ip", "netns", "exec", "vpsbench-" + side});
+  return words;
+}
+
+/// The line of render's output that has these words.
+std::string lineWith(const std::filesystem::path& file, const std::string& words) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (const std::size_t at = line.find(words); at != std::string::npos) return line.substr(at);
+  return "";
+}
+
+bool wireRow(const std::string& scene, const WireFaults& faults) {
+  const test::TemporaryFolder folder;
+  LossyWire wire(faults);
+  const auto begun = std::chrono::steady_clock::now();
+  const std::string render_text = folder.path() / "render.txt", json_file = folder.path() / "run.json";
+  test::ChildProcess device(inSpace("b", {VPS_PROGRAM, "device", "--session", "wire", "--network", "wire"}),
+                            folder.path() / "device.txt");
+  test::ChildProcess render(
+      inSpace("a", {VPS_PROGRAM, "render", scene, "--session", "wire", "--network", "wire", "--no-pictures",
+                    "--out", folder.path() / "out", "--json", json_file}),
+      render_text);
+  render.wait();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  char what[160];
+  std::snprintf(what, sizeof what,
+                "UDP between two namespaces: loss %.0f %%, delay %.0f ms, jitter %.0f ms, doubled %.0f %%",
+                100 * faults.loss, 1e3 * faults.delay_s, 1e3 * faults.jitter_s, 100 * faults.doubled);
+  std::ifstream in(json_file);
+  const json run = json::parse(in, nullptr, false);
+  if (run.is_discarded()) {
+    printRow(what, "all steps done, injected <= 1 mJ", "no result: " + lineWith(render_text, "vps: "), false);
+    return false;
+  }
+  const double injected_J = run["energy"]["injected_J"];
+  const auto done = std::count_if(run["steps"].begin(), run["steps"].end(),
+                                  [](const json& step) { return step["completed"].get<bool>(); });
+  char words[300];
+  std::snprintf(
+      words, sizeof words,
+      "%s, %ld of %zu steps done, injected %.3f mJ, peak %.1f N, safety faults %ld; %s; %.2f Mbit/s",
+      run["verdict"].get<std::string>().c_str(), static_cast<long>(done), run["steps"].size(),
+      1e3 * injected_J, run["steps"].empty() ? 0.0 : run["steps"][0]["peak_force_N"].get<double>(),
+      run["wall"]["haptic"].contains("faults") ? run["wall"]["haptic"]["faults"].get<long>() : -1L,
+      lineWith(render_text, "so the coupling has").c_str(),
+      8e-6 * static_cast<double>(wire.bytes()) / took.count());
+  const bool is_reached = injected_J <= kInjectedBar_J && done == static_cast<long>(run["steps"].size());
+  printRow(what, "all steps done, injected <= 1 mJ", words, is_reached);
+  return is_reached;
+}
+
+}  // namespace
+
+bool wireRows(const std::string& scene) {
+  bool is_good = true;
+  try {
+    is_good = wireRow(scene, {}) && is_good;
+    for (const double delay_s : {1e-3, 5e-3, 20e-3})
+      is_good = wireRow(scene, {0.05, delay_s, 5e-3, 0.01}) && is_good;
+  } catch (const std::runtime_error& error) {
+    printRow("UDP between two namespaces", "", error.what(), false);
+    return false;
+  }
+  return is_good;
+}
+
+}  // namespace vps::bench

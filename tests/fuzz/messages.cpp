@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads arbitrary bytes as each kind of message between nodes.
+#include "network/messages.h"
+
+#include "fuzz.h"
+
+namespace {
+
+using namespace vps::scenes;
+
+constexpr std::size_t kEnvelope = 28;
+
+/// What is read has the bytes that came, so that nothing was made up or left out.
+template <typename Message>
+void read(std::string_view bytes) {
+  MessageReader reader;
+  Message message;
+  if (reader.read(bytes, message) != Reading::Good) {
+    vps::fuzz::require(reader.refused() == 1, "what is refused is counted");
+    return;
+  }
+  MessageWriter writer(reader.envelope().sender);
+  vps::fuzz::require(writer.write(message).substr(kEnvelope) == bytes.substr(kEnvelope),
+                     "a message is read back unchanged");
+  vps::fuzz::require(reader.read(bytes, message) == Reading::Replayed, "a message counts once");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  read<HapticMessage>(bytes);
+  read<PhysicsMessage>(bytes);
+  read<RequestMessage>(bytes);
+  read<ReplyMessage>(bytes);
+  read<HelloMessage>(bytes);
+  read<TimesMessage>(bytes);
+  read<LogMessage>(bytes);
+  read<SnapshotMessage>(bytes);
+  read<NewsMessage>(bytes);
+  read<BeatMessage>(bytes);
+  return 0;
+}
+
+std::vector<std::string> vps::fuzz::seeds() {
+  MessageWriter writer(1);
+  SnapshotMessage snapshot;
+  snapshot.snapshot.bodies.resize(2);
+  snapshot.snapshot.contacts.resize(2);
+  return {std::string(writer.write(HapticMessage{})),
+          std::string(writer.write(PhysicsMessage{})),
+          std::string(writer.write(RequestMessage{})),
+          std::string(writer.write(HelloMessage{})),
+          std::string(writer.write(LogMessage{1, device::SyncEvent{}})),
+          std::string(writer.write(LogMessage{2, device::DeviceSample{}})),
+          std::string(writer.write(snapshot)),
+          std::string(writer.write(NewsMessage{})),
+          std::string(writer.write(BeatMessage{}))};
+}

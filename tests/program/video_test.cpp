@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Films, and pictures for two eyes and for displays, as the program writes them.
+#include "program.h"
+
+namespace vps {
+namespace {
+
+bool has(const char* program) {
+  return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+TEST_F(Program, AFilmHasAPictureForEachInstantAndIsOneFile) {
+  const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
+  ASSERT_EQ(run("assemble " + scene + " --out a --no-pictures --record run.mcap").status, 0);
+  const std::string options = "video run.mcap -o run.mp4 --width 64 --height 48 --rate 2 --camera orbit";
+  const Ran ran = run(options);
+  // The run takes some seconds: a picture at 0, 0.5, 1, ... s.
+  std::size_t pictures = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "run_frames"))
+    pictures += entry.path().extension() == ".png";
+  EXPECT_GE(pictures, 8u);
+  EXPECT_NE(ran.out.find(std::to_string(pictures) + " pictures"), std::string::npos) << ran.out;
+  const bool has_ffmpeg = has("ffmpeg");
+  EXPECT_EQ(ran.status, has_ffmpeg ? 0 : 2) << ran.err;
+  EXPECT_EQ(fs::exists(folder_ / "run.mp4"), has_ffmpeg);
+  if (has_ffmpeg) {
+    EXPECT_EQ(slurp(folder_ / "run.mp4").substr(4, 4), "ftyp");
+  }
+  // Without ffmpeg the pictures are there, and the message says what is missing.
+  const Ran alone = run(options + " --frames alone; true");
+  EXPECT_EQ(slurp(folder_ / "alone/000001.png"), slurp(folder_ / "run_frames/000001.png")) << alone.err;
+}
+
+TEST_F(Program, AFilmOfWhatIsNoRecordingIsRefused) {
+  expectRefused("video missing.mcap -o run.mp4", "missing.mcap");
+  expectRefused("video scene.toml -o run.mp4", "scene.toml");
+  expectRefused("video scene.toml -o run.avi", ".mp4");
+}
+
+TEST_F(Program, PicturesForTwoEyesAndForADisplayAreWritten) {
+  write("wall.toml",
+        "[scene]\nscale = 10\n[[screen]]\nname = 'wall'\npixels = [64, 48]\nlower_left = [-0.4, 0.2, -0.3]\n"
+        "lower_right = [0.4, 0.2, -0.3]\nupper_left = [-0.4, 0.2, 0.3]\n[[viewer]]\nname = 'anna'\n"
+        "head = {position = [0, -1, 0.1], rpy_deg = [90, 0, 0]}\n");
+  EXPECT_EQ(run("snapshot scene.toml -o a.png --size 64x48 --stereo side_by_side").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "a.png"));
+  EXPECT_EQ(run("snapshot scene.toml -o b.png --size 64x48 --stereo spectral").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "b_left.png") && fs::exists(folder_ / "b_right.png"));
+  EXPECT_EQ(run("snapshot scene.toml -o c.png --display wall.toml").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "c_wall.png"));
+  EXPECT_EQ(run("snapshot scene.toml -o d.png --size 64x48 --show points,voxels").status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "d.png"));
+  expectRefused("snapshot scene.toml -o e.png --display missing.toml", "missing.toml");
+  expectRefused("snapshot scene.toml -o e.png --show bricks", "--show");
+  expectRefused("snapshot scene.toml -o e.png --stereo sideways", "--stereo");
+}
+
+}  // namespace
+}  // namespace vps

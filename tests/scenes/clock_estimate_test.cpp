@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Offset and drift of another clock, against clocks whose offset and drift are given.
+#include "network/clock_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace vps::scenes {
+namespace {
+
+/// Another clock, and a network between: each way takes 20 us and a random time.
+class OtherClock {
+ public:
+  OtherClock(double offset_s, double drift, double greatest_wait_s)
+      : offset_s_(offset_s), drift_(drift), wait_s_(0, greatest_wait_s) {}
+
+  [[nodiscard]] double offsetAt_s(double here_s) const { return offset_s_ + drift_ * here_s; }
+  ClockExchange exchange(double here_s) {
+    constexpr double kLeast_s = 20e-6, kAnswer_s = 1e-3;
+    const double t1_s = here_s + kLeast_s + wait_s_(random_), t2_s = t1_s + kAnswer_s,
+                 t3_s = t2_s + kLeast_s + wait_s_(random_);
+    return {ns(here_s), ns(t1_s + offsetAt_s(t1_s)), ns(t2_s + offsetAt_s(t2_s)), ns(t3_s)};
+  }
+
+ private:
+  static std::int64_t ns(double s) { return std::llround(1e9 * s); }
+  std::mt19937 random_{1};
+  double offset_s_, drift_;
+  std::uniform_real_distribution<double> wait_s_;
+};
+
+TEST(ClockEstimate, AnExchangeWithEqualWaysGivesTheOffsetItself) {
+  const ClockExchange exchange{1'000'000, 3'000'500'000, 3'000'700'000, 2'200'000};
+  // One way is 500 us: the clock there is 2.999 s ahead.
+  EXPECT_DOUBLE_EQ(exchange.roundTrip_s(), 1e-3);
+  EXPECT_DOUBLE_EQ(exchange.offset_s(), 2.999);
+  ClockEstimate estimate;
+  EXPECT_FALSE(estimate.isKnown());
+  estimate.add(exchange);
+  EXPECT_TRUE(estimate.isKnown());
+  EXPECT_DOUBLE_EQ(estimate.offset_s(2'200'000), 2.999);
+  EXPECT_DOUBLE_EQ(estimate.error_s(), 0.5e-3);
+}
+
+// Half of the round trip bounds the error of one exchange. Of 50 in each quarter of a second the shortest
+// counts, whose waits are some 20 us of 100; the bar is 50 us.
+TEST(ClockEstimate, ThreeSecondsAndAHundredPartsInAMillionAreFoundWithinFiftyMicroseconds) {
+  OtherClock other(3, 100e-6, 100e-6);
+  ClockEstimate estimate;
+  for (int i = 0; i < 4000; ++i) {
+    const double here_s = 100 + 5e-3 * i;
+    estimate.add(other.exchange(here_s));
+    if (i < 800) continue;  // 4 s, all that it keeps
+    const double error_s = estimate.offset_s(std::llround(1e9 * here_s)) - other.offsetAt_s(here_s);
+    ASSERT_LE(std::abs(error_s), 50e-6) << i;
+    ASSERT_LE(std::abs(error_s), estimate.error_s()) << i;
+  }
+  // Offsets off by at most 50 us over 4 s: by least squares well below twice 50 us / 4 s.
+  EXPECT_NEAR(estimate.drift(), 100e-6, 25e-6);
+  EXPECT_EQ(estimate.contradictions(), 0u);
+}
+
+TEST(ClockEstimate, APeerThatLiesAboutTimeIsNoticedAndNotBelieved) {
+  OtherClock other(3, 0, 50e-6);
+  ClockEstimate estimate;
+  for (int i = 0; i < 200; ++i) estimate.add(other.exchange(5e-3 * i));
+  ClockExchange lie = other.exchange(1.01);
+  lie.t1_ns += 20'000'000;
+  lie.t2_ns += 20'000'000;
+  estimate.add(lie);
+  ClockExchange impossible = other.exchange(1.02);  // answered before it was asked
+  impossible.t2_ns += 10'000'000;
+  estimate.add(impossible);
+  EXPECT_EQ(estimate.contradictions(), 2u);
+  EXPECT_NEAR(estimate.offset_s(1'020'000'000), 3, 50e-6);
+}
+
+TEST(ClockEstimate, AClockThatWasSetIsFollowedAfterAWhile) {
+  OtherClock before(3, 0, 50e-6), after(-1, 0, 50e-6);
+  ClockEstimate estimate;
+  for (int i = 0; i < 200; ++i) estimate.add(before.exchange(5e-3 * i));
+  for (int i = 200; i < 260; ++i) estimate.add(after.exchange(5e-3 * i));
+  EXPECT_GT(estimate.contradictions(), 10u);
+  EXPECT_NEAR(estimate.offset_s(1'300'000'000), -1, 50e-6);
+}
+
+}  // namespace
+}  // namespace vps::scenes

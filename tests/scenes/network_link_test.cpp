@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The link over UDP, on the loopback interface: both ends in this process, which DDS does not make shorter.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "network/link.h"
+#include "scenes/two_pins.h"
+#include "support/no_alloc.h"
+#include "vps/load_error.h"
+#include "vps_scenes/network/nodes.h"
+
+namespace vps::scenes {
+namespace {
+
+class NetworkLink : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      render_ = makeSession(session_, "a scene", "lo");
+    } catch (const LoadError& error) {
+      if (std::string(error.what()).find("this build has no network") == std::string::npos) throw;
+      GTEST_SKIP() << "this build has no network";
+    }
+  }
+  std::unique_ptr<Link> join(NodeRole role) const {
+    for (int i = 0; i < 10; ++i)
+      if (auto link = joinSession(session_, role, "lo")) return link;
+    return nullptr;
+  }
+  /// Within a few seconds.
+  static bool soon(const std::function<bool()>& isSo) {
+    for (int i = 0; i < 500; ++i) {
+      if (isSo()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+  std::string receive(Link& link, Channel channel) { return std::string(link.receive(channel, buffer_)); }
+
+  std::string session_ = "udp-" + std::to_string(getpid());
+  std::unique_ptr<Link> render_;
+  std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
+};
+
+TEST_F(NetworkLink, ADeviceFindsTheSessionAndItsScene) {
+  EXPECT_FALSE(render_->isAlive(NodeRole::Device));
+  const auto device = join(NodeRole::Device);
+  ASSERT_NE(device, nullptr);
+  EXPECT_EQ(device->sceneBytes(), "a scene");
+  EXPECT_EQ(device->sessionId(), render_->sessionId());
+  EXPECT_TRUE(device->isAlive(NodeRole::Render));
+  EXPECT_TRUE(soon([&] { return render_->isAlive(NodeRole::Device); }));
+}
+
+TEST_F(NetworkLink, StatesAndRequestsArriveBothWaysAndSendingDoesNotAllocate) {
+  const auto device = join(NodeRole::Device);
+  ASSERT_NE(device, nullptr);
+  EXPECT_TRUE(soon([&] {
+    device->send(Channel::Haptic, "proxy");
+    return receive(*render_, Channel::Haptic) == "proxy";
+  }));
+  EXPECT_TRUE(soon([&] {
+    render_->send(Channel::Request, "request");
+    return receive(*device, Channel::Request) == "request";
+  }));
+  const vps_test::NoAllocScope scope;
+  device->send(Channel::Haptic, "proxy");
+  (void)device->receive(Channel::Physics, buffer_);
+}
+
+TEST_F(NetworkLink, BothKnowTheRoundTripAndThatTheClocksAreOne) {
+  const auto device = join(NodeRole::Device);
+  ASSERT_NE(device, nullptr);
+  ASSERT_TRUE(soon([&] { return render_->timing(NodeRole::Device).has_value(); }));
+  const PeerTiming timing = *render_->timing(NodeRole::Device);
+  EXPECT_GT(timing.round_trip_s, 0);
+  // Both ends read the same clock: its offset is 0.
+  EXPECT_LE(std::abs(timing.clock_offset_s), timing.clock_error_s);
+}
+
+TEST_F(NetworkLink, AnEndedSessionSaysSo) {
+  const auto watcher = join(NodeRole::Watch);
+  ASSERT_NE(watcher, nullptr);
+  EXPECT_FALSE(watcher->hasEnded());
+  render_.reset();
+  EXPECT_TRUE(soon([&] { return watcher->hasEnded(); }));
+  EXPECT_FALSE(watcher->isAlive(NodeRole::Render));
+}
+
+TEST_F(NetworkLink, ASecondRenderAndASecondDeviceAreRefused) {
+  const auto device = join(NodeRole::Device);
+  ASSERT_NE(device, nullptr);
+  EXPECT_THROW(makeSession(session_, "", "lo"), LoadError);
+  EXPECT_THROW(joinSession(session_, NodeRole::Device, "lo"), LoadError);
+}
+
+TEST_F(NetworkLink, ARunOverUdpHasTheVerdictOfOneProcess) {
+  render_.reset();
+  Scene scene = twoPins();
+  RenderOptions render;
+  render.session = session_ + "-run";
+  render.network = "lo";
+  DeviceNodeResult device_result;
+  std::thread device([&] {
+    device_result = deviceNode({render.session, render.network, nullptr, {}, false, false});
+  });
+  const AssembleResult result = renderNode(scene, render);
+  device.join();
+  EXPECT_EQ(result.verdict, Verdict::Fits);
+  EXPECT_EQ(device_result.refused, 0u);
+  EXPECT_THROW(renderNode(scene, render, "run.mcap"), LoadError);
+}
+
+}  // namespace
+}  // namespace vps::scenes

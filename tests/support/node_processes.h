@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The nodes of a session as processes, which can be killed and started again, watched from this process.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vps_device/metronome.h"
+#include "vps_scenes/network/nodes.h"
+
+extern char** environ;
+
+namespace vps::test {
+
+/// A program that runs until it ends by itself or is killed.
+class ChildProcess {
+ public:
+  ChildProcess() = default;
+  /// @param output  file that gets what it prints
+  ChildProcess(std::vector<std::string> words, const std::string& output) {
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, 1, output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    posix_spawn_file_actions_adddup2(&files, 1, 2);
+    if (posix_spawn(&id_, argv[0], &files, nullptr, argv.data(), environ) != 0) id_ = 0;
+    posix_spawn_file_actions_destroy(&files);
+  }
+  ChildProcess(ChildProcess&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  ChildProcess& operator=(ChildProcess&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~ChildProcess() { killNow(); }
+
+  /// Returns the time of the kill by the monotonic clock.
+  std::int64_t killNow() {
+    const std::int64_t now_ns = device::monotonicClock().now_ns();
+    if (id_ > 0) {
+      kill(id_, SIGKILL);
+      waitpid(std::exchange(id_, 0), nullptr, 0);
+    }
+    return now_ns;
+  }
+  /// Its exit status; -1: a signal ended it.
+  int wait() {
+    int status = -1;
+    if (id_ > 0) waitpid(std::exchange(id_, 0), &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t id_ = 0;
+};
+
+/// The three nodes of one session.
+class NodeProcesses {
+ public:
+  NodeProcesses(std::string program, std::string scene, std::string session, std::filesystem::path folder,
+                std::string network = "")
+      : program_(std::move(program)),
+        scene_(std::move(scene)),
+        session_(std::move(session)),
+        folder_(std::move(folder)),
+        network_(std::move(network)) {}
+
+  void startRender() {
+    render = start({program_, "render", scene_, "--no-pictures", "--out", (folder_ / "out").string(),
+                    "--json", (folder_ / "run.json").string()},
+                   "render.txt");
+  }
+  void startDevice() { device = start({program_, "device", "--stay"}, "device.txt"); }
+  void startWatch() { watch = start({program_, "watch"}, "watch.txt"); }
+
+  /// Joins the session as one more watcher; waits for it.
+  bool join(double limit_s = 30) {
+    watcher.reset();
+    return waitFor([this] { return (watcher = scenes::SessionWatcher::join(session_, network_)) != nullptr; },
+                   limit_s);
+  }
+  /// Until the hand holds a part, and force can flow.
+  bool waitForHold(double limit_s = 30) {
+    return waitFor(
+        [this] {
+          const auto force = watcher->takeForce();
+          return force && force->is_holding && !force->is_faulted;
+        },
+        limit_s);
+  }
+  /// Until physics has gone on by this much simulated time.
+  bool waitForPhysics(double seconds, double limit_s = 30) {
+    std::optional<double> begun_s;
+    return waitFor(
+        [&] {
+          const auto snapshot = watcher->takeSnapshot();
+          if (!snapshot) return false;
+          if (!begun_s) begun_s = snapshot->time_s;
+          return snapshot->time_s - *begun_s >= seconds;
+        },
+        limit_s);
+  }
+  /// When the device gave its first wrench of zero with a fault, after a kill at that time. Empty: it has
+  /// not.
+  std::optional<double> safeAfter_s(std::int64_t killed_ns, double limit_s = 1) {
+    std::optional<double> safe_s;
+    waitFor(
+        [&] {
+          const auto force = watcher->takeForce();
+          if (force && force->is_faulted && force->F_hand_W.f.isZero() && force->F_hand_W.tau.isZero())
+            safe_s = 1e-9 * static_cast<double>(force->sent_ns - killed_ns);
+          return safe_s.has_value();
+        },
+        limit_s);
+    return safe_s;
+  }
+  /// Shared memory of this session that has a name now.
+  [[nodiscard]] std::size_t segments() const {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
+      count += entry.path().filename().string().ends_with("." + session_);
+    return count;
+  }
+
+  static bool waitFor(const std::function<bool()>& isSo, double limit_s) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(limit_s);
+    while (!isSo()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+    return true;
+  }
+
+  ChildProcess render, device, watch;
+  std::unique_ptr<scenes::SessionWatcher> watcher;
+
+ private:
+  [[nodiscard]] ChildProcess start(std::vector<std::string> words, const std::string& output) const {
+    words.insert(words.end(), {"--session", session_});
+    if (!network_.empty()) words.insert(words.end(), {"--network", network_});
+    return {std::move(words), (folder_ / output).string()};
+  }
+
+  std::string program_, scene_, session_;
+  std::filesystem::path folder_;
+  std::string network_;  ///< interface; empty: shared memory
+};
+
+}  // namespace vps::test

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_viewer/sound.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <numeric>
+#include <thread>
+
+#include "sound/beeper.h"
+#include "sound/live_sound.h"
+#include "sound/part_voice.h"
+
+namespace vps::viewer {
+namespace {
+
+constexpr int kRate_hz = 48000;
+
+/// The amplitude of a frequency in the samples. Source: Goertzel 1958.
+double amplitudeAt(const std::vector<float>& samples, double hz, int rate_hz = kRate_hz) {
+  double re = 0, im = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * hz * static_cast<double>(i) / rate_hz;
+    re += static_cast<double>(samples[i]) * std::cos(phase);
+    im += static_cast<double>(samples[i]) * std::sin(phase);
+  }
+  return std::hypot(re, im);
+}
+double energy(const std::vector<float>& samples) {
+  double sum = 0;
+  for (const float x : samples) sum += static_cast<double>(x) * static_cast<double>(x);
+  return sum;
+}
+
+BodyModes barModes() {
+  const Vec3 half_m(0.15, 6e-3, 4e-3);
+  return findModes({-half_m, half_m}, [](const Vec3&) { return true; }, 7850, {});
+}
+
+TEST(PartVoice, AStruckBarSoundsAtTheFrequenciesOfItsModes) {
+  const BodyModes modes = barModes();
+  PartVoice voice(modes, 3e-5, 0.23, kRate_hz, 0.5);
+  const Touch end = voice.touch({0.15, 0, 4e-3}, Vec3::UnitZ());
+  std::vector<float> heard;
+  voice.push(end, 10);
+  for (int i = 0; i < kRate_hz / 2; ++i) heard.push_back(static_cast<float>(voice.next()));
+  // The first mode bends along z, so that a stroke along z drives it; a third of a semitone beside it
+  // there is much less.
+  const double hz = modes.frequency_hz[0];
+  EXPECT_GT(amplitudeAt(heard, hz), 3 * amplitudeAt(heard, 1.05 * hz));
+  EXPECT_GT(amplitudeAt(heard, hz), 3 * amplitudeAt(heard, hz / 1.05));
+  // It decays as its damping says: exp(-2 d t) of the energy; 40 / 2 and a little per second.
+  const std::vector<float> early(heard.begin() + 2400, heard.begin() + 4800),
+      late(heard.begin() + 12000, heard.begin() + 14400);
+  const double decay = std::sqrt(amplitudeAt(late, hz) / amplitudeAt(early, hz));
+  EXPECT_NEAR(decay, std::exp(-0.5 * 20.0 * 0.2), 0.2 * decay);
+}
+
+TEST(PartVoice, AStrokeWhereAModeStandsStillDoesNotSoundIt) {
+  const BodyModes modes = barModes();
+  PartVoice voice(modes, 3e-5, 0.23, kRate_hz, 0.5);
+  // The first bending mode has its nodes at 22.4 % of the length from each end.
+  const Touch node = voice.touch({-0.15 + 0.224 * 0.3, 0, 4e-3}, Vec3::UnitZ());
+  const Touch end = voice.touch({-0.15, 0, 4e-3}, Vec3::UnitZ());
+  // A brick is 2 % of the length: that far from the node the mode moves by a tenth of the end at most.
+  EXPECT_LT(std::abs(node.drive[0]), 0.15 * std::abs(end.drive[0]));
+}
+
+TEST(PartVoice, ASmallPartClicksAsLongAsItIsStruck) {
+  PartVoice voice({}, 1e-6, 8e-3, kRate_hz, 0.5);
+  voice.push({}, 5);
+  const double up = voice.next(), down = voice.next(), after = voice.next();
+  EXPECT_GT(up, 0);
+  EXPECT_EQ(down, -up);
+  EXPECT_EQ(after, 0);
+  // rho a^3 / (2 c r m) dF/dt
+  const double a3 = 3e-6 / (4 * std::numbers::pi);
+  EXPECT_NEAR(up, 1.204 * a3 / (2 * 343.2 * 0.5 * 8e-3) * 5 * kRate_hz, 1e-12);
+}
+
+TEST(Beeper, CountsItsBeepsAtTheirPitch) {
+  Beeper beeper(kRate_hz);
+  beeper.add({1760, 3});
+  beeper.add({1760, 3});  // the same warning again, while it sounds
+  std::vector<float> heard;
+  for (int i = 0; i < kRate_hz; ++i) heard.push_back(static_cast<float>(beeper.next()));
+  int beeps = 0;
+  long quiet = 100000;
+  for (const float x : heard) {
+    beeps += std::abs(x) > 0.1f && quiet > 1000;
+    quiet = std::abs(x) > 0.1f ? 0 : quiet + 1;
+  }
+  EXPECT_EQ(beeps, 3);
+  EXPECT_GT(amplitudeAt(heard, 1760), 20 * amplitudeAt(heard, 880));
+  EXPECT_LE(*std::max_element(heard.begin(), heard.end()), 1);
+}
+
+/// A bar that meets a plate.
+scenes::Scene barAndPlate() {
+  scenes::Scene scene;
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({0.1, 0.1, 5e-3}), {}, {}};
+  scene.parts[0].is_fixed = true;
+  scene.parts[1].part = {"bar", makeBox({0.3, 12e-3, 8e-3}), {}, {}};
+  return scene;
+}
+/// 0.3 s at 1 kHz; from 0.1 s on the bar presses on the plate with force_N and slips.
+std::vector<float> heardOf(const scenes::Scene& scene, double force_N, double slip_m_s) {
+  RunSound sound(scene);
+  for (int step = 1; step <= 300; ++step) {
+    scenes::Snapshot shot;
+    shot.time_s = 1e-3 * step;
+    shot.bodies = {{0, {}, scenes::BodyRole::Mounted}, {1, {}, scenes::BodyRole::InHand}};
+    if (step >= 100 && force_N > 0)
+      shot.contacts = {{Vec3(0.15, 0, -4e-3), Vec3::UnitZ(), 0, force_N, Vec3(slip_m_s, 0, 0)}};
+    sound.hear(shot);
+  }
+  return sound.take().pressure_Pa;
+}
+
+TEST(RunSound, IsSilentUntilSomethingTouchesAndThenRings) {
+  const scenes::Scene scene = barAndPlate();
+  EXPECT_EQ(energy(heardOf(scene, 0, 0)), 0);
+  const std::vector<float> heard = heardOf(scene, 10, 0);
+  ASSERT_EQ(heard.size(), 14400u) << "48 kHz for 0.3 s";
+  const std::vector<float> before(heard.begin(), heard.begin() + 99 * 48),
+      after(heard.begin() + 99 * 48, heard.end());
+  EXPECT_EQ(energy(before), 0);
+  EXPECT_GT(energy(after), 0);
+  const BodyModes modes = barModes();
+  EXPECT_GT(amplitudeAt(after, modes.frequency_hz[0]), 2 * amplitudeAt(after, 0.9 * modes.frequency_hz[0]));
+}
+
+TEST(RunSound, IsTheSameForTheSameRunAndGrowsWithTheStroke) {
+  const scenes::Scene scene = barAndPlate();
+  const std::vector<float> heard = heardOf(scene, 10, 0);
+  EXPECT_EQ(heard, heardOf(scene, 10, 0));
+  // Twice the impulse: about twice the pressure, since a faster stroke is a little shorter.
+  EXPECT_NEAR(std::sqrt(energy(heardOf(scene, 20, 0)) / energy(heard)), 2, 0.3);
+}
+
+TEST(RunSound, AContactThatSlipsIsHeardAsLongAsItSlips) {
+  const scenes::Scene scene = barAndPlate();
+  const auto tail = [&](double slip_m_s) {
+    const std::vector<float> heard = heardOf(scene, 10, slip_m_s);
+    return energy({heard.end() - 48 * 20, heard.end()});
+  };
+  EXPECT_GT(tail(0.1), 10 * tail(0));
+}
+
+/// Keeps what it is given, and says that it is gone after a while.
+class KeptOutput final : public SoundOutput {
+ public:
+  explicit KeptOutput(std::atomic<std::size_t>& count) : count_(count) {}
+  void write(std::span<const float> samples) override {
+    for (const float x : samples) EXPECT_LE(std::abs(x), 1);
+    count_ += samples.size();
+  }
+  [[nodiscard]] bool isThere() const override { return count_ < 4800; }
+
+ private:
+  std::atomic<std::size_t>& count_;
+};
+
+TEST(LiveSound, PlaysWhatIsHeardAndSaysOnceThatTheSoundCardIsGone) {
+  const scenes::Scene scene = barAndPlate();
+  std::atomic<std::size_t> count{0};
+  LiveSound sound(scene, std::make_unique<KeptOutput>(count));
+  std::string news;
+  for (int step = 1; step <= 300; ++step) {
+    scenes::Snapshot shot;
+    shot.time_s = 1e-3 * step;
+    sound.hear(shot);
+    if (step == 50) sound.beep({880, 1});
+  }
+  for (int i = 0; i < 6000 && (count < 14400 || news.empty()); ++i) {
+    if (news.empty()) news = sound.takeNews();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(count, 14400u) << "48 kHz for 0.3 s";
+  EXPECT_NE(news.find("silence"), std::string::npos);
+  EXPECT_EQ(sound.takeNews(), "") << "once is enough";
+}
+
+std::uint32_t numberAt(const std::string& bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = count - 1; i >= 0; --i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+
+TEST(Wav, HoldsTheSamplesScaledToThreeDecibelsBelowFull) {
+  double full_Pa = 0;
+  const std::string bytes = wavBytes({{0, 0.5f, -1}, {0, 0, 0}}, kRate_hz, &full_Pa);
+  EXPECT_EQ(bytes.substr(0, 4) + bytes.substr(8, 8), "RIFFWAVEfmt ");
+  EXPECT_EQ(numberAt(bytes, 24, 4), 48000u);
+  EXPECT_EQ(numberAt(bytes, 40, 4), 6u);
+  ASSERT_EQ(bytes.size(), 44u + 6u);
+  EXPECT_NEAR(static_cast<std::int16_t>(numberAt(bytes, 48, 2)), -0.708 * 32767, 1);
+  EXPECT_NEAR(static_cast<std::int16_t>(numberAt(bytes, 46, 2)), 0.354 * 32767, 1);
+  EXPECT_NEAR(full_Pa, 1 / 0.708, 1e-12);
+  EXPECT_EQ(wavBytes({}, kRate_hz).size(), 44u);
+}
+
+}  // namespace
+}  // namespace vps::viewer

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps calibrate: where the device stands in a room, and where its two arms stand to each other.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <vector>
+
+#include "command.h"
+#include "output.h"
+#include "vps/load_error.h"
+#include "vps_device/dual_arm/calibration.h"
+#include "vps_device/dual_arm/parameters.h"
+#include "vps_device/placement.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+struct CalibrateArguments {
+  std::string points, bases, parameters, out;
+};
+
+/// Rows of that many numbers, apart by commas or blanks; '#' begins a comment, and a first row of words is a
+/// heading.
+std::vector<std::vector<double>> rowsOf(const std::string& file, std::size_t columns,
+                                        const std::string& what) {
+  std::ifstream in(file);
+  if (!in) throw LoadError(file, "", "cannot be read; name a table of " + what);
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    line.resize(std::min(line.size(), line.find('#')));
+    for (char& c : line)
+      if (c == ',' || c == ';') c = ' ';
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    std::istringstream words(line);
+    std::vector<double> row;
+    for (double x = 0; words >> x;) row.push_back(x);
+    if (row.empty() && rows.empty()) continue;  // a heading
+    if (row.size() != columns || !words.eof())
+      throw LoadError(file + ":" + std::to_string(number), "",
+                      "expected " + std::to_string(columns) + " numbers: " + what);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string listOf(const Vec3& v) {
+  char text[128];
+  std::snprintf(text, sizeof text, "[%.9g, %.9g, %.9g]", v.x(), v.y(), v.z());
+  return text;
+}
+
+std::string placementOf(const std::string& file) {
+  std::vector<device::TouchedPoint> points;
+  for (const std::vector<double>& row :
+       rowsOf(file, 6, "x, y, z read by the device and x, y, z in the room [m]"))
+    points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
+  const device::Placement found = device::fitPlacement(points);
+  if (found.status == Status::Truncated) throw LoadError(file, "", "has fewer than three points; touch more");
+  if (found.status != Status::Ok)
+    throw LoadError(file, "", "has points on one line, which leave a turn about it open; touch others");
+  std::printf("%zu points: residual %.3g mm rms, greatest %.3g mm at point %zu\n", points.size(),
+              1e3 * found.rms_m, 1e3 * found.greatest_m, found.worst + 1);
+  const Quat q = found.X_SD.quaternion();
+  char rotation[160];
+  std::snprintf(rotation, sizeof rotation, "[%.12g, %.12g, %.12g, %.12g]", q.x(), q.y(), q.z(), q.w());
+  return "# Where the device stands in the room.\n[device]\nplacement = {position = " + listOf(found.X_SD.p) +
+         ", rotation_xyzw = " + rotation + "}\n";
+}
+
+std::string basesOf(const std::string& file, const std::string& parameters) {
+  std::vector<device::DualArmJoints> readings;
+  for (const std::vector<double>& row :
+       rowsOf(file, 7, "left t1, t2 [rad], d3 [m], right t1, t2, d3, handle motor q3"))
+    readings.push_back(device::fromVector(Eigen::Map<const device::JointVector>(row.data())));
+  const device::DualArmFile start =
+      parameters.empty() ? device::builtInDualArm() : device::loadDualArm(parameters);
+  const device::BaseCalibration found = device::calibrateBases(start.parameters, readings);
+  switch (found.status) {
+    case Status::Ok:
+      break;
+    case Status::Truncated:
+      throw LoadError(file, "", "has fewer than twelve readings; move the handle about and take a hundred");
+    case Status::Singular:
+      throw LoadError(file, "",
+                      "has readings too similar to tell all six numbers; tilt and move the handle more");
+    default:
+      throw LoadError(file, "",
+                      "leads to no answer; is it of this device, and are its bases roughly in place?");
+  }
+  std::printf("%zu readings: residual %.3g um rms; the right base is known to %.3g um and %.3g mrad\n",
+              readings.size(), 1e6 * found.rms_m, 1e6 * found.sigma_m, 1e3 * found.sigma_rad);
+  return "# Calibrated from " + std::to_string(readings.size()) +
+         " readings.\n[bases]\nright_shift_m = " + listOf(found.parameters.right_shift_m) +
+         "\nright_turn_rad = " + listOf(found.parameters.right_turn_rad) + "\n";
+}
+
+int runCalibrate(const CalibrateArguments& given) {
+  if (given.points.empty() == given.bases.empty())
+    throw LoadError("", "", "give --points TABLE (where the device stands) or --bases TABLE (its two arms)");
+  OutputFile out(given.out, {given.points, given.bases, given.parameters});
+  const std::string toml =
+      given.points.empty() ? basesOf(given.bases, given.parameters) : placementOf(given.points);
+  std::fputs(toml.c_str(), stdout);
+  out.write(toml);
+  return kGood;
+}
+
+}  // namespace
+
+void addCalibrate(CommandLine& line) {
+  const auto given = std::make_shared<CalibrateArguments>();
+  CLI::App& command = addCommand(
+      line, "calibrate", "finds where a device stands in a room, or where its two arms stand to each other",
+      "vps calibrate --points touched.csv -o placement.toml", [given] { return runCalibrate(*given); });
+  command
+      .add_option("--points", given->points,
+                  "points that the handle touched: rows of x, y, z by the device and x, y, z in the room [m]")
+      ->type_name("TABLE.csv");
+  command
+      .add_option(
+          "--bases", given->bases,
+          "readings of the dual arm with its handle moved about: left t1, t2, d3, right t1, t2, d3, q3 "
+          "[rad, m]")
+      ->type_name("TABLE.csv");
+  command.add_option("--parameters", given->parameters, "parameters of the dual arm to start from")
+      ->type_name("FILE.toml");
+  command.add_option("-o,--out", given->out, "TOML file to write")->type_name("FILE.toml");
+}
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps video: a recording as a film.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "command.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "vps/load_error.h"
+#include "vps_viewer/video.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+struct VideoArguments {
+  std::string recording, out, frames, sound;
+  std::string camera = "fixed";
+  VideoSettings settings;
+};
+
+int runVideo(const VideoArguments& given) {
+  const std::filesystem::path film(given.out);
+  if (film.extension() != ".mp4") throw LoadError(given.out, "", "must end in .mp4");
+  const std::string folder = given.frames.empty()
+                                 ? (film.parent_path() / (film.stem().string() + "_frames")).string()
+                                 : given.frames;
+  const device::RecordedRun run = device::loadRecording(given.recording);
+  OutputFile out(given.out, {given.recording, given.sound});
+  OutputFolder frames(folder);
+  ProgressBar bar;
+  VideoSettings settings = given.settings;
+  settings.progress = bar.progress();
+  settings.path = given.camera == "orbit"    ? CameraPath::Orbit
+                  : given.camera == "follow" ? CameraPath::Follow
+                                             : CameraPath::Fixed;
+  const std::size_t count = writeFrames(run, frames.partial(), settings);
+  bar.progress()("encoding", 1);
+  const std::string failure =
+      encodeVideo(frames.partial(), settings.frames_per_s, given.sound, out.partial());
+  frames.commit();
+  bar.clear();
+  std::printf("%zu pictures: %s\n", count, folder.c_str());
+  if (!failure.empty())
+    throw LoadError(given.out, "", "is not made: " + failure + "; the pictures are there");
+  out.commit();
+  std::printf("film: %s\n", given.out.c_str());
+  return kGood;
+}
+
+}  // namespace
+
+void addVideo(CommandLine& line) {
+  const auto given = std::make_shared<VideoArguments>();
+  CLI::App& command =
+      addCommand(line, "video", "makes a film of a recording: PNG pictures, and MP4 with ffmpeg",
+                 "vps video run.mcap -o run.mp4 --camera follow", [given] { return runVideo(*given); });
+  command.add_option("recording", given->recording, "what vps assemble --record wrote")
+      ->required()
+      ->type_name("RECORDING");
+  command.add_option("-o,--out", given->out, "film to write")->required()->type_name("FILE.mp4");
+  command.add_option("--frames", given->frames, "folder of the pictures; without it NAME_frames")
+      ->type_name("DIR");
+  command.add_option("--sound", given->sound, "sound track: what vps assemble --sound wrote of the same run")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE.wav");
+  VideoSettings& settings = given->settings;
+  command.add_option("--width", settings.width, "of the pictures")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 4096));
+  command.add_option("--height", settings.height, "of the pictures")
+      ->capture_default_str()
+      ->check(CLI::Range(16, 4096));
+  command.add_option("--rate", settings.frames_per_s, "pictures a second")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 240.0));
+  command.add_option("--speed", settings.speed, "of the run in the film; 1: as it was")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 1000.0));
+  command.add_option("--view", settings.view, "side to look from")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}));
+  command
+      .add_option("--camera", given->camera, "fixed, orbit (once around) or follow (with the part in hand)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"fixed", "orbit", "follow"}));
+}
+
+}  // namespace vps::viewer::inline v0

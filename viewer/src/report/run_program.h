@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs another program to its end: gnuplot, ffmpeg.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vps::viewer::inline v0 {
+
+/// Runs a program that is found by PATH, without a shell. Returns nothing on success, and otherwise the
+/// reason: `missing` where there is no such program, else with the start of what it printed.
+/// @param words  its name and arguments
+/// @param input  what it reads on stdin
+std::string runProgram(const std::vector<std::string>& words, const std::string& input,
+                       const std::string& missing);
+
+/// Whether PATH has it.
+bool hasProgram(const std::string& name);
+
+}  // namespace vps::viewer::inline v0

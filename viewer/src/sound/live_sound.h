@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The sound of a run while it goes on, through the machine's loudspeakers.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "vps_viewer/export.h"
+#include "vps_viewer/sound.h"
+
+namespace vps::viewer::inline v0 {
+
+/// Where samples go. All its functions are called by one thread.
+class SoundOutput {
+ public:
+  virtual ~SoundOutput() = default;
+  /// Samples between -1 and 1, to be heard after what was written before. Never waits; what does not fit is
+  /// dropped.
+  virtual void write(std::span<const float> samples) = 0;
+  /// False once the sound card is gone.
+  [[nodiscard]] virtual bool isThere() const = 0;
+};
+
+/// The system's default output. Null where there is none, and `why` says so in a line.
+VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
+
+/// Synthesises on a thread of its own. hear() and beep() only hand over, so that physics does not wait for
+/// modes.
+class VPS_VIEWER_API LiveSound {
+ public:
+  /// The scene outlives it; its models are complete before the first hear().
+  LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output);
+  ~LiveSound();
+  LiveSound(const LiveSound&) = delete;
+  LiveSound& operator=(const LiveSound&) = delete;
+
+  void hear(const scenes::Snapshot& shot);
+  void beep(device::Beep beep);
+  /// Once, if the sound card is gone: a line that says so.
+  [[nodiscard]] std::string takeNews();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vps::viewer::inline v0

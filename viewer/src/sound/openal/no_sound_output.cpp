@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Loudspeakers in a build without OpenAL.
+#include "sound/live_sound.h"
+
+namespace vps::viewer::inline v0 {
+
+std::unique_ptr<SoundOutput> openSoundOutput(int, std::string& why) {
+  why = "this build is silent; install libopenal-dev and build again";
+  return nullptr;
+}
+
+}  // namespace vps::viewer::inline v0
