@@ -12,6 +12,7 @@
 #include "progress_bar.h"
 #include "run_report.h"
 #include "scene_arguments.h"
+#include "table.h"
 #include "terminal.h"
 #include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
