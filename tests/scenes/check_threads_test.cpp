@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <numbers>
 #include <random>
-#include <utility>
 
 #include "check/iso_262.h"
 #include "check/screw_profile.h"
@@ -20,6 +19,8 @@
 
 namespace vps::scenes {
 namespace {
+
+using test::mirrored;
 
 constexpr double kRadial = 100e-6;  // clearance of the nuts
 
@@ -37,13 +38,6 @@ test::ThreadShape threadOf(double turns, double clearance_m = 0) {
   thread.face_steps = 4;
   thread.side_steps = 4;
   return thread;
-}
-
-/// In a mirror a right-hand thread is a left-hand one.
-Mesh mirrored(Mesh mesh) {
-  for (Vec3& v : mesh.vertices) v.x() = -v.x();
-  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
-  return mesh;
 }
 
 /// A nut of six turns in the middle of a rod of ten: their phases agree, so the nut is as loose all around as

@@ -6,13 +6,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <random>
-#include <utility>
 
 #include "support/screw.h"
 #include "vps_scenes/import.h"
 
 namespace vps::scenes {
 namespace {
+
+using test::mirrored;
 
 test::ThreadShape threadOf(double pitch_m, double turns) {
   test::ThreadShape thread;
@@ -21,13 +22,6 @@ test::ThreadShape threadOf(double pitch_m, double turns) {
   thread.columns = 96;
   thread.rows_per_pitch = 16;
   return thread;
-}
-
-// In a mirror a right-hand thread is a left-hand one.
-Mesh mirrored(Mesh mesh) {
-  for (Vec3& v : mesh.vertices) v.x() = -v.x();
-  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
-  return mesh;
 }
 
 TEST(ThreadForm, LeadAndHandOfRodsAndNuts) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "support/swept.h"
@@ -75,6 +76,13 @@ inline Mesh makeThreadedRod(const ThreadShape& thread) {
     appendLine(loop, -end, low, thread.face_steps);
     return loop;
   });
+}
+
+/// In a mirror a right-hand thread is a left-hand one.
+inline Mesh mirrored(Mesh mesh) {
+  for (Vec3& v : mesh.vertices) v.x() = -v.x();
+  for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
+  return mesh;
 }
 
 /// A hexagonal nut with the same thread inside, its corners at corner_m. Closed, outward.

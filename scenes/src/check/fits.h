@@ -2,6 +2,8 @@
 // Fits between two parts: a shaft in a bore, a key in a slot, a screw in a nut.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "check/flat_faces.h"
@@ -32,6 +34,15 @@ void appendKeyFits(const FittedPart& a, const FittedPart& b, std::vector<Checked
 /// Threads outside of one part in threads inside of the other, with a common axis and lead. Removes the fits
 /// of the two parts that were appended before and are of the crests and roots of these threads.
 void appendThreadFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
+
+/// From where to where two faces around nearly parallel axes are beside each other: along the axis of a, from
+/// a.p. Nowhere if the second is not more than the first.
+template <class Face, class OtherFace>
+std::array<double, 2> commonRange(const Face& a, const OtherFace& b) {
+  const double shift_m = a.axis.dot(b.p - a.p), sign = a.axis.dot(b.axis) > 0 ? 1 : -1;
+  const double end_m = shift_m + sign * b.from_m, other_end_m = shift_m + sign * b.to_m;
+  return {std::max(a.from_m, std::min(end_m, other_end_m)), std::min(a.to_m, std::max(end_m, other_end_m))};
+}
 
 /// The greatest clearance of a fit, in its size. assumed: wider is not called a fit in any table of ISO 286.
 inline constexpr double kMostClearance = 0.25;

@@ -17,13 +17,8 @@ constexpr double kLeastLength = 1e-3;  // in the diameter
 bool fitOf(const RoundFace& shaft, const RoundFace& bore, CheckedFit& fit) {
   const double d_m = 2 * shaft.radius_m, clearance_m = 2 * (bore.radius_m - shaft.radius_m);
   if (std::abs(clearance_m) > kMostClearance * d_m) return false;
-  const double cosine = shaft.axis.dot(bore.axis);
-  if (std::abs(cosine) < 0.99) return false;
-  // The bore's ends along the shaft's axis.
-  const double shift_m = shaft.axis.dot(bore.p - shaft.p), sign = cosine > 0 ? 1 : -1;
-  const double end_m = shift_m + sign * bore.from_m, other_end_m = shift_m + sign * bore.to_m;
-  const double from_m = std::max(shaft.from_m, std::min(end_m, other_end_m)),
-               to_m = std::min(shaft.to_m, std::max(end_m, other_end_m));
+  if (std::abs(shaft.axis.dot(bore.axis)) < 0.99) return false;
+  const auto [from_m, to_m] = commonRange(shaft, bore);
   const double length_m = to_m - from_m;
   if (!(length_m > kLeastLength * d_m)) return false;
   double offset_m = 0;

@@ -22,18 +22,14 @@ ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
 
 /// The fit of a screw in a nut that are both in the world frame; false if they are none.
 bool fitOf(const ThreadFace& screw, const ThreadFace& nut, CheckedFit& fit) {
-  const double cosine = screw.axis.dot(nut.axis);
-  if (std::abs(cosine) < 0.99) return false;
+  if (std::abs(screw.axis.dot(nut.axis)) < 0.99) return false;
   if (std::abs(screw.lead_m - nut.lead_m) > kSameLead * std::abs(screw.lead_m) || screw.starts != nut.starts)
     return false;
   // Crests of each reach into the grooves of the other.
   if (screw.greatest_m <= nut.least_m || screw.greatest_m > (1 + 0.5 * kMostClearance) * nut.greatest_m ||
       nut.greatest_m > (1 + kMostClearance) * screw.greatest_m)
     return false;
-  const double shift_m = screw.axis.dot(nut.p - screw.p), sign = cosine > 0 ? 1 : -1;
-  const double end_m = shift_m + sign * nut.from_m, other_end_m = shift_m + sign * nut.to_m;
-  const double from_m = std::max(screw.from_m, std::min(end_m, other_end_m)),
-               to_m = std::min(screw.to_m, std::max(end_m, other_end_m));
+  const auto [from_m, to_m] = commonRange(screw, nut);
   if (!(to_m - from_m > kLeastTurns * std::abs(screw.lead_m) / screw.starts)) return false;
   for (const double along_m : {from_m, to_m}) {
     const Vec3 r = screw.p + along_m * screw.axis - nut.p;
