@@ -19,7 +19,6 @@
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
 #include "vps_viewer/sound.h"
-#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -115,12 +114,7 @@ int runAssemble(const AssembleArguments& given) {
   bar.clear();
   if (heard) heard->write(wav);
 
-  printSteps(result);
-  for (const std::string& note : notes) warn(note);
-  printTiming(result);
-  if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
-  if (const std::string ease = easeWords(result); !ease.empty()) std::printf("%s\n", ease.c_str());
-  std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
+  printOutcome(result, notes, given.record, given.out);
   return statusOf(result.verdict);
 }
 

@@ -13,7 +13,6 @@
 #include "session_option.h"
 #include "terminal.h"
 #include "vps_scenes/network/nodes.h"
-#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -59,11 +58,7 @@ int runRender(const RenderArguments& given) {
   out.commit();
   json.write(toJson(result));
   bar.clear();
-  printSteps(result);
-  for (const std::string& note : notes) warn(note);
-  printTiming(result);
-  if (!given.record.empty()) std::printf("recorded: vps replay %s\n", given.record.c_str());
-  std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), given.out.c_str());
+  printOutcome(result, notes, given.record, given.out);
   return statusOf(result.verdict);
 }
 

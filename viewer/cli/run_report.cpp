@@ -54,12 +54,6 @@ std::string describe(const scenes::AssembleResult& result) {
 
 }  // namespace
 
-void printTiming(const scenes::AssembleResult& result) {
-  if (!result.real_time) return;
-  for (const std::string& words : result.real_time->warnings) warn(words);
-  std::fputs(describe(result).c_str(), stdout);
-}
-
 int statusOf(scenes::Verdict verdict) {
   switch (verdict) {
     case scenes::Verdict::Fits:
@@ -102,6 +96,19 @@ void printSteps(const scenes::AssembleResult& result) {
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
          " near points found no room in a query; choose a coarser spacing");
+}
+
+void printOutcome(const scenes::AssembleResult& result, const std::vector<std::string>& notes,
+                  const std::string& record, const std::string& out) {
+  printSteps(result);
+  for (const std::string& note : notes) warn(note);
+  if (result.real_time) {
+    for (const std::string& words : result.real_time->warnings) warn(words);
+    std::fputs(describe(result).c_str(), stdout);
+  }
+  if (!record.empty()) std::printf("recorded: vps replay %s\n", record.c_str());
+  if (const std::string ease = easeWords(result); !ease.empty()) std::printf("%s\n", ease.c_str());
+  std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), out.c_str());
 }
 
 }  // namespace vps::viewer::inline v0

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Output that `vps assemble` and `vps replay` share: tables, report, JSON.
+// Output that `vps assemble`, `vps render` and `vps replay` share: tables, report, JSON.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "output.h"
 #include "vps/progress.h"
@@ -24,8 +25,11 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
 /// Prints the table of steps, and a line for each problem of a step.
 void printSteps(const scenes::AssembleResult& result);
 
-/// Of a run by the clock: prints warnings, rates and missed periods.
-void printTiming(const scenes::AssembleResult& result);
+/// Prints what a run came to: steps, notes of fillFolder(), timing of a run by the clock, recording, verdict.
+/// @param record  file of the recording; empty: none
+/// @param out     folder of the results
+void printOutcome(const scenes::AssembleResult& result, const std::vector<std::string>& notes,
+                  const std::string& record, const std::string& out);
 
 /// The program's exit status.
 int statusOf(scenes::Verdict verdict);
