@@ -12,6 +12,7 @@
 #include "vps/mesh_distance.h"
 #include "vps/mesh_repair.h"
 #include "vps/query.h"
+#include "vps/solid.h"
 #include "vps/voxmap.h"
 #include "vps/winding_number.h"
 
@@ -320,39 +321,68 @@ TEST(FaultyMesh, TJunctionsAreNotHoles) {
   EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
 }
 
+/// A box of six faces with their own corners, up to hair_m apart, each face of 2 x 8 x 8 triangles.
+Mesh partedBox(const Mesh& box, RandomPoints& random, double hair_m, bool has_flipped) {
+  Mesh faces;
+  for (std::size_t i = 0; i < 6; ++i) {
+    Mesh face;
+    const auto &t = box.triangles[2 * i], &u = box.triangles[2 * i + 1];
+    const Vec3 a = box.vertices[t[0]], ab = box.vertices[t[1]] - a, ad = box.vertices[u[2]] - a;
+    const Vec3 hair = random.inBox(Vec3::Constant(hair_m));
+    for (int x = 0; x <= 8; ++x)
+      for (int y = 0; y <= 8; ++y) face.vertices.push_back(a + hair + x / 8.0 * ab + y / 8.0 * ad);
+    for (std::uint32_t x = 0; x < 8; ++x)
+      for (std::uint32_t y = 0; y < 8; ++y) {
+        const std::uint32_t v = 9 * x + y;
+        face.triangles.push_back({v, v + 9, v + 10});
+        face.triangles.push_back({v, v + 10, v + 1});
+      }
+    if (has_flipped && i == 3)
+      for (auto& triangle : face.triangles) std::swap(triangle[0], triangle[1]);
+    append(faces, face);
+  }
+  return faces;
+}
+
 TEST(FaultyMesh, OneShellPerFaceIsASolidEvenIfSomeShellsFaceIn) {
-  // A box of six faces with their own corners, slightly apart, each face of 2 x 8 x 8 triangles.
   RandomPoints random(7);
-  const Pose X = random.pose(0.01);
-  const Mesh box = transformed(makeBox({0.016, 0.012, 0.01}), X);
+  const Mesh box = transformed(makeBox({0.016, 0.012, 0.01}), random.pose(0.01));
+  constexpr double kHair_m = 1e-5;
   for (const bool has_flipped : {false, true}) {
-    Mesh faces;
-    for (std::size_t i = 0; i < 6; ++i) {
-      Mesh face;
-      const auto &t = box.triangles[2 * i], &u = box.triangles[2 * i + 1];
-      const Vec3 a = box.vertices[t[0]], ab = box.vertices[t[1]] - a, ad = box.vertices[u[2]] - a;
-      const Vec3 hair = random.inBox(Vec3::Constant(1e-7));
-      for (int x = 0; x <= 8; ++x)
-        for (int y = 0; y <= 8; ++y) face.vertices.push_back(a + hair + x / 8.0 * ab + y / 8.0 * ad);
-      for (std::uint32_t x = 0; x < 8; ++x)
-        for (std::uint32_t y = 0; y < 8; ++y) {
-          const std::uint32_t v = 9 * x + y;
-          face.triangles.push_back({v, v + 9, v + 10});
-          face.triangles.push_back({v, v + 10, v + 1});
-        }
-      if (has_flipped && i == 3)
-        for (auto& triangle : face.triangles) std::swap(triangle[0], triangle[1]);
-      append(faces, face);
-    }
     VoxMap map;
-    const MeshReport report = reportOf(faces, &map);
+    const MeshReport report = reportOf(partedBox(box, random, kHair_m, has_flipped), &map);
     EXPECT_EQ(report.shells, 6u);
     EXPECT_EQ(report.turned_shells, has_flipped ? 1u : 0u);
-    // Cracks of 2 sqrt(3) 1e-7: nodes that near a face may have either sign.
+    EXPECT_EQ(report.joined_corners, 0u);
+    // Cracks of 2 sqrt(3) hairs: nodes that near a face may have either sign.
     const MeshDistance truth(box);
     EXPECT_EQ(wrongSigns(map, insideOf(box),
-                         [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4e-7; }),
+                         [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4 * kHair_m; }),
               0u);
+  }
+}
+
+TEST(FaultyMesh, NarrowCracksAreClosed) {
+  RandomPoints random(7);
+  const Mesh box = transformed(makeBox({0.016, 0.012, 0.01}), random.pose(0.01));
+  constexpr double kHair_m = 1e-7;
+  for (const bool has_flipped : {false, true}) {
+    const Solid solid(partedBox(box, random, kHair_m, has_flipped));
+    const MeshReport& report = solid.report();
+    EXPECT_TRUE(checkMesh(solid.mesh()).isClosed());
+    EXPECT_EQ(report.open_edges, 0u);
+    EXPECT_EQ(report.shells, 1u);
+    EXPECT_EQ(report.flipped_facets, has_flipped ? 128u : 0u);
+    // Twelve edges with seven corners of two faces between their ends, and eight corners of three.
+    EXPECT_EQ(report.joined_corners, 12u * 7 + 8 * 2);
+    EXPECT_GT(report.joined_m, kHair_m / 10);
+    EXPECT_LE(report.joined_m, 2 * std::sqrt(3) * kHair_m);
+    EXPECT_FALSE(report.signed_by_winding);
+    // Each face has moved by a hair; a corner by up to two.
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 p = random.inBox(Vec3::Constant(0.02));
+      EXPECT_NEAR(solid.signedDistance(p), MeshDistance(box).signedDistance(p), 4 * kHair_m);
+    }
   }
 }
 

@@ -41,6 +41,8 @@ struct MeshReport {
     return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0;
   }
 
+  std::size_t joined_corners = 0;      ///< moved onto another one, to close cracks narrower than 2 um
+  double joined_m = 0;                 ///< greatest way that one was moved
   std::size_t holes = 0;               ///< groups of connected open edges
   std::size_t t_junctions = 0;         ///< vertices within an open edge: cracks without width
   std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours

@@ -25,6 +25,8 @@ struct RepairedMesh {
 enum class Crossing { Unknown, Seen };
 
 /// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
+/// - Corners that cracks part by less than 2 um and a ten-thousandth of the mesh's size are joined. What is
+///   said of cracks below is for wider ones, which stay.
 /// - Of triangles with the same corners, or with cracks between them, one is kept. Of a back-to-back pair
 ///   none is kept if it is a wall between two solids, and one if it is the only surface there (a surface
 ///   exported for both sides, or given twice and turned once).

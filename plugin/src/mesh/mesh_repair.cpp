@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "mesh/box_tree.h"
+#include "mesh/closed_cracks.h"
 #include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/mesh_survey.h"
@@ -85,6 +86,7 @@ class Repairer {
     edges_ = sortedHalfEdges(mesh());
     std::vector<std::uint32_t> shell_of;
     result_.report = checkMesh(mesh(), edges_, &shell_of);
+    if (report().open_edges > 0) closeNarrowCracks(shell_of);
     const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
     if (is_whole && report().duplicate_triangles == 0 && areSound(mesh(), shell_of, report().shells))
       return finish(true);
@@ -117,6 +119,16 @@ class Repairer {
 
   Mesh& mesh() { return result_.solid; }
   MeshReport& report() { return result_.report; }
+
+  void closeNarrowCracks(std::vector<std::uint32_t>& shell_of) {
+    ClosedCracks closed = closeCracks(mesh(), edges_);
+    if (closed.corners == 0) return;
+    mesh() = std::move(closed.mesh);
+    edges_ = sortedHalfEdges(mesh());
+    result_.report = checkMesh(mesh(), edges_, &shell_of);
+    report().joined_corners = closed.corners;
+    report().joined_m = closed.widest_m;
+  }
 
   void flip(std::uint32_t triangle) {
     std::swap(mesh().triangles[triangle][1], mesh().triangles[triangle][2]);
@@ -503,6 +515,8 @@ RepairedMesh repairCrossing(const RepairedMesh& sound) {
   again.report.flipped_edges += sound.report.flipped_edges;
   again.report.flipped_facets += sound.report.flipped_facets;
   again.report.turned_shells += sound.report.turned_shells;
+  again.report.joined_corners += sound.report.joined_corners;
+  again.report.joined_m = std::max(again.report.joined_m, sound.report.joined_m);
   return again;
 }
 
@@ -525,6 +539,13 @@ std::string describe(const MeshReport& report) {
   say(report.overlapping_shells, "overlapping shell", "overlapping shells");
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
+  if (report.joined_corners > 0) {
+    char joined[96];
+    std::snprintf(joined, sizeof joined, "%s%zu %s joined across cracks of up to %.2g um",
+                  text.empty() ? "" : ", ", report.joined_corners,
+                  report.joined_corners == 1 ? "corner" : "corners", 1e6 * report.joined_m);
+    text += joined;
+  }
   char certain[64];
   // Rounded down, so that 100 % means all.
   std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
