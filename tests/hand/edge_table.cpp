@@ -40,6 +40,8 @@ void printCase(const EdgeCase& edge, const scenes::StepResult& step, EdgeOutcome
       kWords[static_cast<int>(outcome)], step.duration_s, 1e6 * step.max_penetration_m,
       1e6 * step.blocked_depth_m, 1e6 * step.blocked_error_m, step.guide_force_N, 1e6 * step.final_error_m,
       step.reason.c_str());
+  for (const scenes::StrategyUse& use : step.strategies)
+    std::printf("  from %5.1f s for %4.1f s: %s\n", use.start_s, use.duration_s, use.strategy.c_str());
   std::fflush(stdout);
 }
 

@@ -66,6 +66,12 @@ scenes::Scene coarseThread(double depth_m, std::uint64_t seed) {
                      seed);
 }
 
+scenes::Scene leaningNut(double depth_m, std::uint64_t seed) {
+  scenes::Scene scene = coarseThread(depth_m, seed);
+  scene.hand.aim_error_rad = 0.1;
+  return scene;
+}
+
 scenes::Scene smoothRod(double depth_m, std::uint64_t seed) {
   constexpr double kRadius_m = 4e-3;  // within the nut's thread
   return threadScene(
@@ -95,6 +101,8 @@ const std::vector<PegScene>& threadScenes() {
   static const std::vector<PegScene> scenes = {
       {"coarse_thread", "12 mm, pitch 3 mm, 0.15 mm of radial clearance: two turns",
        [](std::uint64_t seed) { return coarseThread(7.5e-3, seed); }},
+      {"leaning_nut", "coarse_thread, aimed with a standard deviation of six degrees",
+       [](std::uint64_t seed) { return leaningNut(4.5e-3, seed); }},
       {"smooth_rod", "the same nut over a rod without a thread: nothing catches",
        [](std::uint64_t seed) { return smoothRod(7.5e-3, seed); }},
       {"m16", "M16 x 2 of $VPS_CAD_DIR/thread-m16-loose: ten millimetres down the thread",

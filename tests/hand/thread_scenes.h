@@ -12,6 +12,9 @@ namespace vps::hand {
 /// below where the nut meets the rod.
 scenes::Scene coarseThread(double depth_m, std::uint64_t seed);
 
+/// The same, aimed with a standard deviation of six degrees, so that the nut may start crossed.
+scenes::Scene leaningNut(double depth_m, std::uint64_t seed);
+
 /// The same nut over a smooth rod that it passes: nothing catches.
 scenes::Scene smoothRod(double depth_m, std::uint64_t seed);
 
@@ -19,7 +22,7 @@ scenes::Scene smoothRod(double depth_m, std::uint64_t seed);
 /// LoadError without it.
 scenes::Scene looseM16(double depth_m, std::uint64_t seed);
 
-/// coarse_thread: two turns; smooth_rod; m16: 10 mm down, five turns.
+/// coarse_thread: two turns; leaning_nut: one; smooth_rod; m16: 10 mm down, five turns.
 const std::vector<PegScene>& threadScenes();
 
 }  // namespace vps::hand
