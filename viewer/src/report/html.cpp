@@ -2,7 +2,10 @@
 #include "report/html.h"
 
 #include <cstdio>
+#include <span>
 
+#include "report/base64.h"
+#include "report/text_file.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer::inline v0 {
@@ -59,12 +62,33 @@ figure.section { margin: 18px 0 26px; } figure.section svg { width: 100%; max-wi
 figcaption { color: #555; font-size: 13px; margin-top: 4px; }
 code, pre { font: 13px/1.5 "DejaVu Sans Mono", monospace; background: #f4f4f4; border-radius: 4px; }
 code { padding: 1px 4px; } pre { padding: 10px 14px; overflow-x: auto; }
+#run-view { margin: 12px 0 24px; } #run-view canvas { display: block; width: 100%; border: 1px solid #e0e0e0;
+       border-radius: 4px; touch-action: none; } #run-view .screen { min-height: 3em; }
+#run-view .controls { display: flex; gap: 12px; align-items: center; margin: 8px 0 4px; }
+#run-view input { flex: 1; min-width: 0; } #run-view button, #run-view select { font: inherit; padding: 3px 12px; }
+#run-view output { display: block; min-height: 1.5em; font-variant-numeric: tabular-nums; } #run-view p { margin: 2px 0; }
 @media (max-width: 800px) { .pictures, .pictures.two { grid-template-columns: 1fr; } }
 @media print { body { padding: 0; max-width: none; } h3 { break-after: avoid; } figure { break-inside: avoid; } }
 )";
 
 std::string attribute(const std::string& css_class) {
   return css_class.empty() ? std::string() : " class=\"" + escapeHtml(css_class) + "\"";
+}
+
+/// The body with the pictures that are in the folder instead of their names.
+std::string withPictures(const std::string& body, const std::string& folder) {
+  static const std::string kSource = "<img src=\"";
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = body.find(kSource); at != std::string::npos; at = body.find(kSource, done)) {
+    const std::size_t from = at + kSource.size(), to = body.find('"', from);
+    out.append(body, done, from - done);
+    done = to;
+    const std::string file = body.substr(from, to - from);
+    const std::string bytes = textOf(folder + "/" + file);
+    out.append(bytes.empty() ? file : "data:image/png;base64," + base64(std::as_bytes(std::span(bytes))));
+  }
+  return out.append(body, done);
 }
 
 }  // namespace
@@ -102,11 +126,11 @@ std::string figure(const std::string& file, const std::string& caption_html, con
          "\" alt=\"\" loading=\"lazy\"></a>" + "<figcaption>" + caption_html + "</figcaption></figure>\n";
 }
 
-std::string page(const std::string& title, const std::string& body) {
+std::string page(const std::string& title, const std::string& body, const std::string& folder) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         escapeHtml(title) + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n" + body +
-         "</body>\n</html>\n";
+         escapeHtml(title) + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n" +
+         (folder.empty() ? body : withPictures(body, folder)) + "</body>\n</html>\n";
 }
 
 }  // namespace html

@@ -10,6 +10,7 @@
 #include "report/length_text.h"
 #include "report/pictures.h"
 #include "report/run_plot.h"
+#include "report/run_view.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
@@ -325,12 +326,15 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   const std::vector<WrittenPlot> plots = writePlots(result, dir, outcome.notes);
   const ReportPictures pictures = drawPictures(scene, result, dir, options);
   if (!pictures.failure_reason.empty()) outcome.notes.push_back("No pictures: " + pictures.failure_reason);
+  const RunView view = options.has_pictures ? runView(scene, result) : RunView();
+  if (!view.missing.empty()) outcome.notes.push_back("No three-dimensional view: " + view.missing);
   if (options.progress) options.progress("report", 1);
 
   const std::string name = !result.scene.empty() ? result.scene : scene.name;
   std::string body = "<h1>" + escapeHtml(name) + "</h1>\n<p class=\"quiet\">Report of an assembly run: " +
                      std::string(isHandSimulated(scene) ? "a simulated hand" : "a person") +
                      " moves each part to its target by contact.</p>\n" + summary(result, outcome.notes);
+  body += view.html;
   if (!pictures.overview.empty())
     body += "<div class=\"pictures two\">\n" + html::figure(pictures.overview, "The assembly.") +
             html::figure(pictures.section, "The same in section.") + "</div>\n";
@@ -343,7 +347,7 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
     body += stepSection(i, result.steps[i], i < pictures.steps.size() ? pictures.steps[i] : StepPictures(),
                         plots);
   body += method(scene, result) + performance(result) + howToRepeat(options.command);
-  writeWholeFile(outcome.file, html::page(name + ": assembly report", body));
+  writeWholeFile(outcome.file, html::page(name + ": assembly report", body, dir));
   return outcome;
 }
 

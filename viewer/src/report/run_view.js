@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The three-dimensional view of a run in the report. Reads what run_view.cpp wrote: lengths in mm, poses as
+// [x, y, z, qw, qx, qy, qz], arrays as base64.
+(function () {
+  "use strict";
+  const run = JSON.parse(document.getElementById("run-data").textContent);
+  const box = document.getElementById("run-view");
+  const canvas = box.querySelector("canvas");
+  const slider = box.querySelector("input");
+  const button = box.querySelector("button");
+  const label = box.querySelector("output");
+  const views = box.querySelector("select");
+
+  let renderer;
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas: canvas, antialias: true });
+  } catch (error) {
+    box.querySelector(".screen").textContent =
+      "This browser shows no three-dimensional view here (it has no WebGL); the pictures below show the run.";
+    return;
+  }
+  renderer.setClearColor(0xffffff);
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+
+  function decode(text, Type) {
+    const raw = atob(text);
+    const bytes = new Uint8Array(raw.length);
+    for (let i = 0; i < raw.length; ++i) bytes[i] = raw.charCodeAt(i);
+    return new Type(bytes.buffer);
+  }
+
+  function place(object, pose) {
+    object.position.set(pose[0], pose[1], pose[2]);
+    object.quaternion.set(pose[4], pose[5], pose[6], pose[3]);
+  }
+
+  const scene = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(30, 1, 0.1, 1000);
+  camera.up.set(0, 0, 1);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9a9a, 0.75));
+  const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
+  scene.add(lamp);
+
+  const kInHand = 0x2f6fde;
+  const lines = new THREE.LineBasicMaterial({ color: 0x222222 });
+
+  function shapeOf(part) {
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(decode(part.places, Float32Array), 3));
+    shape.setAttribute("normal", new THREE.BufferAttribute(decode(part.normals, Int8Array), 3, true));
+    shape.setIndex(new THREE.BufferAttribute(decode(part.triangles, Uint32Array), 1));
+    return shape;
+  }
+
+  const parts = run.parts.map(function (part) {
+    const group = new THREE.Group();
+    const shape = shapeOf(part);
+    const color = new THREE.Color(part.color);
+    const paint = new THREE.MeshPhongMaterial({
+      color: color, specular: 0x222222, shininess: 25, side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1
+    });
+    group.add(new THREE.Mesh(shape, paint));
+    const edges = new THREE.BufferGeometry();
+    edges.setAttribute("position", new THREE.BufferAttribute(decode(part.edges, Float32Array), 3));
+    group.add(new THREE.LineSegments(edges, lines));
+    group.visible = part.fixed;
+    if (part.fixed) place(group, part.pose);
+    scene.add(group);
+    return { group: group, shape: shape, paint: paint, color: color, fixed: part.fixed };
+  });
+
+  const hint = new THREE.Mesh(undefined, new THREE.MeshBasicMaterial(
+    { color: kInHand, transparent: true, opacity: 0.16, depthWrite: false }));
+  hint.visible = false;
+  scene.add(hint);
+
+  const sphere = new THREE.Sphere(new THREE.Vector3().fromArray(run.center), run.radius);
+  const kViews = {
+    corner: [0.75, -1.25, 0.85], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0], left: [-1, 0, 0],
+    top: [0, -0.001, 1]
+  };
+  const controls = new THREE.OrbitControls(camera, canvas);
+  controls.addEventListener("change", draw);
+
+  function look(name) {
+    const half = 0.5 * camera.fov * Math.PI / 180;
+    const away = sphere.radius / Math.sin(Math.min(half, Math.atan(Math.tan(half) * camera.aspect)));
+    camera.position.fromArray(kViews[name]).normalize().multiplyScalar(away).add(sphere.center);
+    camera.near = 0.02 * away;
+    camera.far = 20 * away;
+    camera.updateProjectionMatrix();
+    controls.target.copy(sphere.center);
+    controls.update();
+    draw();
+  }
+
+  // The bodies of the step's beginning, and then the part in hand where it is now.
+  function show(index) {
+    const frame = run.frames[index];
+    const isLast = index + 1 === run.frames.length;
+    const step = frame ? run.steps[frame[1]] : null;
+    const bodies = isLast || !step ? run.finished : step.bodies;
+    for (const part of parts) {
+      part.group.visible = part.fixed;
+      part.paint.color.copy(part.color);
+    }
+    for (const body of bodies) {
+      place(parts[body[0]].group, body.slice(1));
+      parts[body[0]].group.visible = true;
+    }
+    hint.visible = Boolean(step) && !isLast;
+    if (!hint.visible) {
+      label.textContent = "the assembly as the run left it";
+      return;
+    }
+    const held = parts[step.part];
+    place(held.group, frame.slice(2, 9));
+    held.group.visible = true;
+    held.paint.color.set(kInHand);
+    hint.geometry = held.shape;
+    place(hint, step.target);
+    label.textContent = frame[0].toFixed(2) + " s · " + step.name + " · " + frame[9].toFixed(1) + " N on the hand · " +
+      (frame[10] > 0 ? frame[10].toFixed(1) + " µm deep" : frame[11] > 0 ? "in contact" : "no contact");
+  }
+
+  let isDue = false;
+  function draw() {
+    if (isDue) return;
+    isDue = true;
+    requestAnimationFrame(function () {
+      isDue = false;
+      lamp.position.copy(camera.position);
+      renderer.render(scene, camera);
+    });
+  }
+
+  function resize() {
+    const width = box.clientWidth, height = Math.round(Math.min(0.62 * width, 0.8 * window.innerHeight));
+    renderer.setSize(width, height);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    draw();
+  }
+
+  let from = null;  // when playing: wall clock and time of the run at which it began
+  function play(now) {
+    if (!from) return;
+    const time = from.run + 1e-3 * (now - from.wall);
+    let index = Number(slider.value);
+    while (index + 1 < run.frames.length && run.frames[index + 1][0] <= time) ++index;
+    slider.value = index;
+    show(index);
+    draw();
+    if (index + 1 < run.frames.length) requestAnimationFrame(play);
+    else stop();
+  }
+  function stop() {
+    from = null;
+    button.textContent = "Play";
+  }
+  button.addEventListener("click", function () {
+    if (from) return stop();
+    if (Number(slider.value) + 1 >= run.frames.length) slider.value = 0;
+    from = { wall: performance.now(), run: run.frames[Number(slider.value)][0] };
+    button.textContent = "Stop";
+    requestAnimationFrame(play);
+  });
+  slider.addEventListener("input", function () {
+    stop();
+    show(Number(slider.value));
+    draw();
+  });
+  views.addEventListener("change", function () { look(views.value); });
+  window.addEventListener("resize", resize);
+
+  slider.max = Math.max(0, run.frames.length - 1);
+  slider.value = slider.max;
+  button.disabled = run.frames.length < 2;
+  resize();
+  show(Number(slider.value));
+  look("corner");
+})();

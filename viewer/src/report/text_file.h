@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A file's contents.
+#pragma once
+
+#include <string>
+
+namespace vps::viewer::inline v0 {
+
+/// Its bytes; empty where it cannot be read.
+std::string textOf(const std::string& file);
+
+}  // namespace vps::viewer::inline v0
