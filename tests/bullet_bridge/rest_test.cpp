@@ -347,5 +347,12 @@ INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver,
                          testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
+TEST(Solver, RefusesSettingsWithWhichItCannotSolve) {
+  EXPECT_THROW(Solver(SolverSettings{.iteration_limit = 0}), std::invalid_argument);
+  EXPECT_THROW(Solver(SolverSettings{.residual_m_s = 0}), std::invalid_argument);
+  EXPECT_THROW(Solver(SolverSettings{.residual_m_s = NAN}), std::invalid_argument);
+  EXPECT_NO_THROW(Solver(SolverSettings{.iteration_limit = 1}));
+}
+
 }  // namespace
 }  // namespace vps::bullet
