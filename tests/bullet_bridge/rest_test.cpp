@@ -354,5 +354,25 @@ TEST(Solver, RefusesSettingsWithWhichItCannotSolve) {
   EXPECT_NO_THROW(Solver(SolverSettings{.iteration_limit = 1}));
 }
 
+// Their edges lie flush, and each point on one is as near to the side faces as to the face below it.
+TEST(Rest, EqualCubesStayExactlyAboveEachOther) {
+  const double error_m = kIsDouble ? 1e-6 : 1e-5;  // the latter is assumed
+  for (const SolverKind solver : {SolverKind::Stock, SolverKind::Constraint})
+    for (const double voxel_m : {0.25e-3, 0.5e-3}) {
+      const Built cube = test::build(makeBox(Vec3::Constant(0.01)), 7850, voxel_m, 2 * voxel_m);
+      for (const double gap_m : {0.0, 10e-6, 0.2e-3}) {
+        World world(solver);
+        world.add(cube, Pose(), true);
+        for (int k = 1; k <= 3; ++k) world.add(cube, Pose::translation(Vec3(0, 0, k * (0.01 + gap_m))));
+        world.step(300);
+        for (int k = 1; k <= 3; ++k) {
+          const btVector3 p = world.bodies[k]->getWorldTransform().getOrigin();
+          EXPECT_LT(std::hypot(p.x(), p.y()), error_m) << gap_m << ' ' << k;
+          EXPECT_NEAR(p.z(), 0.01 * k, 2 * error_m * k) << gap_m << ' ' << k;
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace vps::bullet

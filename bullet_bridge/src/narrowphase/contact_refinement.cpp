@@ -201,7 +201,8 @@ struct Refiner {
 
 // A point that is inside near an edge of the other side, and is not first along the nearest face there: a
 // corner that slides down a wall, a micrometre inside, to the wall's lower rim. The face that it entered
-// through is one of the others at that edge.
+// through is one of the others at that edge. Or a point on it: where edges lie flush, rounding decides on
+// which side, and the next face would be half a millimetre deep.
 Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   Exact best;
   if (!refiner.other.shape) return best;
@@ -215,7 +216,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
     for (const int face : {0, 1}) {
       const Vec3 n = s.normal(face);
       const double distance_m = n.dot(r);
-      if (distance_m > 0 || r.dot(s.into[face]) < -kTouching_m ||
+      if (distance_m > kTouching_m || r.dot(s.into[face]) < -kTouching_m ||
           (best.found && distance_m <= best.distance_m))
         continue;
       if (!own.isFirstAlong(X_WM.R * n)) continue;
