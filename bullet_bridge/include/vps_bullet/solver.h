@@ -26,8 +26,8 @@ struct SolverSettings {
 
 /// Solves islands of rigid bodies, contacts (constraint or penalty), joints and CouplingConstraints; the
 /// couplings become part of the bodies' effective mass (see solver.cpp). Islands with contact stiffness
-/// flags, rolling or spinning friction, or bodies with linear or angular factors or without inertia are
-/// passed to the stock solver unchanged.
+/// flags, rolling, spinning or anisotropic friction, or bodies with linear or angular factors or without
+/// inertia are passed to the stock solver unchanged.
 ///
 /// Penalty contacts are found through the dispatcher that the world passes to solveGroup(), so the solver
 /// needs no connection of its own. Without install() on that dispatcher, or without a dispatcher, every

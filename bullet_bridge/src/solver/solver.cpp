@@ -128,6 +128,8 @@ bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const C
   converted.clear();
   checks.clear();
   for (btPersistentManifold* manifold : from) {
+    if (manifold->getBody0()->hasAnisotropicFriction() || manifold->getBody1()->hasAnisotropicFriction())
+      return false;
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (!isPlain(manifold->getContactPoint(i))) return false;
     manifolds.push_back({manifold, stores ? stores->penalty_contacts->find(manifold) : nullptr});
