@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bullet_bridge/world.h"
+#include "vps/load_error.h"
 #include "vps_bullet/log.h"
 
 namespace vps::bullet {
@@ -118,6 +119,98 @@ TEST(MakeBody, TakesTrianglesOfBullet) {
 TEST(ResolutionFor, RefusesWhatHasNoAnswer) {
   EXPECT_THROW((void)resolutionFor(Mesh(), 1000), std::invalid_argument);
   EXPECT_THROW((void)resolutionFor(makeBox(Vec3::Constant(0.01)), 10), std::invalid_argument);
+}
+
+template <typename Change>
+BodySettings changed(const Change& change) {
+  BodySettings settings;
+  settings.fidelity = fidelityPreset("fast");
+  change(settings);
+  return settings;
+}
+
+TEST(MakeBody, RefusesMaterialsAndPosesThatNoBodyCanHave) {
+  const Mesh cube = makeBox(Vec3::Constant(0.01));
+  const auto refuses = [&](const auto& change) {
+    EXPECT_THROW(makeBody(cube, changed(change)), std::invalid_argument);
+  };
+  EXPECT_NO_THROW(makeBody(cube, changed([](BodySettings& s) { s.material.friction = 0; })));
+  EXPECT_NO_THROW(makeBody(cube, changed([](BodySettings& s) { s.material.restitution = 1; })));
+  refuses([](BodySettings& s) { s.material.friction = -0.1; });
+  refuses([](BodySettings& s) { s.material.friction = NAN; });
+  refuses([](BodySettings& s) { s.material.friction = INFINITY; });
+  refuses([](BodySettings& s) { s.material.restitution = -0.1; });
+  refuses([](BodySettings& s) { s.material.restitution = 1.1; });
+  refuses([](BodySettings& s) { s.material.restitution = NAN; });
+  refuses([](BodySettings& s) { s.X_WP.p.y() = NAN; });
+  refuses([](BodySettings& s) { s.X_WP.R *= 2; });
+  refuses([](BodySettings& s) { s.X_WP.R = -s.X_WP.R; });
+  EXPECT_THROW(makeBody(cube, changed([](BodySettings& s) { s.material.density_kg_m3 = INFINITY; })),
+               LoadError);
+  EXPECT_THROW(makeBody(cube, changed([](BodySettings& s) { s.material.density_kg_m3 = 0; })), LoadError);
+}
+
+TEST(MakeBody, NeedsNoMassForAFixedSheet) {
+  Mesh sheet;
+  sheet.vertices = {{-0.03, -0.03, 0}, {0.03, -0.03, 0}, {0.03, 0.03, 0}, {-0.03, 0.03, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_THROW(makeBody(sheet, changed([](BodySettings&) {})), LoadError);
+  const Body floor = makeBody(sheet, changed([](BodySettings& s) {
+                                s.is_fixed = true;
+                                s.material.density_kg_m3 = 0;
+                              }));
+  const Body cube = makeBody(makeBox(Vec3::Constant(0.01)),
+                             changed([](BodySettings& s) { s.X_WP = Pose::translation(Vec3(0, 0, 0.006)); }));
+  World world;
+  world.world->addRigidBody(floor.rigid.get());
+  world.world->addRigidBody(cube.rigid.get());
+  world.step(200);
+  EXPECT_NEAR(cube.X_WP().p.z(), 0.005, 2e-6);
+  world.world->removeRigidBody(cube.rigid.get());
+  world.world->removeRigidBody(floor.rigid.get());
+}
+
+TEST(MakeBody, HasTheMassOfTheSolidWhereTheMeshLacksALid) {
+  const Vec3 size_m(0.02, 0.03, 0.04);
+  for (const bool is_tube : {false, true}) {  // without the face above, or without that and the one below
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.1, -0.2, 0.3)}) {
+      Mesh open = makeBox(size_m);
+      std::erase_if(open.triangles, [&](const auto& t) {
+        const double sum_m = open.vertices[t[0]].z() + open.vertices[t[1]].z() + open.vertices[t[2]].z();
+        return sum_m > size_m.z() || (is_tube && sum_m < -size_m.z());
+      });
+      open = transformed(open, Pose::translation(place));
+      std::string said;
+      setLogHook([&](LogLevel, const std::string& message) { said += message; });
+      const Body body = makeBody(open, changed([](BodySettings& s) { s.name = "tray"; }));
+      setLogHook({});
+      const double mass_kg = 7850 * size_m.prod();
+      EXPECT_NEAR(body.frame.mass_kg, mass_kg, 1e-9 * mass_kg) << is_tube;
+      EXPECT_LT((body.frame.X_PB.p - place).norm(), 1e-9) << is_tube;
+      EXPECT_NE(said.find("tray has an open mesh"), std::string::npos) << said;
+    }
+  }
+}
+
+TEST(MakeBody, RefusesAnIndexBeyondBulletsVertices) {
+  float vertices[] = {0, 0, 0, 0.02f, 0, 0, 0, 0.02f, 0, 0, 0, 0.02f};
+  for (const int last : {3, 4, 30000}) {
+    unsigned short indices[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, static_cast<unsigned short>(last)};
+    btIndexedMesh part;
+    part.m_numTriangles = 4;
+    part.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(indices);
+    part.m_triangleIndexStride = 3 * sizeof(unsigned short);
+    part.m_numVertices = 4;
+    part.m_vertexBase = reinterpret_cast<const unsigned char*>(vertices);
+    part.m_vertexStride = 3 * sizeof(float);
+    part.m_vertexType = PHY_FLOAT;
+    btTriangleIndexVertexArray triangles;
+    triangles.addIndexedMesh(part, PHY_SHORT);
+    if (last == 3)
+      EXPECT_EQ(meshOf(triangles).triangles.size(), 4u);
+    else
+      EXPECT_THROW(meshOf(triangles), std::invalid_argument) << last;
+  }
 }
 
 }  // namespace

@@ -54,5 +54,27 @@ TEST(DistanceQuery, AnswersBeyondTheBandForEveryKindOfPartner) {
   }
 }
 
+// The nearest point of a ball faces the other part, and all its other points lean away from it.
+TEST(DistanceQuery, OfABallIsNotThatOfItsPlanesThatLeanAway) {
+  const double radius_m = 0.01;
+  const Built ball = test::build(makeSphere(radius_m, 4), 7850, 0.5e-3, 1e-3);
+  double lowest_m = 0;  // of the mesh, whose facets lie within the sphere
+  for (const Vec3& p : ball.mesh.vertices) lowest_m = std::min(lowest_m, p.z());
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  btBoxShape box(btVector3(toBt(0.05), toBt(0.05), toBt(0.005)));
+  for (const double gap_m : {1e-3, 10e-3, 50e-3, 500e-3}) {
+    for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, &box}) {
+      World world;
+      btRigidBody& low =
+          world.addShape(*under, 0, Vec3::Zero(), Pose::translation(Vec3(0, 0, under == &box ? -0.005 : 0)));
+      btRigidBody& high = world.add(ball, Pose::translation(Vec3(0, 0, gap_m - lowest_m)));
+      Nearest near(1.5 * gap_m);
+      world.world->contactPairTest(&low, &high, near);
+      // The lowest vertex need not be a point of the shell: half a spacing aside, s^2 / (8 r) = 13 um.
+      EXPECT_NEAR(near.distance_m, gap_m, 13e-6 + 1e-6) << under->getName() << ' ' << gap_m;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vps::bullet

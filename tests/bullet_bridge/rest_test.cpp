@@ -347,5 +347,59 @@ INSTANTIATE_TEST_SUITE_P(Each, RestWithSolver,
                          testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });
 
+TEST(Solver, RefusesSettingsWithWhichItCannotSolve) {
+  EXPECT_THROW(Solver(SolverSettings{.iteration_limit = 0}), std::invalid_argument);
+  EXPECT_THROW(Solver(SolverSettings{.residual_m_s = 0}), std::invalid_argument);
+  EXPECT_THROW(Solver(SolverSettings{.residual_m_s = NAN}), std::invalid_argument);
+  EXPECT_NO_THROW(Solver(SolverSettings{.iteration_limit = 1}));
+}
+
+// Bullet scales the friction along an axis of the body: mu g across it, a fifth of that along it.
+TEST(Slide, AnisotropicFrictionIsThatOfBullet) {
+  btStaticPlaneShape plane(btVector3(0, 0, 1), 0);
+  btBoxShape bullets(toBt(Vec3(0.01, 0.0075, 0.005)));
+  const Built part = steelBox();
+  for (const SolverKind solver : {SolverKind::Stock, SolverKind::Constraint})
+    for (const bool is_part : {false, true})
+      for (const int axis : {0, 1}) {
+        World world(solver);
+        btRigidBody& ground = world.addShape(plane, 0, Vec3::Zero(), Pose());
+        const Pose X_WP = Pose::translation(Vec3(0, 0, 0.005));
+        btRigidBody& body = is_part ? world.add(part, X_WP)
+                                    : world.addShape(bullets, part.frame.mass_kg, Vec3(2, 3, 4) * 1e-7, X_WP);
+        ground.setFriction(1);
+        body.setFriction(toBt(0.5));
+        // The body's axes are the principal ones: those of the box in another order.
+        const Vec3 x_B = fromBt(body.getWorldTransform()).R.transpose() * Vec3::UnitX();
+        body.setAnisotropicFriction(toBt(Vec3(Vec3::Ones() - 0.8 * x_B.cwiseAbs())));
+        world.step(20);
+        body.setLinearVelocity(toBt(Vec3(0.3 * Vec3::Unit(axis))));
+        world.step(20);
+        const double lost = 0.5 * kGravity * 0.02 * (axis == 0 ? 0.2 : 1);
+        // A step more or less, and the tilting of Bullet's own box.
+        EXPECT_NEAR(body.getLinearVelocity()[axis], 0.3 - lost, 0.1 * lost) << is_part << axis;
+      }
+}
+
+// Their edges lie flush, and each point on one is as near to the side faces as to the face below it.
+TEST(Rest, EqualCubesStayExactlyAboveEachOther) {
+  const double error_m = kIsDouble ? 1e-6 : 1e-5;  // the latter is assumed
+  for (const SolverKind solver : {SolverKind::Stock, SolverKind::Constraint})
+    for (const double voxel_m : {0.25e-3, 0.5e-3}) {
+      const Built cube = test::build(makeBox(Vec3::Constant(0.01)), 7850, voxel_m, 2 * voxel_m);
+      for (const double gap_m : {0.0, 10e-6, 0.2e-3}) {
+        World world(solver);
+        world.add(cube, Pose(), true);
+        for (int k = 1; k <= 3; ++k) world.add(cube, Pose::translation(Vec3(0, 0, k * (0.01 + gap_m))));
+        world.step(300);
+        for (int k = 1; k <= 3; ++k) {
+          const btVector3 p = world.bodies[k]->getWorldTransform().getOrigin();
+          EXPECT_LT(std::hypot(p.x(), p.y()), error_m) << gap_m << ' ' << k;
+          EXPECT_NEAR(p.z(), 0.01 * k, 2 * error_m * k) << gap_m << ' ' << k;
+        }
+      }
+    }
+}
+
 }  // namespace
 }  // namespace vps::bullet

@@ -13,7 +13,7 @@
 namespace vps::test {
 namespace {
 
-constexpr double kMm = 1e-3, kUm = 1e-6, kStiffness = 1e11;
+constexpr double kMm = 1e-3, kStiffness = 1e11;
 
 struct Part {
   VoxMap map;

@@ -33,7 +33,8 @@ struct Resolution {
 VPS_BULLET_API Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget);
 
 /// A body's friction and restitution, by Bullet's rule: it multiplies those of both bodies, so that two
-/// bodies of one material have that material's friction.
+/// bodies of one material have that material's friction. Throws std::invalid_argument for a friction that is
+/// negative or not finite, and a restitution outside 0 to 1.
 VPS_BULLET_API void setMaterial(btCollisionObject& body, const Material& material);
 
 struct BodySettings {
@@ -43,7 +44,7 @@ struct BodySettings {
   std::optional<Fidelity> fidelity;
   std::size_t point_budget = 20'000;
   Pose X_WP;              ///< where the part's frame is at the start
-  bool is_fixed = false;  ///< without mass
+  bool is_fixed = false;  ///< without mass: it may be a sheet, and its density is not used
   std::string name = "part";
 };
 
@@ -74,8 +75,9 @@ struct Body {
 };
 
 /// From a file: this library reads none. importCad() of vps::scenes does, and its parts have a mesh
-/// (examples/body_from_file.cpp). Throws LoadError as buildPartModel() and makeBodyFrame(),
-/// std::invalid_argument as meshOf() and resolutionFor().
+/// (examples/body_from_file.cpp). The mass of an open mesh is that of the part with flat lids on its holes,
+/// which a message says. Throws LoadError as buildPartModel() and makeBodyFrame(), std::invalid_argument as
+/// meshOf(), resolutionFor() and setMaterial(), and for X_WP that is not finite or no rotation.
 VPS_BULLET_API Body makeBody(const Mesh& mesh, const BodySettings& settings = {});
 VPS_BULLET_API Body makeBody(const btStridingMeshInterface& triangles, const BodySettings& settings = {});
 

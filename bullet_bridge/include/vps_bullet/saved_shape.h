@@ -14,7 +14,8 @@ class btStridingMeshInterface;
 namespace vps::bullet::inline v0 {
 
 /// All triangles, with equal vertices joined and the interface's scaling applied. Throws
-/// std::invalid_argument for a mesh without triangles or with a vertex that is not finite.
+/// std::invalid_argument for a mesh without triangles, with a vertex that is not finite, or with an index
+/// beyond its vertices.
 VPS_BULLET_API Mesh meshOf(const btStridingMeshInterface& triangles);
 
 /// Null if `saved_as` is not what Shape::serialize() writes. Throws LoadError for numbers out of range and as

@@ -25,7 +25,8 @@ struct BodyFrame {
   Pose X_PB;                          ///< body frame in the part's frame
 };
 
-/// Throws LoadError for a volume or density that is not positive, as an open or inside-out mesh has.
+/// Throws LoadError for a volume or density that is not positive and finite, as an open or inside-out mesh
+/// has.
 VPS_BULLET_API BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3);
 
 class SheetBorder;

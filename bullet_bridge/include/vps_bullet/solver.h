@@ -13,7 +13,7 @@
 namespace vps::bullet::inline v0 {
 
 struct SolverSettings {
-  double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more
+  double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more; > 0
   /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
   /// sweeps. Where Newton's method is needed it may take sixty steps, even if that is more. For penalty
   /// contacts: steps of Newton's method in all rounds. >= 1
@@ -26,8 +26,8 @@ struct SolverSettings {
 
 /// Solves islands of rigid bodies, contacts (constraint or penalty), joints and CouplingConstraints; the
 /// couplings become part of the bodies' effective mass (see solver.cpp). Islands with contact stiffness
-/// flags, rolling or spinning friction, or bodies with linear or angular factors or without inertia are
-/// passed to the stock solver unchanged.
+/// flags, rolling, spinning or anisotropic friction, or bodies with linear or angular factors or without
+/// inertia are passed to the stock solver unchanged.
 ///
 /// Penalty contacts are found through the dispatcher that the world passes to solveGroup(), so the solver
 /// needs no connection of its own. Without install() on that dispatcher, or without a dispatcher, every
@@ -35,6 +35,7 @@ struct SolverSettings {
 class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
+  /// Throws std::invalid_argument for settings out of range.
   explicit Solver(const SolverSettings& settings = {});
   ~Solver() override;
 

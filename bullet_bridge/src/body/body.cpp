@@ -2,10 +2,15 @@
 #include "vps_bullet/body.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "log/report.h"
 #include "vps/friction.h"
@@ -30,6 +35,84 @@ void say(const Mesh& mesh, const PartModel& part, const Resolution& chosen, cons
   report(LogLevel::Info, words);
 }
 
+void requireUsable(const Material& material) {
+  if (!(material.friction >= 0) || !std::isfinite(material.friction))
+    throw std::invalid_argument("a material's friction must be 0 or more and finite, not " +
+                                std::to_string(material.friction));
+  if (!(material.restitution >= 0 && material.restitution <= 1))
+    throw std::invalid_argument("a material's restitution must lie between 0 and 1, not " +
+                                std::to_string(material.restitution));
+}
+
+void requireUsable(const BodySettings& settings) {
+  requireUsable(settings.material);
+  const Mat3& R = settings.X_WP.R;
+  constexpr double kRounding = 1e-5;  // of a rotation in single precision, multiplied a few times
+  if (!settings.X_WP.isFinite() || !((R.transpose() * R - Mat3::Identity()).norm() < kRounding) ||
+      R.determinant() < 0)
+    throw std::invalid_argument("makeBody: X_WP of '" + settings.name +
+                                "' is not a finite position with a rotation");
+}
+
+/// Lids for an open mesh: each group of connected open edges is joined to its centre, so that a flat hole is
+/// closed exactly. Empty for a closed mesh. Expects shared vertices.
+Mesh lidsOf(const Mesh& mesh) {
+  std::map<std::array<std::uint32_t, 2>, int> uses;  // of an edge in its direction, less those in the other
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      a < b ? ++uses[{a, b}] : --uses[{b, a}];
+    }
+  std::vector<std::uint32_t> group_of(mesh.vertices.size());
+  std::iota(group_of.begin(), group_of.end(), 0u);
+  const auto groupOf = [&](std::uint32_t v) {
+    while (group_of[v] != v) v = group_of[v] = group_of[group_of[v]];
+    return v;
+  };
+  std::erase_if(uses, [](const auto& use) { return use.second == 0; });
+  for (const auto& [edge, count] : uses) group_of[groupOf(edge[0])] = groupOf(edge[1]);
+  std::map<std::uint32_t, std::pair<Vec3, double>> center;  // times length; length
+  for (const auto& [edge, count] : uses) {
+    const Vec3 &a = mesh.vertices[edge[0]], &b = mesh.vertices[edge[1]];
+    auto& [sum, length_m] = center.try_emplace(groupOf(edge[0]), Vec3::Zero(), 0.0).first->second;
+    sum += 0.5 * (b - a).norm() * (a + b);
+    length_m += (b - a).norm();
+  }
+  Mesh lids;
+  if (uses.empty()) return lids;
+  lids.vertices = mesh.vertices;
+  std::map<std::uint32_t, std::uint32_t> apex;
+  for (const auto& [group, mean] : center) {
+    apex[group] = static_cast<std::uint32_t>(lids.vertices.size());
+    lids.vertices.push_back(mean.first / mean.second);
+  }
+  for (const auto& [edge, count] : uses)
+    for (int i = 0; i < std::abs(count); ++i)
+      lids.triangles.push_back({edge[count > 0], edge[count < 0], apex[groupOf(edge[0])]});
+  return lids;
+}
+
+/// The divergence theorem needs a closed surface: without a lid, a box lacks up to a third of its volume.
+MassProperties solidMass(const Mesh& mesh, const std::string& name) {
+  Mesh closed = welded(mesh);
+  const Mesh lids = lidsOf(closed);
+  if (lids.triangles.empty()) return massProperties(mesh);
+  const MassProperties open = massProperties(mesh);
+  append(closed, lids);
+  const MassProperties whole = massProperties(closed);
+  if (std::abs(whole.volume_m3 - open.volume_m3) > 1e-3 * std::abs(whole.volume_m3))
+    report(LogLevel::Warning, name + " has an open mesh: its mass is that of the part with flat lids");
+  return whole;
+}
+
+/// A fixed body needs no mass; a part without a volume, such as a sheet, then has its mesh's frame.
+BodyFrame frameOf(const PartModel& part, const BodySettings& settings) {
+  const MassProperties mass = solidMass(*part.mesh, settings.name);
+  const double density_kg_m3 = settings.material.density_kg_m3;
+  const bool has_mass = mass.volume_m3 > 0 && density_kg_m3 > 0 && std::isfinite(density_kg_m3);
+  return settings.is_fixed && !has_mass ? BodyFrame{} : makeBodyFrame(mass, density_kg_m3);
+}
+
 }  // namespace
 
 Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget) {
@@ -48,6 +131,7 @@ Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget) {
 }
 
 void setMaterial(btCollisionObject& body, const Material& material) {
+  requireUsable(material);
   body.setFriction(toBt(frictionFactor(material.friction)));
   // As for friction: two bodies of one material bounce as that material does.
   body.setRestitution(toBt(std::sqrt(material.restitution)));
@@ -66,6 +150,7 @@ Pose Body::X_WP() const {
 }
 
 Body makeBody(const Mesh& mesh, const BodySettings& settings) {
+  requireUsable(settings);
   const auto start = std::chrono::steady_clock::now();
   const Resolution chosen = settings.fidelity
                                 ? Resolution{settings.fidelity->voxel_m, settings.fidelity->spacing_m}
@@ -76,7 +161,7 @@ Body makeBody(const Mesh& mesh, const BodySettings& settings) {
   points.spacing_m = chosen.spacing_m;
   Body body;
   body.model = buildPartModel(settings.name, mesh, voxels, points, settings.material);
-  body.frame = makeBodyFrame(massProperties(*body.model->mesh), settings.material.density_kg_m3);
+  body.frame = frameOf(*body.model, settings);
   body.shape = std::make_shared<Shape>(makeModels(*body.model), body.frame.X_PB.inverse());
   body.motion = std::make_unique<PartMotionState>(settings.X_WP, body.frame.X_PB);
   const btRigidBody::btRigidBodyConstructionInfo info(

@@ -11,6 +11,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -20,11 +21,12 @@
 
 #include "install/probe.h"
 #include "log/report.h"
+#include "narrowphase/compound_pair.h"
 #include "narrowphase/contact_algorithm.h"
 #include "narrowphase/context.h"
+#include "narrowphase/empty_pair.h"
 #include "narrowphase/native_shape_algorithm.h"
 #include "narrowphase/pair_renewal.h"
-#include "narrowphase/simple_pairs.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
 #include "shape/forgotten_install.h"
@@ -64,8 +66,7 @@ btCollisionAlgorithm* make(btCollisionAlgorithmConstructionInfo& info, Arguments
   }
 }
 
-// Called for every pair of a Shape with another shape. Of a compound Bullet then passes the children one by
-// one.
+// Called for every pair of a Shape with another shape.
 struct CreateFunction : ContactCreateFunction {
   std::shared_ptr<Context> context;
   btNearCallback next_near_callback = &btCollisionDispatcher::defaultNearCallback;
@@ -77,7 +78,7 @@ struct CreateFunction : ContactCreateFunction {
     for (const btCollisionObjectWrapper* body : bodies)
       if (shapeOf(*body)) warnOfSleep(*body->getCollisionObject());
     for (const btCollisionObjectWrapper* body : bodies) {
-      if (body->getCollisionShape()->isCompound()) return make<CompoundPair>(info, body0, body1);
+      if (body->getCollisionShape()->isCompound()) return make<CompoundPair>(info, body0, body1, context);
       if (body->getCollisionShape()->getShapeType() == EMPTY_SHAPE_PROXYTYPE)
         return make<EmptyPair>(info, body0, body1);
     }
@@ -129,6 +130,21 @@ struct CreateFunction : ContactCreateFunction {
   std::set<std::string> reported_;
 };
 
+// Called for every pair of a compound with another shape that is no Shape. Where neither has a Shape among
+// its children, it calls the function that was there before.
+struct CompoundCreateFunction : btCollisionAlgorithmCreateFunc {
+  const CreateFunction* ours = nullptr;
+  btCollisionAlgorithmCreateFunc* before = nullptr;
+
+  btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                 const btCollisionObjectWrapper* body0,
+                                                 const btCollisionObjectWrapper* body1) override {
+    if (containsShape(*body0->getCollisionShape()) || containsShape(*body1->getCollisionShape()))
+      return make<CompoundPair>(info, body0, body1, ours->context);
+    return before->CreateCollisionAlgorithm(info, body0, body1);
+  }
+};
+
 // Bullet calls it for each pair near each other in each step.
 void nearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   renewIfSwapped(pair, dispatcher);
@@ -142,6 +158,8 @@ struct Installation {
   /// The functions registered before, contact and closest, by type, in both orders.
   std::map<std::pair<int, int>, std::pair<btCollisionAlgorithmCreateFunc*, btCollisionAlgorithmCreateFunc*>>
       before;
+  /// For pairs of a compound, by type: contact and closest.
+  std::map<std::pair<int, int>, std::array<CompoundCreateFunction, 2>> of_compound;
 
   Installation() {
     context->native_shapes = std::make_shared<NativeShapeCache>();
@@ -167,18 +185,50 @@ Installation* find(const btCollisionDispatcher& dispatcher) {
 }
 
 template <typename Visit>
-void forEachPair(const Visit& visit) {
+void forEachPair(int mine, const Visit& visit) {
   for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
     if (type == SOFTBODY_SHAPE_PROXYTYPE) continue;  // Bullet's own algorithm
-    visit(kShapeType, type);
-    if (type != kShapeType) visit(type, kShapeType);
+    visit(mine, type);
+    if (type != mine) visit(type, mine);
   }
+}
+
+// GImpact has algorithms of its own for compounds.
+template <typename Visit>
+void forEachCompoundPair(const Visit& visit) {
+  forEachPair(COMPOUND_SHAPE_PROXYTYPE, [&](int a, int b) {
+    const auto has = [&](int type) { return a == type || b == type; };
+    if (!has(kShapeType) && !has(GIMPACT_SHAPE_PROXYTYPE)) visit(a, b);
+  });
 }
 
 void registerBoth(btCollisionDispatcher& dispatcher, int a, int b, btCollisionAlgorithmCreateFunc* contact,
                   btCollisionAlgorithmCreateFunc* closest) {
   dispatcher.registerCollisionCreateFunc(a, b, contact);
   dispatcher.registerClosestPointsCreateFunc(a, b, closest);
+}
+
+void registerForCompounds(btCollisionDispatcher& dispatcher, Installation& installation) {
+  forEachCompoundPair([&](int a, int b) {
+    auto& functions = installation.of_compound[{a, b}];
+    btCollisionAlgorithmCreateFunc* const current[] = {DispatchTable::contact(dispatcher)[a][b],
+                                                       DispatchTable::closest(dispatcher)[a][b]};
+    for (const int i : {0, 1}) {
+      functions[i].ours = &installation.create;
+      if (current[i] != &functions[i]) functions[i].before = current[i];
+    }
+    registerBoth(dispatcher, a, b, &functions[0], &functions[1]);
+  });
+}
+
+void restoreForCompounds(btCollisionDispatcher& dispatcher, const Installation& installation) {
+  for (const auto& [types, functions] : installation.of_compound) {
+    const auto [a, b] = types;
+    if (DispatchTable::contact(dispatcher)[a][b] == &functions[0])
+      dispatcher.registerCollisionCreateFunc(a, b, functions[0].before);
+    if (DispatchTable::closest(dispatcher)[a][b] == &functions[1])
+      dispatcher.registerClosestPointsCreateFunc(a, b, functions[1].before);
+  }
 }
 
 void requireUsable(const Settings& s) {
@@ -210,12 +260,13 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
     installation->create.next_near_callback = dispatcher.getNearCallback();
   dispatcher.setNearCallback(&nearCallback);
   btCollisionAlgorithmCreateFunc* create = &installation->create;
-  forEachPair([&](int a, int b) {
+  forEachPair(kShapeType, [&](int a, int b) {
     auto* contact = DispatchTable::contact(dispatcher)[a][b];
     auto* closest = DispatchTable::closest(dispatcher)[a][b];
     if (contact != create) installation->before[{a, b}] = {contact, closest};
     registerBoth(dispatcher, a, b, create, create);
   });
+  registerForCompounds(dispatcher, *installation);
 }
 
 void uninstall(btCollisionDispatcher& dispatcher) {
@@ -231,6 +282,7 @@ void uninstall(btCollisionDispatcher& dispatcher) {
     for (const auto& [types, functions] : installation->before)
       if (DispatchTable::contact(dispatcher)[types.first][types.second] == &installation->create)
         registerBoth(dispatcher, types.first, types.second, functions.first, functions.second);
+  if (installation) restoreForCompounds(dispatcher, *installation);
   installations().erase(&dispatcher);
 }
 

@@ -22,7 +22,6 @@ constexpr double kCosEdge = 0.94;  // 20 degrees, as in PointShellSettings::edge
 constexpr double kAlong = 0.087;   // 5 degrees, as findCrossings()
 constexpr double kInto = 0.17;     // 10 degrees. assumed: more than the angle between facets of a round face
 constexpr double kNever_m = 1;     // farther than any step moves
-constexpr double kTouching_m = 1e-6;  // below this, p - q is too short to be trusted as a direction
 
 /// A shell point and its own part's surface around it.
 struct OwnPoint {
@@ -202,7 +201,8 @@ struct Refiner {
 
 // A point that is inside near an edge of the other side, and is not first along the nearest face there: a
 // corner that slides down a wall, a micrometre inside, to the wall's lower rim. The face that it entered
-// through is one of the others at that edge.
+// through is one of the others at that edge. Or a point on it: where edges lie flush, rounding decides on
+// which side, and the next face would be half a millimetre deep.
 Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   Exact best;
   if (!refiner.other.shape) return best;
@@ -216,7 +216,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
     for (const int face : {0, 1}) {
       const Vec3 n = s.normal(face);
       const double distance_m = n.dot(r);
-      if (distance_m > 0 || r.dot(s.into[face]) < -kTouching_m ||
+      if (distance_m > kTouching_m || r.dot(s.into[face]) < -kTouching_m ||
           (best.found && distance_m <= best.distance_m))
         continue;
       if (!own.isFirstAlong(X_WM.R * n)) continue;
@@ -274,7 +274,11 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     c.plane_of = exact.is_own_face     ? side.side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
                                        : Candidate::kBetween;
-    if (exact.is_contact && exact.is_own_face && !is_primitive) moveToFoot(c, side, exact.from_q);
+    const bool is_query = motion.dt_s == 0;
+    if (exact.is_contact && exact.is_own_face && is_query && !exact.is_inside)
+      moveToClosest(c, side, exact.from_q);
+    else if (exact.is_contact && exact.is_own_face && !is_primitive)
+      moveToFoot(c, side, exact.from_q);
     if (exact.is_contact && exact.is_smooth && !is_primitive)
       moveToNearest(c, side, other, exact.face, motion.contact_margin_m);
   }

@@ -108,4 +108,21 @@ bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W) {
   return true;
 }
 
+void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W) {
+  const Vec3 q_W = c.p_W - from_q_W;
+  Vec3 nearest_W = c.p_W;
+  double distance_m = from_q_W.norm();
+  for (const Surface& surface : side.shape->models().surfaces) {
+    const Pose X_WP = side.X_WM * surface.X_MP;
+    const MeshDistance::Closest closest = surface.distance->closest(X_WP.inverse() * q_W, distance_m);
+    if (!closest.found) continue;
+    nearest_W = X_WP * closest.q;
+    distance_m = (nearest_W - q_W).norm();
+  }
+  if (distance_m < kTouching_m) return;
+  c.p_W = nearest_W;
+  c.n_W = (side.side == 0 ? 1 : -1) / distance_m * (nearest_W - q_W);
+  c.distance_m = distance_m;
+}
+
 }  // namespace vps::bullet::inline v0

@@ -21,6 +21,9 @@ struct FacePoint {
   }
 };
 
+/// Below this distance, p - q is too short to be trusted as a direction.
+inline constexpr double kTouching_m = 1e-6;
+
 /// Moves a face's point along its part's surface to where the gap to the other curved surface is least, if
 /// that is within the shell's spacing: p_W, distance and normal become those at that place, on the exact
 /// surfaces. Without it, a ball of 5 mm with points 0.5 mm apart lies 12 um deeper between its points, and
@@ -43,5 +46,11 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
 /// @param from_q_W  p - q
 /// @return false: unchanged, since the face is flat or no face is nearest
 bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W);
+
+/// Moves a face's point to the place of its part nearest to a point q of the other surface; distance and
+/// normal become those between the two. For queries: seen from afar, the plane of a face that leans away is
+/// much nearer than the face.
+/// @param from_q_W  p - q
+void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W);
 
 }  // namespace vps::bullet::inline v0

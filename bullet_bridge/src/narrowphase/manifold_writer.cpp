@@ -50,6 +50,10 @@ void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& ve
   point.m_contactPointFlags |= BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
 }
 
+bool hasAnisotropicFriction(const btCollisionObject& a, const btCollisionObject& b) {
+  return a.hasAnisotropicFriction() || b.hasAnisotropicFriction();
+}
+
 // Sets what btManifoldResult::addContactPoint would set from the bodies.
 void setMaterial(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
   point.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
@@ -83,6 +87,9 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
   if (c.rest_m > 0) setRestGap(point, c.rest_m);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
+  // Bullet's solver scales the directions by the bodies' factors, but only those that it chooses itself.
+  if (hasAnisotropicFriction(*bodies[0]->getCollisionObject(), *bodies[1]->getCollisionObject()))
+    point.m_contactPointFlags &= ~BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
   return point;
 }
 

@@ -7,6 +7,7 @@
 #include <LinearMath/btSerializer.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <locale>
 #include <sstream>
@@ -57,6 +58,39 @@ bool read(const char* saved_as, Resolved& saved) {
   return true;
 }
 
+std::uint32_t indexAt(const unsigned char* at, PHY_ScalarType type) {
+  if (type == PHY_UCHAR) return *at;
+  std::uint16_t of_two = 0;
+  std::uint32_t of_four = 0;
+  if (type == PHY_SHORT)
+    std::memcpy(&of_two, at, sizeof of_two);
+  else
+    std::memcpy(&of_four, at, sizeof of_four);
+  return type == PHY_SHORT ? of_two : of_four;
+}
+
+// Bullet reads whatever lies there.
+void requireIndicesInRange(const btStridingMeshInterface& triangles) {
+  for (int part = 0; part < triangles.getNumSubParts(); ++part) {
+    const unsigned char *vertices = nullptr, *indices = nullptr;
+    int vertex_count = 0, vertex_stride = 0, index_stride = 0, triangle_count = 0;
+    PHY_ScalarType vertex_type{}, index_type{};
+    triangles.getLockedReadOnlyVertexIndexBase(&vertices, vertex_count, vertex_type, vertex_stride, &indices,
+                                               index_stride, triangle_count, index_type, part);
+    const int index_bytes = index_type == PHY_UCHAR ? 1 : index_type == PHY_SHORT ? 2 : 4;
+    std::string wrong;
+    for (int t = 0; t < triangle_count && wrong.empty(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t v = indexAt(indices + t * index_stride + k * index_bytes, index_type);
+        if (v >= static_cast<std::uint32_t>(vertex_count))
+          wrong = "meshOf: triangle " + std::to_string(t) + " names vertex " + std::to_string(v) + " of " +
+                  std::to_string(vertex_count);
+      }
+    triangles.unLockReadOnlyVertexBase(part);
+    if (!wrong.empty()) throw std::invalid_argument(wrong);
+  }
+}
+
 }  // namespace
 
 Mesh meshOf(const btStridingMeshInterface& triangles) {
@@ -68,6 +102,7 @@ Mesh meshOf(const btStridingMeshInterface& triangles) {
       mesh.triangles.push_back({first, first + 1, first + 2});
     }
   } all;
+  requireIndicesInRange(triangles);
   const btScalar far = toBt(1e30);
   triangles.InternalProcessAllTriangles(&all, btVector3(-far, -far, -far), btVector3(far, far, far));
   if (all.mesh.triangles.empty()) throw std::invalid_argument("meshOf: the mesh has no triangles");

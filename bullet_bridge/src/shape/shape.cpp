@@ -104,7 +104,8 @@ FeatureSet featuresOf(const std::vector<Surface>& surfaces) {
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
   if (!(unit_density.volume_m3 > 0))
     throw LoadError("", "", "its volume is not positive; the mesh is open or inside out");
-  if (!(density_kg_m3 > 0)) throw LoadError("", "", "its density is not positive");
+  if (!(density_kg_m3 > 0) || !std::isfinite(density_kg_m3))
+    throw LoadError("", "", "its density is not positive and finite");
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertiaAboutCom(unit_density, density_kg_m3));
   BodyFrame frame;
   frame.mass_kg = unit_density.volume_m3 * density_kg_m3;

@@ -14,8 +14,10 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -126,6 +128,8 @@ bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const C
   converted.clear();
   checks.clear();
   for (btPersistentManifold* manifold : from) {
+    if (manifold->getBody0()->hasAnisotropicFriction() || manifold->getBody1()->hasAnisotropicFriction())
+      return false;
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (!isPlain(manifold->getContactPoint(i))) return false;
     manifolds.push_back({manifold, stores ? stores->penalty_contacts->find(manifold) : nullptr});
@@ -282,7 +286,13 @@ bool Solver::Work::shorten(double dt_s) {
   return is_shortened;
 }
 
-Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {}
+Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {
+  if (settings.iteration_limit < 1)
+    throw std::invalid_argument("Solver: iteration_limit must be at least 1, not " +
+                                std::to_string(settings.iteration_limit));
+  if (!(settings.residual_m_s > 0) || !std::isfinite(settings.residual_m_s))
+    throw std::invalid_argument("Solver: residual_m_s must be positive and finite");
+}
 Solver::~Solver() = default;
 
 void Solver::reportGroups() {

@@ -132,7 +132,11 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
 
 double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
                           const PassingFacets* passing, Blocker& by) const {
-  const auto& [motion_H, X_HM, most, along_m] = piece;
+  // No structured binding: clang 14 does not let a lambda use one.
+  const Motion& motion_H = piece.motion_H;
+  const Pose& X_HM = piece.X_HM;
+  const double most = piece.most;
+  const std::array<double, 2>& along_m = piece.along_m;
   const Held& held = held_[which];
   if (turning && !turning->held[which]) return most;
   const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
