@@ -81,6 +81,25 @@ TEST(Plan, APegInABlindHoleHasOneDirection) {
   }
 }
 
+// Its facets lean across the bore's by a fraction of their chords, everywhere and in every direction.
+TEST(Plan, APegOfUnevenFacetsLeavesABoreOfItsOwnSize) {
+  const Pose X_W(rotationFromVector({0.4, -0.2, 0.1}), {0, 0, 0});
+  const std::vector<DrawnPart> parts = {
+      {"block", makeTube(10e-3, 4e-3, 20e-3, 96), X_W, {}, false},
+      {"peg", unevenCylinder(4e-3, 60e-3, 96, 120), X_W, {}, false},
+      {"collar", makeTube(6e-3, 4e-3, 5e-3, 80), X_W * Pose::translation({0, 0, 20e-3}), {}, false}};
+  PlanSettings settings;
+  settings.fixed = {"block"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(plan.blocked(), 0U);
+  ASSERT_EQ(plan.assemblies.size(), 1U);
+  for (const PlannedStep& step : plan.assemblies.front().steps) {
+    EXPECT_EQ(step.kind, WayKind::Straight);
+    EXPECT_NEAR(std::abs(step.insertion_W.dot(X_W.R.col(2))), 1, 1e-9);
+  }
+  expectFreeWays(parts, plan);
+}
+
 TEST(Plan, ADovetailSlidesAlongItsGroove) {
   const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),
                                         at("tail", dovetailTail(), {0, 0, 0})};

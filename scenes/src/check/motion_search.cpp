@@ -67,6 +67,29 @@ double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double le
   return s;
 }
 
+/// Whether two nodes of the trees, with a patch of a surface in one of them, pass beside each other on a
+/// straight motion, as besideMotion() tells of two facets.
+bool passBeside(const PartSurface& held, std::uint32_t k, const PartSurface& moving, std::uint32_t i,
+                const Pose& X_HM, const Vec3& d_H, double rest_m) {
+  const auto facets = [](const PartSurface& of, std::uint32_t node) {
+    return of.tree().nodes()[node].end - of.tree().nodes()[node].first;
+  };
+  constexpr std::uint32_t kFewPairs = 4;  // quicker by themselves
+  const std::uint32_t of_held = facets(held, k), of_moving = facets(moving, i);
+  if (std::max(of_held, of_moving) > PartSurface::kFacetsOfPatch || of_held * of_moving <= kFewPairs)
+    return false;
+  const auto isParted = [&](const Vec3& n_H) {  // the held one below, the moving one above
+    const Vec3 n_M = X_HM.R.transpose() * n_H;
+    return n_H.dot(X_HM.p) - moving.highest_m(i, -n_M) >= held.highest_m(k, n_H) - rest_m;
+  };
+  if (const Vec3& n = held.patches()[k]; n != Vec3::Zero())
+    if (const std::optional<Vec3> beside = besideMotion(n, d_H); beside && isParted(*beside)) return true;
+  const Vec3& n = moving.patches()[i];
+  if (n == Vec3::Zero()) return false;
+  const std::optional<Vec3> beside = besideMotion(X_HM.R * n, d_H);
+  return beside && isParted(-*beside);
+}
+
 Box boxOf(const Triangle& t) {
   Box box;
   for (const Vec3& p : t) box.add(p);
@@ -188,6 +211,8 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
           best)
         return kMotionSearchForever;
     }
+    if (!motion_H.is_turn && passBeside(fixed, k, moving, i, X_HM, motion_H.direction, held.rest_m))
+      return kMotionSearchForever;
     return bound;
   };
   std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
