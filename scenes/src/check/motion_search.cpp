@@ -154,7 +154,7 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
 }
 
 double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
-                          const PassingFacets* passing, Blocker& by) const {
+                          const PassingFacets* passing, SearchWork* work, Blocker& by) const {
   const auto& [motion_H, X_HM, most, along_m] = piece;
   const Held& held = held_[which];
   if (turning && !turning->held[which]) return most;
@@ -217,6 +217,8 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   };
   std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
   while (!stack.empty() && best > 0) {
+    if (work != nullptr && work->isSpent()) return 0;
+    if (work != nullptr) ++work->done;
     const Waiting now = stack.back();
     stack.pop_back();
     if (!(now.bound < best)) continue;
@@ -242,18 +244,19 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   return best;
 }
 
-Reach MotionSearch::reach(const Motion& motion, double most) const {
-  return reach(motion, most, turningOf(motion, most), nullptr);
+Reach MotionSearch::reach(const Motion& motion, double most, SearchWork* work) const {
+  return reach(motion, most, turningOf(motion, most), nullptr, work);
 }
 
 std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const PassingFacets* passing) const {
   const std::optional<Turning> turning = turningOf(motion, most);
-  return {reach(motion, most, turning, passing), reach(motion.reversed(), most, turning, passing)};
+  return {reach(motion, most, turning, passing, nullptr),
+          reach(motion.reversed(), most, turning, passing, nullptr)};
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
-                          const PassingFacets* passing) const {
+                          const PassingFacets* passing, SearchWork* work) const {
   std::vector<Motion> in_held;
   for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
@@ -269,7 +272,7 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
       const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + safe) * forward_m});
       const double here =
           step(h, turning, {in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, {back_m, front_m}},
-               passing, by);
+               passing, work, by);
       if (here >= safe) continue;
       safe = here;
       reach.by = by;
