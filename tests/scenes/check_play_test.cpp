@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "check/motion_search.h"
 #include "scenes/assemblies_to_plan.h"
 #include "support/lathe.h"
 #include "vps_scenes/check.h"
@@ -83,6 +84,22 @@ TEST(CheckPlay, APlateWithHolesSlidesOnAnother) {
     EXPECT_LT(pinned.play->m[i], reach_m + kMetre);
     EXPECT_GT(pinned.play->m[i], reach_m - 2 * chord_m - kMetre);
   }
+}
+
+// The limit counts work, so that it is the same on every machine.
+TEST(CheckPlay, AMotionEndsAsStoppedWhereItsWorkIsSpent) {
+  const std::vector<DrawnPart> parts = {part("bore", makeTube(0.01, 4.1e-3, 0.02, 100)),
+                                        part("peg", makeCylinder(4e-3, 0.02, 100))};
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
+  const MotionSearch search(placed[1], {&placed[0]}, {0});
+  const Motion up{Vec3::UnitZ(), Vec3::Zero(), false};
+  SearchWork enough{1'000'000}, little{10};
+  EXPECT_FALSE(search.reach(up, 0.1, &enough).is_stopped);
+  EXPECT_FALSE(enough.isSpent());
+  EXPECT_GT(enough.done, little.most);
+  EXPECT_TRUE(search.reach(up, 0.1, &little).is_stopped);
+  EXPECT_TRUE(little.isSpent());
+  EXPECT_EQ(little.done, little.most);
 }
 
 // A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends
