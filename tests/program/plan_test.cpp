@@ -2,6 +2,12 @@
 // `vps plan` as its users run it.
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "program.h"
 
 namespace vps {
@@ -55,6 +61,80 @@ TEST_F(Plan, RefusesABaseThatIsNoPartAndAFolderWithAScene) {
   ASSERT_EQ(run("plan drawn.toml -o planned").status, 0);
   EXPECT_EQ(run("plan drawn.toml -o planned").status, 2);
   EXPECT_EQ(run("plan drawn.toml -o planned --force").status, 0);
+}
+
+/// An OBJ file of boxes in millimetres: name, least and greatest corner.
+struct NamedBox {
+  std::string name;
+  std::array<double, 3> min, max;
+};
+std::string objOf(const std::vector<NamedBox>& boxes) {
+  constexpr std::array<std::array<int, 4>, 6> kFaces = {
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  std::ostringstream out;
+  int first = 1;
+  for (const NamedBox& box : boxes) {
+    out << "o " << box.name << '\n';
+    for (unsigned i = 0; i < 8; ++i) {
+      out << 'v';
+      for (unsigned axis = 0; axis < 3; ++axis)
+        out << ' ' << ((i >> axis & 1U) != 0 ? box.max : box.min)[axis];
+      out << '\n';
+    }
+    for (const std::array<int, 4>& face : kFaces) {
+      out << 'f';
+      for (const int v : face) out << ' ' << first + v;
+      out << '\n';
+    }
+    first += 8;
+  }
+  return out.str();
+}
+const NamedBox kPlate = {"plate", {0, 0, 0}, {60, 60, 10}};
+
+TEST_F(Plan, ACadFileIsPlannedAndAssembledInOneGoAsItsSceneIs) {
+  write("product.obj", objOf({kPlate, {"block", {20, 20, 10}, {40, 40, 30}}}));
+  const Ran once = run("assemble product.obj --units mm --out once --no-pictures --json once.json");
+  ASSERT_NE(once.status, 2) << once.out << once.err;
+  const Ran scene = run("assemble once/plan/scene.toml --out again --no-pictures --json again.json");
+  EXPECT_EQ(once.status, scene.status);
+  json first = json::parse(slurp(folder_ / "once.json")), second = json::parse(slurp(folder_ / "again.json"));
+  first.erase("wall");
+  second.erase("wall");
+  EXPECT_EQ(first, second);
+  EXPECT_EQ(first["steps"].size(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "once/report.html"));
+  EXPECT_NE(once.out.find("all parts planned"), std::string::npos) << once.out;
+  EXPECT_EQ(run("assemble once/plan/scene.toml --units mm --out other").status, 2);
+}
+
+// What a designer does: each fault is in the words of the answer.
+TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
+  const auto wordsOf = [&](const std::vector<NamedBox>& boxes, int status) {
+    write("product.obj", objOf(boxes));
+    const Ran ran = run("plan product.obj --units mm -o planned --force --base plate");
+    EXPECT_EQ(ran.status, status) << ran.out << ran.err;
+    return ran.out + ran.err;
+  };
+  const NamedBox left = {"left", {10, 10, 10}, {20, 50, 40}}, right = {"right", {40, 10, 10}, {50, 50, 40}};
+  const std::string large = wordsOf({kPlate, left, right, {"block", {19.9, 20, 10}, {40, 40, 30}}}, 0);
+  EXPECT_NE(large.find("overlap by 0.100 mm as drawn"), std::string::npos) << large;
+  EXPECT_NE(large.find("'left'"), std::string::npos) << large;
+
+  const NamedBox block = {"block", {20, 20, 10}, {40, 40, 30}};
+  const std::string sound = wordsOf({kPlate, block}, 0);
+  for (const char* fault : {"overlap", "drawn twice", "Nothing carries"})
+    EXPECT_EQ(sound.find(fault), std::string::npos) << sound;
+
+  NamedBox twin = block;
+  twin.name = "twin";
+  // No way leads out of a part of the same size, so the way is told as well.
+  const std::string twice = wordsOf({kPlate, block, twin}, 1);
+  EXPECT_NE(twice.find("is a part drawn twice?"), std::string::npos) << twice;
+  EXPECT_NE(twice.find("'twin'"), std::string::npos) << twice;
+
+  const std::string floating = wordsOf({kPlate, {"block", {20, 20, 15}, {40, 40, 30}}}, 0);
+  EXPECT_NE(floating.find("Nothing carries 'block'"), std::string::npos) << floating;
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST_F(Program, AFileOfAnotherKindIsRefusedWithTheCommandThatReadsIt) {
   write("part.STEP", "ISO-10303-21;");
   write("run.mcap", "");
   write("map.vdb", "");
-  for (const std::string command : {"snapshot -o a.png", "simulate", "assemble", "explain", "trade"}) {
+  for (const std::string command : {"snapshot -o a.png", "simulate", "explain", "trade"}) {
     expectRefused(command + " part.STEP",
                   "part.STEP: is a CAD file, not a scene; make a scene of it first: vps import");
     expectRefused(command + " run.mcap", "vps replay run.mcap");

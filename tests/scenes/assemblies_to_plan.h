@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -48,6 +49,76 @@ inline Mesh prismAlongY(const std::vector<std::array<double, 2>>& polygon, doubl
     const std::uint32_t k = (i + 1) % n;
     mesh.triangles.push_back({i, n + i, n + k});
     mesh.triangles.push_back({i, n + k, k});
+  }
+  return mesh;
+}
+
+/// A square plate on z = 0 with count x count round holes of 32 sides.
+inline Mesh perforatedPlate(int count, double pitch_m, double hole_r_m, double thickness_m) {
+  constexpr int kSides = 32;
+  Mesh mesh;
+  std::map<std::array<long long, 3>, std::uint32_t> known;  // by place in nanometres
+  const auto vertex = [&](const Vec3& p) {
+    const Vec3 nm = 1e9 * p;
+    const std::array<long long, 3> key = {std::llround(nm.x()), std::llround(nm.y()), std::llround(nm.z())};
+    const auto [at, is_new] = known.try_emplace(key, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.push_back(p);
+    return at->second;
+  };
+  const auto quad = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const std::array<std::uint32_t, 4> v = {vertex(a), vertex(b), vertex(c), vertex(d)};
+    mesh.triangles.push_back({v[0], v[1], v[2]});
+    mesh.triangles.push_back({v[0], v[2], v[3]});
+  };
+  const Vec3 up = thickness_m * Vec3::UnitZ();
+  for (int i = 0; i < count * count; ++i) {
+    const Vec3 center = pitch_m * Vec3(i % count + 0.5, i / count + 0.5, 0);
+    for (int k = 0; k < kSides; ++k) {
+      const auto along = [&](int side) {
+        const double angle = 2 * std::numbers::pi * (side % kSides) / kSides;
+        return Vec3(std::cos(angle), std::sin(angle), 0);
+      };
+      const Vec3 e = along(k), f = along(k + 1);
+      const auto border = [&](const Vec3& d) {  // on the square around the hole
+        return Vec3(center + 0.5 * pitch_m / d.cwiseAbs().maxCoeff() * d);
+      };
+      const Vec3 a = center + hole_r_m * e, b = center + hole_r_m * f, c = border(f), d = border(e);
+      quad(a + up, d + up, c + up, b + up);
+      quad(a, b, c, d);
+      quad(a, a + up, b + up, b);
+      for (int axis = 0; axis < 2; ++axis)
+        for (const double edge_m : {0.0, count * pitch_m})
+          if (std::abs(c[axis] - edge_m) < 1e-9 && std::abs(d[axis] - edge_m) < 1e-9)
+            quad(d, c, c + up, d + up);
+    }
+  }
+  return mesh;
+}
+
+/// A cylinder along z whose corners are on it at uneven places, as of a face that was divided to follow
+/// splines: its facets lean both ways.
+inline Mesh unevenCylinder(double radius_m, double length_m, std::uint32_t columns, std::uint32_t rows) {
+  Mesh mesh;
+  const double across = 2 * std::numbers::pi / columns, along_m = length_m / rows;
+  for (std::uint32_t row = 0; row <= rows; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const double shift = row == 0 || row == rows ? 0 : 0.3 * std::sin(5.0 * column + 3.0 * row),
+                   angle = across * (column + shift);
+      mesh.vertices.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle),
+                                 along_m * (row + shift) - length_m / 2);
+    }
+  const auto center = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.emplace_back(0, 0, -length_m / 2);
+  mesh.vertices.emplace_back(0, 0, length_m / 2);
+  for (std::uint32_t column = 0; column < columns; ++column) {
+    const std::uint32_t next = (column + 1) % columns;
+    for (std::uint32_t row = 0; row < rows; ++row) {
+      const std::uint32_t a = row * columns + column, b = row * columns + next;
+      mesh.triangles.push_back({a, b, b + columns});
+      mesh.triangles.push_back({a, b + columns, a + columns});
+    }
+    mesh.triangles.push_back({center, next, column});
+    mesh.triangles.push_back({center + 1, rows * columns + column, rows * columns + next});
   }
   return mesh;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "check/motion_search.h"
+#include "scenes/assemblies_to_plan.h"
 #include "support/lathe.h"
 #include "vps_scenes/check.h"
 
@@ -46,6 +48,58 @@ TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
                                              Pose(rotationFromVector({0, 0, 0.03}), {0, 0, 0})))});
   ASSERT_TRUE(peg.play);
   EXPECT_FALSE(peg.is_play_certain);
+}
+
+// Two plates with many holes lie on each other: hundreds of edges of holes cross while one slides.
+TEST(CheckPlay, APlateWithHolesSlidesOnAnother) {
+  const Pose X_W(rotationFromVector({0.5, 0.2, -0.7}), {0.01, 0.02, 0.03});
+  const Mesh plate = perforatedPlate(5, 5e-3, 1.5e-3, 2e-3);
+  const Vec3 shift(1.3e-3, 0.9e-3, 2e-3);
+  const auto upper = [&](const std::vector<DrawnPart>& more) {
+    std::vector<DrawnPart> parts = {part("lower", plate, X_W),
+                                    part("upper", plate, X_W * Pose::translation(shift))};
+    parts.insert(parts.end(), more.begin(), more.end());
+    return playOf("upper", parts);
+  };
+  const CheckedPart free = upper({});
+  for (const int axis : {0, 1})
+    for (const double sign : {1.0, -1.0}) EXPECT_TRUE(has(free.ways_out_W, sign * X_W.R.col(axis))) << axis;
+  EXPECT_TRUE(has(free.ways_out_W, X_W.R.col(2)));
+  EXPECT_FALSE(has(free.ways_out_W, -X_W.R.col(2)));
+  for (const Vec3& way : free.ways_out_W) EXPECT_GT(way.dot(X_W.R.col(2)), -1e-9);
+
+  // A square pin of 2 mm in the middle of a hole of the upper plate, whose facets are along x and y.
+  const Vec3 hole = Vec3(2.5e-3, 2.5e-3, 0) + shift + Vec3(0, 0, 1e-3);
+  const CheckedPart pinned =
+      upper({part("pin", makeBox(Vec3(1e-3, 1e-3, 2e-3)), X_W * Pose::translation(hole))});
+  // The hole is 2 mm high and leaves the pin less than 1 mm to each side.
+  EXPECT_TRUE(has(pinned.ways_out_W, X_W.R.col(2)));
+  for (const Vec3& way : pinned.ways_out_W) EXPECT_GT(way.dot(X_W.R.col(2)), std::cos(std::atan(0.5)));
+  // The pin's corners at 0.5 mm reach the hole's facet pi / 32 from x: its circle is nearer than that by 2
+  // um.
+  ASSERT_TRUE(pinned.play);
+  const double half = 0.5e-3, chord_m = 1.5e-3 * (1 - std::cos(std::numbers::pi / 32));
+  const double reach_m = std::sqrt(1.5e-3 * 1.5e-3 - half * half) - half;
+  for (const std::size_t i : {0U, 1U, 2U, 3U}) {
+    EXPECT_LT(pinned.play->m[i], reach_m + kMetre);
+    EXPECT_GT(pinned.play->m[i], reach_m - 2 * chord_m - kMetre);
+  }
+}
+
+// The limit counts work, so that it is the same on every machine.
+TEST(CheckPlay, AMotionEndsAsStoppedWhereItsWorkIsSpent) {
+  const std::vector<DrawnPart> parts = {part("bore", makeTube(0.01, 4.1e-3, 0.02, 100)),
+                                        part("peg", makeCylinder(4e-3, 0.02, 100))};
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
+  const MotionSearch search(placed[1], {&placed[0]}, {0});
+  const Motion up{Vec3::UnitZ(), Vec3::Zero(), false};
+  SearchWork enough{1'000'000}, little{10};
+  EXPECT_FALSE(search.reach(up, 0.1, &enough).is_stopped);
+  EXPECT_FALSE(enough.isSpent());
+  EXPECT_GT(enough.done, little.most);
+  EXPECT_TRUE(search.reach(up, 0.1, &little).is_stopped);
+  EXPECT_TRUE(little.isSpent());
+  EXPECT_EQ(little.done, little.most);
 }
 
 // A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends

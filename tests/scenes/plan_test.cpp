@@ -81,6 +81,56 @@ TEST(Plan, APegInABlindHoleHasOneDirection) {
   }
 }
 
+// Its facets lean across the bore's by a fraction of their chords, everywhere and in every direction.
+TEST(Plan, APegOfUnevenFacetsLeavesABoreOfItsOwnSize) {
+  const Pose X_W(rotationFromVector({0.4, -0.2, 0.1}), {0, 0, 0});
+  const std::vector<DrawnPart> parts = {
+      {"block", makeTube(10e-3, 4e-3, 20e-3, 96), X_W, {}, false},
+      {"peg", unevenCylinder(4e-3, 60e-3, 96, 120), X_W, {}, false},
+      {"collar", makeTube(6e-3, 4e-3, 5e-3, 80), X_W * Pose::translation({0, 0, 20e-3}), {}, false}};
+  PlanSettings settings;
+  settings.fixed = {"block"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(plan.blocked(), 0U);
+  ASSERT_EQ(plan.assemblies.size(), 1U);
+  for (const PlannedStep& step : plan.assemblies.front().steps) {
+    EXPECT_EQ(step.kind, WayKind::Straight);
+    EXPECT_NEAR(std::abs(step.insertion_W.dot(X_W.R.col(2))), 1, 1e-9);
+  }
+  expectFreeWays(parts, plan);
+}
+
+// Once its bolt has left it could leave to all sides.
+TEST(Plan, ANutComesAlongItsBolt) {
+  const Mesh bolt =
+      test::lathe({{0, -15e-3}, {4e-3, -15e-3}, {4e-3, 5e-3}, {7e-3, 5e-3}, {7e-3, 10e-3}, {0, 10e-3}}, 64);
+  const std::vector<DrawnPart> parts = {at("plate", makeTube(30e-3, 4.1e-3, 10e-3, 64), {0, 0, 0}),
+                                        at("bolt", bolt, {0, 0, 0}),
+                                        at("nut", makeTube(8e-3, 4.05e-3, 4e-3, 64), {0, 0, -7e-3})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.assemblies.front().steps.size(), 2U);
+  for (const PlannedStep& step : plan.assemblies.front().steps) {
+    EXPECT_LT((step.insertion_W - Vec3(0, 0, step.name == "nut" ? 1 : -1)).norm(), 1e-6) << step.name;
+    EXPECT_EQ(step.is_carried, step.name == "bolt");
+  }
+  expectFreeWays(parts, plan);
+}
+
+TEST(Plan, APartDrawnTwiceIsNamed) {
+  const Mesh brick = makeBox(Vec3::Constant(0.02));
+  std::vector<DrawnPart> parts = {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+                                  at("one", brick, {0, 0, 0.015}), at("two", brick, {0.03, 0, 0.015})};
+  EXPECT_TRUE(planAssembly("test", parts).twice.empty());
+  parts.back().X_WP = parts[1].X_WP;
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.twice.size(), 1U);
+  EXPECT_EQ(plan.twice.front().first, "one");
+  EXPECT_EQ(plan.twice.front().second, "two");
+  // Nearly in one place is an overlap, no twin.
+  parts.back().X_WP.p.x() = 0.1e-3;
+  EXPECT_TRUE(planAssembly("test", parts).twice.empty());
+}
+
 TEST(Plan, ADovetailSlidesAlongItsGroove) {
   const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),
                                         at("tail", dovetailTail(), {0, 0, 0})};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps assemble: brings the parts together by contact, and writes report, pictures and data.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -7,13 +8,16 @@
 #include <optional>
 
 #include "command.h"
+#include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
+#include "planned_folder.h"
 #include "progress_bar.h"
 #include "run_report.h"
 #include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/record.h"
@@ -26,6 +30,7 @@ namespace {
 
 struct AssembleArguments {
   SceneArguments scene;
+  std::string units, deflection;  ///< of a CAD file
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
@@ -68,8 +73,31 @@ class HeardRun {
   scenes::SnapshotTap tap_;
 };
 
+int runAssemble(const AssembleArguments& given);
+
+/// Plans the CAD file into a folder of the results, then runs what was planned. Good only if both are.
+int runCad(AssembleArguments given) {
+  PlanArguments plan;
+  plan.assembly = given.scene.scene;
+  plan.out = (std::filesystem::path(given.out) / "plan").string();
+  plan.units = given.units;
+  plan.deflection = given.deflection;
+  plan.is_forced = true;
+  requireNotRead(given.json, {plan.assembly});
+  ProgressBar bar;
+  const int planned = planInto(plan, bar);
+  given.scene.scene = plan.out + "/scene.toml";
+  given.units = given.deflection = "";
+  return std::max(planned, runAssemble(given));
+}
+
 int runAssemble(const AssembleArguments& given) {
+  if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
   const std::string& file = given.scene.scene;
+  if (!given.units.empty() || !given.deflection.empty())
+    throw LoadError(
+        file, "",
+        "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
   OutputFolder out(given.out);
   OutputFile json(given.json, {file});
   OutputFile wav(given.sound, {file});
@@ -126,6 +154,11 @@ void addAssemble(CommandLine& line) {
       line, "assemble", "runs the assembly procedure by contact; writes a report, pictures and data",
       "vps assemble scenes/bearing_block/scene.toml --out out/demo", [given] { return runAssemble(*given); });
   addSceneOptions(command, given->scene);
+  command.get_option("scene")
+      ->description("scene file (TOML), or a CAD file, which is planned first, as vps plan does")
+      ->type_name("SCENE|CAD");
+  addUnitsOption(command, given->units);
+  addDeflectionOption(command, given->deflection);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");

@@ -52,13 +52,18 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
                step.is_carried ? "by itself" : "held", needsText(assembly, step)});
   }
   if (!assembly.steps.empty()) out += table.text();
+  std::vector<std::string> held;
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (!step.is_carried) held.push_back(step.name);
+  if (!held.empty())
+    out += "Nothing carries " + listed(held) + "; the hand holds each until the end of its step.\n";
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())
       out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
   for (const scenes::BlockedPart& blocked : assembly.blocked)
     out += "'" + blocked.name + "' cannot be taken off: " +
            (blocked.by.empty() ? std::string("no way was found") : "it is stopped by " + listed(blocked.by)) +
-           ".\n";
+           (blocked.is_searched ? "" : "; the search for ways of several legs ended at its limit") + ".\n";
   return out;
 }
 
@@ -69,9 +74,23 @@ std::string planTables(const scenes::PlanResult& plan) {
   for (const scenes::PlannedAssembly& assembly : plan.assemblies)
     out += (out.empty() ? "" : "\n") + assemblyTable(assembly);
   if (!plan.overlaps.empty()) out += "\n";
+  for (const scenes::DrawnTwice& twice : plan.twice)
+    out += "'" + twice.first + "' and '" + twice.second +
+           "' are equal and in one place: is a part drawn twice? Remove one of them.\n";
+  const auto isTwice = [&](const scenes::CheckedPair& pair) {
+    return std::ranges::any_of(plan.twice, [&](const scenes::DrawnTwice& twice) {
+      return twice.first == pair.a && twice.second == pair.b;
+    });
+  };
   for (const scenes::CheckedPair& pair : plan.overlaps)
-    out += "'" + pair.a + "' and '" + pair.b + "' overlap by " + fixed(1e3 * pair.interference_depth_m, 3) +
-           " mm as drawn; on their ways they may overlap as much.\n";
+    if (!isTwice(pair))
+      out += "'" + pair.a + "' and '" + pair.b + "' overlap by " + fixed(1e3 * pair.interference_depth_m, 3) +
+             " mm as drawn; on their ways they may overlap as much.\n";
+  if (plan.cut_motions > 0)
+    out +=
+        std::to_string(plan.cut_motions) +
+        " straight motions were too long to follow to their end and count as stopped; a greater --deflection "
+        "makes them shorter.\n";
   for (const scenes::CheckedPair& pair : plan.uncertain)
     out += "Whether '" + pair.a + "' and '" + pair.b +
            "' overlap cannot be told, because a part has no inside there; their surfaces were used.\n";

@@ -87,6 +87,11 @@ void addSceneOptions(CLI::App& command, SceneArguments& given) {
   addCacheOptions(command, given.cache);
 }
 
+void addDeflectionOption(CLI::App& command, std::string& deflection) {
+  command.add_option("--deflection", deflection,
+                     "greatest distance between curved faces and their triangles, with unit (STEP, IGES)");
+}
+
 void addUnitsOption(CLI::App& command, std::string& units) {
   command.add_option("--units", units, "length unit of files that do not state one: mm, cm, m, um, inch");
 }

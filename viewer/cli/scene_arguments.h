@@ -64,6 +64,8 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
 
 /// Adds --units.
 void addUnitsOption(CLI::App& command, std::string& units);
+/// Adds --deflection.
+void addDeflectionOption(CLI::App& command, std::string& deflection);
 /// "mm", "cm", "m", "um" or "inch" in metres; empty for empty text. Throws LoadError naming --units.
 std::optional<double> unitFrom(const std::string& text);
 

@@ -52,6 +52,7 @@ struct PlannedOrder {
 struct BlockedPart {
   std::string name;
   std::vector<std::string> by;
+  bool is_searched = true;  ///< false: the search for ways of several legs ended at its limit of work
 };
 
 /// The assembly, or a subassembly, which is put together by itself before.
@@ -64,12 +65,21 @@ struct PlannedAssembly {
   std::vector<BlockedPart> blocked;
 };
 
+/// Two parts of equal geometry in one place.
+struct DrawnTwice {
+  std::string first, second;
+};
+
 struct PlanResult {
   std::string assembly;
   std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
   /// Overlaps as drawn. On their ways these parts may overlap as deep as they are drawn.
   std::vector<CheckedPair> overlaps;
+  std::vector<DrawnTwice> twice;       ///< among the overlaps too
   std::vector<CheckedPair> uncertain;  ///< pairs of which it cannot be told whether they overlap
+  /// Straight motions of a part past another one that were too long to follow to their end; they count as
+  /// stopped.
+  std::size_t cut_motions = 0;
   double check_wall_s = 0, plan_wall_s = 0;
   [[nodiscard]] std::size_t steps() const;
   [[nodiscard]] std::size_t blocked() const;

@@ -33,7 +33,9 @@ static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
 
 inline constexpr auto kBlockedPartFields =
     std::make_tuple(field("name", &BlockedPart::name, "a part that was not taken off"),
-                    field("by", &BlockedPart::by, "what stops it in the directions that were tried"));
+                    field("by", &BlockedPart::by, "what stops it in the directions that were tried"),
+                    field("is_searched", &BlockedPart::is_searched,
+                          "false: the search for ways of several legs ended at its limit of work"));
 static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
 
 inline constexpr auto kPlannedAssemblyFields = std::make_tuple(
@@ -45,12 +47,20 @@ inline constexpr auto kPlannedAssemblyFields = std::make_tuple(
     list("blocked", &PlannedAssembly::blocked, kBlockedPartFields));
 static_assert(coversAllMembers<PlannedAssembly>(kPlannedAssemblyFields));
 
+inline constexpr auto kDrawnTwiceFields =
+    std::make_tuple(field("first", &DrawnTwice::first, "a part"),
+                    field("second", &DrawnTwice::second, "a part of equal geometry in the same place"));
+static_assert(coversAllMembers<DrawnTwice>(kDrawnTwiceFields));
+
 inline constexpr auto kPlanFields =
     std::make_tuple(field("assembly", &PlanResult::assembly, "what was planned"),
                     field("blocked_count", &PlanResult::blocked, "parts that were not taken off"),
                     list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
                     list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
-                    list("uncertain", &PlanResult::uncertain, kCheckedPairFields));
+                    list("twice", &PlanResult::twice, kDrawnTwiceFields),
+                    list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
+                    field("cut_motions", &PlanResult::cut_motions,
+                          "straight motions too long to follow to their end, which count as stopped"));
 inline constexpr auto kPlanWallFields =
     std::make_tuple(field("check_s", &PlanResult::check_wall_s, "time to check the parts as drawn"),
                     field("plan_s", &PlanResult::plan_wall_s, "time to take them apart"));

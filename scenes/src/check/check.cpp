@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "check/check_pair.h"
+#include "check/check_placed.h"
 #include "check/check_play.h"
 #include "check/clearance_map.h"
 #include "check/fits.h"
@@ -142,6 +143,16 @@ CheckedPart describePart(const PlacedSurface& part) {
 
 CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
                           const CheckSettings& settings, const Progress& progress) {
+  const double begun_s = wallSeconds();
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
+  const double prepare_s = wallSeconds() - begun_s;
+  CheckResult result = checkPlaced(name, placed, settings, progress);
+  result.prepare_wall_s = prepare_s;
+  return result;
+}
+
+CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface>& placed,
+                        const CheckSettings& settings, const Progress& progress) {
   CheckResult result;
   result.assembly = name;
   result.near_m = settings.near_m;
@@ -151,8 +162,6 @@ CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>&
     begun_s = wallSeconds();
     return begun_s - before_s;
   };
-  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
-  result.prepare_wall_s = lap_s();
   result.pairs = checkPairs(placed, settings.near_m, progress);
   result.pairs_wall_s = lap_s();
   result.fits = checkFits(

@@ -67,6 +67,29 @@ double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double le
   return s;
 }
 
+/// Whether two nodes of the trees, with a patch of a surface in one of them, pass beside each other on a
+/// straight motion, as besideMotion() tells of two facets.
+bool passBeside(const PartSurface& held, std::uint32_t k, const PartSurface& moving, std::uint32_t i,
+                const Pose& X_HM, const Vec3& d_H, double rest_m) {
+  const auto facets = [](const PartSurface& of, std::uint32_t node) {
+    return of.tree().nodes()[node].end - of.tree().nodes()[node].first;
+  };
+  constexpr std::uint32_t kFewPairs = 4;  // quicker by themselves
+  const std::uint32_t of_held = facets(held, k), of_moving = facets(moving, i);
+  if (std::max(of_held, of_moving) > PartSurface::kFacetsOfPatch || of_held * of_moving <= kFewPairs)
+    return false;
+  const auto isParted = [&](const Vec3& n_H) {  // the held one below, the moving one above
+    const Vec3 n_M = X_HM.R.transpose() * n_H;
+    return n_H.dot(X_HM.p) - moving.highest_m(i, -n_M) >= held.highest_m(k, n_H) - rest_m;
+  };
+  if (const Vec3& n = held.patches()[k]; n != Vec3::Zero())
+    if (const std::optional<Vec3> beside = besideMotion(n, d_H); beside && isParted(*beside)) return true;
+  const Vec3& n = moving.patches()[i];
+  if (n == Vec3::Zero()) return false;
+  const std::optional<Vec3> beside = besideMotion(X_HM.R * n, d_H);
+  return beside && isParted(-*beside);
+}
+
 Box boxOf(const Triangle& t) {
   Box box;
   for (const Vec3& p : t) box.add(p);
@@ -131,7 +154,7 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
 }
 
 double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
-                          const PassingFacets* passing, Blocker& by) const {
+                          const PassingFacets* passing, SearchWork* work, Blocker& by) const {
   // No structured binding: clang 14 does not let a lambda use one.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
@@ -192,10 +215,14 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
           best)
         return kMotionSearchForever;
     }
+    if (!motion_H.is_turn && passBeside(fixed, k, moving, i, X_HM, motion_H.direction, held.rest_m))
+      return kMotionSearchForever;
     return bound;
   };
   std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
   while (!stack.empty() && best > 0) {
+    if (work != nullptr && work->isSpent()) return 0;
+    if (work != nullptr) ++work->done;
     const Waiting now = stack.back();
     stack.pop_back();
     if (!(now.bound < best)) continue;
@@ -221,18 +248,19 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   return best;
 }
 
-Reach MotionSearch::reach(const Motion& motion, double most) const {
-  return reach(motion, most, turningOf(motion, most), nullptr);
+Reach MotionSearch::reach(const Motion& motion, double most, SearchWork* work) const {
+  return reach(motion, most, turningOf(motion, most), nullptr, work);
 }
 
 std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const PassingFacets* passing) const {
   const std::optional<Turning> turning = turningOf(motion, most);
-  return {reach(motion, most, turning, passing), reach(motion.reversed(), most, turning, passing)};
+  return {reach(motion, most, turning, passing, nullptr),
+          reach(motion.reversed(), most, turning, passing, nullptr)};
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
-                          const PassingFacets* passing) const {
+                          const PassingFacets* passing, SearchWork* work) const {
   std::vector<Motion> in_held;
   for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
@@ -248,7 +276,7 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
       const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + safe) * forward_m});
       const double here =
           step(h, turning, {in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, {back_m, front_m}},
-               passing, by);
+               passing, work, by);
       if (here >= safe) continue;
       safe = here;
       reach.by = by;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -35,6 +36,13 @@ struct PassingFacets {
                 const TriangleTree& tree);
 };
 
+/// How much a search may do, in visited pairs of nodes: 1 us each, or 4 us in a turn. A limit that does not
+/// depend on the machine or its load.
+struct SearchWork {
+  std::uint64_t most = 0, done = 0;
+  [[nodiscard]] bool isSpent() const { return done >= most; }
+};
+
 /// How deep the facets of a pair may be in each other.
 enum class CrossingDepth {
   AsDrawn,   ///< as deep as they are where the part stands: exact play
@@ -56,7 +64,8 @@ class MotionSearch {
                const std::vector<double>& crossing_m, CrossingDepth depth = CrossingDepth::AsDrawn);
 
   /// @param motion in the world
-  [[nodiscard]] Reach reach(const Motion& motion, double most) const;
+  /// @param work   counts what is done; a motion is stopped where it is spent. Null: no limit but the steps
+  [[nodiscard]] Reach reach(const Motion& motion, double most, SearchWork* work = nullptr) const;
   /// Of the motion and of its reverse.
   [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most,
                                                const PassingFacets* passing = nullptr) const;
@@ -89,10 +98,10 @@ class MotionSearch {
   };
   [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion, double most) const;
   [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning,
-                            const PassingFacets* passing) const;
+                            const PassingFacets* passing, SearchWork* work) const;
   [[nodiscard]] Reach backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const;
   double step(std::size_t held, const std::optional<Turning>& turning, const Piece& piece,
-              const PassingFacets* passing, Blocker& by) const;
+              const PassingFacets* passing, SearchWork* work, Blocker& by) const;
 
   const PlacedSurface& part_;
   std::vector<Held> held_;

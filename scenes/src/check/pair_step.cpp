@@ -29,6 +29,7 @@ class Step {
     tryHeld(pair_.held.normal(held_), -pair_.rest_m);
     tryMoving(pair_.X_HM.R * pair_.moving.normal(moving_), -pair_.rest_m);
     if (best_ == kPairStepForever) return best_;
+    if (!pair_.motion.is_turn && passesBeside()) return best_ = kPairStepForever;
     gap_ = triangleGap(a_, b_);
     const Vec3 between = gap_.p_a - gap_.p_b;
     if (gap_.distance_m > 2 * pair_.rest_m) {
@@ -75,6 +76,33 @@ class Step {
     double s = kPairStepForever;
     for (const Vec3& p : b_) s = std::min(s, motion.staysAbove(n, p, above_m));
     best_ = std::max(best_, s);
+  }
+
+  /// Whether a plane along a straight motion parts the triangles, which then never meet: beside an edge of
+  /// one of them, or across an outward normal with the rest depth. Facets of flush curved faces cross by
+  /// their chords wherever they slide along each other, and the planes of slivers among them are tilted at
+  /// random.
+  [[nodiscard]] bool passesBeside() const {
+    const Vec3& d = pair_.motion.direction;
+    for (const Triangle* of : {&a_, &b_})
+      for (int i = 0; i < 3; ++i) {
+        const Vec3 n = d.cross((*of)[(i + 1) % 3] - (*of)[i]);
+        if (lowest(n, a_) >= highest(n, b_) || lowest(n, b_) >= highest(n, a_)) return true;
+      }
+    return isAnyCornerNormal(pair_.held, held_,
+                             [&](const Vec3& n) {
+                               const std::optional<Vec3> beside = besideMotion(n, d);
+                               return beside && lowest(*beside, a_) >= highest(*beside, b_) - pair_.rest_m;
+                             }) ||
+           isAnyCornerNormal(pair_.moving, moving_, [&](const Vec3& n) {
+             const std::optional<Vec3> beside = besideMotion(pair_.X_HM.R * n, d);
+             return beside && lowest(*beside, b_) >= highest(*beside, a_) - pair_.rest_m;
+           });
+  }
+  template <class Is>
+  static bool isAnyCornerNormal(const PartSurface& of, std::uint32_t triangle, Is is) {
+    return std::ranges::any_of(of.mesh().triangles[triangle],
+                               [&](std::uint32_t v) { return std::ranges::any_of(of.normalsAround(v), is); });
   }
 
   /// Outward normals around the nearest features of both, in the frame of the held part.

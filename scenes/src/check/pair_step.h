@@ -2,6 +2,8 @@
 // How far a triangle may move before it enters another.
 #pragma once
 
+#include <optional>
+
 #include "check/motion.h"
 #include "check/part_surface.h"
 
@@ -17,6 +19,15 @@ struct MovingPair {
   /// faces cross.
   double rest_m = 0;
 };
+
+/// An outward normal across a straight motion d: a part above its plane stays so. None for a surface that
+/// faces the motion at more than 30 degrees.
+inline std::optional<Vec3> besideMotion(const Vec3& n, const Vec3& d) {
+  constexpr double kMostFacing = 0.5;
+  const double facing = n.dot(d);
+  if (std::abs(facing) > kMostFacing) return std::nullopt;
+  return (n - facing * d).normalized();
+}
 
 /// A way for which the triangles certainly do not enter each other by more than the rest depth: the longest
 /// for which one plane of a few parts them, with each part on its outer side. It is 0 where they touch and

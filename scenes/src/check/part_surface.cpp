@@ -61,6 +61,7 @@ PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<doubl
     : overlap_(std::move(solid)), tree_(overlap_.mesh()), neighbours_(neighboursOf(overlap_.mesh())) {
   estimateChords(chord_m);
   findPlanes();
+  findPatches();
   gatherNormals();
   tellInside();
 }
@@ -111,6 +112,32 @@ void PartSurface::findPlanes() {
     for (const std::uint32_t i : facets)
       for (const Vec3& p : triangle(i)) plane.highest_m = std::max(plane.highest_m, n.dot(p));
   }
+}
+
+void PartSurface::findPatches() {
+  constexpr double kOneWay = 0.9;  // about 25 degrees on average; assumed
+  patches_.assign(tree_.nodes().size(), Vec3::Zero());
+  for (std::size_t node = 0; node < patches_.size(); ++node) {
+    const auto [first, end] = std::pair(tree_.nodes()[node].first, tree_.nodes()[node].end);
+    if (end - first > kFacetsOfPatch) continue;
+    Vec3 sum_m2 = Vec3::Zero();
+    double total_m2 = 0;
+    for (std::uint32_t i = first; i < end; ++i) {
+      const Triangle t = triangle(tree_.order()[i]);
+      const double area_m2 = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+      sum_m2 += area_m2 * normal(tree_.order()[i]);
+      total_m2 += area_m2;
+    }
+    if (sum_m2.norm() > kOneWay * total_m2) patches_[node] = sum_m2.normalized();
+  }
+}
+
+double PartSurface::highest_m(std::uint32_t node, const Vec3& n) const {
+  double highest_m = -1e300;
+  for (std::uint32_t i = tree_.nodes()[node].first; i < tree_.nodes()[node].end; ++i)
+    for (const std::uint32_t v : mesh().triangles[tree_.order()[i]])
+      highest_m = std::max(highest_m, n.dot(mesh().vertices[v]));
+  return highest_m;
 }
 
 Triangle PartSurface::triangle(std::uint32_t i) const {

@@ -53,6 +53,13 @@ class PartSurface {
   };
   [[nodiscard]] const std::vector<NodePlane>& planes() const { return planes_; }
 
+  /// By node of the tree: the mean outward normal, by area, of at most kFacetsOfPatch facets that face nearly
+  /// one way; else zero.
+  static constexpr std::uint32_t kFacetsOfPatch = 64;
+  [[nodiscard]] const std::vector<Vec3>& patches() const { return patches_; }
+  /// The highest point of a node's facets along n.
+  [[nodiscard]] double highest_m(std::uint32_t node, const Vec3& n) const;
+
   /// Why the surface, or parts of it, has no inside; empty: it has one.
   [[nodiscard]] const std::string& noInside() const { return no_inside_; }
 
@@ -64,6 +71,7 @@ class PartSurface {
  private:
   void estimateChords(std::optional<double> most_m);
   void findPlanes();
+  void findPatches();
   void tellInside();
   void gatherNormals();
   OverlapMesh overlap_;
@@ -71,6 +79,7 @@ class PartSurface {
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
   std::vector<double> chord_m_;
   std::vector<NodePlane> planes_;
+  std::vector<Vec3> patches_;
   std::string no_inside_;
   std::vector<Vec3> around_;
   std::vector<std::uint32_t> first_around_;  // by vertex, and the end

@@ -24,8 +24,9 @@ struct Place {
 
 class LegSearch {
  public:
-  LegSearch(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held)
-      : motions_(motions), part_(part), held_(held), home_(motions.parts()[part]) {
+  LegSearch(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
+            SearchWork& work)
+      : motions_(motions), part_(part), held_(held), home_(motions.parts()[part]), work_(work) {
     size_m_ = home_.box_W.size().norm();
     for (const std::size_t d : motions.axesOf(part))
       straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
@@ -38,7 +39,7 @@ class LegSearch {
   std::optional<Way> find() {
     std::deque<Place> waiting{{Pose(), {}}};
     seen_.push_back(Pose());
-    while (!waiting.empty()) {
+    while (!waiting.empty() && !work_.isSpent()) {
       const Place place = waiting.front();
       waiting.pop_front();
       if (std::optional<Way> way = expand(place, waiting)) return way;
@@ -61,7 +62,7 @@ class LegSearch {
     const MotionSearch search = motions_.search(placed, part_, held_);
     std::vector<std::pair<Motion, double>> legs;
     for (const Motion& motion : straight_) {
-      const Reach reach = search.reach(motion, motions_.leave_m());
+      const Reach reach = search.reach(motion, motions_.leave_m(), &work_);
       if (!reach.is_stopped) {
         Way way{WayKind::Legs, from.legs, kNoDirection, 0};
         way.legs.push_back({motion, motions_.leave_m()});
@@ -71,7 +72,7 @@ class LegSearch {
     }
     if (from.legs.size() + 1 >= kMostLegs) return std::nullopt;
     for (const Motion& motion : turns_) {
-      const double s = search.reach(motion, kTurn_rad).s;
+      const double s = search.reach(motion, kTurn_rad, &work_).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
     // Where it was stopped it can be as deep as is allowed: back to where it is free.
@@ -100,6 +101,7 @@ class LegSearch {
   std::size_t part_;
   const std::vector<std::size_t>& held_;
   const PlacedSurface& home_;
+  SearchWork& work_;
   double size_m_ = 0;
   std::vector<Motion> straight_, turns_;
   std::vector<Pose> seen_;
@@ -107,9 +109,9 @@ class LegSearch {
 
 }  // namespace
 
-std::optional<Way> legWay(const PairMotions& motions, std::size_t part,
-                          const std::vector<std::size_t>& held) {
-  return LegSearch(motions, part, held).find();
+std::optional<Way> legWay(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
+                          SearchWork& work) {
+  return LegSearch(motions, part, held, work).find();
 }
 
 }  // namespace vps::scenes::inline v0

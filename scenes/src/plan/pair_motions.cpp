@@ -9,6 +9,8 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
+/// For one motion of one pair: some ten seconds. Those of a bolt of 227,717 facets need 2 million.
+constexpr std::uint64_t kMostWork = 10'000'000;
 constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
 
 /// How deep parts may be in each other on a way, beyond what is drawn and its error: facets of curved faces
@@ -104,8 +106,9 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
         parts_[pair.first], std::vector<const PlacedSurface*>{&parts_[pair.second]},
         std::vector<double>{near.crossing_m}, CrossingDepth::UpToMost);
     near.probes = ContactProbes(parts_[pair.first], parts_[pair.second], near.crossing_m);
-    near.is_first_carried = near.stops({down_W, Vec3::Zero(), false}, kFall_m);
-    near.is_second_carried = near.stops({-down_W, Vec3::Zero(), false}, kFall_m);
+    SearchWork down{kMostWork}, up{kMostWork};
+    near.is_first_carried = near.stops({down_W, Vec3::Zero(), false}, kFall_m, down);
+    near.is_second_carried = near.stops({-down_W, Vec3::Zero(), false}, kFall_m, up);
   });
 }
 
@@ -122,11 +125,13 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
   const auto near = near_.find({part, held});
   const bool is_near = near != near_.end();
   const double depth_m = is_near ? near->second.crossing_m : touchOf(parts_[part], parts_[held]);
+  SearchWork work{kMostWork};
   const bool is_stopped =
       !staysBeside(parts_[part].box_W, parts_[held].box_W, motion.direction, depth_m, leave_m_) &&
-      (is_near ? near->second.stops(motion, leave_m_)
-               : search(parts_[part], part, {held}).reach(motion, leave_m_).is_stopped);
-  known.store(is_stopped ? Stops : Passes, std::memory_order_relaxed);
+      (is_near ? near->second.stops(motion, leave_m_, work)
+               : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
+  std::uint8_t before = Unknown;  // another thread may have found it meanwhile
+  if (known.compare_exchange_strong(before, is_stopped ? Stops : Passes) && work.isSpent()) ++cut_;
   return is_stopped;
 }
 

@@ -48,6 +48,8 @@ class PairMotions {
 
   /// Whether a part that moves away in a direction meets the held one. Kept once it is known. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
+  /// How many motions of stops() were too long to be followed to their end.
+  [[nodiscard]] std::size_t cutMotions() const { return cut_; }
   /// Whether the held part keeps the other from falling by more than 1 mm.
   [[nodiscard]] bool carries(std::size_t held, std::size_t part) const;
 
@@ -65,8 +67,8 @@ class PairMotions {
     ContactProbes probes;
     bool is_first_carried = false, is_second_carried = false;
     /// Of a straight motion of the first.
-    [[nodiscard]] bool stops(const Motion& motion, double most_m) const {
-      return probes.areStopped(motion.direction) || search->reach(motion, most_m).is_stopped;
+    bool stops(const Motion& motion, double most_m, SearchWork& work) const {
+      return probes.areStopped(motion.direction) || search->reach(motion, most_m, &work).is_stopped;
     }
   };
   [[nodiscard]] std::size_t slot(std::size_t a, std::size_t b, std::size_t direction) const;
@@ -82,6 +84,7 @@ class PairMotions {
   std::map<Pair, Near> near_;
   double leave_m_ = 0;
   enum Known : std::uint8_t { Unknown, Passes, Stops };
+  mutable std::atomic<std::size_t> cut_ = 0;
   mutable std::vector<std::atomic<std::uint8_t>> known_;  ///< by slot()
 };
 

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "check/check_placed.h"
 #include "core/wall_clock.h"
 #include "plan/base_part.h"
 #include "plan/precedence.h"
@@ -93,7 +94,7 @@ class Planner {
     for (const std::size_t part : apart.fixed) planned.fixed.push_back(nameOf(part));
     for (const Disassembly::Blocked& blocked : apart.blocked) {
       planned.fixed.push_back(nameOf(blocked.part));
-      planned.blocked.push_back({nameOf(blocked.part), {}});
+      planned.blocked.push_back({nameOf(blocked.part), {}, blocked.is_searched});
       for (const std::size_t by : blocked.by) planned.blocked.back().by.push_back(nameOf(by));
     }
     std::vector<std::string> names;
@@ -166,6 +167,14 @@ class Planner {
   std::set<std::string> names_;
 };
 
+/// Parts of equal geometry share their surface.
+bool isDrawnTwice(const PlacedSurface& a, const PlacedSurface& b) {
+  constexpr double kSame_m = 1e-6;
+  if (a.surface != b.surface) return false;
+  return std::ranges::all_of(a.surface->mesh().vertices,
+                             [&](const Vec3& p) { return (a.X_WP * p - b.X_WP * p).norm() < kSame_m; });
+}
+
 std::vector<std::size_t> indicesOf(const std::vector<std::string>& names,
                                    const std::vector<DrawnPart>& parts) {
   std::vector<std::size_t> out;
@@ -191,18 +200,20 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   result.assembly = name;
   CheckSettings check;
   check.has_play = false;
-  const CheckResult checked = checkAssembly(name, parts, check, progress);
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
+  const CheckResult checked = checkPlaced(name, placed, check, progress);
   for (const CheckedPair& pair : checked.pairs) {
     if (pair.state >= PairState::PressFit) result.overlaps.push_back(pair);
+    if (isDrawnTwice(named(placed, pair.a), named(placed, pair.b))) result.twice.push_back({pair.a, pair.b});
     if (pair.is_uncertain) result.uncertain.push_back(pair);
   }
   result.check_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
-  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
   const PairMotions motions(placed, checked, settings.up_W, progress);
   std::vector<std::size_t> members(parts.size());
   std::iota(members.begin(), members.end(), std::size_t{0});
   Planner(motions, progress).plan(name, members, fixed, "as asked for", result.assemblies);
+  result.cut_motions = motions.cutMotions();
   result.plan_wall_s = wallSeconds() - begun_s;
   return result;
 }

@@ -28,10 +28,10 @@ std::vector<std::size_t> pushedBy(const PairMotions& motions, const std::vector<
 }  // namespace
 
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
-                      const std::vector<std::size_t>& fixed) {
+                      const std::vector<std::size_t>& fixed, const Progress& progress) {
   const Directions& directions = motions.directions();
   std::vector<std::vector<std::size_t>> of_direction(directions.size());
-  forEachOnCores(directions.size(), {}, "", [&](std::size_t d) {
+  forEachOnCores(directions.size(), progress, "", [&](std::size_t d) {
     std::vector<std::size_t>& least = of_direction[d];
     for (const std::size_t part : remaining) {
       if (std::ranges::binary_search(fixed, part)) continue;

@@ -21,26 +21,30 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& all, const std:
 
 class TakingApart {
  public:
-  TakingApart(const PairMotions& motions, std::vector<std::size_t> members, std::vector<std::size_t> fixed)
+  TakingApart(const PairMotions& motions, std::vector<std::size_t> members, std::vector<std::size_t> fixed,
+              const Progress& progress)
       : motions_(motions), remaining_(std::move(members)), fixed_(std::move(fixed)) {
     std::ranges::sort(remaining_);
     std::ranges::sort(fixed_);
     stopped_by_.resize(motions.parts().size());
     screws_.resize(motions.parts().size());
+    legs_.resize(motions.parts().size());
+    if (!progress) return;
+    // The progress of each piece of work only says that it goes on, and lets the caller end it.
+    const auto count = static_cast<double>(remaining_.size() - fixed_.size());
+    progress_ = [this, count, &progress](std::string_view, double) {
+      progress("taking apart", 1 - static_cast<double>(remaining_.size() - fixed_.size()) / count);
+    };
   }
 
-  Disassembly run(const Progress& progress) {
+  Disassembly run() {
     Disassembly out{fixed_, {}, {}};
-    const std::size_t count = remaining_.size() - fixed_.size();
-    std::size_t off = 0;
     while (remaining_.size() > fixed_.size()) {
       Removal removal = next();
       if (removal.parts.empty()) break;
       remaining_ = without(remaining_, removal.parts);
       last_ = removal.way.direction;
-      off += removal.parts.size();
       out.removals.push_back(std::move(removal));
-      if (progress) progress("taking apart", static_cast<double>(off) / static_cast<double>(count));
     }
     for (const std::size_t part : without(remaining_, fixed_)) out.blocked.push_back(blockedOf(part));
     return out;
@@ -54,9 +58,22 @@ class TakingApart {
     if (Removal found = alone([&](std::size_t part) { return screwOf(part); }); !found.parts.empty())
       return found;
     if (Removal found = straight(); !found.parts.empty()) return found;
-    if (Removal found = smallestGroup(motions_, remaining_, fixed_); !found.parts.empty())
+    if (Removal found = smallestGroup(motions_, remaining_, fixed_, progress_); !found.parts.empty())
       return completed(std::move(found));
-    return alone([&](std::size_t part) { return legWay(motions_, part, without(remaining_, {part})); });
+    return byLegs();
+  }
+
+  /// Limits of work that do not depend on the machine: some five seconds for each part, a minute in all.
+  Removal byLegs() {
+    constexpr std::uint64_t kOfPart = 2'000'000, kOfAll = 40'000'000;
+    const std::size_t parts = remaining_.size() - fixed_.size();
+    const std::uint64_t left = kOfAll - std::min(kOfAll, work_of_legs_);
+    Removal found = alone([&](std::size_t part) {
+      legs_[part] = {std::min(kOfPart, left / parts), 0};
+      return legWay(motions_, part, without(remaining_, {part}), legs_[part]);
+    });
+    for (const std::size_t part : without(remaining_, fixed_)) work_of_legs_ += legs_[part].done;
+    return found;
   }
 
   Removal straight() {
@@ -68,7 +85,7 @@ class TakingApart {
   Removal alone(WayOf wayOf) {
     const std::vector<std::size_t> parts = without(remaining_, fixed_);
     std::vector<std::optional<Way>> ways(parts.size());
-    forEachOnCores(parts.size(), {}, "", [&](std::size_t i) { ways[i] = wayOf(parts[i]); });
+    forEachOnCores(parts.size(), progress_, "", [&](std::size_t i) { ways[i] = wayOf(parts[i]); });
     Removal best;
     Score least;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -85,7 +102,7 @@ class TakingApart {
   /// The best direction in which a part leaves all that remain; the likely ones first.
   std::optional<Way> straightWay(std::size_t part) {
     for (std::vector<std::size_t> directions : {motions_.axesOf(part), motions_.around()}) {
-      std::ranges::stable_sort(directions, {}, [&](std::size_t d) { return rank(d); });
+      std::ranges::stable_sort(directions, {}, [&](std::size_t d) { return rank(part, d); });
       for (const std::size_t d : directions) {
         if (!leaves(part, d)) continue;
         const Motion motion{motions_.directions()[d], Vec3::Zero(), false};
@@ -95,8 +112,20 @@ class TakingApart {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::pair<int, int> rank(std::size_t d) const {
-    return {slopeOf(motions_, motions_.directions()[d]), last_ == d ? 0 : 1};
+  [[nodiscard]] std::pair<int, int> rank(std::size_t part, std::size_t d) const {
+    return {slopeOfPart(part, motions_.directions()[d]), last_ == d ? 0 : 1};
+  }
+
+  /// As slopeOf(), but a part that has a round fit, also with a part that has left already, goes along it
+  /// rather than across: a nut along its bolt.
+  [[nodiscard]] int slopeOfPart(std::size_t part, const Vec3& direction_W) const {
+    constexpr int kUp = 0, kAlongFit = 1, kMore = 2;
+    const int slope = slopeOf(motions_, direction_W);
+    if (slope == 0) return kUp;
+    const bool is_along = std::ranges::any_of(motions_.fitsOf(part), [&](const CheckedFit& fit) {
+      return fit.kind != FitKind::Key && fit.axis_W.cross(direction_W).norm() < 1e-3;
+    });
+    return is_along ? kAlongFit : slope + kMore;
   }
 
   /// What stopped it before is asked first.
@@ -138,7 +167,7 @@ class TakingApart {
     const double height_m = motions_.directions()[motions_.up()].dot(box.center());
     return {removal.falling.size(),
             static_cast<int>(removal.way.kind),
-            slopeOf(motions_, removal.way.legs.back().motion.direction),
+            slopeOfPart(removal.parts.front(), removal.way.legs.back().motion.direction),
             last_ == removal.way.direction ? 0 : 1,
             -loosenessOf(removal.parts.front()),
             -height_m,
@@ -158,7 +187,7 @@ class TakingApart {
   }
 
   [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {
-    Disassembly::Blocked blocked{part, {}};
+    Disassembly::Blocked blocked{part, {}, !legs_[part].isSpent()};
     // Those that it meets are named; where it meets none, as a link in a chain, all that stop it.
     for (const bool has_to_meet : {true, false}) {
       for (const std::size_t held : remaining_) {
@@ -182,6 +211,9 @@ class TakingApart {
   std::vector<std::map<std::size_t, std::size_t>>
       stopped_by_;  ///< by part and direction: one more than a part
   std::vector<Screw> screws_;
+  std::vector<SearchWork> legs_;  ///< of the last search for legs, by part
+  std::uint64_t work_of_legs_ = 0;
+  Progress progress_;
   std::size_t last_ = 0;
 };
 
@@ -196,7 +228,7 @@ int slopeOf(const PairMotions& motions, const Vec3& direction_W) {
 
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress) {
-  return TakingApart(motions, members, fixed).run(progress);
+  return TakingApart(motions, members, fixed, progress).run();
 }
 
 }  // namespace vps::scenes::inline v0

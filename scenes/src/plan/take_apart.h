@@ -22,22 +22,23 @@ struct Disassembly {
   struct Blocked {
     std::size_t part;
     std::vector<std::size_t> by;
+    bool is_searched = true;  ///< false: the search of legs ended at its limit of work
   };
   std::vector<Blocked> blocked;
 };
 
 /// Takes parts off the fixed ones, one after the other, by rules in this order: what makes nothing fall;
-/// straight before screws; upwards before sideways before down; in the direction of the one before; the
+/// straight before screws; upwards, along round fits, sideways, down; in the direction of the one before; the
 /// loosest fit, so that pins are in place before what they locate; the highest; the first. Where no part
 /// leaves alone, the smallest set that leaves straight as one does; where none does, ways of several legs are
-/// searched. What is left in the end is blocked. On all cores.
+/// searched, with limits of work for each part and for all. What is left in the end is blocked. On all cores.
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
 /// The smallest set of parts without a fixed one that leaves straight, with its direction: for each part and
 /// direction all that it would push along, of which it needs the least. Empty if there is none.
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
-                      const std::vector<std::size_t>& fixed);
+                      const std::vector<std::size_t>& fixed, const Progress& progress);
 
 /// Sort key of directions: up, sideways, down.
 int slopeOf(const PairMotions& motions, const Vec3& direction_W);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planned_folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "command.h"
+#include "file_kind.h"
+#include "json_out.h"
+#include "output.h"
+#include "part_file_name.h"
+#include "plan_report.h"
+#include "scene_arguments.h"
+#include "stl.h"
+#include "table.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+#include "vps_scenes/scene_text.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+/// Faces of splines can have a hundred times the triangles of the same faces as cylinders: those of one
+/// public bolt have 227,717. The search for ways takes time with their product.
+void coarsen(scenes::ImportedCad& cad, scenes::ImportSettings settings, const Progress& progress) {
+  constexpr std::size_t kMany = 50'000;
+  constexpr double kTimes = 4, kMost_m = 16e-6;
+  const double asked_m = settings.deflection_m;
+  const auto largest = [&] {
+    return std::ranges::max_element(cad.parts, {},
+                                    [](const auto& part) { return part.mesh.triangles.size(); });
+  };
+  if (cad.parts.empty() || !cad.parts.front().deflection_m) return;
+  const std::string name = largest()->name;
+  const std::size_t before = largest()->mesh.triangles.size();
+  while (largest()->mesh.triangles.size() > kMany && kTimes * settings.deflection_m < 1.01 * kMost_m) {
+    settings.deflection_m *= kTimes;
+    cad = scenes::importCad(cad.file, settings, progress);
+  }
+  if (settings.deflection_m > asked_m)
+    warn(cad.file + ": '" + name + "' has " + std::to_string(before) + " triangles within " +
+         fixed(1e6 * asked_m, 0) + " um; planned with a deflection of " +
+         fixed(1e6 * settings.deflection_m, 0) + " um (--deflection " + fixed(1e6 * asked_m, 0) +
+         "um keeps them all)");
+}
+
+scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) {
+  if (!isCadExtension(lowerExtension(given.assembly))) {
+    if (!given.units.empty() || !given.deflection.empty())
+      throw LoadError(
+          given.assembly, "",
+          "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+    return scenes::loadScene(given.assembly);
+  }
+  requireCadFile(given.assembly);
+  scenes::ImportSettings settings;
+  settings.unit_m = unitFrom(given.units);
+  if (!given.deflection.empty())
+    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
+  scenes::ImportedCad cad = scenes::importCad(given.assembly, settings, progress);
+  if (given.deflection.empty()) coarsen(cad, settings, progress);
+  return scenes::sceneOf(cad);
+}
+
+/// scene.toml, and a scene file named like each subassembly, with the meshes.
+void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& planned,
+                 const scenes::PlanResult& plan, const std::vector<std::string>& read,
+                 const OutputFolder& out) {
+  std::set<std::string> taken;
+  std::map<std::string, std::string> file_of;
+  for (std::size_t i = 0; i < planned.size(); ++i) {
+    std::vector<std::string> files;
+    for (const scenes::ScenePart& part : planned[i].parts) {
+      throwIfStopped();
+      std::string& file = file_of[part.part.name];
+      if (file.empty()) {
+        file = partFileName(part.part.name, taken);
+        requireNotRead((std::filesystem::path(given.out) / file).string(), read);
+        out.write(file, stlBytes(part.part.mesh));
+      }
+      files.push_back(file);
+    }
+    const std::string name = i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
+    requireNotRead((std::filesystem::path(given.out) / name).string(), read);
+    const std::string comment =
+        "Planned from " + scenes::tomlText(given.assembly) +
+        (i == 0 ? "; run it with vps assemble." : ": a subassembly, which scene.toml mounts as one part.");
+    out.write(name, scenes::sceneText(planned[i], files, comment));
+  }
+}
+
+/// Of the files as they are written.
+std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const OutputFolder& out,
+                                       const Progress& progress) {
+  std::vector<scenes::WayFault> faults;
+  for (std::size_t i = 0; i < plan.assemblies.size(); ++i) {
+    const std::string name = i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
+    const scenes::Scene scene = scenes::loadScene((std::filesystem::path(out.partial()) / name).string());
+    for (const scenes::WayFault& fault : checkWays(scene, progress)) faults.push_back(fault);
+  }
+  return faults;
+}
+
+}  // namespace
+
+int planInto(const PlanArguments& given, ProgressBar& bar) {
+  std::error_code error;
+  if (!given.is_forced && std::filesystem::exists(std::filesystem::path(given.out) / "scene.toml", error))
+    throw LoadError(given.out, "",
+                    "has a scene.toml already; choose another folder, or replace it with --force");
+  OutputFolder out(given.out);
+  OutputFile json(given.json, {given.assembly});
+  const scenes::Scene scene = sceneToPlan(given, bar.progress());
+  for (const std::string& warning : scene.warnings) warn(given.assembly + ": " + warning);
+  scenes::PlanSettings settings;
+  settings.fixed = given.bases;
+  const scenes::PlanResult plan = planAssembly(scene, settings, bar.progress());
+  std::vector<std::string> read{given.assembly};
+  for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
+  writeScenes(given, plannedScenes(scene, plan), plan, read, out);
+  const std::vector<scenes::WayFault> faults = faultsOf(plan, out, bar.progress());
+  throwIfStopped();
+  out.write("plan.dot", planDot(plan));
+  out.write("plan.json", toJson(plan, faults));
+  out.commit();
+  json.write(toJson(plan, faults));
+  bar.clear();
+  std::fputs(planTables(plan).c_str(), stdout);
+  for (const scenes::WayFault& fault : faults) warn(inWords(fault));
+  std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
+  return plan.blocked() > 0 || !faults.empty() ? kBad : kGood;
+}
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans an assembly into a folder: what `vps plan` does, and `vps assemble` for a CAD file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress_bar.h"
+#include "vps_scenes/plan.h"
+
+namespace vps::viewer::inline v0 {
+
+struct PlanArguments {
+  std::string assembly, out, units, deflection, json;
+  std::vector<std::string> bases;
+  bool is_forced = false;
+  bool is_verify = false;
+};
+
+/// Plans a CAD file or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json and
+/// plan.dot, and prints the plan and what is wrong with it. A CAD file whose parts have very many triangles
+/// is read once more with a greater deflection, and this is said, unless --deflection is given.
+/// @return the exit status
+int planInto(const PlanArguments& given, ProgressBar& bar);
+
+}  // namespace vps::viewer::inline v0
