@@ -28,6 +28,7 @@ inline void expectSame(const scenes::AssembleResult& a, const scenes::AssembleRe
     EXPECT_EQ(a.steps[i].peak_force_N, b.steps[i].peak_force_N);
     EXPECT_EQ(a.steps[i].final_error_m, b.steps[i].final_error_m);
     EXPECT_EQ(a.steps[i].rest_drift_m, b.steps[i].rest_drift_m);
+    EXPECT_EQ(a.steps[i].late_drift_m, b.steps[i].late_drift_m);
   }
   ASSERT_EQ(a.trace.size(), b.trace.size());
   for (std::size_t i = 0; i < a.trace.size(); ++i) {

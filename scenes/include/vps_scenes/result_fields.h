@@ -83,6 +83,8 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
+    field("late_drift_m", &StepResult::late_drift_m,
+          "the same in the second half of that time; more than 5 um: it is not at rest"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
 inline constexpr auto kStrategyFields = std::make_tuple(

@@ -174,6 +174,7 @@ std::optional<Pose> work(AssemblyWorld& world, RunTrace& trace, const SceneStep&
 void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   const Box& box_P = world.state().moving.box_P;
   const Pose X_WP_released = world.movingPose();
+  Pose X_WP_middle = X_WP_released;
   world.driver().goBack(static_cast<std::size_t>(world.state().step) + 1);
   world.driver().resume();
   const double first_dt_s = world.dt_s();
@@ -182,8 +183,10 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   for (double left = steps; left > 0 && !world.isStopped() && world.advance();
        left -= world.dt_s() / first_dt_s) {
     trace.add(world, TracePhase::Rest, result);
-    result.rest_drift_m =
-        std::max(result.rest_drift_m, greatestDisplacement(box_P, X_WP_released, world.movingPose()));
+    const Pose& X_WP = world.movingPose();
+    result.rest_drift_m = std::max(result.rest_drift_m, greatestDisplacement(box_P, X_WP_released, X_WP));
+    if (left > steps / 2) X_WP_middle = X_WP;
+    result.late_drift_m = std::max(result.late_drift_m, greatestDisplacement(box_P, X_WP_middle, X_WP));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "report/pictures.h"
 #include "report/run_plot.h"
 #include "report/run_view.h"
+#include "report/thinned_trace.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
@@ -22,19 +23,6 @@ namespace {
 
 using html::Cell;
 using html::format;
-
-/// The first row of every period 1 / rate_hz.
-std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {
-  std::vector<scenes::TraceRow> rows;
-  double next_s = 0;
-  for (const scenes::TraceRow& row : trace) {
-    // The tolerance of half a microsecond is for the rounding of times, which are sums of steps.
-    if (row.time_s < next_s - 0.5e-6) continue;
-    rows.push_back(row);
-    next_s = std::max(next_s + 1 / rate_hz, row.time_s);
-  }
-  return rows;
-}
 
 std::string headline(const scenes::AssembleResult& result) {
   const bool is_good = result.verdict == scenes::Verdict::Fits;

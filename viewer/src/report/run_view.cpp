@@ -15,6 +15,7 @@
 #include "report/base64.h"
 #include "report/run_view_script.h"
 #include "report/text_file.h"
+#include "report/thinned_trace.h"
 #include "vps_viewer/renderer.h"
 
 namespace vps::viewer::inline v0 {
@@ -159,11 +160,10 @@ Json stepsData(const RenderScene& drawn, const scenes::Scene& scene, const scene
 /// [time, step, pose ..., force, depth, contacts], at even times; and the last of the run.
 Json framesData(const scenes::AssembleResult& result, std::size_t steps) {
   Json frames = Json::array();
-  double next_s = 0;
-  for (const scenes::TraceRow& row : result.trace) {
+  std::vector<scenes::TraceRow> rows = thinned(result.trace, kRunViewRate_hz);
+  if (!rows.empty() && rows.back().time_s < result.trace.back().time_s) rows.push_back(result.trace.back());
+  for (const scenes::TraceRow& row : rows) {
     if (row.step < 0 || static_cast<std::size_t>(row.step) >= steps) continue;
-    if (row.time_s < next_s && &row != &result.trace.back()) continue;
-    next_s = row.time_s + 1 / kRunViewRate_hz;
     Json frame = {rounded(row.time_s, 1e-3), row.step};
     addPose(frame, row.X_WP);
     frame.push_back(rounded(row.F_hand_W.f.norm(), 1e-2));
