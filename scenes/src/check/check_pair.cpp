@@ -12,10 +12,11 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-/// Of some sums of coordinates.
-double roundingOf(const PlacedSurface& part) {
-  return 16 * std::numeric_limits<double>::epsilon() *
-         (part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff());
+/// Rounding of some sums of coordinates; and where a crack was closed, the surface lies between its sides.
+double uncertainty_m(const PlacedSurface& part) {
+  const double greatest_m = part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff();
+  return 16 * std::numeric_limits<double>::epsilon() * greatest_m +
+         0.5 * part.surface->solid().report().joined_m;
 }
 
 /// Distance of the meshes from the faces that they stand for, where the parts are near each other.
@@ -95,15 +96,11 @@ Overlap deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m
   return found;
 }
 
-}  // namespace
-
-namespace {
-
 std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   CheckedPair pair{.a = a.name, .b = b.name};
   pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
   pair.press_fit_m = std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
-  const double chord_m = chordError(a, b, near_m), round_m = roundingOf(a) + roundingOf(b);
+  const double chord_m = chordError(a, b, near_m), round_m = uncertainty_m(a) + uncertainty_m(b);
   pair.error_m = chord_m + round_m;
   const Overlap overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m);
   if (overlap.depth_m > 0) {

@@ -28,7 +28,9 @@ namespace {
 constexpr std::int64_t kBeat_ns = 5'000'000;
 constexpr double kAlive_s = 0.1;  ///< a node whose last beat is older is lost
 constexpr double kFind_s = 1;     ///< for a session to be found
-constexpr int kPriority = 75;     // assumed: below the haptic loop's 80, above physics' 70
+constexpr double kListen_s =
+    0.5;                       ///< for another node to be heard. assumed: DDS finds a neighbour in a tenth
+constexpr int kPriority = 75;  // assumed: below the haptic loop's 80, above physics' 70
 constexpr std::size_t kTrips = 64;
 constexpr std::size_t kSceneHead = 16;
 
@@ -114,6 +116,15 @@ class DdsLink final : public Link {
             session_ = peer.session;
       }
       if (session_ != 0) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+
+  /// Listens whether the session has a node of this kind, which tells so in every beat.
+  [[nodiscard]] bool hears(NodeRole role) const {
+    for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < kListen_s;) {
+      if (isAlive(role)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     return false;
@@ -317,7 +328,7 @@ std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole ro
     throw LoadError("", "",
                     sessionWords(session) +
                         " is run by another version of vps render; use the same version for all nodes");
-  if (role == NodeRole::Device && link->isAlive(NodeRole::Device))
+  if (role == NodeRole::Device && link->hears(NodeRole::Device))
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
   return link;
 }
