@@ -42,8 +42,8 @@ TEST(Edge, ARectangularPegIsBlockedFiveMicrometresBelowZeroAndFitsAbove) {
   expectRight("rectangular 4 mm chamfered faulty", {-10, 30});
 }
 
-// The hole's mesh has cracks of up to 0.5 um, which were taken for edges of the part. The other peg settles by
-// 9 um within its clearance when it is let go, and is at rest then.
+// The hole's mesh has cracks of up to 0.5 um, which were taken for edges of the part. The other peg settles
+// by 9 um within its clearance when it is let go, and is at rest then.
 TEST(Edge, ASharpPegFitsAMeshWithCracksAndMaySettleInItsHole) {
   expectRight("round 4 mm sharp faulty", {30, 40});
   // A crack moved a corner of the peg by 0.3 um into the bottom of the hole, which is no clash.
