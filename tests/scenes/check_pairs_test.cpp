@@ -110,6 +110,49 @@ TEST(CheckPairs, APinIsAClashFromTheErrorOn) {
   }
 }
 
+// The chord of sixteen facets is 96 um, in the radius; the disc's base is flat and so is the plate.
+TEST(CheckPairs, AFlatFaceInAFlatFaceIsAClashHoweverCoarseTheRoundFacesBesideThem) {
+  const Pose X_WP(rotationFromVector(Vec3(0.4, -1.1, 0.3)), Vec3(0.2, -0.1, 0.3));
+  for (const int segments : {16, 24, 60, 200})
+    for (const double depth_m : {1e-6, 5e-6, 20e-6, 80e-6}) {
+      const CheckResult result =
+          check({part("plate", makeBox({0.04, 0.04, 0.02}), X_WP * at(0, 0, -0.01)),
+                 part("disc", makeCylinder(5e-3, 0.01, segments), X_WP * at(0, 0, 0.005 - depth_m))});
+      ASSERT_EQ(result.pairs.size(), 1U);
+      const CheckedPair& pair = result.pairs[0];
+      EXPECT_EQ(pair.state, PairState::Clash) << segments << " facets, " << depth_m;
+      EXPECT_NEAR(pair.interference_depth_m, depth_m, pair.error_m);
+      EXPECT_LT(pair.error_m, 0.11e-6);  // kOverlapCertain_m and rounding
+    }
+}
+
+// The depth is a cosine of the lean; of the chord of the round face only its sine counts.
+TEST(CheckPairs, TheRimOfALeaningDiscIsCertainToWithinTheChordTimesTheSineOfTheLean) {
+  const double lean_rad = 2e-3, depth_m = 20e-6, radius_m = 5e-3;
+  const double chord_m = radius_m * (1 - std::cos(std::numbers::pi / 16));
+  const Pose X_WP(rotationFromVector(Vec3(lean_rad, 0, 0)),
+                  Vec3(0, 0, 0.005 + radius_m * lean_rad - depth_m));
+  const CheckResult result = check({block("plate", {0.04, 0.04, 0.02}, at(0, 0, -0.01)),
+                                    part("disc", makeCylinder(radius_m, 0.01, 16), X_WP)});
+  ASSERT_EQ(result.pairs.size(), 1U);
+  const CheckedPair& pair = result.pairs[0];
+  EXPECT_EQ(pair.state, PairState::Clash);
+  EXPECT_GT(pair.error_m, 0.5 * std::sin(lean_rad) * chord_m);
+  EXPECT_LT(pair.error_m, 5 * std::sin(lean_rad) * chord_m + 0.11e-6);
+}
+
+TEST(CheckPairs, RoundFacesThatCrossWithinTheirChordsAreNoClash) {
+  for (const int segments : {20, 32, 60})
+    for (const double turn : {0.0, 0.25, 0.5}) {
+      const Mesh bore = makeTube(0.02, 8.05e-3, 0.01, segments);
+      const Pose turned(rotationFromVector(Vec3(0, 0, turn * 2 * std::numbers::pi / segments)), Vec3::Zero());
+      const CheckResult result =
+          check({part("bore", bore), part("pin", makeCylinder(8e-3, 0.03, segments), turned)});
+      ASSERT_EQ(result.pairs.size(), 1U);
+      EXPECT_NE(result.pairs[0].state, PairState::Clash) << segments << " facets, turned by " << turn;
+    }
+}
+
 TEST(CheckPairs, BallsHaveTheirGapAndTheVolumeOfTheirLensWithinTheError) {
   const double r = 0.01;
   const Mesh ball = makeSphere(r, 4);

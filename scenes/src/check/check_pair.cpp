@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "check/certain_overlap.h"
 #include "check/overlap_volume.h"
 #include "check/surface_gap.h"
 
@@ -107,7 +108,18 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
     pair.error_m += kOverlapCertain_m;
     pair.interference_depth_m = overlap.depth_m;
     pair.at_W = overlap.p_W;
-    pair.state = overlap.depth_m > pair.error_m ? PairState::Clash : PairState::Contact;
+    if (chord_m > 0) {
+      // Where flat faces overlap, the error of the round ones beside them does not count.
+      const CertainOverlap certain = certainOverlap(a, b);
+      const double error_m = certain.error_m + round_m + kOverlapCertain_m;
+      const bool is_only_one = overlap.depth_m <= pair.error_m && certain.depth_m > error_m;
+      if (is_only_one || (error_m < pair.error_m && certain.depth_m > overlap.depth_m - kOverlapCertain_m)) {
+        pair.interference_depth_m = certain.depth_m;
+        pair.error_m = error_m;
+        pair.at_W = certain.p_W;
+      }
+    }
+    pair.state = pair.interference_depth_m > pair.error_m ? PairState::Clash : PairState::Contact;
     if (pair.state == PairState::Contact) return pair;
     const OverlapVolume shared = overlapVolume(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP);
     pair.interference_volume_m3 = shared.volume_m3;
