@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/faulty_meshes.h"
 #include "vps/load_error.h"
 #include "vps_scenes/check.h"
 
@@ -192,6 +193,30 @@ TEST(CheckPairs, BarsThatCrossAreAsDeepAsWhatTheyShareIsThick) {
   ASSERT_EQ(result.pairs.size(), 1U);
   EXPECT_NEAR(result.pairs[0].interference_depth_m, 6e-3, 1e-6);
   EXPECT_NEAR(result.pairs[0].interference_volume_m3, 6e-3 * 6e-3 * 10e-3, result.pairs[0].volume_error_m3);
+}
+
+// A block on the floor of a trough with 20 um of air a side, all facets torn apart. Each corner is moved by
+// up to jitter_m along each axis, so that cracks are up to 2 sqrt(3) of it wide. A point of the block's lower
+// edges, at a crack of the floor, was taken to be as deep as it is far from the walls.
+TEST(CheckPairs, FacetsThatAreTornApartAreNoClashAndTheirCracksAreInTheError) {
+  const Mesh trough = test::faulty::bracket(), block = makeBox({8e-3 - 40e-6, 6e-3, 8e-3});
+  for (const double jitter_m : {0.2e-6, 1e-6, 5e-6, 25e-6})
+    for (const double depth_m : {0.0, 30e-6, 0.4e-3}) {
+      const Pose X_WP = test::faulty::pose() * at(0, 1e-3 - depth_m, 0);
+      const CheckResult result = check({part("trough", test::faulty::unwelded(trough, jitter_m)),
+                                        part("block", test::faulty::unwelded(block, jitter_m), X_WP)});
+      ASSERT_EQ(result.pairs.size(), 1U);
+      const CheckedPair& pair = result.pairs[0];
+      // The cracks of two parts; half of those that were closed; the certainty of a depth.
+      EXPECT_LE(pair.error_m, 2 * 2 * std::sqrt(3.0) * jitter_m + 2e-6 + 0.11e-6) << jitter_m;
+      EXPECT_NEAR(pair.interference_depth_m, depth_m, pair.error_m) << jitter_m;
+      if (depth_m == 0) {
+        EXPECT_EQ(pair.state, PairState::Contact) << jitter_m;
+      }
+      if (depth_m > 0.1e-3) {
+        EXPECT_EQ(pair.state, PairState::Clash) << jitter_m;
+      }
+    }
 }
 
 TEST(CheckPairs, AnAssemblyWithASurfaceThatHasNoInsideGetsNoVerdict) {

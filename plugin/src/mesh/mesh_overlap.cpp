@@ -74,10 +74,11 @@ double distanceToTriangle(const OverlapMesh& in, std::uint32_t triangle, const V
   return (closestOnTriangle(p, v[t[0]], v[t[1]], v[t[2]]).q - p).norm();
 }
 
-/// Deepest point of segment ab, which is wholly inside or wholly outside. The depth is the distance to the
-/// nearest triangle, so it is at most that to any one triangle, which is convex along the segment: at most
-/// that of the farther end. A segment that lies along a face needs one or two triangles, however long it is.
-/// Returns false if the segment is outside and does not touch the surface.
+/// Deepest point of segment ab, which is wholly inside or wholly outside, except where it passes a crack of
+/// the mesh. The depth is the distance to the nearest triangle, so it is at most that to any one triangle,
+/// which is convex along the segment: at most that of the farther end. A segment that lies along a face needs
+/// one or two triangles, however long it is. Along with a distance that changes sign at a crack, depths are
+/// found to within the crack's width. Returns false if the segment is outside and does not touch the surface.
 bool searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest& deepest) {
   struct Piece {
     Vec3 a, b;
@@ -89,14 +90,15 @@ bool searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest&
     stack.pop_back();
     const Vec3 middle = 0.5 * (piece.a + piece.b);
     const Solid::Closest nearest = in.solid().closest(middle);
-    if (is_first && nearest.normal.dot(middle - nearest.q) > 0)
-      return nearest.distance_m <= kOverlapCertain_m;
+    const bool is_outside = nearest.normal.dot(middle - nearest.q) > 0;
+    if (is_first && is_outside) return nearest.distance_m <= kOverlapCertain_m;
     is_first = false;
     const double farther_end_m = std::max(distanceToTriangle(in, nearest.triangle, piece.a),
                                           distanceToTriangle(in, nearest.triangle, piece.b));
     const double half_m = 0.5 * (piece.b - piece.a).norm();
-    if (std::min(farther_end_m, nearest.distance_m + half_m) <= deepest.depth_m + kOverlapCertain_m) continue;
-    if (nearest.distance_m > deepest.depth_m) deepest = {nearest.distance_m, middle};
+    const double signed_m = is_outside ? -nearest.distance_m : nearest.distance_m;
+    if (std::min(farther_end_m, signed_m + half_m) <= deepest.depth_m + kOverlapCertain_m) continue;
+    if (signed_m > deepest.depth_m) deepest = {signed_m, middle};
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }

@@ -12,6 +12,8 @@
 namespace vps::inline v0 {
 namespace {
 
+constexpr double kInPlane = 1e-9;  ///< a sine: above rounding, below any angle of a mesh
+
 template <typename T>
 bool contains(const std::vector<T>& flags, T value) {
   return std::find(flags.begin(), flags.end(), value) != flags.end();
@@ -83,7 +85,10 @@ Solid::Closest Solid::closest(const Vec3& p, double max_m) const noexcept {
   const double rise = nearest.normal.dot(way);
   const bool is_sure = nearest.distance_m <= static_cast<double>(sure_m_[nearest.triangle]);
   const bool is_inside = is_sure ? rise < 0 && interior_->mayHold(p) : interior_->isInside(p);
-  if (nearest.distance_m > 0 && (nearest.normal.isZero(0) || is_inside != (rise < 0)))
+  // At an open edge the point may lie in the facet's plane, where the rounding of the product decides.
+  const bool agrees =
+      is_inside ? rise < -kInPlane * nearest.distance_m : rise > kInPlane * nearest.distance_m;
+  if (nearest.distance_m > 0 && !agrees)
     nearest.normal = way / (is_inside ? -nearest.distance_m : nearest.distance_m);
   return nearest;
 }

@@ -19,7 +19,7 @@ struct Leaning {
 
 /// The normals that a curved face has at a facet lie between the facet's and those of its neighbours.
 void addLeanings(const PartSurface& part, std::uint32_t facet, std::vector<Leaning>& to) {
-  const double chord_m = part.chord_m(facet);
+  const double chord_m = part.chordBound_m(facet);
   const Vec3 n = part.normal(facet);
   to.push_back({n, chord_m});
   if (chord_m == 0) return;
@@ -45,10 +45,10 @@ double shiftOfEdge(const Leaning& one, const Leaning& two, const Vec3& n) {
 /// Of the surface at a point that is nearest to one inside it.
 double chordAt(const PartSurface& part, const Solid::Closest& nearest, const Vec3& p) {
   const Triangle t = part.triangle(nearest.triangle);
-  double chord_m = part.chord_m(nearest.triangle);
+  double chord_m = part.chordBound_m(nearest.triangle);
   if (closestOnTriangle(p, t[0], t[1], t[2]).feature != 0)
     for (const std::uint32_t other : part.neighbours()[nearest.triangle])
-      if (other != kNoFacet) chord_m = std::max(chord_m, part.chord_m(other));
+      if (other != kNoFacet) chord_m = std::max(chord_m, part.chordBound_m(other));
   return chord_m;
 }
 

@@ -21,11 +21,19 @@ double uncertainty_m(const PlacedSurface& part) {
 }
 
 /// Distance of the meshes from the faces that they stand for, where the parts are near each other.
-double chordError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
-  const auto of = [near_m](const PlacedSurface& part, const PlacedSurface& other) {
-    return part.surface->chordIn(moved(grown(other.box_W, near_m), part.X_WP.inverse()));
-  };
-  return of(a, b) + of(b, a);
+struct FaceError {
+  double chord_m = 0;  ///< of the facets
+  double crack_m = 0;  ///< widths of the cracks, of which either side may be the face
+};
+
+FaceError faceError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  FaceError error;
+  for (const auto& [part, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    const Box box_P = moved(grown(other->box_W, near_m), part->X_WP.inverse());
+    error.chord_m += part->surface->chordIn(box_P);
+    error.crack_m += part->surface->crackIn(box_P);
+  }
+  return error;
 }
 
 /// Solids whose edges all lie on each other's surface, as those of a part that is drawn twice, share an
@@ -101,7 +109,8 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
   CheckedPair pair{.a = a.name, .b = b.name};
   pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
   pair.press_fit_m = std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
-  const double chord_m = chordError(a, b, near_m), round_m = uncertainty_m(a) + uncertainty_m(b);
+  const auto [chord_m, crack_m] = faceError(a, b, near_m);
+  const double round_m = uncertainty_m(a) + uncertainty_m(b) + crack_m;
   pair.error_m = chord_m + round_m;
   const Overlap overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m);
   if (overlap.depth_m > 0) {

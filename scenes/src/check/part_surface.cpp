@@ -30,36 +30,13 @@ int edgeTowards(const std::array<std::uint32_t, 3>& neighbours, std::uint32_t ot
 
 }  // namespace
 
-std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh) {
-  struct Side {
-    std::uint32_t low, high, triangle;
-    int edge;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int e = 0; e < 3; ++e) {
-      const auto [low, high] = std::minmax(mesh.triangles[i][e], mesh.triangles[i][(e + 1) % 3]);
-      sides.push_back({low, high, i, e});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle, a.edge) < std::tie(b.low, b.high, b.triangle, b.edge);
-  });
-  std::vector<std::array<std::uint32_t, 3>> out(mesh.triangles.size(), {kNoFacet, kNoFacet, kNoFacet});
-  for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
-    while (end < sides.size() && sides[end].low == sides[first].low && sides[end].high == sides[first].high)
-      ++end;
-    if (end - first != 2) continue;
-    const Side &a = sides[first], &b = sides[first + 1];
-    out[a.triangle][a.edge] = b.triangle;
-    out[b.triangle][b.edge] = a.triangle;
-  }
-  return out;
-}
-
 PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<double> chord_m)
-    : overlap_(std::move(solid)), tree_(overlap_.mesh()), neighbours_(neighboursOf(overlap_.mesh())) {
-  estimateChords(chord_m);
+    : overlap_(std::move(solid)),
+      tree_(overlap_.mesh()),
+      neighbours_(neighboursOf(overlap_.mesh())),
+      most_chord_m_(chord_m) {
+  estimateChords();
+  cracks_ = cracksOf(mesh(), neighbours_, tree_);
   findPlanes();
   findPatches();
   gatherNormals();
@@ -150,7 +127,7 @@ Triangle PartSurface::triangle(std::uint32_t i) const {
 // edges, whose sum is more than its depth below the ball. A flat face beside a curved one is wider, so the
 // smaller width counts. A bevel of less than kCurved_rad is taken for a curve: the estimate is then too
 // large.
-void PartSurface::estimateChords(std::optional<double> most_m) {
+void PartSurface::estimateChords() {
   chord_m_.assign(mesh().triangles.size(), 0);
   for (std::uint32_t i = 0; i < chord_m_.size(); ++i)
     for (int e = 0; e < 3; ++e) {
@@ -162,8 +139,30 @@ void PartSurface::estimateChords(std::optional<double> most_m) {
                                       heightAcross(triangle(other), edgeTowards(neighbours_[other], i)));
       chord_m_[i] += width_m * turn_rad / 8;
     }
-  if (most_m)
-    for (double& chord_m : chord_m_) chord_m = std::min(chord_m, *most_m);
+  if (most_chord_m_)
+    for (double& chord_m : chord_m_) chord_m = std::min(chord_m, *most_chord_m_);
+}
+
+// A strip of width w turns by no more than twice what it turns from a neighbour, which may be much narrower:
+// it is at most w theta / 4 inside the curve.
+double PartSurface::chordBound_m(std::uint32_t i) const {
+  if (chord_m_[i] == 0) return 0;
+  if (most_chord_m_) return *most_chord_m_;
+  double bound_m = 0;
+  for (int e = 0; e < 3; ++e) {
+    const std::uint32_t other = neighbours_[i][e];
+    if (other == kNoFacet) continue;
+    const double turn_rad = angleBetween(normal(i), normal(other));
+    if (turn_rad <= kCurved_rad) bound_m += heightAcross(triangle(i), e) * turn_rad / 4;
+  }
+  return bound_m;
+}
+
+double PartSurface::crackIn(const Box& box_P) const {
+  double most_m = 0;
+  for (const Crack& crack : cracks_)
+    if (distance2(box_P, Box{crack.p_P, crack.p_P}) == 0) most_m = std::max(most_m, crack.width_m);
+  return most_m;
 }
 
 double PartSurface::chordIn(const Box& box_P) const {

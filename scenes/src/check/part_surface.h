@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "check/cracks.h"
 #include "check/triangle_gap.h"
 #include "check/triangle_tree.h"
 #include "vps/mesh_overlap.h"
@@ -18,11 +19,6 @@ namespace vps::scenes::inline v0 {
 
 /// Facets that meet at less than this belong to one curved face; import makes them meet at 0.35 at most.
 inline constexpr double kCurved_rad = 0.4;
-
-/// The facet beyond each edge of each triangle (edge i from corner i to the next); kNoFacet at an edge that
-/// does not have exactly two facets.
-inline constexpr std::uint32_t kNoFacet = ~std::uint32_t{0};
-std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh);
 
 class PartSurface {
  public:
@@ -65,11 +61,17 @@ class PartSurface {
 
   /// Greatest distance of a facet from the curved face that it stands for.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }
-  /// The greatest of the facets whose boxes meet this one.
+  /// No less than that where facets of one face differ in width: zero only in flat faces. O(1).
+  [[nodiscard]] double chordBound_m(std::uint32_t i) const;
+  /// The greatest chord_m() of the facets whose boxes meet this one.
   [[nodiscard]] double chordIn(const Box& box_P) const;
 
+  /// Greatest width of the cracks that this box meets: between a corner of an open edge and the nearest other
+  /// open edge, where that is near beside their lengths. The surface may be anywhere between the two.
+  [[nodiscard]] double crackIn(const Box& box_P) const;
+
  private:
-  void estimateChords(std::optional<double> most_m);
+  void estimateChords();
   void findPlanes();
   void findPatches();
   void tellInside();
@@ -77,6 +79,8 @@ class PartSurface {
   OverlapMesh overlap_;
   TriangleTree tree_;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
+  std::vector<Crack> cracks_;
+  std::optional<double> most_chord_m_;
   std::vector<double> chord_m_;
   std::vector<NodePlane> planes_;
   std::vector<Vec3> patches_;
