@@ -83,7 +83,7 @@ TEST(Messages, EachKindIsReadBackToTheBit) {
   request.task.has_corners = true;
   request.way_points_left = 3;
   expectReadBack(request);
-  expectReadBack(ReplyMessage{4, 2});
+  expectReadBack(ReplyMessage{4, 2, 9});
   HelloMessage hello;
   hello.limits.peak_force_N = 30;
   std::strcpy(hello.name.data(), "dual_arm");

@@ -94,10 +94,7 @@ int runCad(AssembleArguments given) {
 int runAssemble(const AssembleArguments& given) {
   if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
   const std::string& file = given.scene.scene;
-  if (!given.units.empty() || !given.deflection.empty())
-    throw LoadError(
-        file, "",
-        "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+  requireOwnUnits(file, given.units, given.deflection);
   OutputFolder out(given.out);
   OutputFile json(given.json, {file});
   OutputFile wav(given.sound, {file});

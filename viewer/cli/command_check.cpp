@@ -32,10 +32,7 @@ struct Assembly {
 };
 
 Assembly readScene(const CheckArguments& given) {
-  if (!given.units.empty() || !given.deflection.empty())
-    throw LoadError(
-        given.assembly, "",
-        "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+  requireOwnUnits(given.assembly, given.units, given.deflection);
   const scenes::Scene scene = scenes::loadScene(given.assembly);
   for (const std::string& warning : scene.warnings) warn(warning);
   Assembly assembly{scene.name, scenes::drawnParts(scene), {given.assembly}};

@@ -33,7 +33,11 @@ int verify(const PlanArguments& given) {
   return faults.empty() ? kGood : kBad;
 }
 
-int runPlan(const PlanArguments& given) {
+struct PlanCommandArguments : PlanArguments {
+  bool is_verify = false;
+};
+
+int runPlan(const PlanCommandArguments& given) {
   if (given.is_verify) return verify(given);
   if (given.out.empty()) throw LoadError("", "", "--out is missing; name a folder for the planned scene");
   ProgressBar bar;
@@ -43,7 +47,7 @@ int runPlan(const PlanArguments& given) {
 }  // namespace
 
 void addPlan(CommandLine& line) {
-  const auto given = std::make_shared<PlanArguments>();
+  const auto given = std::make_shared<PlanCommandArguments>();
   CLI::App& command = addCommand(
       line, "plan", "order and ways of an assembly, found by taking it apart; writes a scene",
       "vps plan scenes/bearing_block/bearing_block.step -o planned", [given] { return runPlan(*given); });

@@ -50,10 +50,7 @@ void coarsen(scenes::ImportedCad& cad, scenes::ImportSettings settings, const Pr
 
 scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) {
   if (!isCadExtension(lowerExtension(given.assembly))) {
-    if (!given.units.empty() || !given.deflection.empty())
-      throw LoadError(
-          given.assembly, "",
-          "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+    requireOwnUnits(given.assembly, given.units, given.deflection);
     return scenes::loadScene(given.assembly);
   }
   requireCadFile(given.assembly);
@@ -64,6 +61,11 @@ scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) 
   scenes::ImportedCad cad = scenes::importCad(given.assembly, settings, progress);
   if (given.deflection.empty()) coarsen(cad, settings, progress);
   return scenes::sceneOf(cad);
+}
+
+/// Of the product, which comes first, and of each subassembly.
+std::string sceneFileName(const scenes::PlanResult& plan, std::size_t i) {
+  return i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
 }
 
 /// scene.toml, and a scene file named like each subassembly, with the meshes.
@@ -84,7 +86,7 @@ void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& p
       }
       files.push_back(file);
     }
-    const std::string name = i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
+    const std::string name = sceneFileName(plan, i);
     requireNotRead((std::filesystem::path(given.out) / name).string(), read);
     const std::string comment =
         "Planned from " + scenes::tomlText(given.assembly) +
@@ -98,8 +100,8 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
                                        const Progress& progress) {
   std::vector<scenes::WayFault> faults;
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i) {
-    const std::string name = i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
-    const scenes::Scene scene = scenes::loadScene((std::filesystem::path(out.partial()) / name).string());
+    const scenes::Scene scene =
+        scenes::loadScene((std::filesystem::path(out.partial()) / sceneFileName(plan, i)).string());
     for (const scenes::WayFault& fault : checkWays(scene, progress)) faults.push_back(fault);
   }
   return faults;

@@ -14,7 +14,6 @@ struct PlanArguments {
   std::string assembly, out, units, deflection, json;
   std::vector<std::string> bases;
   bool is_forced = false;
-  bool is_verify = false;
 };
 
 /// Plans a CAD file or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json and

@@ -103,6 +103,13 @@ std::optional<double> unitFrom(const std::string& text) {
   return unit_m;
 }
 
+void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection) {
+  if (units.empty() && deflection.empty()) return;
+  throw LoadError(
+      scene, "",
+      "is a scene, which states its unit and deflection itself; leave out --units and --deflection");
+}
+
 std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   if (folder.empty()) return std::nullopt;
   return VoxMapCache(folder, warn);

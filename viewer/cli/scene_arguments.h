@@ -68,6 +68,8 @@ void addUnitsOption(CLI::App& command, std::string& units);
 void addDeflectionOption(CLI::App& command, std::string& deflection);
 /// "mm", "cm", "m", "um" or "inch" in metres; empty for empty text. Throws LoadError naming --units.
 std::optional<double> unitFrom(const std::string& text);
+/// Throws LoadError when --units or --deflection is given for a scene file, which states both itself.
+void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection);
 
 /// The cache in a folder, which reports damaged files on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);

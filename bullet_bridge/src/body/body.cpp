@@ -2,18 +2,16 @@
 #include "vps_bullet/body.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "log/report.h"
 #include "vps/friction.h"
+#include "vps/lids.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/tune.h"
 
@@ -52,44 +50,6 @@ void requireUsable(const BodySettings& settings) {
       R.determinant() < 0)
     throw std::invalid_argument("makeBody: X_WP of '" + settings.name +
                                 "' is not a finite position with a rotation");
-}
-
-/// Lids for an open mesh: each group of connected open edges is joined to its centre, so that a flat hole is
-/// closed exactly. Empty for a closed mesh. Expects shared vertices.
-Mesh lidsOf(const Mesh& mesh) {
-  std::map<std::array<std::uint32_t, 2>, int> uses;  // of an edge in its direction, less those in the other
-  for (const auto& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      a < b ? ++uses[{a, b}] : --uses[{b, a}];
-    }
-  std::vector<std::uint32_t> group_of(mesh.vertices.size());
-  std::iota(group_of.begin(), group_of.end(), 0u);
-  const auto groupOf = [&](std::uint32_t v) {
-    while (group_of[v] != v) v = group_of[v] = group_of[group_of[v]];
-    return v;
-  };
-  std::erase_if(uses, [](const auto& use) { return use.second == 0; });
-  for (const auto& [edge, count] : uses) group_of[groupOf(edge[0])] = groupOf(edge[1]);
-  std::map<std::uint32_t, std::pair<Vec3, double>> center;  // times length; length
-  for (const auto& [edge, count] : uses) {
-    const Vec3 &a = mesh.vertices[edge[0]], &b = mesh.vertices[edge[1]];
-    auto& [sum, length_m] = center.try_emplace(groupOf(edge[0]), Vec3::Zero(), 0.0).first->second;
-    sum += 0.5 * (b - a).norm() * (a + b);
-    length_m += (b - a).norm();
-  }
-  Mesh lids;
-  if (uses.empty()) return lids;
-  lids.vertices = mesh.vertices;
-  std::map<std::uint32_t, std::uint32_t> apex;
-  for (const auto& [group, mean] : center) {
-    apex[group] = static_cast<std::uint32_t>(lids.vertices.size());
-    lids.vertices.push_back(mean.first / mean.second);
-  }
-  for (const auto& [edge, count] : uses)
-    for (int i = 0; i < std::abs(count); ++i)
-      lids.triangles.push_back({edge[count > 0], edge[count < 0], apex[groupOf(edge[0])]});
-  return lids;
 }
 
 /// The divergence theorem needs a closed surface: without a lid, a box lacks up to a third of its volume.

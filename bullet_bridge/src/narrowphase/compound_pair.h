@@ -23,9 +23,6 @@ class CompoundPair final : public PairAlgorithm {
   CompoundPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
                const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context);
   ~CompoundPair() override;
-  /// Nothing: the children are computed at their turn.
-  void prepare(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
-               const btDispatcherInfo&) override {}
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;

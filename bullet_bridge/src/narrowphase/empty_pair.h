@@ -12,8 +12,6 @@ class EmptyPair final : public PairAlgorithm {
   EmptyPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
             const btCollisionObjectWrapper* body1)
       : PairAlgorithm(info, body0, body1) {}
-  void prepare(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
-               const btDispatcherInfo&) override {}
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
                         const btDispatcherInfo&, btManifoldResult*) override {}
   void getAllContactManifolds(btManifoldArray&) override {}

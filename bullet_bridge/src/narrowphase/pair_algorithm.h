@@ -16,9 +16,9 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
 
   /// Finds the contacts of the coming step: everything in processCollision() except writing manifolds.
   /// Changes only this pair, so that different pairs may be prepared in parallel; processCollision() then
-  /// uses the result.
-  virtual void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
-                       const btDispatcherInfo& info) = 0;
+  /// uses the result. Nothing by default.
+  virtual void prepare(const btCollisionObjectWrapper* /*body0*/, const btCollisionObjectWrapper* /*body1*/,
+                       const btDispatcherInfo& /*info*/) {}
   /// Bullet never runs CCD on concave shapes; speculative contacts replace it.
   btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                  btManifoldResult*) final {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which facets lie side by side although a crack or a T-junction parts them. Orientation and duplicates are
-// decided by this; surface and winding number keep the vertices as they are.
+// decided by this. Vertices stay where they are; closed_cracks.h moves those of narrow cracks.
 #pragma once
 
 #include <array>

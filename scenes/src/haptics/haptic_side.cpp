@@ -52,7 +52,7 @@ device::RealTimeSettings HapticSide::realTimeSettings(const HapticTiming& timing
   settings.on_call = [this](device::HapticLoop& loop, std::int32_t) {
     scenes::carryOut(hand_, loop, command_);
     logEvent(loop, command_.what);
-    state_.store(device::toByte(hand_.state()), std::memory_order_release);
+    publishState(loop);
   };
   return settings;
 }
@@ -101,6 +101,11 @@ void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
   const double period_s = loop.settings().period_s;
   const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUpPeriods)));
   for (int i = 0; i < steps; ++i) hand_.step(loop.received().held, loop, period_s);
+  publishState(loop);
+}
+
+void HapticSide::publishState(const device::HapticLoop& loop) {
+  tick_.store(static_cast<std::int32_t>(loop.ticks()), std::memory_order_release);
   state_.store(device::toByte(hand_.state()), std::memory_order_release);
 }
 

@@ -40,6 +40,8 @@ class HapticSide {
   [[nodiscard]] device::OperatorState state() const {
     return device::stateFromByte(state_.load(std::memory_order_acquire));
   }
+  /// The tick of that state(), or a later one if this is read after it. Any thread.
+  [[nodiscard]] std::int32_t tick() const { return tick_.load(std::memory_order_acquire); }
   [[nodiscard]] const std::atomic<std::uint8_t>& stateByte() const { return state_; }
   /// The loop's state while it does not run.
   [[nodiscard]] device::HapticState loopState() { return loop_.loop().state(); }
@@ -55,6 +57,7 @@ class HapticSide {
 
  private:
   void logEvent(const device::HapticLoop& loop, device::SyncEventKind kind);
+  void publishState(const device::HapticLoop& loop);
   void logTick(const device::HapticLoop& loop, std::int64_t periods);
   void moveHand(device::HapticLoop& loop, double dt_s);
   device::LoopSettings withEvents(device::LoopSettings settings);
@@ -67,7 +70,8 @@ class HapticSide {
   device::TappedDevice tapped_;
   std::atomic<std::uint8_t> state_{device::toByte({})};  ///< of the hand, by its thread
   static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "the haptic thread must not wait for a lock");
-  HandCommand command_;  ///< the one being carried out
+  std::atomic<std::int32_t> tick_{0};  ///< written before state_
+  HandCommand command_;                ///< the one being carried out
   RealTimeResult result_;
   device::RealTimeLoop loop_;
 };

@@ -43,8 +43,8 @@ class DeviceEnd {
   /// stopped.
   /// @param wait  called from time to time meanwhile
   bool request(const RequestMessage& request, const std::function<void()>& wait);
-  /// What the hand did after the last request.
-  [[nodiscard]] std::uint8_t handAfterRequest() const { return reply_.hand; }
+  /// To the last request.
+  [[nodiscard]] const ReplyMessage& reply() const { return reply_; }
 
   /// Sends a state of the part.
   void send(const device::PhysicsState& state);

@@ -150,7 +150,8 @@ class DeviceSession {
       if (reading != Reading::Good) continue;
       has_request_ = true;
       carryOut(request);
-      reply_ = {reader_.envelope().number, device::toByte(side_->state())};
+      const std::uint8_t hand = device::toByte(side_->state());
+      reply_ = {reader_.envelope().number, hand, side_->tick()};
       link_.send(Channel::Reply, writer_.write(reply_));
     }
   }

@@ -105,6 +105,7 @@ template <typename V>
 void fields(ReplyMessage& m, V& visit) {
   visit(m.request);
   visit(m.hand);
+  visit(m.tick);
 }
 
 template <typename V>

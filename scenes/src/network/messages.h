@@ -23,7 +23,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 1;
+inline constexpr std::uint16_t kMessageVersion = 2;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -79,6 +79,7 @@ struct RequestMessage {
 struct ReplyMessage {
   std::uint64_t request = 0;  ///< the number of the request that was carried out
   std::uint8_t hand = 0;      ///< after it
+  std::int32_t tick = 0;      ///< the loop's last one; states of this tick and before show the hand before it
 };
 
 /// The device's node when it joins.

@@ -86,10 +86,10 @@ class RemoteDriver final : public ClockedDriver {
   bool advance() override {
     clock_.wait();
     end_.poll();
-    takeView();
+    takeViewSinceRequest();
     if (!keepDevice()) return false;
     rearmWhenGood();
-    takeView();
+    takeViewSinceRequest();
     takeLog();
     haptic_log_.passUpTo(view_.tick);
     haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Step});
@@ -140,7 +140,7 @@ class RemoteDriver final : public ClockedDriver {
   /// False: the device was lost meanwhile.
   bool ask(const RequestMessage& request) {
     if (!end_.request(request, [this] { showThatPhysicsLives(); })) return false;
-    known_state_ = device::stateFromByte(end_.handAfterRequest());
+    known_state_ = device::stateFromByte(end_.reply().hand);
     return true;
   }
   /// While a request is on its way physics stands still. The part does so, too, and its state is as new as
@@ -158,10 +158,21 @@ class RemoteDriver final : public ClockedDriver {
   bool restore(device::OperatorPhase phase);
   bool restoreHold(device::OperatorPhase phase);
   void rearmWhenGood();
+  /// A state that was sent before the last request was carried out shows the hand as it was before: a phase
+  /// that is over, such as Done of the step before.
   void takeView() {
-    if (const HapticMessage* message = end_.takeState()) {
-      known_state_ = device::stateFromByte(message->hand);
-      setView(message->state);
+    const HapticMessage* message = end_.takeState();
+    if (message == nullptr || message->state.tick < end_.reply().tick) return;
+    if (message->state.tick > end_.reply().tick) known_state_ = device::stateFromByte(message->hand);
+    setView(message->state);
+  }
+  /// Over UDP a reply may come before the states that were sent before it.
+  void takeViewSinceRequest() {
+    takeView();
+    for (double left_s = kPeerLimit_s; left_s > 0 && is_running_ && view_.tick < end_.reply().tick;
+         left_s -= 1e-4) {
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+      takeView();
     }
   }
   void takeLog() {

@@ -7,15 +7,10 @@
 #include <sstream>
 
 #include "draw/marks.h"
+#include "image/srgb.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
-
-std::uint8_t toSrgb(float linear) {
-  const float c = std::clamp(linear, 0.0f, 1.0f);
-  const float s = c < 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255 * s));
-}
 
 /// Blends rows y0 to y1 with white, so that text is readable on any background: `opacity` at the picture's
 /// border, fading out over the last third.
@@ -71,7 +66,7 @@ class Legend {
         for (int k = 0; k < 3; ++k) {
           std::uint8_t& channel = image_.at(px, py)[k];
           channel =
-              static_cast<std::uint8_t>(std::lround(channel * (1 - opacity) + toSrgb(color[k]) * opacity));
+              static_cast<std::uint8_t>(std::lround(channel * (1 - opacity) + srgbByte(color[k]) * opacity));
         }
       }
   }

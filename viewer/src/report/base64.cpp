@@ -21,4 +21,8 @@ std::string base64(std::span<const std::byte> bytes) {
   return out;
 }
 
+std::string pngInText(std::string_view bytes) {
+  return std::string("data:image/png;base64,").append(base64(std::as_bytes(std::span(bytes))));
+}
+
 }  // namespace vps::viewer::inline v0

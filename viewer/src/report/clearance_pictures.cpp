@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <exception>
 #include <vector>
 
+#include "image/srgb.h"
+#include "report/base64.h"
 #include "report/html.h"
 #include "report/length_text.h"
 #include "vps_viewer/image.h"
@@ -24,24 +25,9 @@ constexpr std::array<std::array<double, 3>, 4> kRamp = {
 constexpr std::array<double, 3> kOverlap = {0.85, 0.0, 0.75}, kFar = {0.80, 0.81, 0.82};
 constexpr double kDecades = 3;
 
-std::array<float, 3> toLinear(const std::array<double, 3>& srgb) {  // IEC 61966-2-1
+std::array<float, 3> toLinear(const std::array<double, 3>& srgb) {
   std::array<float, 3> out{};
-  for (std::size_t k = 0; k < 3; ++k)
-    out[k] =
-        static_cast<float>(srgb[k] <= 0.04045 ? srgb[k] / 12.92 : std::pow((srgb[k] + 0.055) / 1.055, 2.4));
-  return out;
-}
-
-std::string base64(const std::string& bytes) {
-  static constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k)
-      out += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(linearFromSrgb(srgb[k]));
   return out;
 }
 
@@ -77,8 +63,7 @@ std::string picture(Renderer& renderer, std::size_t part, const Box& box_W, cons
   options.height = 420;
   options.show_ground = options.show_legend = options.highlight_hand = false;
   const Image image = renderer.render(snapshot, frameScene(box_W, to_viewer, 0.5, 4.0 / 3), options);
-  return "<img alt=\"\" style=\"width:49%;display:inline-block\" src=\"data:image/png;base64," +
-         base64(pngBytes(image)) + "\">";
+  return "<img alt=\"\" style=\"width:49%;display:inline-block\" src=\"" + pngInText(pngBytes(image)) + "\">";
 }
 
 std::string pictures(const scenes::CheckResult& result) {

@@ -86,7 +86,7 @@ std::string withPictures(const std::string& body, const std::string& folder) {
     done = to;
     const std::string file = body.substr(from, to - from);
     const std::string bytes = textOf(folder + "/" + file);
-    out.append(bytes.empty() ? file : "data:image/png;base64," + base64(std::as_bytes(std::span(bytes))));
+    out.append(bytes.empty() ? file : pngInText(bytes));
   }
   return out.append(body, done);
 }

@@ -12,6 +12,7 @@
 #include "draw/coarse_mesh.h"
 #include "draw/shading_mesh.h"
 #include "draw/visible_parts.h"
+#include "image/srgb.h"
 #include "report/base64.h"
 #include "report/run_view_script.h"
 #include "report/text_file.h"
@@ -85,10 +86,8 @@ Json poseOf(const Pose& X) {
 
 std::string webColor(const std::array<float, 3>& linear) {
   char text[8];
-  int byte[3];
-  for (std::size_t k = 0; k < 3; ++k)
-    byte[k] = static_cast<int>(std::lround(255 * std::pow(std::clamp(linear[k], 0.F, 1.F), 1 / 2.2)));
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", byte[0], byte[1], byte[2]);
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", srgbByte(linear[0]), srgbByte(linear[1]),
+                srgbByte(linear[2]));
   return text;
 }
 
@@ -136,24 +135,24 @@ Json partsData(const RenderScene& drawn) {
 }
 
 /// [part, pose ...] of each body that is there.
-Json bodiesOf(const RenderScene& drawn, const scenes::Snapshot& snapshot) {
+Json bodiesOf(const std::vector<PartExtent>& extents, const scenes::Snapshot& snapshot) {
   Json bodies = Json::array();
-  forEachVisiblePart(partExtents(drawn), snapshot, false,
-                     [&](std::size_t part, const Pose& X_WP, scenes::BodyRole) {
-                       Json body = {part};
-                       addPose(body, X_WP);
-                       bodies.push_back(std::move(body));
-                     });
+  forEachVisiblePart(extents, snapshot, false, [&](std::size_t part, const Pose& X_WP, scenes::BodyRole) {
+    Json body = {part};
+    addPose(body, X_WP);
+    bodies.push_back(std::move(body));
+  });
   return bodies;
 }
 
-Json stepsData(const RenderScene& drawn, const scenes::Scene& scene, const scenes::AssembleResult& result) {
+Json stepsData(const std::vector<PartExtent>& extents, const scenes::Scene& scene,
+               const scenes::AssembleResult& result) {
   Json steps = Json::array();
   for (std::size_t i = 0; i < result.start.size() && i < scene.steps.size(); ++i)
     steps.push_back({{"part", scene.steps[i].part},
                      {"name", std::to_string(i + 1) + ". " + scene.parts[scene.steps[i].part].part.name},
                      {"target", poseOf(scene.steps[i].X_WP_target)},
-                     {"bodies", bodiesOf(drawn, result.start[i])}});
+                     {"bodies", bodiesOf(extents, result.start[i])}});
   return steps;
 }
 
@@ -176,21 +175,22 @@ Json framesData(const scenes::AssembleResult& result, std::size_t steps) {
 
 Json runData(const scenes::Scene& scene, const scenes::AssembleResult& result) {
   const RenderScene drawn = drawnMeshes(scene);
-  Box seen = snapshotBounds(drawn, result.finished);
+  const std::vector<PartExtent> extents = partExtents(drawn);
+  Box seen = visibleBounds(extents, result.finished, false, true);
   for (const scenes::Snapshot& start : result.start) {
-    const Box box = snapshotBounds(drawn, start);
+    const Box box = visibleBounds(extents, start, false, true);
     seen.add(box.min);
     seen.add(box.max);
   }
   const Vec3 center_mm = 1e3 * seen.center();
-  Json steps = stepsData(drawn, scene, result);
+  Json steps = stepsData(extents, scene, result);
   Json frames = framesData(result, steps.size());
   return {{"center", {center_mm.x(), center_mm.y(), center_mm.z()}},
           {"radius", 1e3 * 0.5 * seen.size().norm()},
           {"parts", partsData(drawn)},
           {"steps", std::move(steps)},
           {"frames", std::move(frames)},
-          {"finished", bodiesOf(drawn, result.finished)}};
+          {"finished", bodiesOf(extents, result.finished)}};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "image/srgb.h"
 #include "vps/pose.h"
 
 namespace vps::viewer::inline v0 {
@@ -39,26 +40,17 @@ Mat3 conversion(bool is_left) {
   return (primaries * strengths.asDiagonal()).inverse() * srgbToXyz();
 }
 
-double linear(double s) {
-  return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-}
-double encoded(double x) {
-  return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-}
-
 }  // namespace
 
 Image throughSpectralFilter(const Image& image, bool is_left) {
   const Mat3 M = conversion(is_left);
   std::array<double, 256> levels{};
-  for (int i = 0; i < 256; ++i) levels[static_cast<std::size_t>(i)] = linear(i / 255.0);
+  for (int i = 0; i < 256; ++i) levels[static_cast<std::size_t>(i)] = linearFromSrgb(i / 255.0);
   Image out = image;
   for (std::size_t i = 0; i + 2 < out.rgb.size(); i += 3) {
     const Vec3 rgb(levels[image.rgb[i]], levels[image.rgb[i + 1]], levels[image.rgb[i + 2]]);
     const Vec3 mixed = M * rgb;
-    for (int k = 0; k < 3; ++k)
-      out.rgb[i + static_cast<std::size_t>(k)] =
-          static_cast<std::uint8_t>(std::lround(255 * encoded(std::clamp(mixed[k], 0.0, 1.0))));
+    for (int k = 0; k < 3; ++k) out.rgb[i + static_cast<std::size_t>(k)] = srgbByte(mixed[k]);
   }
   return out;
 }

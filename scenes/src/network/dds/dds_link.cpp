@@ -108,26 +108,18 @@ class DdsLink final : public Link {
   }
   /// Waits for a render node. False: there is none, or its scene has not come.
   bool find() {
-    for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < kFind_s;) {
-      {
-        const std::lock_guard lock(mutex_);
-        for (const auto& [sender, peer] : peers_)
-          if (peer.role == NodeRole::Render && !peer.has_ended && scenes_.contains(peer.session))
-            session_ = peer.session;
-      }
-      if (session_ != 0) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return false;
+    return waitFor(kFind_s, [this] {
+      const std::lock_guard lock(mutex_);
+      for (const auto& [sender, peer] : peers_)
+        if (peer.role == NodeRole::Render && !peer.has_ended && scenes_.contains(peer.session))
+          session_ = peer.session;
+      return session_ != 0;
+    });
   }
 
   /// Listens whether the session has a node of this kind, which tells so in every beat.
   [[nodiscard]] bool hears(NodeRole role) const {
-    for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < kListen_s;) {
-      if (isAlive(role)) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return false;
+    return waitFor(kListen_s, [&] { return isAlive(role); });
   }
 
   bool send(Channel channel, std::string_view message) noexcept override {
@@ -174,6 +166,15 @@ class DdsLink final : public Link {
   }
 
  private:
+  /// Until it is so, at most so long.
+  template <typename IsSo>
+  static bool waitFor(double most_s, IsSo is_so) {
+    for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < most_s;) {
+      if (is_so()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
   void addChannel(Channel channel, const std::string& prefix) {
     const auto i = static_cast<std::size_t>(channel);
     rings_[i] = std::make_unique<SharedWord[]>(kChannelShapes[i].words());

@@ -5,16 +5,14 @@
 #include <cstdio>
 
 #include "draw/marks.h"
+#include "image/srgb.h"
 #include "window/glfw/session.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
 
 ImU32 packed(const Eigen::Vector3f& linear) {
-  const auto part = [](float x) {
-    return static_cast<int>(std::lround(255 * std::pow(std::clamp(x, 0.0f, 1.0f), 1 / 2.2f)));
-  };
-  return IM_COL32(part(linear.x()), part(linear.y()), part(linear.z()), 255);
+  return IM_COL32(srgbByte(linear.x()), srgbByte(linear.y()), srgbByte(linear.z()), 255);
 }
 
 /// Dark below, so that it is seen on light and dark parts.

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/lids.h"
+
+#include <cstdlib>
+#include <map>
+#include <utility>
+
+#include "mesh/mesh_edges.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+struct OpenEdge {
+  std::uint32_t low, high;
+  int surplus;  ///< facets that run from low to high, less the others
+};
+
+std::vector<OpenEdge> openEdges(const Mesh& mesh) {
+  std::vector<OpenEdge> open;
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> sides) {
+    int surplus = 0;
+    for (const HalfEdge& side : sides) surplus += side.is_forward ? 1 : -1;
+    if (surplus != 0) open.push_back({sides[0].low, sides[0].high, surplus});
+  });
+  return open;
+}
+
+}  // namespace
+
+Mesh lidsOf(const Mesh& mesh) {
+  const std::vector<OpenEdge> open = openEdges(mesh);
+  Mesh lids;
+  if (open.empty()) return lids;
+  Groups groups(mesh.vertices.size());
+  for (const OpenEdge& edge : open) groups.join(edge.low, edge.high);
+  std::map<std::uint32_t, std::pair<Vec3, double>> center;  // times length; length
+  for (const OpenEdge& edge : open) {
+    const Vec3 &a = mesh.vertices[edge.low], &b = mesh.vertices[edge.high];
+    auto& [sum, length_m] = center.try_emplace(groups.find(edge.low), Vec3::Zero(), 0.0).first->second;
+    sum += 0.5 * (b - a).norm() * (a + b);
+    length_m += (b - a).norm();
+  }
+  lids.vertices = mesh.vertices;
+  std::map<std::uint32_t, std::uint32_t> apex;
+  for (const auto& [group, mean] : center) {
+    apex[group] = static_cast<std::uint32_t>(lids.vertices.size());
+    lids.vertices.push_back(mean.first / mean.second);
+  }
+  for (const OpenEdge& edge : open) {
+    const auto [from, to] =
+        edge.surplus > 0 ? std::pair(edge.high, edge.low) : std::pair(edge.low, edge.high);
+    for (int i = 0; i < std::abs(edge.surplus); ++i)
+      lids.triangles.push_back({from, to, apex[groups.find(edge.low)]});
+  }
+  return lids;
+}
+
+}  // namespace vps::inline v0

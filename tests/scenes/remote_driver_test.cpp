@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The render node's driver of a loop in another process, with a device's node that says what a test wants.
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "haptics/haptic_driver.h"
+#include "network/device_end.h"
+#include "scenes/two_pins.h"
+
+namespace vps::scenes {
+namespace {
+
+/// Answers each request at once, and gives the states that a test has put there, as a network might.
+class ScriptedDevice final : public Link {
+ public:
+  ScriptedDevice() { replies_.emplace_back(writer_.write(HelloMessage{})); }
+
+  void addState(std::int32_t tick, device::OperatorPhase phase) {
+    HapticMessage message;
+    message.state.tick = tick;
+    message.hand = device::toByte({phase, {}});
+    states_.emplace_back(writer_.write(message));
+  }
+  ReplyMessage answer;  ///< to what is asked next
+
+  bool send(Channel channel, std::string_view bytes) noexcept override {
+    RequestMessage request;
+    if (channel != Channel::Request || reader_.read(bytes, request) != Reading::Good) return true;
+    answer.request = reader_.envelope().number;
+    replies_.emplace_back(writer_.write(answer));
+    return true;
+  }
+  std::string_view receive(Channel channel, std::span<char> buffer) noexcept override {
+    if (channel == Channel::Haptic) return take(states_, buffer);
+    if (channel == Channel::Reply) return take(replies_, buffer);
+    return {};
+  }
+  [[nodiscard]] std::uint64_t lost(Channel) const noexcept override { return 0; }
+  [[nodiscard]] bool isAlive(NodeRole) const override { return true; }
+  [[nodiscard]] std::uint64_t sessionId() const override { return 7; }
+  [[nodiscard]] bool hasEnded() const override { return false; }
+  [[nodiscard]] std::string sceneBytes() const override { return {}; }
+
+ private:
+  static std::string_view take(std::deque<std::string>& from, std::span<char> buffer) {
+    if (from.empty()) return {};
+    const std::size_t size = from.front().copy(buffer.data(), buffer.size());
+    from.pop_front();
+    return {buffer.data(), size};
+  }
+
+  MessageWriter writer_{5};
+  MessageReader reader_;
+  std::deque<std::string> replies_, states_;
+};
+
+// A recording could not be replayed, and a step ended before it began, when the state of the tick before a
+// command came after its reply.
+TEST(RemoteDriver, AStateFromBeforeACommandDoesNotShowWhatTheHandDoesAfterIt) {
+  using device::OperatorPhase;
+  ScriptedDevice device;
+  DeviceEnd end(device, nullptr, [](const std::string&) {});
+  ASSERT_TRUE(end.waitForDevice());
+  const Scene scene = twoPins();
+  const std::unique_ptr<Hand> hand = remoteHand(end, scene);
+  const std::unique_ptr<HapticDriver> driver = hand->makeDriver(
+      {}, 5e-3, [](const std::string&) {}, nullptr);
+  driver->resume();
+  device.answer.tick = 10;
+  device.answer.hand = device::toByte({OperatorPhase::Insert, {}});
+  driver->begin({}, 0, 0);
+  EXPECT_EQ(driver->phase(), OperatorPhase::Insert);
+  device.addState(9, OperatorPhase::Idle);
+  device.addState(10, OperatorPhase::Done);
+  ASSERT_TRUE(driver->advance());
+  EXPECT_EQ(driver->phase(), OperatorPhase::Insert);
+  device.addState(11, OperatorPhase::Press);
+  ASSERT_TRUE(driver->advance());
+  EXPECT_EQ(driver->phase(), OperatorPhase::Press);
+}
+
+}  // namespace
+}  // namespace vps::scenes
