@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -103,10 +104,7 @@ double gapAlong(const Vec3& n, const std::vector<Vec3>& a, const std::vector<Vec
 TEST(DistanceQuery, IsTheLeastBetweenConvexBodies) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  const auto direction = [&] {
-    const double x = normal(random), y = normal(random), z = normal(random);
-    return Vec3(x, y, z).normalized();
-  };
+  const auto direction = [&] { return test::drawnVector(normal, random).normalized(); };
   btConvexHullShape hull;
   std::vector<Vec3> corners;
   for (int i = 0; i < 200; ++i) {

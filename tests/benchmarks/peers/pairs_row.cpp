@@ -8,6 +8,7 @@
 
 #include "rival_rows.h"
 #include "support/gear.h"
+#include "support/random_draw.h"
 #include "vps_bullet/body.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/install.h"
@@ -78,7 +79,7 @@ void pairQueryRow(const Options&, Table& table) {
   std::normal_distribution<double> normal;
   btConvexHullShape hull;
   for (int i = 0; i < 200; ++i) {
-    const Vec3 p(normal(random), normal(random), normal(random));
+    const Vec3 p = test::drawnVector(normal, random);
     hull.addPoint(bullet::toBt(Vec3(0.02 * p.normalized())));
   }
   hull.setMargin(0);
