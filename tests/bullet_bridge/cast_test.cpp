@@ -8,6 +8,7 @@
 #include <random>
 
 #include "bullet_bridge/world.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -58,7 +59,8 @@ Hits castAll(btCollisionShape& shape, double ball_m, const Cast& cast) {
   Hits hits;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < kCasts; ++i) {
-    const Vec3 from(in(random), in(random), 0.1 + in(random)), to(in(random), in(random), -0.1 + in(random));
+    const Vec3 from = Vec3(0, 0, 0.1) + test::drawnVector(in, random),
+               to = Vec3(0, 0, -0.1) + test::drawnVector(in, random);
     hits.exact.push_back(touches(from, to, ball_m));
     hits.fractions.push_back(cast(*world.world, from, to));
   }

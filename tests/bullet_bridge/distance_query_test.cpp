@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <random>
+#include <vector>
 
 #include "bullet_bridge/world.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -19,10 +23,14 @@ const Built& cube() {
 
 struct Nearest : btCollisionWorld::ContactResultCallback {
   double distance_m = 1e30;
+  Vec3 n = Vec3::Zero();
   explicit Nearest(double threshold_m) { m_closestDistanceThreshold = toBt(threshold_m); }
   btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
                            const btCollisionObjectWrapper*, int, int) override {
-    distance_m = std::min<double>(distance_m, point.m_distance1);
+    if (point.m_distance1 < distance_m) {
+      distance_m = point.m_distance1;
+      n = fromBt(point.m_normalWorldOnB);
+    }
     return 0;
   }
 };
@@ -73,6 +81,48 @@ TEST(DistanceQuery, OfABallIsNotThatOfItsPlanesThatLeanAway) {
       // The lowest vertex need not be a point of the shell: half a spacing aside, s^2 / (8 r) = 13 um.
       EXPECT_NEAR(near.distance_m, gap_m, 13e-6 + 1e-6) << under->getName() << ' ' << gap_m;
     }
+  }
+}
+
+/// How far the plane with this normal that separates two sets of points best keeps them apart.
+double gapAlong(const Vec3& n, const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  const auto range = [&](const std::vector<Vec3>& points) {
+    double low_m = 1e30, high_m = -1e30;
+    for (const Vec3& p : points) {
+      low_m = std::min(low_m, n.dot(p));
+      high_m = std::max(high_m, n.dot(p));
+    }
+    return std::array{low_m, high_m};
+  };
+  const auto of_a = range(a), of_b = range(b);
+  return std::max(of_a[0] - of_b[1], of_b[0] - of_a[1]);
+}
+
+// Of two convex bodies no points are nearer than the slab between them is thick, so where a reported distance
+// is the slab's thickness along the reported normal, it is the least. The bodies lean in all directions: the
+// nearest place is at corners, edges and faces in turn, and mostly between the points of the shell.
+TEST(DistanceQuery, IsTheLeastBetweenConvexBodies) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto direction = [&] { return test::drawnVector(normal, random).normalized(); };
+  btConvexHullShape hull;
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 200; ++i) {
+    corners.push_back(0.02 * direction());
+    hull.addPoint(toBt(corners.back()));
+  }
+  hull.setMargin(0);
+  for (int i = 0; i < 40; ++i) {
+    const Pose X_WH(rotationFromVector(direction()), 0.055 * direction());
+    World world;
+    btRigidBody& far = world.addShape(hull, 0, Vec3::Zero(), X_WH);
+    btRigidBody& part = world.add(cube(), Pose());
+    Nearest near(0.1);
+    world.world->contactPairTest(&far, &part, near);
+    std::vector<Vec3> placed;
+    for (const Vec3& p : corners) placed.push_back(X_WH * p);
+    // The last turn of the iteration gains less than 0.1 nm; positions in single precision round to 4 nm.
+    EXPECT_NEAR(near.distance_m, gapAlong(near.n, placed, cube().mesh.vertices), 1e-6) << i;
   }
 }
 

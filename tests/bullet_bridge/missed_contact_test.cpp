@@ -11,6 +11,7 @@
 
 #include "bullet_bridge/world.h"
 #include "search/prism.h"
+#include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
 #include "vps_bullet/coupling.h"
 
@@ -101,7 +102,7 @@ TEST_P(MissedContact, OfALeaningTetrahedronsCornerWithAFloor) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   for (int i = 0; i < 12; ++i) {
-    const Mat3 R(Quat(normal(random), normal(random), normal(random), normal(random)).normalized());
+    const Mat3 R(test::drawnRotation(normal, random));
     Measured scene(GetParam());
     scene.add(makeBox({60e-3, 60e-3, 6e-3}), Pose::translation({0, 0, -3e-3}), true);
     scene.addMoving(tetrahedron, Pose(R, Vec3(0, 0, 0.2e-3 - lowest_m(tetrahedron, R))), {0, 0, -0.5});
@@ -207,17 +208,18 @@ TEST(MissedContact, OfSharpBodiesThatFallTurning) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::normal_distribution<double> normal;
-  const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
+  const auto direction = [&] { return test::drawnVector(normal, random).normalized(); };
   for (int i = 0; i < 24; ++i) {
     Measured scene;
     scene.add(makeBox({50e-3, 50e-3, 6e-3}), Pose::translation({20e-3, 20e-3, -3e-3}), true);
     scene.add(makeBox({5e-3, 50e-3, 30e-3}), Pose::translation({-2.5e-3, 20e-3, 15e-3}), true);
     scene.add(makeBox({50e-3, 5e-3, 30e-3}), Pose::translation({20e-3, -2.5e-3, 15e-3}), true);
     const Mesh& mesh = i % 3 == 0 ? tetrahedron : i % 3 == 1 ? angle : wedge;
-    const Mat3 R(Quat(normal(random), normal(random), normal(random), normal(random)).normalized());
-    Vec3 v = direction() * (0.6 + 0.4 * uniform(random));
+    const Mat3 R(test::drawnRotation(normal, random));
+    const Vec3 v_way = direction(), w_way = direction();
+    Vec3 v = v_way * (0.6 + 0.4 * uniform(random));
     v.z() = -std::abs(v.z());
-    scene.addMoving(mesh, Pose(R, Vec3(14e-3, 14e-3, 14e-3)), v, direction() * 80 * uniform(random));
+    scene.addMoving(mesh, Pose(R, Vec3(14e-3, 14e-3, 14e-3)), v, w_way * 80 * uniform(random));
     EXPECT_LE(scene.deepestOf(150), kBound_m) << "body " << i;
   }
 }

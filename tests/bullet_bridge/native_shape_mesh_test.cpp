@@ -8,6 +8,7 @@
 
 #include "bullet_bridge/native_shapes.h"
 #include "native_shapes/primitive.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -49,7 +50,7 @@ TEST(Primitive, DistanceToAMultiSphereIsThatOfItsSupportFunction) {
     btMultiSphereShape shape(centers, radii, count);
     ASSERT_TRUE(isPrimitive(shape));
     for (int i = 0; i < 20; ++i) {
-      const Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+      const Vec3 p = test::drawnVector(coordinate, random);
       const SurfaceDistance d = primitiveDistance(shape, p);
       // Error of the lower bound with 40,962 directions: 0.6 degrees times the distance to the support, 0.07
       // m, where two spheres meet. Upper bound: the foot must lie on the hull.
@@ -67,7 +68,7 @@ TEST(Primitive, DistanceToAConeIsThatToItsMesh) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> coordinate(-0.025, 0.025);
   for (int i = 0; i < 500; ++i) {
-    const Vec3 p(coordinate(random), coordinate(random), coordinate(random));
+    const Vec3 p = test::drawnVector(coordinate, random);
     // The mesh's chords are within 1 um of the cone's circles.
     EXPECT_NEAR(primitiveDistance(cone, p).distance_m, mesh.signedDistance(p), 1e-6 + kRounding_m)
         << p.transpose();

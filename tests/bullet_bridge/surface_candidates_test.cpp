@@ -9,6 +9,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/query_state.h"
 #include "native_shapes/content_hash.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -21,7 +22,7 @@ using test::slabMesh;
 
 Pose randomPose(std::mt19937& random, double reach_m) {
   std::uniform_real_distribution<double> any(-1, 1);
-  const auto vector = [&] { return Vec3(any(random), any(random), any(random)); };
+  const auto vector = [&] { return test::drawnVector(any, random); };
   const Vec3 turn = 3 * vector();
   return {rotationFromVector(turn), reach_m * vector()};
 }

@@ -26,7 +26,7 @@ TEST(DualArmForces, WorstDirectionIsTheMinimumOverAllDirections) {
   const JointVector limits = motorLimits(p, 0);
   Random random(1);
   for (int i = 0; i < 20; ++i) {
-    const Pose X_DH(rotationFromVector(0.3 * random.normal3()), Vec3(0.1 * random.normal3()));
+    const Pose X_DH{rotationFromVector(0.3 * random.normal3()), Vec3(0.1 * random.normal3())};
     EffortMap map;
     ASSERT_EQ(effortMap(p, X_DH, map), Status::Ok);
     for (const auto& efforts : {map.force, map.torque}) {

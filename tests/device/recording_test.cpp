@@ -36,7 +36,7 @@ void spill(const fs::path& file, const std::string& bytes) {
 DeviceSample sampleAt(int i) {
   Random random(static_cast<std::uint64_t>(i) + 1);
   DeviceSample sample;
-  sample.X_DH = Pose(rotationFromVector(0.3 * random.normal3()), 0.01 * random.normal3());
+  sample.X_DH = Pose{rotationFromVector(0.3 * random.normal3()), 0.01 * random.normal3()};
   sample.V_DH = {random.normal3(), random.normal3()};
   sample.time_s = i * 1e-3;
   return sample;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "support/no_alloc.h"
+#include "support/random_draw.h"
 
 namespace vps {
 namespace {
@@ -88,12 +89,13 @@ TEST(CouplingLaw, HalfATurnIsTheLargestRotationAndStaysFinite) {
 TEST(CouplingLaw, MovingBothFramesByOneRotationOnlyRotatesTheWrench) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
-  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const auto vec = [&] { return test::drawnVector(unit, random); };
   for (int i = 0; i < 100; ++i) {
-    CouplingState proxy = at(0.01 * vec(), vec()), part = at(0.01 * vec(), vec());
+    const Vec3 p_proxy = 0.01 * vec(), p_part = 0.01 * vec();
+    CouplingState proxy = at(p_proxy, vec()), part = at(p_part, vec());
     proxy.V_W = {vec(), vec()};
     part.V_W = {vec(), vec()};
-    const Pose X_AW(rotationFromVector(3 * vec()), vec());
+    const Pose X_AW{rotationFromVector(3 * vec()), vec()};
     const auto moved = [&](CouplingState state) {
       state.X_W = X_AW * state.X_W;
       state.V_W = {X_AW.R * state.V_W.w, X_AW.R * state.V_W.v};

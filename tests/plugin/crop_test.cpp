@@ -37,8 +37,8 @@ std::vector<Pose> posesInRegion(const TubeAndPeg& pair) {
   test::RandomPoints random(7);
   std::vector<Pose> poses;
   while (poses.size() < 200) {
-    const Pose X_TP(rotationFromVector(random.inBox(Vec3::Constant(0.05))),
-                    Vec3(0, 0, 11 * kMm) + random.inBox({1 * kMm, 1 * kMm, 4 * kMm}));
+    const Pose X_TP{rotationFromVector(random.inBox(Vec3::Constant(0.05))),
+                    Vec3(0, 0, 11 * kMm) + random.inBox({1 * kMm, 1 * kMm, 4 * kMm})};
     if (isWithin(grown(moved(bounds(pair.peg), X_TP), pair.map.band_m()), pair.boxes[0]))
       poses.push_back(X_TP);
   }

@@ -22,11 +22,16 @@ namespace {
 constexpr double kVoxel_m = 0.5e-3;
 constexpr VoxMapSettings kSettings = {kVoxel_m, 4};
 
-using Inside = std::function<bool(const Vec3&)>;
+/// The signed distance to the true surface, or -1 and 1 where a formula gives only the sign.
+using Truth = std::function<double(const Vec3&)>;
+using Skip = std::function<bool(const Vec3&)>;
 
 /// Counts grid nodes around a map, up to 8 voxels away, with a wrong sign; `skip` excludes nodes.
-std::size_t wrongSigns(const VoxMap& map, const Inside& isInside, const Inside& skip = {}) {
+std::size_t wrongSigns(const VoxMap& map, const Truth& distance_m, const Skip& skip = {}) {
   const double h = map.voxel_m();
+  // Half a quantum, and the rounding of the node's own place. A node that is nearer to the surface is stored
+  // as 0, which has no side: its value must be as near to the truth as that.
+  const double rounding_m = 0.51 * map.quantum_m();
   const Eigen::Array3i low = (map.bounds().min / h).array().floor().cast<int>() - 8;
   const Eigen::Array3i high = (map.bounds().max / h).array().ceil().cast<int>() + 8;
   std::size_t wrong = 0;
@@ -34,16 +39,16 @@ std::size_t wrongSigns(const VoxMap& map, const Inside& isInside, const Inside& 
     for (int y = low.y(); y <= high.y(); ++y)
       for (int z = low.z(); z <= high.z(); ++z) {
         const Vec3 p = h * Vec3(x, y, z);
-        if (!skip || !skip(p)) wrong += (map.distance(p) < 0) != isInside(p);
+        if (skip && skip(p)) continue;
+        const double got_m = map.distance(p), true_m = distance_m(p);
+        wrong += std::abs(true_m) > rounding_m ? (got_m < 0) != (true_m < 0)
+                                               : std::abs(got_m - true_m) > rounding_m;
       }
   return wrong;
 }
 
-/// The true inside of a closed mesh.
-Inside insideOf(const Mesh& closed) {
-  return [truth = std::make_shared<MeshDistance>(closed)](const Vec3& p) {
-    return truth->signedDistance(p) < 0;
-  };
+Truth distanceTo(const Mesh& closed) {
+  return [truth = std::make_shared<MeshDistance>(closed)](const Vec3& p) { return truth->signedDistance(p); };
 }
 
 MeshReport reportOf(const Mesh& mesh, VoxMap* map = nullptr) {
@@ -102,7 +107,7 @@ TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
     };
     VoxMap map;
     const MeshReport report = reportOf(plateWithHole(hole_m, false, X), &map);
-    EXPECT_EQ(wrongSigns(map, insideOf(plateWithHole(hole_m, true, X)), isInHole), 0u) << hole_voxels;
+    EXPECT_EQ(wrongSigns(map, distanceTo(plateWithHole(hole_m, true, X)), isInHole), 0u) << hole_voxels;
     EXPECT_EQ(report.open_edges, 4u);
     EXPECT_EQ(report.holes, 1u);
     EXPECT_TRUE(report.signed_by_winding);
@@ -127,7 +132,7 @@ TEST(FaultyMesh, AHoleInARoundFaceIsClosedWithinItsSagitta) {
     };
     VoxMap map;
     reportOf(open, &map);
-    EXPECT_EQ(wrongSigns(map, insideOf(sphere), isNearHole), 0u) << hole_m;
+    EXPECT_EQ(wrongSigns(map, distanceTo(sphere), isNearHole), 0u) << hole_m;
   }
 }
 
@@ -141,7 +146,7 @@ TEST(FaultyMesh, FlippedFacetsAreTurned) {
   EXPECT_EQ(report.flipped_facets, count);
   EXPECT_FALSE(report.signed_by_winding);  // a sound mesh again
   EXPECT_EQ(report.certain_share, 1);
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }
 
 TEST(FaultyMesh, AShellThatFacesInIsTurnedAndACavityIsNot) {
@@ -151,22 +156,22 @@ TEST(FaultyMesh, AShellThatFacesInIsTurnedAndACavityIsNot) {
   for (auto& t : ball.triangles) std::swap(t[0], t[1]);
   VoxMap map;
   EXPECT_EQ(reportOf(ball, &map).turned_shells, 1u);
-  EXPECT_EQ(wrongSigns(map, insideOf(sphere)), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(sphere)), 0u);
 
   const Mesh outer = transformed(makeSphere(0.01, 3), X);
   Mesh hollow = outer;
   append(hollow, ball);
-  const auto isInside = [outside = insideOf(outer), cavity = insideOf(sphere)](const Vec3& p) {
-    return outside(p) && !cavity(p);
+  const auto truth = [to_outer = distanceTo(outer), to_cavity = distanceTo(sphere)](const Vec3& p) {
+    return std::max(to_outer(p), -to_cavity(p));
   };
   const MeshReport report = reportOf(hollow, &map);
   EXPECT_EQ(report.turned_shells, 0u);
   EXPECT_EQ(report.overlapping_shells, 0u);
   EXPECT_EQ(report.certain_share, 1);
-  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+  EXPECT_EQ(wrongSigns(map, truth), 0u);
   for (auto& t : hollow.triangles) std::swap(t[0], t[1]);  // all shells face in
   EXPECT_EQ(reportOf(hollow, &map).turned_shells, 2u);
-  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+  EXPECT_EQ(wrongSigns(map, truth), 0u);
 }
 
 TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
@@ -180,9 +185,12 @@ TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
   EXPECT_EQ(report.shells, 2u);
   EXPECT_TRUE(report.signed_by_winding);
   EXPECT_EQ(report.certain_share, 1);
-  EXPECT_EQ(
-      wrongSigns(map, [in_a = insideOf(a), in_b = insideOf(b)](const Vec3& p) { return in_a(p) || in_b(p); }),
-      0u);
+  // The map holds the distance to the triangles, of which some lie within the other shell, in part.
+  const auto truth = [to_a = distanceTo(a), to_b = distanceTo(b)](const Vec3& p) {
+    const double a_m = to_a(p), b_m = to_b(p), away_m = std::min(std::abs(a_m), std::abs(b_m));
+    return std::min(a_m, b_m) < 0 ? -away_m : away_m;
+  };
+  EXPECT_EQ(wrongSigns(map, truth), 0u);
 }
 
 TEST(FaultyMesh, AShellWithinAnotherIsLeftOut) {
@@ -192,7 +200,7 @@ TEST(FaultyMesh, AShellWithinAnotherIsLeftOut) {
   const MeshReport report = reportOf(nested, &map);
   EXPECT_EQ(report.internal_facets, 1280u);
   EXPECT_EQ(report.overlapping_shells, 1u);
-  EXPECT_EQ(wrongSigns(map, insideOf(makeSphere(0.01, 3))), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(makeSphere(0.01, 3))), 0u);
   EXPECT_EQ(map.distance({0.006, 0, 0}), -map.band_m());  // 4 mm deep
 }
 
@@ -228,7 +236,7 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
   const MeshReport report = reportOf(hose, &map);
   EXPECT_TRUE(report.signed_by_winding);
   // Truth: crossings of a ray, counted with their sign.
-  const auto isInside = [&](const Vec3& p) {
+  const auto side = [&](const Vec3& p) {
     int windings = 0;
     const Vec3 way = Vec3(0.3, 0.2, 0.93).normalized();
     for (const auto& t : hose.triangles) {
@@ -238,9 +246,9 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
       if (a.dot((b - a).cross(c - a)) * (u + v + w) <= 0) continue;  // behind
       windings += u + v + w > 0 ? 1 : -1;
     }
-    return windings > 0;
+    return windings > 0 ? -1.0 : 1.0;
   };
-  EXPECT_EQ(wrongSigns(map, isInside), 0u);
+  EXPECT_EQ(wrongSigns(map, side), 0u);
 }
 
 TEST(FaultyMesh, AnInternalWallIsRemovedFromTheSurface) {
@@ -272,7 +280,7 @@ TEST(FaultyMesh, AnInternalWallIsRemovedFromTheSurface) {
     VoxMap map;
     const MeshReport report = reportOf(mesh, &map);
     EXPECT_EQ(report.non_manifold_edges, mesh.triangles.size() == one.triangles.size() ? 4u : 5u);
-    EXPECT_EQ(wrongSigns(map, insideOf(closed)), 0u);
+    EXPECT_EQ(wrongSigns(map, distanceTo(closed)), 0u);
     EXPECT_EQ(map.distance(closed.vertices[4] * 0.5 + closed.vertices[6] * 0.5), -map.band_m());
   }
 }
@@ -282,7 +290,7 @@ TEST(FaultyMesh, DuplicateAndDegenerateTrianglesChangeNothing) {
   for (std::size_t i = 0; i < 60; i += 3) mesh.triangles.push_back(mesh.triangles[i]);
   VoxMap map;
   EXPECT_EQ(reportOf(mesh, &map).duplicate_triangles, 20u);
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
   // A side of a facet gets a corner in its middle and the sliver that fills the gap.
   mesh = tube();
   const auto [a, b, c] = mesh.triangles[7];
@@ -293,7 +301,7 @@ TEST(FaultyMesh, DuplicateAndDegenerateTrianglesChangeNothing) {
   mesh.triangles.push_back({a, b, middle});
   ASSERT_TRUE(checkMesh(mesh).isClosed());
   EXPECT_EQ(reportOf(mesh, &map).degenerate_triangles, 1u);
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }
 
 TEST(FaultyMesh, ASurfaceExportedForBothSidesIsASolid) {
@@ -301,7 +309,7 @@ TEST(FaultyMesh, ASurfaceExportedForBothSidesIsASolid) {
   for (const auto& t : tube().triangles) both.triangles.push_back({t[0], t[2], t[1]});
   VoxMap map;
   EXPECT_EQ(reportOf(both, &map).duplicate_triangles, tube().triangles.size());
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }
 
 TEST(FaultyMesh, TJunctionsAreNotHoles) {
@@ -318,7 +326,7 @@ TEST(FaultyMesh, TJunctionsAreNotHoles) {
   EXPECT_EQ(report.t_junctions, 3u);
   EXPECT_EQ(report.open_edges, 9u);
   EXPECT_EQ(report.certain_share, 1);
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }
 
 /// A box of six faces with their own corners, up to hair_m apart, each face of 2 x 8 x 8 triangles.
@@ -356,7 +364,7 @@ TEST(FaultyMesh, OneShellPerFaceIsASolidEvenIfSomeShellsFaceIn) {
     EXPECT_EQ(report.joined_corners, 0u);
     // Cracks of 2 sqrt(3) hairs: nodes that near a face may have either sign.
     const MeshDistance truth(box);
-    EXPECT_EQ(wrongSigns(map, insideOf(box),
+    EXPECT_EQ(wrongSigns(map, distanceTo(box),
                          [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4 * kHair_m; }),
               0u);
   }
@@ -425,7 +433,7 @@ void expectSameAnswers(const VoxMap& map, const PointShell& shell) {
   RandomPoints random(72);
   std::size_t touching = 0;
   for (int n = 0; n < 60; ++n) {
-    const Pose X_MP(random.pose(0).R, Vec3(0, 0, 0.021) + random.inBox({0.012, 0.012, 0.006}));
+    const Pose X_MP{random.pose(0).R, Vec3(0, 0, 0.021) + random.inBox({0.012, 0.012, 0.006})};
     QueryOptions options;
     TouchSummary culled, coherent, all;
     queryWrench(map, shell, X_MP, options, 1e11, Vec3::Zero(), culled);
@@ -462,7 +470,7 @@ TEST(FaultyMesh, AFreeSheetHasNoInside) {
   const MeshReport report = reportOf(mesh, &map);
   EXPECT_EQ(report.sheet_facets, 1u);
   EXPECT_EQ(report.certain_share, 1);
-  EXPECT_EQ(wrongSigns(map, insideOf(tube())), 0u);
+  EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
   const Vec3 on_sheet = o + Vec3(0.003, 0.003, 0.0003);
   EXPECT_LT(map.distance(on_sheet), kVoxel_m);  // the sheet is part of the surface
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
 
 namespace vps {
@@ -34,7 +35,7 @@ Mesh tetrahedron(std::mt19937& random) {
   std::uniform_real_distribution<double> inside(-10e-3, 10e-3);
   for (;;) {
     Mesh mesh;
-    for (int i = 0; i < 4; ++i) mesh.vertices.emplace_back(inside(random), inside(random), inside(random));
+    for (int i = 0; i < 4; ++i) mesh.vertices.push_back(test::drawnVector(inside, random));
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     const double volume_m3 = massProperties(mesh).volume_m3;
     if (volume_m3 < 0)
@@ -45,12 +46,13 @@ Mesh tetrahedron(std::mt19937& random) {
 
 Vec3 direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  return test::drawnVector(normal, random).normalized();
 }
 
 Pose pose(std::mt19937& random, double away_m) {
   std::uniform_real_distribution<double> angle(0, std::numbers::pi);
-  return {rotationFromVector(angle(random) * direction(random)), away_m * direction(random)};
+  const Vec3 axis = direction(random);
+  return {rotationFromVector(angle(random) * axis), away_m * direction(random)};
 }
 
 std::vector<FeatureContact> check(const Body& a, const Body& b, const Pose& start, const Pose& end) {
@@ -211,7 +213,8 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
     const Pose start = pose(random, 12e-3 * unit(random));
     if (deepestOverlap(a.exact, Pose(), b.exact, start).depth_m > 0) continue;
     const double travel_m = std::pow(10, -6 + 4 * unit(random));
-    const Pose end(rotationFromVector(0.2 * unit(random) * direction(random)) * start.R,
+    const Vec3 axis = direction(random);
+    const Pose end(rotationFromVector(0.2 * unit(random) * axis) * start.R,
                    start.p - travel_m * start.p.normalized());
     const bool overlaps_now = deepestOverlap(a.exact, Pose(), b.exact, end).depth_m > 0;
     const bool is_reported = !check(a, b, start, end).empty();

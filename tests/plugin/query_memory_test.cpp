@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/no_alloc.h"
+#include "support/random_draw.h"
 #include "vps/query.h"
 
 namespace vps {
@@ -46,7 +47,7 @@ const std::vector<Scene>& scenes() {
 std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
-  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const auto vec = [&] { return test::drawnVector(unit, random); };
   std::vector<Pose> poses = {scene.start};
   for (int i = 1; i < count; ++i) {
     const double way_m = scene.size_m * std::pow(10.0, -3.5 + 3.5 * unit(random));
@@ -57,8 +58,8 @@ std::vector<Pose> motion(const Scene& scene, int count, unsigned seed) {
     if (kind == 2)
       poses.emplace_back(Mat3(rotationFromVector(way_m / scene.size_m * vec()) * last.R), last.p);
     if (kind == 3)
-      poses.emplace_back(Mat3(rotationFromVector(0.1 * way_m / scene.size_m * vec()) * last.R),
-                         last.p + 0.02 * kMm * vec());
+      poses.push_back(Pose{Mat3(rotationFromVector(0.1 * way_m / scene.size_m * vec()) * last.R),
+                           last.p + 0.02 * kMm * vec()});
     if (kind >= 4) poses.emplace_back(scene.start.R, scene.start.p + 0.1 * way_m * vec());
   }
   return poses;

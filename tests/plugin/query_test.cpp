@@ -10,6 +10,7 @@
 #include <random>
 
 #include "support/no_alloc.h"
+#include "support/random_draw.h"
 #include "vps/mesh_distance.h"
 
 namespace vps {
@@ -158,7 +159,7 @@ TEST(Query, MovingBothBodiesByOnePoseOnlyRotatesTheWrench) {
   const Pose X_MP(rotationFromVector({0.01, 0.02, 0.3}), Vec3(0.05, 0.02, 1) * kMm);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
-  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const auto vec = [&] { return test::drawnVector(unit, random); };
   const auto wrenchInWorld = [&](const Pose& X_WM) {
     const Pose X_WP = X_WM * X_MP;
     const ContactSet set = contactsOf(map, shell, X_WM.inverse() * X_WP);
@@ -167,7 +168,7 @@ TEST(Query, MovingBothBodiesByOnePoseOnlyRotatesTheWrench) {
   const Wrench F_M = wrenchInWorld(Pose());
   ASSERT_GT(F_M.f.norm(), 1);
   for (int i = 0; i < 20; ++i) {
-    const Pose X_WM(rotationFromVector(3 * vec()), vec());
+    const Pose X_WM{rotationFromVector(3 * vec()), vec()};
     const Wrench F_W = wrenchInWorld(X_WM);
     // Poses round to 1e-16 of a metre: of depths of 1e-5 m that is 1e-11, over some hundred points.
     EXPECT_LT((F_W.f - X_WM.R * F_M.f).norm(), 1e-9 * F_M.f.norm());
@@ -206,13 +207,13 @@ const std::vector<Pair>& pairs() {
 std::vector<Pose> manyPoses(const Pair& pair, int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
-  const auto vec = [&] { return Vec3(unit(random), unit(random), unit(random)); };
+  const auto vec = [&] { return test::drawnVector(unit, random); };
   std::vector<Pose> poses = {Pose()};
   for (int i = 0; i < count; ++i) {
     const bool is_aligned = i % 2 == 0;
     const double tilt_rad = is_aligned ? std::pow(10.0, 3 * unit(random) - 4) : 3.0;
     const double way_m = pair.size_m * std::pow(10.0, -3 + 3.3 * std::abs(unit(random)));
-    poses.emplace_back(rotationFromVector(tilt_rad * vec()), Vec3(way_m * vec()));
+    poses.push_back(Pose{rotationFromVector(tilt_rad * vec()), Vec3(way_m * vec())});
   }
   return poses;
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "support/no_alloc.h"
+#include "support/random_draw.h"
 
 namespace vps {
 namespace {
@@ -113,7 +114,7 @@ TEST(RepresentativePoints, MemoryAndVectorsChangeNoBit) {
   std::uniform_real_distribution<double> way(-1, 1);
   Pose X_MP = fit().X_MP;
   for (int i = 0; i < 30; ++i) {
-    const Vec3 turn(way(random), way(random), way(random)), shift(way(random), way(random), way(random));
+    const Vec3 turn = test::drawnVector(way, random), shift = test::drawnVector(way, random);
     X_MP = Pose(rotationFromVector(1e-4 * turn), 3e-6 * shift) * X_MP;
     const std::vector<Contact> plain = fit().lead(X_MP);
     ASSERT_TRUE(isSame(plain, fit().lead(X_MP, &memory))) << i;

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "query/leaf_walk.h"
+#include "support/random_draw.h"
 #include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_layout.h"
 
@@ -121,7 +122,7 @@ ShellBlock randomBlock(std::mt19937& random, const Vec3& center, double radius_m
   for (int k = 0; k < 3; ++k) block.center[k] = center[k];
   for (std::uint32_t i = 0; i < kLanes; ++i) {
     const double share = i % 2 ? 1 : std::abs(unit(random));
-    Vec3 p = share * radius_m * Vec3(unit(random), unit(random), unit(random)).normalized();
+    Vec3 p = share * radius_m * test::drawnVector(unit, random).normalized();
     if (i >= count) p = Vec3(block.x[0], block.y[0], block.z[0]);
     block.x[i] = static_cast<float>(p.x());
     block.y[i] = static_cast<float>(p.y());
@@ -136,10 +137,10 @@ struct Trial {
   explicit Trial(unsigned seed)
       : random(seed), voxel_m(std::pow(10.0, -9 + static_cast<double>(seed % 13))), field(seed, voxel_m) {
     std::uniform_real_distribution<double> unit(-1, 1);
-    X_MP = Pose(rotationFromVector(3 * Vec3(unit(random), unit(random), unit(random))),
-                voxel_m * 50 * Vec3(unit(random), unit(random), unit(random)));
+    X_MP = Pose{rotationFromVector(3 * test::drawnVector(unit, random)),
+                voxel_m * 50 * test::drawnVector(unit, random)};
     for (int i = 0; i < kBatch; ++i) {
-      Vec3 target = kExtent * 0.5 * (Vec3::Ones() + 1.2 * Vec3(unit(random), unit(random), unit(random)));
+      Vec3 target = kExtent * 0.5 * (Vec3::Ones() + 1.2 * test::drawnVector(unit, random));
       if (i % 4 == 1) target = (target / 8).array().round().matrix() * 8;
       if (i % 8 == 2) target *= std::pow(10.0, static_cast<double>(random() % 13));
       if (i == 7) target = Vec3(-1e300, 1e300, 1e9);

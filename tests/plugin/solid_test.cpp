@@ -41,7 +41,8 @@ class Probes {
     const double u = 0.5 + 0.5 * random_.unit(), v = (0.5 + 0.5 * random_.unit()) * (1 - u);
     if (count_ % 3 == 1) return a + u * (b - a) + v * (c - a) + random_.inBox(Vec3::Constant(2e-3));
     const Vec3 q = count_ % 2 == 0 ? Vec3(a + u * (b - a)) : a;
-    return q + std::pow(10, -5.75 + 2.25 * random_.unit()) * random_.inBox(Vec3::Ones()).normalized();
+    const Vec3 way = random_.inBox(Vec3::Ones()).normalized();
+    return q + std::pow(10, -5.75 + 2.25 * random_.unit()) * way;
   }
 
  private:

@@ -8,7 +8,9 @@
 #include <random>
 #include <set>
 
+#include "query/flush_features.h"
 #include "query/touch_cone.h"
+#include "support/random_draw.h"
 #include "support/screw.h"
 #include "vps/feature_set.h"
 #include "vps/mesh.h"
@@ -18,7 +20,7 @@ namespace {
 
 Vec3 direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  return Vec3(normal(random), normal(random), normal(random)).normalized();
+  return test::drawnVector(normal, random).normalized();
 }
 
 bool isAllowed(const std::vector<Vec3>& rays, const Vec3& n, double slope) {
@@ -64,7 +66,7 @@ using Pairs = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 // @param slack_rad  for sines and cosines
 Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose& X, double margin_m,
                 const Mat3& turn, double slack_rad) {
-  const double surely_flush = -std::cos(20 * std::numbers::pi / 180 - slack_rad);
+  const double surely_flush = -std::cos(std::acos(kCosFlush) - slack_rad);
   const Mat3 R = turn * X.R;
   Pairs found;
   for (std::uint32_t c = 0; c < corners.corners().size(); ++c) {
@@ -122,8 +124,11 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
   for (const FeatureSet* a : all)
     for (const FeatureSet* b : all)
       for (int trial = 0; trial < 3; ++trial) {
-        const Pose X{rotationFromVector(3 * direction(random)), away(random) * direction(random)};
-        compare(*a, *b, X, margin(random), slack(random));
+        const Vec3 axis = direction(random), way = direction(random);
+        const Pose X(rotationFromVector(3 * axis), away(random) * way);
+        const double margin_m = margin(random), slack_rad = slack(random);
+        compare(*a, *b, X, margin_m, slack_rad);
+        compare(*a, *b, X, margin_m, 0);  // exactly those
       }
   EXPECT_GT(count, 1000u);
 }

@@ -72,8 +72,8 @@ TEST(NoAllocScope, FailsATestThatAllocates) {
   EXPECT_NONFATAL_FAILURE(
       {
         const vps_test::NoAllocScope guard;
-        const auto block = std::make_unique<int>(1);
-        EXPECT_EQ(*block, 1);
+        // A compiler may leave out a new whose block nobody else sees; not a direct call of the function.
+        ::operator delete(::operator new(1));
       },
       "heap calls in a scope that must have none");
 }

@@ -84,7 +84,7 @@ TEST(ResampledVoxMap, SphereStaysWithinTwiceTheSmoothError) {
       2 * kVoxel_m * kVoxel_m / (4 * (kRadius_m - 3 * kVoxel_m)) + sagitta_m + 2 * moved.quantum_m();
   RandomPoints random(6);
   for (int n = 0; n < 20000; ++n) {
-    const Vec3 direction = Vec3(random.unit(), random.unit(), random.unit()).normalized();
+    const Vec3 direction = random.inBox(Vec3::Ones()).normalized();
     const double d = 2 * kVoxel_m * random.unit();
     ASSERT_NEAR(moved.distance(X_MP * ((kRadius_m + d) * direction)), d, tolerance_m);
   }

@@ -13,6 +13,7 @@
 #include "support/same_map.h"
 #include "vps/load_error.h"
 #include "vps/mesh_distance.h"
+#include "vps/solid.h"
 
 namespace vps::test {
 namespace {
@@ -80,6 +81,18 @@ TEST(VoxMap, NodesAreExactAtEveryScale) {  // parts of 1 um, of 100 m and of ato
     expectNodesExact(scaled, {0.05 * scale, 4});
   }
 }
+TEST(VoxMap, ANodeWithinHalfAQuantumOfTheSurfaceReadsZeroAndTheSolidTellsItsSide) {
+  const double h = 0.5e-3, quantum_m = buildVoxMap(makeBox(Vec3::Constant(0.02)), {h, 4}).quantum_m();
+  for (const double quanta : {-1.4, -0.55, -0.45, -0.01, 0.01, 0.45, 0.55, 1.4}) {
+    // The node (20, 0, 0) is that far outside of the box.
+    const Vec3 node(20 * h, 0, 0);
+    const Mesh box = makeBox(2 * Vec3(20 * h - quanta * quantum_m, 0.01, 0.01));
+    const VoxMap map = buildVoxMap(box, {h, 4});
+    ASSERT_NEAR(map.quantum_m(), quantum_m, 1e-12 * quantum_m);
+    EXPECT_NEAR(map.distance(node), std::round(quanta) * quantum_m, 1e-6 * quantum_m) << quanta;
+    EXPECT_EQ(Solid(box).signedDistance(node) < 0, quanta < 0) << quanta;
+  }
+}
 TEST(VoxMap, NodesOfAWideBandAreExact) {
   expectNodesExact(transformed(makeBox({0.006, 0.004, 0.002}), RandomPoints(27).pose(0.01)), {kVoxel_m, 20});
 }
@@ -131,7 +144,7 @@ TEST(VoxMap, CylinderAndBoxReportTheirAnalyticDistanceOnFaces) {
         kVoxel_m * kVoxel_m / (8 * (kRadius_m - 3 * kVoxel_m)) + sagitta(kRadius_m, kSegments);
     ASSERT_NEAR(cylinder.distance(p), depth_m * -1, tolerance_m);
     // Near a face and away from its edges the distance is linear: exact except for the nodes' rounding.
-    const Vec3 q(0.005 * random.unit(), 0.003 * random.unit(), half.z() + kVoxel_m * random.unit());
+    const Vec3 q = Vec3(0, 0, half.z()) + random.inBox({0.005, 0.003, kVoxel_m});
     ASSERT_NEAR(box.distance(q), boxDistance(q, half), 0.51 * box.quantum_m());
     // Equal nodes round equally: across the plane there is no slope.
     ASSERT_LT((box.normal(q) - Vec3::UnitZ()).norm(), 1e-6);

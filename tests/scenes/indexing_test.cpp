@@ -139,7 +139,7 @@ TEST(PathSegments, AnyPathStaysWithinTheWorkspaceAtAnyScale) {
     scene.device.scale = 0.5 + 2 * random.uniform();
     step.way_points.clear();
     for (int n = i % 5; n > 0; --n) step.way_points.push_back(Pose::translation(random.normal3()));
-    step.X_WP_start = Pose(rotationFromVector(random.normal3()), 2 * random.normal3());
+    step.X_WP_start = Pose{rotationFromVector(random.normal3()), 2 * random.normal3()};
     expectWithinWorkspace(scene, step, splitPath(scene, step, kWorkspace));
   }
 }

@@ -13,6 +13,7 @@
 
 #include "models/scene_models.h"
 #include "record/scene_archive.h"
+#include "support/random_draw.h"
 #include "support/stl_box.h"
 #include "support/temporary_folder.h"
 #include "trade/design.h"
@@ -248,9 +249,9 @@ double errorAtOtherPoints(const PartModel& part, double reach_m) {
       u = 1 - u;
       v = 1 - v;
     }
+    const Vec3 aside = test::drawnVector(share, random) - Vec3::Constant(0.5);
     const Vec3 p = part.mesh->vertices[a] + u * (part.mesh->vertices[b] - part.mesh->vertices[a]) +
-                   v * (part.mesh->vertices[c] - part.mesh->vertices[a]) +
-                   Vec3(share(random) - 0.5, share(random) - 0.5, share(random) - 0.5) * 2 * reach_m;
+                   v * (part.mesh->vertices[c] - part.mesh->vertices[a]) + 2 * reach_m * aside;
     errors.push_back(std::abs(part.map->distance(p) - exact.signedDistance(p)));
   }
   std::sort(errors.begin(), errors.end());

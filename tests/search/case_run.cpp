@@ -29,7 +29,7 @@ dynamics::PartMesh partOf(const CaseBody& body) {
 class CaseWorld {
  public:
   CaseWorld(const Case& made, const RunSettings& settings)
-      : made_(made), world_({settings.mode, false, dynamics::vpsEngine(kResolution)}) {
+      : world_({settings.mode, false, dynamics::vpsEngine(kResolution)}) {
     for (const CaseBody& body : made.bodies) {
       placed_.push_back(world_.add(partOf(body), body.X_WP, body.is_fixed, body.friction));
       if (body.is_fixed) continue;
@@ -65,7 +65,6 @@ class CaseWorld {
   [[nodiscard]] std::uint64_t hash() const { return world_.hash(); }
 
  private:
-  const Case& made_;
   dynamics::World world_;
   std::vector<dynamics::Placed> placed_;
   bullet::CouplingConstraint* coupling_ = nullptr;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/random_draw.h"
 #include "vps/mesh.h"
 
 namespace vps::test {
@@ -48,7 +49,7 @@ class RandomPoints {
   /// -1 to 1.
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
   Pose pose(double reach_m) {
-    const Quat q(unit(), unit(), unit(), unit());
+    const Quat q{unit(), unit(), unit(), unit()};  // braces: drawn in this order
     return {q, inBox(Vec3::Constant(reach_m))};
   }
 

@@ -518,8 +518,8 @@ TEST_F(NonMetricVdb, NoReadingIsBelowItsBound) {
     const VoxMap map = stored(grid);
     RandomPoints random(45);
     for (int n = 0; n < 100000; ++n) {
-      const Vec3 p = random.inBox(Vec3::Constant(0.02)),
-                 way = random.inBox(Vec3::Constant(0.01)) * random.unit();
+      const Vec3 p = random.inBox(Vec3::Constant(0.02)), direction = random.inBox(Vec3::Constant(0.01)),
+                 way = direction * random.unit();
       const double least_m = std::min(map.leastDistance(p) - way.norm(), map.band_m()) - map.sampleError_m();
       ASSERT_GE(map.distance(p + way), least_m)
           << name << " at " << p.transpose() << " by " << way.transpose();

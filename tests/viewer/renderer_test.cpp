@@ -155,7 +155,9 @@ TEST(RendererTest, ASectionCutsThePartInHandOnlyWithCutsHand) {
   DrawOptions options = plain();
   options.cut = CutPlane{Vec3::Zero(), Vec3::UnitY()};
   const auto [x, y] = camera.project(Vec3(0, 0.03, 0), 320, 240);
-  const auto blueness = [&](const Image& image) { return pixel(image, x, y)[2] - pixel(image, x, y)[0]; };
+  const auto blueness = [x = x, y = y](const Image& image) {
+    return pixel(image, x, y)[2] - pixel(image, x, y)[0];
+  };
   EXPECT_GT(blueness(renderer.render(snapshot, camera, options)), 60);
   options.cut->cuts_hand = true;
   EXPECT_LT(blueness(renderer.render(snapshot, camera, options)), 20);

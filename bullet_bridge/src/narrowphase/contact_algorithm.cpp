@@ -13,8 +13,8 @@
 
 #include "log/report.h"
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/far_points.h"
 #include "narrowphase/pair_check.h"
-#include "native_shapes/primitive.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
 
@@ -73,21 +73,6 @@ bool isQuery(const btManifoldResult& result) {
          std::strstr(typeid(result).name(), "btBridgedManifoldResult") != nullptr;
 }
 
-// Beyond the band of the fields only the exact surfaces know distances.
-void findFarPoints(const PairView& pair, double distance_m, Context& context, std::vector<Candidate>& out) {
-  std::size_t tested = 0;
-  for (int i = 0; i < 2; ++i) {
-    const int j = 1 - i;
-    if (!queriesPoints(pair, i, context.settings.sides)) continue;
-    const btCollisionShape& theirs = *pair.wrapper[j]->getCollisionShape();
-    if (isPrimitive(theirs))
-      findPrimitiveCandidates(pair.side(i), theirs, pair.X_WS[j], distance_m, context.settings, out, tested);
-    else if (pair.shape[j])
-      findSurfaceCandidates(pair.side(i), pair.side(j), distance_m, context.settings, out, tested);
-  }
-  context.points_tested += tested;
-}
-
 // Reports the points that are near now, rather than contacts for a step.
 void reportClosestPoints(const PairView& pair, Context& context, btManifoldResult& result) {
   const double wanted_m = std::max<double>(result.m_closestPointDistanceThreshold, 0);
@@ -95,11 +80,11 @@ void reportClosestPoints(const PairView& pair, Context& context, btManifoldResul
   std::vector<Candidate> candidates;
   still.contact_margin_m = std::min(wanted_m, queryRange_m(pair));
   findCandidates(pair, still.contact_margin_m, context, candidates);
-  if (candidates.empty() && wanted_m > still.contact_margin_m) {
-    still.contact_margin_m = wanted_m;
-    findFarPoints(pair, wanted_m, context, candidates);
-  }
-  selectContacts(pair, still, context.settings, nullptr, candidates);
+  // Beyond the band of the fields only the exact surfaces know distances.
+  if (candidates.empty() && wanted_m > still.contact_margin_m)
+    candidates = nearestFarPoints(pair, wanted_m, context);
+  else
+    selectContacts(pair, still, context.settings, nullptr, candidates);
   reportContacts(candidates, pair.wrapper, result);
 }
 

@@ -2,7 +2,9 @@
 #include "native_shapes/native_shape_adapter.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <span>
 
 #include "native_shapes/content_hash.h"
 #include "native_shapes/native_shape_mesh.h"
@@ -79,6 +81,25 @@ PointShell leafOf(const Corners& corners, const std::uint32_t* ids, std::size_t 
   return leaf;
 }
 
+/// A hierarchy over leaves in a row, so that a walk leaves out many of them at once.
+void addHalves(std::span<const ShellNode> leaves, const std::vector<Vec3>& points,
+               std::vector<ShellNode>& nodes) {
+  const std::size_t index = nodes.size();
+  ShellNode& node = nodes.emplace_back(leaves.front());
+  if (leaves.size() > 1) {
+    node.is_leaf = false;
+    node.count = leaves.back().first + leaves.back().count - node.first;
+    Box box;
+    for (const Vec3& p : std::span(points).subspan(node.first, node.count)) box.add(p);
+    node.center = box.center();
+    node.radius_m = 0.5 * box.size().norm() * (1 + 1e-12);
+    const std::size_t half = leaves.size() / 2;  // as sortInSpace()
+    addHalves(leaves.first(half), points, nodes);
+    addHalves(leaves.subspan(half), points, nodes);
+  }
+  nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
+}
+
 PointShell shellOf(const Corners& corners) {
   const std::size_t count = corners.points.size();
   std::vector<std::uint32_t> order(count);
@@ -89,7 +110,13 @@ PointShell shellOf(const Corners& corners) {
     leaves.push_back(leafOf(corners, &order[first], std::min<std::size_t>(kLanes, count - first)));
   std::vector<const PointShell*> pointers;
   for (const PointShell& leaf : leaves) pointers.push_back(&leaf);
-  return mergedShells(pointers, std::vector<Pose>(leaves.size()));
+  PointShell shell = mergedShells(pointers, std::vector<Pose>(leaves.size()));
+  std::vector<ShellNode> last;
+  std::copy_if(shell.nodes.begin(), shell.nodes.end(), std::back_inserter(last),
+               [](const ShellNode& node) { return node.is_leaf; });
+  shell.nodes.clear();
+  if (!last.empty()) addHalves(last, shell.points, shell.nodes);
+  return shell;
 }
 
 ShapeModels modelsOf(const NativeShapeMesh& native) {

@@ -87,7 +87,9 @@ struct EdgeCrossing {
   std::uint32_t edge[2] = {0, 0};
   Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each, in the frame of set 0
   Vec3 n = Vec3::Zero();                     ///< across both edges, from set 1 to set 0, unit
-  double gap_m = 0;                          ///< n (p[0] - p[1]); negative where they overlap
+  /// n (p[0] - p[1]); negative where they overlap. Before they touch, either point may lie past its edge's
+  /// end by a tenth of the gap (0.18 where the edge goes on): the distance there is up to 2 % more (7 %).
+  double gap_m = 0;
 };
 
 /// The pairs of edges that are near each other, kept while two parts move little.

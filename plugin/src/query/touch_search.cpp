@@ -2,10 +2,12 @@
 #include "query/touch_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
 
+#include "query/flush_features.h"
 #include "query/touch_cone.h"
 #include "vps/feature_set.h"
 
@@ -161,7 +163,7 @@ void CornerTree::build(const FeatureSet& part) {
 
 namespace {
 
-constexpr double kFlush_rad = 0.349;  // 20 degrees, as kCosFlush
+const double kFlush_rad = std::acos(kCosFlush);
 
 double squaredDistance(const Box& box, const Vec3& p) {
   return (p - p.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();

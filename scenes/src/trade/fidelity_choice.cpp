@@ -45,7 +45,7 @@ Check makeCheck(const Mesh& mesh, double reach_m) {
   for (const SurfaceSample& sample : sampleSurface(mesh, spacing_m, bounds(mesh))) {
     if (sample.area_m2 == 0 || draw() * static_cast<double>(kSamples) * sample.area_m2 > 2 * area(mesh))
       continue;
-    const Vec3 aside = Vec3(draw() - 0.5, draw() - 0.5, draw() - 0.5) * (2 * reach_m);
+    const Vec3 aside = draw.inUnitCube() * (2 * reach_m);
     check.points.push_back(sample.p + aside);
     check.exact_m.push_back(check.solid.signedDistance(check.points.back()));
   }

@@ -16,7 +16,8 @@ std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std:
   const double reach_m = scene.steps.front().clearance_m + 20e-6;
   for (std::size_t i = 0; i < std::min(count, touching.size()); ++i) {
     Pose X_WP = touching[i * touching.size() / std::min(count, touching.size())]->X_WP;
-    const Vec3 offset = Vec3(draw() - 0.5, draw() - 0.5, draw() - 0.5).normalized() * (draw() * reach_m);
+    const double length_m = draw() * reach_m;  // drawn first: see inUnitCube()
+    const Vec3 offset = draw.inUnitCube().normalized() * length_m;
     if (i % 2 == 1) X_WP.p += offset;
     poses.push_back(X_WP);
   }

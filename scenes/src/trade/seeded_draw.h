@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <random>
 
+#include "vps/pose.h"
+
 namespace vps::scenes::inline v0 {
 
 /// Draws from [0, 1). Not std::uniform_real_distribution, whose numbers depend on the standard library.
@@ -12,6 +14,15 @@ class SeededDraw {
  public:
   explicit SeededDraw(std::uint64_t seed) : random_(seed) {}
   double operator()() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  /// Draws from the cube of size 1 around the origin. Each number has a statement of its own, because a
+  /// compiler may evaluate the arguments of a call in any order; GCC, which made all earlier results, began
+  /// with z.
+  Vec3 inUnitCube() {
+    const double z = (*this)() - 0.5;
+    const double y = (*this)() - 0.5;
+    const double x = (*this)() - 0.5;
+    return {x, y, z};
+  }
 
  private:
   std::mt19937_64 random_;

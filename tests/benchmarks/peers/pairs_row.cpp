@@ -8,6 +8,7 @@
 
 #include "rival_rows.h"
 #include "support/gear.h"
+#include "support/random_draw.h"
 #include "vps_bullet/body.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/install.h"
@@ -16,18 +17,22 @@ namespace vps::bench {
 
 namespace {
 
-struct CountPoints : btCollisionWorld::ContactResultCallback {
-  int points = 0;
-  btScalar addSingleResult(btManifoldPoint&, const btCollisionObjectWrapper*, int, int,
+struct FoundPoints : btCollisionWorld::ContactResultCallback {
+  int count = 0;
+  double least_m = 1e30;
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
                            const btCollisionObjectWrapper*, int, int) override {
-    ++points;
+    ++count;
+    least_m = std::min<double>(least_m, point.m_distance1);
     return 0;
   }
 };
 
-/// Median of contactPairTest of a part of 22,000 points that touches one of Bullet's shapes; the first, which
-/// reads the shape, is left out.
-Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const Vec3& p_WN, double bound_s) {
+/// Median of contactPairTest of a part and one of Bullet's shapes; the first, which reads the shape, is left
+/// out.
+/// @param reach_m  the distance that is asked for; 0: contact only
+Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const Vec3& p_WN, double reach_m,
+            double bound_s) {
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   btDbvtBroadphase broadphase;
@@ -38,19 +43,20 @@ Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const 
   other.setCollisionShape(&native);
   other.setWorldTransform(bullet::toBt(Pose::translation(p_WN)));
   std::vector<double> times_s;
-  CountPoints found;
+  FoundPoints found;
   for (int i = 0; i < 20; ++i) {
-    found.points = 0;
+    found = {};
+    found.m_closestDistanceThreshold = bullet::toBt(reach_m);
     const double start_s = dynamics::threadTime_s();
     world.contactPairTest(part.rigid.get(), &other, found);
     if (i > 0) times_s.push_back(dynamics::threadTime_s() - start_s);
   }
   std::sort(times_s.begin(), times_s.end());
   bullet::uninstall(dispatcher);
-  return {"query of a pair",
+  return {reach_m > 0 ? "query of a distance" : "query of a pair",
           name,
           {atMost("median", times_s[times_s.size() / 2], bound_s, 1e3, "ms"),
-           reported("contacts", found.points, 1, ""),
+           reported("contacts", found.count, 1, ""), reported("least distance", found.least_m, 1e3, "mm"),
            reported("points of the part", static_cast<double>(part.model->shell->size()), 1, "")},
           ""};
 }
@@ -65,18 +71,22 @@ void pairQueryRow(const Options&, Table& table) {
                           bullet::toBt(sphere.vertices[t[2]]));
   btBvhTriangleMeshShape mesh(&triangles, true);
   // A ring of 20 mm that sits 0.77 mm deep on a ball of 82,000 triangles.
-  table.add(queryOf("btBvhTriangleMeshShape of 81,920 triangles", makeTube(0.02, 0.01, 0.02, 96), mesh,
-                    {0, 0, -0.0582}, 5e-3));
+  const char* mesh_name = "btBvhTriangleMeshShape of 81,920 triangles";
+  const Mesh ring = makeTube(0.02, 0.01, 0.02, 96);
+  table.add(queryOf(mesh_name, ring, mesh, {0, 0, -0.0582}, 0, 5e-3));
+  table.add(queryOf(mesh_name, ring, mesh, {0, 0, -0.06408}, 10e-3, 5e-3));  // 5 mm apart
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   btConvexHullShape hull;
   for (int i = 0; i < 200; ++i) {
-    const Vec3 p(normal(random), normal(random), normal(random));
+    const Vec3 p = test::drawnVector(normal, random);
     hull.addPoint(bullet::toBt(Vec3(0.02 * p.normalized())));
   }
   hull.setMargin(0);
-  table.add(queryOf("btConvexHullShape of 200 points", makeBox({0.1, 0.1, 0.02}), hull, {0.01, 0.004, 0.0295},
-                    1e-3));
+  const char* hull_name = "btConvexHullShape of 200 points";
+  const Mesh plate = makeBox({0.1, 0.1, 0.02});
+  table.add(queryOf(hull_name, plate, hull, {0.01, 0.004, 0.0295}, 0, 1e-3));
+  table.add(queryOf(hull_name, plate, hull, {0.01, 0.004, 0.035}, 10e-3, 1e-3));  // 5 mm apart
 }
 
 // Twenty gears of 23,000 points are put into a bin; all their pairs are new in the first step.
