@@ -98,6 +98,10 @@ TEST(CheckPressFit, AnInterferenceThatTheFacetsHideIsSeenFromTheirCorners) {
   for (const CheckResult* result : {&hidden, &as_meshes}) {
     EXPECT_EQ(result->pairs.at(0).state, PairState::Clash);
     EXPECT_NEAR(result->pairs[0].interference_depth_m, 5e-6, 0.1e-6);
+    // The ring between the cylinders, 30 mm long, with material all around: only the radii have an error.
+    const double ring_m3 = std::numbers::pi * (10.005e-3 * 10.005e-3 - 10e-3 * 10e-3) * 30e-3;
+    EXPECT_NEAR(result->pairs[0].interference_volume_m3, ring_m3, result->pairs[0].volume_error_m3);
+    EXPECT_LT(result->pairs[0].volume_error_m3, 0.01 * ring_m3);
   }
   EXPECT_EQ(ringAndPin(10e-6, 0, 36, {.has_fits = false, .has_play = false}).clashes(), 1U);
   EXPECT_EQ(ringAndPin(10e-6, 15e-6, 36).pairs.at(0).state, PairState::PressFit);

@@ -11,6 +11,9 @@ constexpr double kMotionSearchForever = std::numeric_limits<double>::infinity();
 /// A step of less than this stops the motion: a tenth of the rest depth.
 constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
 constexpr int kMostSteps = 400;
+/// A whole turn in a bore of n facets, with clearance c at radius r, takes some 2 n steps, and more where c is
+/// near the chord of the facets.
+constexpr int kMostStepsOfTurn = 4000;
 /// The first step ends here, and each later one at four times as far: only what is near is looked at, where
 /// something is near.
 constexpr double kFirstStep_m = 0.1e-3;
@@ -268,7 +271,8 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
   double longest = kFirstStep_m / speed;
   const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
   Reach reach;
-  for (int i = 0; i < kMostSteps && reach.s < most; ++i) {
+  const int most_steps = motion.is_turn && motion.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
+  for (int i = 0; i < most_steps && reach.s < most; ++i) {
     const double wanted = std::min(longest, most - reach.s);
     double safe = wanted;
     for (std::size_t h = 0; h < held_.size() && safe > 0; ++h) {
@@ -287,6 +291,7 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
     if (safe < std::min(least, wanted)) return backedOff(reach, in_held, speed);
   }
   if (reach.s >= most) reach.is_stopped = false;
+  reach.is_given_up = reach.is_stopped;
   return reach;
 }
 

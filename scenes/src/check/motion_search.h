@@ -22,6 +22,7 @@ struct Blocker {
 struct Reach {
   double s = 0;  ///< as asked for at most
   bool is_stopped = false;
+  bool is_given_up = false;  ///< with is_stopped: not stopped, but after too many steps; it reaches farther
   Blocker by;
 };
 

@@ -8,8 +8,10 @@ namespace vps::scenes::inline v0 {
 
 struct OverlapVolume {
   double volume_m3 = 0;
-  double area_m2 = 0;   ///< of its surface
-  double error_m3 = 0;  ///< of closed meshes; a hole of an open one adds its area times the overlap's size
+  double area_m2 = 0;  ///< of its surface
+  /// A bound: the shift, and what the vector areas of the found surface lack of zero. A hole of an open mesh
+  /// adds its area times a sixth of the overlap's diagonal.
+  double error_m3 = 0;
 };
 
 /// By the divergence theorem over the parts of each surface inside the other solid, whose areas are exact:

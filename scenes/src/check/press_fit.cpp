@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "check/ring_volume.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -135,14 +137,20 @@ void judge(const std::vector<PlacedSurface>& parts, CheckedPair& pair, std::vect
   const bool is_contact = pair.state == PairState::Contact;
   bool is_declared = true;
   double hidden_m = 0;  // of an interference that the facets hide
+  const double facets_off_m = pair.error_m;
   double depth_limit_m = pair.press_fit_m;
   for (CheckedFit& fit : fits) {
     const double of_fit_m = interferenceOf(fit);
     if (of_fit_m == 0 || !isOf(fit, pair)) continue;
     depth_limit_m = 0.5 * pair.press_fit_m;  // in diameter or width, so half to each side
     is_declared = is_declared && of_fit_m - fit.error_m <= pair.press_fit_m;
-    if (is_contact && fit.kind == FitKind::Shaft && fit.offset_m < 0.5 * of_fit_m &&
-        0.5 * of_fit_m > hidden_m) {
+    const bool is_hidden = is_contact && fit.kind == FitKind::Shaft && fit.offset_m < 0.5 * of_fit_m;
+    if (is_hidden) {
+      const RingVolume ring = ringVolume(fit, named(parts, fit.shaft), named(parts, fit.bore), facets_off_m);
+      pair.interference_volume_m3 += ring.volume_m3;
+      pair.volume_error_m3 += ring.error_m3;
+    }
+    if (is_hidden && 0.5 * of_fit_m > hidden_m) {
       hidden_m = pair.interference_depth_m = 0.5 * of_fit_m;
       pair.error_m = 0.5 * fit.error_m + fit.offset_m;
       pair.clearance_m = 0;
