@@ -11,8 +11,8 @@ constexpr double kMotionSearchForever = std::numeric_limits<double>::infinity();
 /// A step of less than this stops the motion: a tenth of the rest depth.
 constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
 constexpr int kMostSteps = 400;
-/// A whole turn in a bore of n facets, with clearance c at radius r, takes some 2 n steps, and more where c is
-/// near the chord of the facets.
+/// A whole turn in a bore of n facets, with clearance c at radius r, takes some 2 n steps, and more where c
+/// is near the chord of the facets.
 constexpr int kMostStepsOfTurn = 4000;
 /// The first step ends here, and each later one at four times as far: only what is near is looked at, where
 /// something is near.
