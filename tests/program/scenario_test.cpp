@@ -232,5 +232,28 @@ TEST_F(Scenario, APartThatStartsInsideAnotherIsRefusedByName) {
   expectRefused("assemble scene.toml --out out", "part 'peg': starts");
 }
 
+// The second step's way leads through the plate, and its time would last for hours.
+TEST_F(Scenario, AStoppedRunKeepsTheStepsThatWereDoneAndSaysWhere) {
+  write("steps.toml",
+        "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n"
+        "[[part]]\nfile = 'pin.stl'\nname = 'near'\n[[part]]\nfile = 'pin.stl'\nname = 'far'\n"
+        "[[step]]\npart = 'near'\nstart = {position = [5, 0, 12]}\n"
+        "target = {position = [5, 0, 9]}\n"
+        "timeout_s = 0.1\n"
+        "[[step]]\npart = 'far'\nstart = {position = [-5, 0, -12]}\ntarget = {position = [-5, 0, 9]}\n"
+        "timeout_s = 10000\n");
+  write("stop.sh",
+        "'" VPS_PROGRAM
+        "' assemble steps.toml --out run --no-pictures >out.txt 2>err.txt &\n"
+        "while [ ! -e run/unfinished.json ] && kill -0 $!; do sleep 0.05; done\nkill -TERM $!\nwait $!\n");
+  std::system(("cd '" + folder_.string() + "' && XDG_CACHE_HOME='" + folder_.string() + ".cache' sh stop.sh")
+                  .c_str());
+  EXPECT_NE(slurp(folder_ / "out.txt").find("results so far: run/unfinished.json"), std::string::npos)
+      << slurp(folder_ / "out.txt") << slurp(folder_ / "err.txt");
+  const json kept = json::parse(slurp(folder_ / "run/unfinished.json"));
+  ASSERT_EQ(kept["steps"].size(), 1u);
+  EXPECT_EQ(kept["steps"][0]["part"], "near");
+}
+
 }  // namespace
 }  // namespace vps

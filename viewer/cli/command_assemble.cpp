@@ -113,19 +113,28 @@ int runAssemble(const AssembleArguments& given) {
   std::optional<HeardRun> heard;
   if (!given.sound.empty()) heard.emplace(scene, options);
   const std::string unfinished = given.out + "/unfinished.json";
-  options.on_step = [&](const scenes::AssembleResult& so_far) { writeWholeFile(unfinished, toJson(so_far)); };
+  std::optional<scenes::AssembleResult> so_far;
+  options.on_step = [&](const scenes::AssembleResult& now) {
+    writeWholeFile(unfinished, toJson(now));
+    so_far = now;
+  };
   const auto run = [&] {
     if (given.tries > 1) return scenes::assembleTries(scene, {given.tries}, options);
     return given.record.empty() ? scenes::assemble(scene, options)
                                 : scenes::assembleAndRecord(scene, given.record, options);
   };
-  const scenes::AssembleResult result = run();
-  if (stopRequested() && !result.steps.empty()) {
+  scenes::AssembleResult result;
+  try {
+    result = run();
+    throwIfStopped();
+  } catch (const Stopped&) {
     bar.clear();
-    printSteps(result);
-    std::printf("stopped; results so far: %s\n", unfinished.c_str());
+    if (so_far) {
+      printSteps(*so_far);
+      std::printf("stopped; results so far: %s\n", unfinished.c_str());
+    }
+    throw;
   }
-  throwIfStopped();
 
   bar.progress()("writing the report", 1);
   const std::vector<std::string> notes =
