@@ -63,7 +63,8 @@ TEST_F(Plan, RefusesABaseThatIsNoPartAndAFolderWithAScene) {
   EXPECT_EQ(run("plan drawn.toml -o planned --force").status, 0);
 }
 
-/// An OBJ file of boxes in millimetres: name, least and greatest corner.
+/// An OBJ file of boxes in millimetres: name, least and greatest corner. Boxes of one name that follow one
+/// another are one part.
 struct NamedBox {
   std::string name;
   std::array<double, 3> min, max;
@@ -73,8 +74,10 @@ std::string objOf(const std::vector<NamedBox>& boxes) {
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
   std::ostringstream out;
   int first = 1;
+  std::string name;
   for (const NamedBox& box : boxes) {
-    out << "o " << box.name << '\n';
+    if (box.name != name) out << "o " << box.name << '\n';
+    name = box.name;
     for (unsigned i = 0; i < 8; ++i) {
       out << 'v';
       for (unsigned axis = 0; axis < 3; ++axis)
@@ -106,6 +109,35 @@ TEST_F(Plan, ACadFileIsPlannedAndAssembledInOneGoAsItsSceneIs) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "once/report.html"));
   EXPECT_NE(once.out.find("all parts planned"), std::string::npos) << once.out;
   EXPECT_EQ(run("assemble once/plan/scene.toml --units mm --out other").status, 2);
+}
+
+// A tongue in its groove: walls keep both from parting, so that they are joined before they go into the
+// pocket.
+TEST_F(Plan, SubassembliesOfACadFileAreAssembledBeforeTheProductThatMountsThem) {
+  write("product.obj", objOf({{"pocket", {-25, -15, -5}, {25, 15, 0}},
+                              {"pocket", {-25, -15, -5}, {-20.1, 15, 20}},
+                              {"pocket", {20.1, -15, -5}, {25, 15, 20}},
+                              {"pocket", {-25, -15, -5}, {25, -10.1, 20}},
+                              {"pocket", {-25, 10.1, -5}, {25, 15, 20}},
+                              {"left", {-20, -10, 0}, {0, 10, 30}},
+                              {"left", {-1, -10, 10.5}, {10, 10, 19.5}},
+                              {"right", {0.1, -10, 0}, {20, 10, 10}},
+                              {"right", {0.1, -10, 20}, {20, 10, 30}},
+                              {"right", {10.5, -10, 5}, {20, 10, 25}}}));
+  const Ran ran = run("assemble product.obj --units mm --out run --no-pictures --json whole.json");
+  ASSERT_NE(ran.status, 2) << ran.out << ran.err;
+  const std::string part = "run/subassembly_1/";
+  ASSERT_TRUE(std::filesystem::exists(folder_ / part / "report.html")) << ran.out << ran.err;
+  const json first = json::parse(slurp(folder_ / part / "assemble.json")),
+             product = json::parse(slurp(folder_ / "run/assemble.json"));
+  EXPECT_EQ(first["steps"].size(), 1U);
+  EXPECT_EQ(product["steps"][0]["part"], "subassembly_1");
+  EXPECT_EQ(json::parse(slurp(folder_ / "whole.json"))["steps"], product["steps"]);
+  // The status is good only if both are.
+  const bool fits = first["verdict"] == "fits" && product["verdict"] == "fits";
+  EXPECT_EQ(ran.status == 0, fits) << ran.out << ran.err;
+  EXPECT_LT(ran.out.find("\nsubassembly_1\n"), ran.out.find("\nproduct\n")) << ran.out;
+  EXPECT_NE(ran.out.rfind("run/subassembly_1/report.html"), std::string::npos) << ran.out;
 }
 
 // What a designer does: each fault is in the words of the answer.

@@ -23,6 +23,7 @@
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
 #include "vps_viewer/sound.h"
+#include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -73,26 +74,7 @@ class HeardRun {
   scenes::SnapshotTap tap_;
 };
 
-int runAssemble(const AssembleArguments& given);
-
-/// Plans the CAD file into a folder of the results, then runs what was planned. Good only if both are.
-int runCad(AssembleArguments given) {
-  PlanArguments plan;
-  plan.assembly = given.scene.scene;
-  plan.out = (std::filesystem::path(given.out) / "plan").string();
-  plan.units = given.units;
-  plan.deflection = given.deflection;
-  plan.is_forced = true;
-  requireNotRead(given.json, {plan.assembly});
-  ProgressBar bar;
-  const int planned = planInto(plan, bar);
-  given.scene.scene = plan.out + "/scene.toml";
-  given.units = given.deflection = "";
-  return std::max(planned, runAssemble(given));
-}
-
-int runAssemble(const AssembleArguments& given) {
-  if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
+scenes::Verdict runScene(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
   requireOwnUnits(file, given.units, given.deflection);
   OutputFolder out(given.out);
@@ -149,7 +131,62 @@ int runAssemble(const AssembleArguments& given) {
   if (heard) heard->write(wav);
 
   printOutcome(result, notes, given.record, given.out);
-  return statusOf(result.verdict);
+  return result.verdict;
+}
+
+/// Of an assembly and of what it is made of.
+scenes::Verdict worseOf(scenes::Verdict a, scenes::Verdict b) {
+  using scenes::Verdict;
+  for (const Verdict verdict : {Verdict::Blocked, Verdict::NotShown})
+    if (a == verdict || b == verdict) return verdict;
+  return Verdict::Fits;
+}
+
+/// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
+/// product, which mounts each of them as one part.
+scenes::Verdict runPlanned(AssembleArguments given, const std::vector<std::string>& scene_files) {
+  namespace fs = std::filesystem;
+  Table table({"<assembly", "<verdict", "<report"});
+  scenes::Verdict whole = scenes::Verdict::Fits;
+  const auto run = [&](const AssembleArguments& of, const std::string& name) {
+    if (scene_files.size() > 1) std::printf("\n%s\n", name.c_str());
+    const scenes::Verdict verdict = runScene(of);
+    whole = worseOf(whole, verdict);
+    table.add({name, words(verdict), of.out + "/report.html"});
+  };
+  for (std::size_t i = scene_files.size(); i-- > 1;) {
+    AssembleArguments part = given;
+    part.scene.scene = scene_files[i];
+    const std::string name = fs::path(scene_files[i]).stem().string();
+    part.out = (fs::path(given.out) / name).string();
+    part.json = part.record = part.sound = "";
+    run(part, name);
+  }
+  given.scene.scene = scene_files.front();
+  run(given, "product");
+  if (scene_files.size() > 1) std::printf("\n%s", table.text().c_str());
+  return whole;
+}
+
+/// Plans the CAD file into a folder of the results, then runs what was planned. Good only if both are.
+int runCad(AssembleArguments given) {
+  PlanArguments plan;
+  plan.assembly = given.scene.scene;
+  plan.out = (std::filesystem::path(given.out) / "plan").string();
+  plan.units = given.units;
+  plan.deflection = given.deflection;
+  plan.is_forced = true;
+  requireNotRead(given.json, {plan.assembly});
+  ProgressBar bar;
+  const PlannedFolder planned = planInto(plan, bar);
+  given.units = given.deflection = "";
+  const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
+  return statusOf(planned.status == kGood ? verdict : worseOf(verdict, scenes::Verdict::Blocked));
+}
+
+int runAssemble(const AssembleArguments& given) {
+  if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
+  return statusOf(runScene(given));
 }
 
 }  // namespace

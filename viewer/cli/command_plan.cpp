@@ -41,7 +41,7 @@ int runPlan(const PlanCommandArguments& given) {
   if (given.is_verify) return verify(given);
   if (given.out.empty()) throw LoadError("", "", "--out is missing; name a folder for the planned scene");
   ProgressBar bar;
-  return planInto(given, bar);
+  return planInto(given, bar).status;
 }
 
 }  // namespace

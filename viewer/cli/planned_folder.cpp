@@ -109,7 +109,7 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
 
 }  // namespace
 
-int planInto(const PlanArguments& given, ProgressBar& bar) {
+PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   std::error_code error;
   if (!given.is_forced && std::filesystem::exists(std::filesystem::path(given.out) / "scene.toml", error))
     throw LoadError(given.out, "",
@@ -134,7 +134,10 @@ int planInto(const PlanArguments& given, ProgressBar& bar) {
   std::fputs(planTables(plan).c_str(), stdout);
   for (const scenes::WayFault& fault : faults) warn(inWords(fault));
   std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
-  return plan.blocked() > 0 || !faults.empty() ? kBad : kGood;
+  PlannedFolder planned{plan.blocked() > 0 || !faults.empty() ? kBad : kGood, {}};
+  for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
+    planned.scene_files.push_back((std::filesystem::path(given.out) / sceneFileName(plan, i)).string());
+  return planned;
 }
 
 }  // namespace vps::viewer::inline v0

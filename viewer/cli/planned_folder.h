@@ -16,10 +16,16 @@ struct PlanArguments {
   bool is_forced = false;
 };
 
+/// What planInto() came to.
+struct PlannedFolder {
+  int status = 0;  ///< the program's exit status
+  /// Of the product, then of its subassemblies; each comes after the one that mounts it.
+  std::vector<std::string> scene_files;
+};
+
 /// Plans a CAD file or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json and
 /// plan.dot, and prints the plan and what is wrong with it. A CAD file whose parts have very many triangles
 /// is read once more with a greater deflection, and this is said, unless --deflection is given.
-/// @return the exit status
-int planInto(const PlanArguments& given, ProgressBar& bar);
+PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
 }  // namespace vps::viewer::inline v0
