@@ -13,6 +13,7 @@
 
 #include "scene/read_fields.h"
 #include "vps_scenes/check_fields.h"
+#include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/trade_fields.h"
@@ -215,6 +216,7 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
+  checkSection(readme, "margin", head + resultLines("steps[].", kStepMarginFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }
 

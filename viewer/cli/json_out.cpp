@@ -6,6 +6,7 @@
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/check_fields.h"
 #include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/result_fields.h"
 #include "vps_scenes/trade_fields.h"
@@ -279,6 +280,16 @@ std::string toJson(const scenes::CheckResult& result) {
                {"pairs", pairs},
                {"fits", fits},
                {"parts", parts}});
+}
+
+std::string toJson(const scenes::MarginResult& result) {
+  Json steps = Json::array();
+  for (const scenes::StepMargin& step : result.steps)
+    steps.push_back(toObject(step, scenes::kStepMarginFields));
+  return text({{"scene", result.scene},
+               {"resolution_m", result.resolution_m},
+               {"by_contact", result.has_contact},
+               {"steps", steps}});
 }
 
 std::string toJson(const scenes::TradeResult& result) {
