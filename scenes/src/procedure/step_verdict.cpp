@@ -42,7 +42,9 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
                                         " of where it belongs" + tolerance + " and let go"
                                   : "the hand took it to be in place and let go, but its surface was up to " +
                                         lengthInWords(brought_error_m) + " from where it belongs" + tolerance;
-    if (!isAtRest(result) || (was_there && result.final_error_m > result.tolerance_m))
+    const bool has_left =
+        result.final_error_m > result.tolerance_m && (was_there || result.rest_drift_m > result.tolerance_m);
+    if (!isAtRest(result) || has_left)
       words.append("; then it moved by ")
           .append(lengthInWords(result.rest_drift_m))
           .append(": ")
