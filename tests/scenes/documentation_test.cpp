@@ -13,8 +13,10 @@
 
 #include "scene/read_fields.h"
 #include "vps_scenes/check_fields.h"
+#include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/settings_fields.h"
+#include "vps_scenes/study_fields.h"
 #include "vps_scenes/trade_fields.h"
 
 namespace vps::scenes {
@@ -215,6 +217,8 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
+  checkSection(readme, "margin", head + resultLines("steps[].", kStepMarginFields));
+  checkSection(readme, "study", head + resultLines("", kStudyFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON. The only source of the program that includes nlohmann/json, by json_fields.h.
+// Results as JSON. With study_log.cpp the only source of the program that includes nlohmann/json.
 #include "json_out.h"
 
 #include "json_fields.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/check_fields.h"
 #include "vps_scenes/fidelity_choice.h"
+#include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/result_fields.h"
+#include "vps_scenes/study_fields.h"
 #include "vps_scenes/trade_fields.h"
 
 namespace vps::viewer::inline v0 {
@@ -279,6 +281,22 @@ std::string toJson(const scenes::CheckResult& result) {
                {"pairs", pairs},
                {"fits", fits},
                {"parts", parts}});
+}
+
+std::string toJson(const scenes::MarginResult& result) {
+  Json steps = Json::array();
+  for (const scenes::StepMargin& step : result.steps)
+    steps.push_back(toObject(step, scenes::kStepMarginFields));
+  return text({{"scene", result.scene},
+               {"resolution_m", result.resolution_m},
+               {"by_contact", result.has_contact},
+               {"steps", steps}});
+}
+
+std::string toJson(const scenes::StudyResult& result) {
+  Json json = Json::object();
+  addFields(json, result, scenes::kStudyFields);
+  return text(json);
 }
 
 std::string toJson(const scenes::TradeResult& result) {

@@ -14,7 +14,7 @@ constexpr double kSameFace = 1e-9;     // of 1 - cos: facets of one plane count 
 constexpr double kIndependent = 0.02;  // facets that meet at less than a degree count as one bent face
 constexpr double kFarthest = 3;        // of the distance, which a cube's corner needs 1.7 of
 
-/// The move of a corner that takes all its facets inwards.
+/// The move of a corner that takes all its facets inwards, or outwards for a negative distance.
 Vec3 inwards(const std::vector<Vec3>& normals, double by_m) {
   if (normals.empty()) return Vec3::Zero();
   Eigen::MatrixX3d planes(static_cast<Eigen::Index>(normals.size()), 3);
@@ -24,7 +24,7 @@ Vec3 inwards(const std::vector<Vec3>& normals, double by_m) {
   solver.setThreshold(kIndependent);
   solver.compute(planes);
   const Vec3 move = solver.solve(Eigen::VectorXd::Constant(planes.rows(), -by_m));
-  const double length_m = move.norm(), most_m = kFarthest * by_m;
+  const double length_m = move.norm(), most_m = kFarthest * std::abs(by_m);
   return length_m > most_m ? Vec3(move * (most_m / length_m)) : move;
 }
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Charts of bars as SVG, for pages.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vps::viewer::inline v0 {
+
+/// One horizontal bar with its name on the left and its value in words on the right.
+struct Bar {
+  std::string name;
+  double value = 0;  ///< not negative
+  std::string text;
+  std::string color = "#3b6ea5";
+};
+
+/// A bar below the other, from a common zero; the longest fills the chart. A caption stands below.
+std::string barChart(const std::vector<Bar>& bars, const std::string& caption_html);
+
+/// One column of a histogram: two counts, one on top of the other.
+struct Column {
+  double low = 0, high = 0;  ///< of the horizontal axis
+  double lower = 0, upper = 0;
+};
+
+/// Columns side by side; the ends of the axis and the caption are text that the caller formats. All columns
+/// have the same width. Lower counts are green, upper ones red.
+std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
+                      const std::string& right_text, const std::string& caption_html);
+
+}  // namespace vps::viewer::inline v0
