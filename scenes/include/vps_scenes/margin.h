@@ -35,8 +35,9 @@ struct StepMargin {
   std::string fails_why;
   /// By geometry alone: greatest offset that no overlap and no fit rules out.
   double growth_bound_m = 0;
-  /// Least displacement across the path that makes it touch at its target, off its seat, and its direction;
-  /// none: it overlaps there, or nothing is beside it.
+  /// Least displacement along an axis of its play (check.h) across the path that makes it touch at its
+  /// target, off its seat, and its direction; between the axes it may be less, by up to a factor of sqrt(2)
+  /// for flat walls. None: it overlaps there, or nothing is beside it.
   std::optional<double> position_m;
   Vec3 position_W = Vec3::Zero();
   double position_error_m = 0;

@@ -20,7 +20,8 @@ inline constexpr auto kStepMarginFields = std::make_tuple(
     field("fails_why", &StepMargin::fails_why, "reason of that verdict"),
     field("growth_bound_m", &StepMargin::growth_bound_m, "greatest offset that geometry alone allows"),
     field("position_m", &StepMargin::position_m,
-          "least displacement across the path that makes it touch at its target; null: none does"),
+          "least displacement along an axis of its play across the path that makes it touch at its target; "
+          "null: none does"),
     field("position_axis", &StepMargin::position_W, "its direction, in the world"),
     field("position_error_m", &StepMargin::position_error_m, "bound of its error"),
     field("angle_rad", &StepMargin::angle_rad,
