@@ -49,6 +49,13 @@ TEST_F(Check, AStepsTargetIsWhereThePartIsChecked) {
   EXPECT_NE(ran.out.find("1 clash: plate and pin by 49.9"), std::string::npos) << ran.out;
 }
 
+TEST_F(Check, TheTextSaysWhatAnOverlapIs) {
+  write("drawn.toml", scene(0));
+  EXPECT_EQ(run("check drawn.toml --no-play").out.find("depth of the deepest point"), std::string::npos);
+  write("drawn.toml", scene(-0.02));
+  EXPECT_NE(run("check drawn.toml --no-play").out.find("depth of the deepest point"), std::string::npos);
+}
+
 TEST_F(Check, AnAllowedOverlapIsNoClash) {
   write("drawn.toml", scene(-0.02, "allow_overlap = true\n"));
   const Ran ran = run("check drawn.toml");

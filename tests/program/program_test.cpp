@@ -29,6 +29,8 @@ TEST_F(Program, EveryCommandHasHelpWithAnExample) {
     EXPECT_NE(ran.out.find("Example:\n  vps " + command), std::string::npos) << ran.out;
     EXPECT_NE(overview.find(command), std::string::npos) << overview;
   }
+  for (const char* status : {"0 done", "1 done, but", "2 not done", "3 not shown"})
+    EXPECT_NE(overview.find(status), std::string::npos) << overview;
   EXPECT_EQ(run("--version").status, 0);
 }
 

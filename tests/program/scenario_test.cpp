@@ -208,6 +208,10 @@ TEST_F(Scenario, APartThatDriftsAfterReleaseIsNotShown) {
   writePegScene("", "start = {position = [0, 0, -5]}\ntarget = {position = [0, 0, -8]}\n");
   const Ran ran = run("assemble scene.toml --out out");
   EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
+  const json step = read("out/assemble.json")["steps"][0];
+  EXPECT_NE(step["reason"].get<std::string>().find("; then it moved by 6"), std::string::npos)
+      << step["reason"];
+  EXPECT_NE(ran.out.find(": nothing holds it there"), std::string::npos) << ran.out;
 }
 
 TEST_F(Scenario, APathLongerThanTheDevicesWorkspaceIsRefusedWithoutIndexing) {

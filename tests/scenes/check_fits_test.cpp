@@ -155,6 +155,61 @@ TEST(CheckFits, AKeyInASlotHasItsWidthsAndClearance) {
   }
 }
 
+/// Each triangle divided into four, and drawn towards its middle by this much of its size.
+Mesh inPieces(const Mesh& mesh, int times, double drawn) {
+  Mesh out;
+  const auto add = [&](const std::array<Vec3, 3>& t) {
+    const Vec3 middle = (t[0] + t[1] + t[2]) / 3;
+    const auto n = static_cast<std::uint32_t>(out.vertices.size());
+    for (const Vec3& p : t) out.vertices.emplace_back(p + drawn * (middle - p));
+    out.triangles.push_back({n, n + 1, n + 2});
+  };
+  const auto divide = [&](const auto& self, const std::array<Vec3, 3>& t, int left) -> void {
+    if (left == 0) return add(t);
+    const Vec3 a = 0.5 * (t[0] + t[1]), b = 0.5 * (t[1] + t[2]), c = 0.5 * (t[2] + t[0]);
+    for (const auto& part : {std::array{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}})
+      self(self, part, left - 1);
+  };
+  for (const auto& t : mesh.triangles)
+    divide(divide, {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]}, times);
+  return out;
+}
+
+// All facets have cracks between them, of about 20 um.
+TEST(CheckFits, AFaceInPiecesFitsOnce) {
+  const Mesh key = makeBox(Vec3(0.03, 10e-3, 8e-3)), wall = makeBox(Vec3(0.03, 5e-3, 8e-3));
+  Mesh slot = transformed(wall, Pose::translation(Vec3(0, 7.52e-3, 0)));
+  append(slot, transformed(wall, Pose::translation(Vec3(0, -7.52e-3, 0))));
+  const auto fitsOf = [](const Mesh& inner, const Mesh& outer) {
+    return checkAssembly("test", {{"slot", outer, Pose(), {}, false}, {"key", inner, Pose(), {}, false}},
+                         {.has_play = false})
+        .fits;
+  };
+  const std::vector<CheckedFit> whole = fitsOf(key, slot);
+  const std::vector<CheckedFit> pieces = fitsOf(inPieces(key, 3, 0.01), inPieces(slot, 3, 0.01));
+  ASSERT_EQ(whole.size(), 1U);
+  ASSERT_EQ(pieces.size(), 1U);
+  EXPECT_NEAR(pieces[0].diametral_clearance_m, 40e-6, 1e-9);
+  EXPECT_NEAR(pieces[0].length_m, whole[0].length_m, 0.1e-3);
+}
+
+// H11/c11, the loosest of the common fits, has up to 0.18 mm below 3 mm, so no share of the size limits it.
+TEST(CheckFits, AThinPlateFitsItsSlot) {
+  for (const double thick_m : {0.05e-3, 0.5e-3}) {
+    const Mesh wall = makeBox(Vec3(0.03, 5e-3, 8e-3));
+    const double middle_m = 2.5e-3 + 0.5 * thick_m + 20e-6;
+    Mesh slot = transformed(wall, Pose::translation(Vec3(0, middle_m, 0)));
+    append(slot, transformed(wall, Pose::translation(Vec3(0, -middle_m, 0))));
+    const CheckResult found = checkAssembly(
+        "test",
+        {{"slot", slot, Pose(), {}, false}, {"plate", makeBox(Vec3(0.02, thick_m, 6e-3)), Pose(), {}, false}},
+        {.has_play = false});
+    ASSERT_EQ(found.fits.size(), 1U) << thick_m;
+    EXPECT_NEAR(found.fits[0].shaft_m, thick_m, 1e-9);
+    EXPECT_NEAR(found.fits[0].diametral_clearance_m, 40e-6, 1e-9);
+  }
+}
+
 TEST(CheckFits, ABlockThatStandsBesideOneWallFitsNothing) {
   EXPECT_TRUE(fitsOf({part("floor", makeBox(Vec3(0.1, 0.1, 0.01))),
                       part("block", makeBox(Vec3(0.01, 0.01, 0.01)), Pose::translation(Vec3(0, 0, 0.01)))})

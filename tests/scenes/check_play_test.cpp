@@ -50,6 +50,22 @@ TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
   EXPECT_FALSE(peg.is_play_certain);
 }
 
+// Equal facets of both stand one behind the other; those of the cone are 7.4 um inside those of the cup, so
+// that their edges pass 3 um from its facets wherever the cone is turned.
+TEST(CheckPlay, AConeInACupTurnsFreely) {
+  constexpr double kLow_m = 6e-3, kHigh_m = 10e-3, kHeight_m = 10e-3, kRaised_m = 20e-6;
+  const std::vector<DrawnPart> parts = {
+      part("cup", test::lathe({{kLow_m, 0}, {14e-3, 0}, {14e-3, kHeight_m}, {kHigh_m, kHeight_m}}, 96)),
+      part("cone", test::lathe({{0, 0}, {kLow_m, 0}, {kHigh_m, kHeight_m}, {0, kHeight_m}}, 96),
+           Pose::translation(Vec3(0, 0, kRaised_m)))};
+  for (const char* name : {"cup", "cone"}) {
+    const CheckedPart found = playOf(name, parts);
+    ASSERT_TRUE(found.play) << name;
+    expectFree(found.play->rad, 2);
+    expectBoth(found.play->m, 0, kRaised_m * (kHigh_m - kLow_m) / kHeight_m, 0.1e-6);
+  }
+}
+
 // Two plates with many holes lie on each other: hundreds of edges of holes cross while one slides.
 TEST(CheckPlay, APlateWithHolesSlidesOnAnother) {
   const Pose X_W(rotationFromVector({0.5, 0.2, -0.7}), {0.01, 0.02, 0.03});

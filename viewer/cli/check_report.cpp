@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "table.h"
+#include "vps_viewer/check_words.h"
 #include "vps_viewer/csv.h"
 
 namespace vps::viewer::inline v0 {
@@ -21,16 +22,18 @@ std::string place(const Vec3& p_W) {
 std::string pairTable(const scenes::CheckResult& result) {
   Table table(
       {"<part", "<and", "<state", "clearance [um]", "overlap [um]", "volume [mm3]", "error [um]", "at [mm]"});
+  bool has_overlap = false;
   for (const scenes::CheckedPair& pair : result.pairs) {
+    has_overlap = has_overlap || pair.interference_depth_m > 0;
     const bool is_clash = pair.state >= PairState::PressFit;
     const std::string state = pair.is_uncertain ? "not known" : toText(pair.state);
-    table.add(
-        {pair.a, pair.b, pair.state == PairState::Clash && pair.is_allowed ? state + " (allowed)" : state,
-         is_clash ? "" : um(pair.clearance_m),
-         pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
-         is_clash ? fixed(1e9 * pair.interference_volume_m3, 4) : "", um(pair.error_m), place(pair.at_W)});
+    table.add({pair.a, pair.b,
+               pair.state == PairState::Clash && pair.is_allowed ? state + " (allowed)" : state,
+               is_clash ? "" : um(pair.clearance_m),
+               pair.interference_depth_m > 0 ? um(pair.interference_depth_m) : "",
+               is_clash ? volumeWords(pair) : "", um(pair.error_m), place(pair.at_W)});
   }
-  return table.text();
+  return table.text() + (has_overlap ? std::string(kOverlapMeaning) + "\n" : "");
 }
 
 std::string fitTable(const scenes::CheckResult& result) {
@@ -72,8 +75,8 @@ std::string waysText(const scenes::CheckedPart& part) {
   std::string out;
   if (!part.ways_out_W.empty()) out = std::to_string(part.ways_out_W.size());
   if (!part.screw_ways_out.empty()) out.append(out.empty() ? "by screw" : " and by screw");
-  if (!out.empty()) return out;
-  return part.is_play_certain ? "none" : "not known ~";
+  if (out.empty()) out = part.is_play_certain ? "none" : "not known";
+  return part.is_play_certain ? out : out + " ~";
 }
 
 std::string partTable(const scenes::CheckResult& result) {
@@ -92,11 +95,9 @@ std::string partTable(const scenes::CheckResult& result) {
     table.add(cells);
   }
   std::string text = table.text();
-  if (std::ranges::any_of(result.parts, [](const auto& part) { return part.play && !part.is_play_certain; }))
-    text.append(
-        "~: round faces of equal size touch, and their meshes can stop a motion that the faces allow; the "
-        "part "
-        "may\nhave more play and other ways out\n");
+  for (const scenes::CheckedPart& part : result.parts)
+    if (const std::string doubt = playDoubt(part, result); !doubt.empty())
+      text.append("~ ").append(part.name).append(": ").append(doubt).append("\n");
   return text;
 }
 

@@ -36,7 +36,8 @@ int run(int argc, char** argv) {
   line.app.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
   line.app.require_subcommand(1);
   line.app.footer(
-      "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 not done.\n"
+      "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 not done;\n"
+      "3 not shown: neither that the parts fit nor that they do not.\n"
       "Lengths carry a unit: 0.2mm, 20um, 0.01m. Example:\n"
       "  vps assemble scenes/peg_in_hole/scene.toml --out out");
 #define COMMAND(add) add(line);

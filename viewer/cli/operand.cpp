@@ -7,9 +7,9 @@
 
 #include "file_kind.h"
 #include "terminal.h"
-#include "vps/mesh_repair.h"
 #include "vps/solid.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/mesh_warning.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -55,7 +55,7 @@ VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string
   MeshReport report;
   VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
                      : buildVoxMap(Solid(mesh, file), settings, file, progress, &report);
-  if (report.signed_by_winding) warn(file + ": is not a closed surface: " + describe(report));
+  if (const std::string warning = scenes::meshWarning(report); !warning.empty()) warn(file + ": " + warning);
   return map;
 }
 

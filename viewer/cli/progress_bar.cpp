@@ -9,12 +9,28 @@
 
 namespace vps::viewer::inline v0 {
 
+namespace {
+
+/// "42 %: " ; nothing where the share is not known.
+std::string inWords(double share) {
+  if (!std::isfinite(share)) return {};
+  return std::to_string(static_cast<int>(100 * std::clamp(share, 0.0, 1.0))).append(" %: ");
+}
+
+}  // namespace
+
 ProgressBar::ProgressBar() : is_on_(isTerminal()), begun_(Clock::now()), drawn_(begun_) {}
 
 void ProgressBar::show(std::string_view doing, double share) {
   throwIfStopped();
-  if (!is_on_) return;
   const auto now = Clock::now();
+  if (!is_on_) {
+    constexpr auto kSayEvery = std::chrono::seconds(10);
+    if (now - drawn_ < kSayEvery) return;
+    drawn_ = now;
+    say(inWords(share) + std::string(doing));
+    return;
+  }
   // At most ten times a second.
   if (now - begun_ < std::chrono::seconds(1) || (is_drawn_ && now - drawn_ < std::chrono::milliseconds(100)))
     return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shows the progress of long work on a terminal, from the first second on; prints nothing elsewhere.
+// Shows the progress of long work on a terminal, from the first second on; elsewhere a line every ten
+// seconds.
 #pragma once
 
 #include <chrono>

@@ -21,10 +21,11 @@ std::string tableOf(const std::vector<scenes::StepResult>& steps) {
   Table table({"<step", "<verdict", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
                "drift [um]"});
   for (const scenes::StepResult& step : steps)
-    table.add({step.part, words(step.verdict), fixed(step.duration_s, 2),
-               fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
-               fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
-               fixed(step.rest_drift_m * 1e6, 2)});
+    table.add(
+        {step.part, words(step.verdict), fixed(step.duration_s, 2), fixed(step.max_penetration_m * 1e6, 2),
+         fixed(step.penetration_limit_m * 1e6, 2), fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
+         // Of a part that was not brought home it is how far it fell, which the reason says if it counts.
+         step.completed ? fixed(step.rest_drift_m * 1e6, 2) : "-"});
   return table.text();
 }
 

@@ -143,8 +143,10 @@ struct CheckedPart {
   double play_error_m = 0, play_error_rad = 0;
   std::vector<Vec3> ways_out_W;  ///< unit directions in which it leaves the others on a straight line
   std::vector<ScrewWay> screw_ways_out;
-  /// False: a shaft and its bore have the same size, or facets of curved faces cross as drawn. The mesh can
-  /// then stop a motion that the faces allow, so `play` is at least what it says and ways out may be missing.
+  /// False: a shaft and its bore have the same size, or facets cross as drawn by no more than the error of
+  /// the pair, or the search ended before the play did. The mesh can then stop a motion that the faces allow,
+  /// or allow it for as much longer as facets cross, so `play` can be off by its error and more in truth, and
+  /// ways out may be missing.
   bool is_play_certain = true;
 };
 

@@ -86,7 +86,9 @@ inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("play_error_m", &CheckedPart::play_error_m, "bound of the error of `play_m`"),
     field("play_error_rad", &CheckedPart::play_error_rad, "bound of the error of `play_rad`"),
     field("play_certain", &CheckedPart::is_play_certain,
-          "false: curved faces of equal size touch; their meshes can stop a motion that the faces allow"),
+          "false: facets cross as drawn, curved faces of equal size touch, or the search ended early; meshes "
+          "can "
+          "then stop a motion that the faces allow"),
     field("play_center_m", &CheckedPart::play_center_W, "where the axes of rotation meet, in the world"));
 
 inline constexpr auto kCheckWallFields =

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "check/on_cores.h"
 #include "check/play.h"
@@ -72,6 +73,7 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
   }
   const double leave_m = 2 * all.size().norm();
   std::vector<Play> plays(parts.size());
+  std::vector<std::uint8_t> is_given_up(kTasks * parts.size());
   forEachOnCores(kTasks * parts.size(), progress, "measuring play", [&](std::size_t i) {
     const std::size_t part = i / kTasks, axis = i % kTasks;
     const PartTask& task = tasks[part];
@@ -84,10 +86,11 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
       result.parts[part].screw_ways_out = screwWaysOut(*task.search, parts[part], task.fits, leave_m);
       return;
     }
-    const std::array<double, 2> both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
+    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
     std::array<double, 6>& of = axis < 3 ? plays[part].m : plays[part].rad;
-    of[2 * (axis % 3)] = both[0];
-    of[2 * (axis % 3) + 1] = both[1];
+    of[2 * (axis % 3)] = both.way[0];
+    of[2 * (axis % 3) + 1] = both.way[1];
+    is_given_up[i] = both.is_given_up ? 1 : 0;
   });
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!tasks[i].search) continue;
@@ -96,7 +99,8 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
     part.play_axes_W = tasks[i].frame.axes_W;
     part.play_center_W = tasks[i].frame.center_W;
     part.play_error_m = tasks[i].error_m;
-    part.is_play_certain = !hasFlushFaces(tasks[i]);
+    const auto given_up = std::span(is_given_up).subspan(kTasks * i, kTasks);
+    part.is_play_certain = !hasFlushFaces(tasks[i]) && std::ranges::count(given_up, 1) == 0;
     // A contact at half the part's least size from the axis; farther out the error is less.
     part.play_error_rad = tasks[i].error_m / (0.5 * parts[i].surface->box().size().minCoeff());
   }

@@ -28,7 +28,7 @@ struct FittedPart {
 };
 
 /// Cylinders of which one is in the other with a common axis, and pairs of parallel faces between two others.
-/// The clearance is at most a quarter of the size. O(faces of a x faces of b). Thread-safe.
+/// The clearance is at most mostClearance_m(). O(faces of a x faces of b). Thread-safe.
 void appendShaftFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 void appendKeyFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 /// Threads outside of one part in threads inside of the other, with a common axis and lead. Removes the fits
@@ -44,7 +44,10 @@ std::array<double, 2> commonRange(const Face& a, const OtherFace& b) {
   return {std::max(a.from_m, std::min(end_m, other_end_m)), std::min(a.to_m, std::max(end_m, other_end_m))};
 }
 
-/// The greatest clearance of a fit, in its size. assumed: wider is not called a fit in any table of ISO 286.
-inline constexpr double kMostClearance = 0.25;
+/// The greatest clearance that is called a fit. assumed: a quarter of the size; below 3 mm, the smallest
+/// sizes of ISO 286, that of H11/c11 there, 0.18 mm, and no more than the size itself.
+inline double mostClearance_m(double size_m) {
+  return std::max(0.25 * size_m, std::min(0.18e-3, size_m));
+}
 
 }  // namespace vps::scenes::inline v0

@@ -10,7 +10,8 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Connected facets in one plane, outside of round faces and threads.
+/// Facets in one plane that are connected, or beside each other across a crack, outside of round faces and
+/// threads.
 struct FlatFace {
   Vec3 n = Vec3::UnitZ();  ///< outward, unit, in the part's frame
   double offset_m = 0;     ///< n . x of its points

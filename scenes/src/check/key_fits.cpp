@@ -162,7 +162,7 @@ Vec3 alongOf(const Seen& of) {
 
 bool fitOf(const Contact& one, const Contact& two, CheckedFit& fit) {
   const double key_m = -two.key.above(one.key.box_W.center()), clearance_m = one.gap_m + two.gap_m;
-  if (!(key_m > 0) || std::abs(clearance_m) > kMostClearance * key_m) return false;
+  if (!(key_m > 0) || std::abs(clearance_m) > mostClearance_m(key_m)) return false;
   const Vec3 n = one.key.n_W, u = alongOf(one.key), v = n.cross(u);
   const Facing on_one = facing(projected(one.key, u, v), projected(one.slot, u, v)),
                on_two = facing(projected(two.key, u, v), projected(two.slot, u, v));
@@ -187,9 +187,26 @@ bool fitOf(const Contact& one, const Contact& two, CheckedFit& fit) {
   return true;
 }
 
+/// Faces that cracks or grooves divide give the same fit more than once: the longest is kept.
+void addKeyOnce(const CheckedFit& fit, std::size_t first, std::vector<CheckedFit>& out) {
+  for (std::size_t i = first; i < out.size(); ++i) {
+    CheckedFit& other = out[i];
+    const double same_m = 1e-5 * fit.shaft_m + fit.error_m + other.error_m;
+    const bool is_same = std::abs(other.shaft_m - fit.shaft_m) <= same_m &&
+                         std::abs(other.bore_m - fit.bore_m) <= same_m &&
+                         std::abs(fit.axis_W.dot(fit.at_W - other.at_W)) <= same_m &&
+                         fit.axis_W.cross(other.axis_W).norm() < kKeyFitsParallel;
+    if (!is_same) continue;
+    if (fit.length_m > other.length_m) other = fit;
+    return;
+  }
+  out.push_back(fit);
+}
+
 void appendFits(const FittedPart& key, const FittedPart& slot, std::vector<CheckedFit>& out) {
-  const double most_m = kMostClearance * key.part.surface->box().size().maxCoeff();
+  const double most_m = mostClearance_m(key.part.surface->box().size().maxCoeff());
   const std::vector<Contact> near = contacts(key, slot, most_m);
+  const std::size_t first = out.size();
   for (std::size_t i = 0; i < near.size(); ++i)
     for (std::size_t k = i + 1; k < near.size(); ++k) {
       if (!near[i].isOpposite(near[k])) continue;
@@ -200,7 +217,7 @@ void appendFits(const FittedPart& key, const FittedPart& slot, std::vector<Check
       CheckedFit fit;
       fit.shaft = key.part.name;
       fit.bore = slot.part.name;
-      if (fitOf(near[is_first ? i : k], near[is_first ? k : i], fit)) out.push_back(fit);
+      if (fitOf(near[is_first ? i : k], near[is_first ? k : i], fit)) addKeyOnce(fit, first, out);
     }
 }
 

@@ -55,12 +55,16 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
   return frame;
 }
 
-std::array<double, 2> playAlong(const MotionSearch& search, const PlayFrame& frame, int axis,
-                                double leave_m) {
+AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m) {
   const Motion motion{frame.axes_W.col(axis % 3), frame.center_W, axis >= 3};
   const std::array<Reach, 2> reach =
       search.reachBoth(motion, motion.is_turn ? 2 * std::numbers::pi : leave_m);
-  return {reach[0].is_stopped ? reach[0].s : kPlayForever, reach[1].is_stopped ? reach[1].s : kPlayForever};
+  AxisPlay play;
+  for (const std::size_t i : {0, 1}) {
+    play.way[i] = reach[i].is_stopped ? reach[i].s : kPlayForever;
+    play.is_given_up = play.is_given_up || reach[i].is_given_up;
+  }
+  return play;
 }
 
 std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,

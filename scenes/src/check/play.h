@@ -18,9 +18,15 @@ struct PlayFrame {
 /// centre is on it.
 PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fits);
 
-/// Play along (0 to 2) or about (3 to 5) an axis of the frame, forwards and back.
+/// Play along or about an axis, forwards and back.
+struct AxisPlay {
+  std::array<double, 2> way = {};
+  bool is_given_up = false;  ///< the search ended before the play did, which is more
+};
+
+/// Along (0 to 2) or about (3 to 5) an axis of the frame.
 /// @param leave_m  a way on which a part certainly leaves all others
-std::array<double, 2> playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m);
+AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m);
 
 /// Unit directions in the world in which the part leaves the others on a straight line: of the frame's axes,
 /// of those of its fits, and of 42 directions all around.

@@ -16,7 +16,7 @@ constexpr double kLeastLength = 1e-3;  // in the diameter
 /// The fit of a shaft in a bore that are both in the world frame; false if they are none.
 bool fitOf(const RoundFace& shaft, const RoundFace& bore, CheckedFit& fit) {
   const double d_m = 2 * shaft.radius_m, clearance_m = 2 * (bore.radius_m - shaft.radius_m);
-  if (std::abs(clearance_m) > kMostClearance * d_m) return false;
+  if (std::abs(clearance_m) > mostClearance_m(d_m)) return false;
   if (std::abs(shaft.axis.dot(bore.axis)) < 0.99) return false;
   const auto [from_m, to_m] = commonRange(shaft, bore);
   const double length_m = to_m - from_m;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSameLead = 0.03;
 constexpr double kLeastTurns = 0.5;     // in each other
+constexpr double kMostCrestGap = 0.25;  // between the major diameters, in them; assumed
 constexpr double kThreadOffset = 0.05;  // of the axes, in the diameter: a loose nut hangs on its bolt
 
 ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
@@ -26,8 +27,8 @@ bool fitOf(const ThreadFace& screw, const ThreadFace& nut, CheckedFit& fit) {
   if (std::abs(screw.lead_m - nut.lead_m) > kSameLead * std::abs(screw.lead_m) || screw.starts != nut.starts)
     return false;
   // Crests of each reach into the grooves of the other.
-  if (screw.greatest_m <= nut.least_m || screw.greatest_m > (1 + 0.5 * kMostClearance) * nut.greatest_m ||
-      nut.greatest_m > (1 + kMostClearance) * screw.greatest_m)
+  if (screw.greatest_m <= nut.least_m || screw.greatest_m > (1 + 0.5 * kMostCrestGap) * nut.greatest_m ||
+      nut.greatest_m > (1 + kMostCrestGap) * screw.greatest_m)
     return false;
   const auto [from_m, to_m] = commonRange(screw, nut);
   if (!(to_m - from_m > kLeastTurns * std::abs(screw.lead_m) / screw.starts)) return false;

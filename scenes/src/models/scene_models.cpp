@@ -15,9 +15,9 @@
 #include "core/wall_clock.h"
 #include "models/shrunk_mesh.h"
 #include "vps/load_error.h"
-#include "vps/mesh_repair.h"
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
+#include "vps_scenes/mesh_warning.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -71,8 +71,8 @@ std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, c
       std::make_shared<VoxMap>(options.cache != nullptr ? options.cache->build(cachedMesh(part, solid), solid,
                                                                                settings, name, {}, &report)
                                                         : buildVoxMap(solid, settings, name, {}, &report));
-  if (report.signed_by_winding && options.warn)
-    options.warn(part.file + ": part '" + name + "' is not a closed surface: " + describe(report));
+  if (const std::string warning = meshWarning(report); options.warn && !warning.empty())
+    options.warn(part.file + ": part '" + name + "' " + warning);
   return map;
 }
 

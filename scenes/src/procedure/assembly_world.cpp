@@ -221,7 +221,9 @@ void AssemblyWorld::keepCovered() {
   if (options_.warn)
     options_.warn(
         "'" + scene_.parts[part].part.name +
-        "' reached the border of the region of its path; from here on all fixed parts are modelled");
+        "' came near the edge of the space around its planned path, the only one in which contact was "
+        "modelled; "
+        "from here on it can touch every fixed part");
   // Physics stands still for as long as modelling takes. By the clock that would be a safety fault, so the
   // loop is paused.
   const bool pauses = options_.has_local_contact || driver_->isByClock();

@@ -124,9 +124,16 @@ bool isHeldAfter(const SceneStep& step, const StepResult& result) {
   return step.is_held || result.press_needed_N > 0;
 }
 
-/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped;
-/// and where the part was when the hand gave up, if it did.
-std::optional<Pose> work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step, StepResult& result) {
+/// Where the part was when the hand took it to be in place, or gave up. A part that nothing holds falls from
+/// there while the hand opens.
+struct Brought {
+  Pose X_WP;
+  bool is_given_up = false;
+};
+
+/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
+std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step,
+                            StepResult& result) {
   startHaptics(world);
   HapticDriver& driver = world.driver();
   const auto advanceIn = [&](TracePhase phase) {
@@ -155,18 +162,15 @@ std::optional<Pose> work(AssemblyWorld& world, RunTrace& trace, const SceneStep&
     if (!clutch.index(regrasp)) return std::nullopt;
     trace.logPhase(world);
   }
-  std::optional<Pose> X_WP_given_up;
-  if (driver.phase() == device::OperatorPhase::Failed) {
-    noteContact(world, result);
-    X_WP_given_up = world.movingPose();
-  }
-  if (!clutch.comeFree(press)) return X_WP_given_up;
-  if (isHeldAfter(step, result)) return X_WP_given_up;  // what holds it has it before the hand lets go
+  const Brought brought{world.movingPose(), driver.phase() == device::OperatorPhase::Failed};
+  if (brought.is_given_up) noteContact(world, result);
+  if (!clutch.comeFree(press)) return brought;
+  if (isHeldAfter(step, result)) return brought;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
   });
-  return X_WP_given_up;
+  return brought;
 }
 
 /// The released part is watched for scene.release_s unless its step says that it is held, at least until the
@@ -214,7 +218,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   world.take(index);
   trace.beginStep(world);
   trace.logEvent(world, device::RunEventKind::Take, "takes '" + result.part + "'");
-  const std::optional<Pose> X_WP_given_up = work(world, trace, step, result);
+  const std::optional<Brought> brought = work(world, trace, step, result);
   world.pauseLocalContact();
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
     ++(episode.is_slide ? result.slides : result.impacts);
@@ -231,7 +235,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   rest(world, trace, result);
   world.reportProgress(0.9);
   // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
-  judgeCompletion(world, step, X_WP_given_up.value_or(world.movingPose()), result);
+  const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();
+  judgeCompletion(world, step, X_WP_end, brought ? brought->X_WP : X_WP_end, result);
   settleStep(world, trace.takeSamples(), result);
   judgeStep(result, world.scene().hand.force_limit_N);
   return result;

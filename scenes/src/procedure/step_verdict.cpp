@@ -30,15 +30,32 @@ std::string pressReason(double needed_N, double hand_N) {
 }
 
 std::string failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
-                          bool is_done) {
+                          bool is_done, double brought_error_m) {
   if (world.hasEnded()) return "the recording ends here";
   if (world.isStopped()) return "stopped";
-  const std::string where = "its surface was up to " + lengthInWords(result.final_error_m) +
-                            " from where it belongs (tolerance " + lengthInWords(result.tolerance_m) + ")";
-  if (is_done && !isAtRest(result))
-    return "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
-  if (is_done) return "the hand took it to be in place and let go, but " + where;
+  const std::string tolerance = " (tolerance " + lengthInWords(result.tolerance_m) + ")";
+  const std::string where =
+      "its surface was up to " + lengthInWords(result.final_error_m) + " from where it belongs" + tolerance;
+  if (is_done) {
+    const bool was_there = brought_error_m <= result.tolerance_m;
+    std::string words = was_there ? "the hand brought it to within " + lengthInWords(brought_error_m) +
+                                        " of where it belongs" + tolerance + " and let go"
+                                  : "the hand took it to be in place and let go, but its surface was up to " +
+                                        lengthInWords(brought_error_m) + " from where it belongs" + tolerance;
+    const bool has_left =
+        result.final_error_m > result.tolerance_m && (was_there || result.rest_drift_m > result.tolerance_m);
+    if (!isAtRest(result) || has_left)
+      words.append("; then it moved by ")
+          .append(lengthInWords(result.rest_drift_m))
+          .append(": ")
+          .append(kHoldsRemedy);
+    return words;
+  }
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
+  if (is_late && result.final_error_m <= result.tolerance_m)
+    return "its time (timeout_s) was over before the hand had pressed it home, so it is not shown to be in "
+           "place: " +
+           where + "; give it more time";
   std::string reason = std::string("the hand gave up") + (is_late ? " after its time was over: " : ": ");
   reason.append(where);
   if (!result.stuck_against.empty())
@@ -55,12 +72,19 @@ double penetrationLimit_m(const SceneStep& step) {
   return step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
 }
 
-void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result) {
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Pose& X_WP_brought,
+                     StepResult& result) {
   const bool is_screw = step.motion == StepMotion::Screw;
   const Pose& X_PG = world.state().moving.X_PG;
-  const Pose X_judged = is_screw ? turnedBack(X_WP, step, insertionAxis(step, X_PG), X_PG) : X_WP;
-  result.final_error_m =
-      surfaceError_m(*world.scene().parts[step.part].model->solid, step.X_WP_target.inverse() * X_judged);
+  const auto judged = [&](const Pose& X) {
+    return is_screw ? turnedBack(X, step, insertionAxis(step, X_PG), X_PG) : X;
+  };
+  const auto errorAt = [&](const Pose& X) {
+    return surfaceError_m(*world.scene().parts[step.part].model->solid,
+                          step.X_WP_target.inverse() * judged(X));
+  };
+  const Pose X_judged = judged(X_WP);
+  result.final_error_m = errorAt(X_WP);
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
@@ -74,7 +98,7 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
     result.failure_reason = "it is at its height, but " + fault;
     return;
   }
-  result.failure_reason = failureReason(world, step, result, is_done);
+  result.failure_reason = failureReason(world, step, result, is_done, errorAt(X_WP_brought));
   if (is_done && is_turned && result.final_error_m <= result.tolerance_m)
     result.failure_reason.append("; it is turned by ")
         .append(degreesInWords(result.final_error_rad))

@@ -13,8 +13,10 @@ double penetrationLimit_m(const SceneStep& step);
 
 /// Sets final_error_m, final_error_rad, completed and failure_reason: the step is completed when the hand
 /// reports that it is done and the part, now at rest, is within the step's tolerances.
-/// @param X_WP  of the part, after its rest, or where the hand gave up
-void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, StepResult& result);
+/// @param X_WP          of the part, after its rest, or where the hand gave up
+/// @param X_WP_brought  where the hand took it to be in place, or gave up
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Pose& X_WP_brought,
+                     StepResult& result);
 
 /// Sets verdict and reason from the rest of a step's result.
 /// @param hand_N  greatest force of the hand

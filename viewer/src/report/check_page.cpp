@@ -9,6 +9,7 @@
 #include "report/html.h"
 #include "report/length_text.h"
 #include "report/section_svg.h"
+#include "vps_viewer/check_words.h"
 #include "vps_viewer/report.h"
 
 namespace vps::viewer::inline v0 {
@@ -36,15 +37,18 @@ std::string pairs(const scenes::CheckResult& result) {
                      pair.isClash() ? "bad" : ""},
                     {is_clash ? "" : micrometres(pair.clearance_m), "n"},
                     {pair.interference_depth_m > 0 ? micrometres(pair.interference_depth_m) : "", "n"},
-                    {is_clash ? format(1e9 * pair.interference_volume_m3, "%.4f") : "", "n"},
+                    {is_clash ? escapeHtml(volumeWords(pair)) : "", "n"},
                     {micrometres(pair.error_m), "n"},
                     {place(pair.at_W), "n"}});
   }
-  return "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that meet to within the error are in "
-         "contact, "
-         "which is no clash. The error holds the distance of the meshes from the curved faces that they "
-         "stand "
-         "for.</p>\n" +
+  return std::string(
+             "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that meet to within the error are in "
+             "contact, "
+             "which is no clash. The error holds the distance of the meshes from the curved faces that they "
+             "stand "
+             "for; ")
+             .append(kOverlapMeaning)
+             .append(".</p>\n") +
          html::table({"part", "and", "state", "clearance [µm]", "overlap [µm]", "volume [mm³]", "error [µm]",
                       "at [mm]"},
                      rows);
@@ -143,10 +147,8 @@ std::string play(const scenes::CheckResult& result) {
     for (const scenes::ScrewWay& way : part.screw_ways_out)
       ways += (ways.empty() ? "by screw along (" : "; by screw along (") + coordinates(way.axis_W) + "), " +
               format(1e3 * std::abs(way.lead_m), "%.3f") + " mm a turn";
-    if (ways.empty())
-      ways = part.is_play_certain ? "none"
-                                  : "not known: round faces of equal size touch, and their meshes can "
-                                    "stop a motion that the faces allow";
+    if (ways.empty()) ways = part.is_play_certain ? "none" : "not known";
+    if (const std::string doubt = playDoubt(part, result); !doubt.empty()) ways += "; " + escapeHtml(doubt);
     row.push_back({ways, ""});
     rows.push_back(row);
   }

@@ -47,7 +47,7 @@ std::string stepTable(const scenes::AssembleResult& result) {
                     {std::to_string(s.impacts), "n"},
                     {std::to_string(s.slides), "n"},
                     {micrometres(s.final_error_m, "%.1f"), "n"},
-                    {micrometres(s.rest_drift_m), "n"}});
+                    {s.completed ? micrometres(s.rest_drift_m) : "", "n"}});
   }
   return html::table(
       {"#", "part", "verdict", "time [s]", "greatest overlap [µm]", "limit [µm]", "with", "peak force [N]",

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is said of a check in words, in the text and on the page.
+#pragma once
+
+#include <string>
+
+#include "vps_scenes/check.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer::inline v0 {
+
+/// How the overlap in the tables is meant.
+inline constexpr const char* kOverlapMeaning =
+    "overlap: depth of the deepest point below the other part's surface, or thickness of what both share if "
+    "more";
+
+/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" where its error is as large;
+/// "not known" where no piece of its surface was found.
+VPS_VIEWER_API std::string volumeWords(const scenes::CheckedPair& pair);
+
+/// Why the play of a part is not certain, and by how much: "facets cross others as drawn; ..."; empty if
+/// it is.
+VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
+
+}  // namespace vps::viewer::inline v0
