@@ -68,7 +68,7 @@ class Study {
     out.run = number;
     out.values = sampleStudy(variables_, settings_.seed, number);
     Scene scene = sampledScene(scene_, variables_, settings_.seed, number);
-    if (DrawnMisfit misfit = findDrawnMisfit(scene); misfit.isFound()) {
+    if (DrawnMisfit misfit = fit_.findMisfit(scene); misfit.isFound()) {
       out.verdict = Verdict::Blocked;
       out.part = std::move(misfit.part);
       out.reason = std::move(misfit.reason);
@@ -105,6 +105,7 @@ class Study {
   }
 
   const Scene& scene_;
+  const DrawnFit fit_{scene_};
   const std::vector<StudyVariable>& variables_;
   const StudySettings& settings_;
   const std::vector<std::size_t>& numbers_;
