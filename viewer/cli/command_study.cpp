@@ -70,9 +70,10 @@ void printResult(const scenes::StudyResult& result) {
                deviationText(effect.variable, effect.variable.upper), fixed(100 * effect.yield_if_halved, 2),
                fixed(100 * effect.gain, 2), fixed(100 * effect.gain_error, 2)});
   std::fputs(table.text().c_str(), stdout);
-  std::printf("yield %s %% (95 %%: %s to %s %%): %zu of %zu runs fit, %zu are blocked\n",
+  std::printf("yield %s %% (95 %%: %s to %s %%): %zu of %zu runs fit, %zu are blocked, %zu not shown\n",
               fixed(100 * result.yield, 2).c_str(), fixed(100 * result.yield_low, 2).c_str(),
-              fixed(100 * result.yield_high, 2).c_str(), result.good, result.runs.size(), result.blocked);
+              fixed(100 * result.yield_high, 2).c_str(), result.good, result.runs.size(), result.blocked,
+              result.runs.size() - result.good - result.blocked);
 }
 
 /// The runs that are asked for and not in the log.
