@@ -278,5 +278,29 @@ TEST(CheckPlay, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+TEST(CheckPlay, WhatIsAskedOfOnePartIsWhatTheWholeCheckSaysOfIt) {
+  const std::vector<DrawnPart> parts = {
+      part("bore", makeTube(0.01, 4.02e-3, 0.02, 90)), part("peg", makeCylinder(4e-3, 0.02, 60)),
+      part("cap", makeBox(Vec3(0.01, 0.01, 0.01)), Pose::translation(Vec3(0, 0, 0.0151)))};
+  const CheckResult whole = checkAssembly("test", parts);
+  CheckSettings settings;
+  settings.only_parts = {"peg"};
+  const CheckResult asked = checkAssembly("test", parts, settings);
+  ASSERT_EQ(whole.pairs.size(), 3U);
+  ASSERT_EQ(asked.pairs.size(), 2U);  // not bore and cap
+  for (const CheckedPair& pair : asked.pairs) {
+    const auto same = std::ranges::find_if(
+        whole.pairs, [&](const CheckedPair& p) { return p.a == pair.a && p.b == pair.b; });
+    ASSERT_NE(same, whole.pairs.end());
+    EXPECT_TRUE(pair.a == "peg" || pair.b == "peg");
+    EXPECT_EQ(pair.clearance_m, same->clearance_m);
+  }
+  EXPECT_EQ(asked.fits.size(), whole.fits.size());
+  ASSERT_TRUE(asked.parts[1].play);
+  EXPECT_EQ(asked.parts[1].play->m, whole.parts[1].play->m);
+  EXPECT_EQ(asked.parts[1].ways_out_W, whole.parts[1].ways_out_W);
+  EXPECT_FALSE(asked.parts[0].play || asked.parts[2].play);
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -16,6 +16,7 @@
 #include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/settings_fields.h"
+#include "vps_scenes/study_fields.h"
 #include "vps_scenes/trade_fields.h"
 
 namespace vps::scenes {
@@ -217,6 +218,7 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
   checkSection(readme, "margin", head + resultLines("steps[].", kStepMarginFields));
+  checkSection(readme, "study", head + resultLines("", kStudyFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes the rows of a field table as JSON. Includes nlohmann/json, which is slow to compile: json_out.cpp
-// alone includes this header.
+// and study_log.cpp alone include this header.
 #pragma once
 
 #include <nlohmann/json.hpp>

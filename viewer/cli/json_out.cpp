@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON. The only source of the program that includes nlohmann/json, by json_fields.h.
+// Results as JSON. With study_log.cpp the only source of the program that includes nlohmann/json.
 #include "json_out.h"
 
 #include "json_fields.h"
@@ -9,6 +9,7 @@
 #include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/result_fields.h"
+#include "vps_scenes/study_fields.h"
 #include "vps_scenes/trade_fields.h"
 
 namespace vps::viewer::inline v0 {
@@ -290,6 +291,12 @@ std::string toJson(const scenes::MarginResult& result) {
                {"resolution_m", result.resolution_m},
                {"by_contact", result.has_contact},
                {"steps", steps}});
+}
+
+std::string toJson(const scenes::StudyResult& result) {
+  Json json = Json::object();
+  addFields(json, result, scenes::kStudyFields);
+  return text(json);
 }
 
 std::string toJson(const scenes::TradeResult& result) {

@@ -43,6 +43,9 @@ struct CheckSettings {
   bool has_play = true;  ///< with the ways out
   bool has_sections = false;
   bool has_maps = false;
+  /// Names of parts: pairs with none of them, and the play of others, are left out. Empty: all.
+  std::vector<std::string> only_parts = {};
+  [[nodiscard]] bool isAsked(const std::string& part) const;
 };
 
 enum class PairState {

@@ -24,6 +24,33 @@ struct Part {
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB, 0 to 1
 };
 
+/// What a part's tolerance of size is meant for.
+enum class SizeOf { Shaft, Hole };
+inline const char* toText(SizeOf of) {
+  return of == SizeOf::Hole ? "hole" : "shaft";
+}
+
+/// How a deviation lies within its limits.
+enum class Distribution {
+  Normal,   ///< around the middle; the limits are three standard deviations away
+  Uniform,  ///< evenly between the limits
+};
+inline const char* toText(Distribution distribution) {
+  return distribution == Distribution::Uniform ? "uniform" : "normal";
+}
+
+/// How far a part may be off, for study() (study.h); no run of the scene itself uses it.
+struct PartTolerance {
+  std::string size_class;           ///< of ISO 286: "H7" of a hole, "g6" of a shaft; empty: none
+  double nominal_m = 0;             ///< of size_class; 0: from the mesh
+  double lower_m = 0, upper_m = 0;  ///< deviations of diameter or width from the drawn one
+  SizeOf size_of = SizeOf::Shaft;   ///< of these deviations
+  double position_m = 0;            ///< greatest displacement along each axis of the part
+  double angle_rad = 0;             ///< greatest rotation about each axis of the part
+  double friction = 0;              ///< greatest difference from the material's friction
+  Distribution distribution = Distribution::Normal;
+};
+
 struct ScenePart {
   Part part;
   Pose X_WP;                   ///< as designed: the pose in the CAD file, or that of the scene file
@@ -36,6 +63,7 @@ struct ScenePart {
   double press_fit_m = 0;
   double youngs_modulus_Pa = 210e9;  ///< of steel, and Poisson's ratio: EN 1993-1-1, 3.2.6
   double poissons_ratio = 0.3;
+  PartTolerance tolerance;
   std::string file;                    ///< file that the mesh was read from, for messages
   std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.

@@ -17,6 +17,11 @@ inline constexpr int kValueCount<ContactMethod> = 2;
 template <>
 inline constexpr int kValueCount<StepMotion> = 2;
 
+template <>
+inline constexpr int kValueCount<SizeOf> = 2;
+template <>
+inline constexpr int kValueCount<Distribution> = 2;
+
 inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
 inline constexpr Range kCount{.min = 1, .max = 1e6};
 
@@ -53,6 +58,34 @@ inline constexpr auto kMaterialFields = std::make_tuple(
           {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
+/// `[[part]]`, for `vps study`. Not archived: a recording is of one run.
+inline constexpr auto kToleranceFields = std::make_tuple(
+    field("size_tolerance", &PartTolerance::size_class,
+          "`vps study`: tolerance class of ISO 286 of its fit, `\"H7\"` (a hole) or `\"g6\"` (a shaft)",
+          {.default_text = "none"}),
+    field("nominal_size", &PartTolerance::nominal_m, "`vps study`: of `size_tolerance`",
+          {.quantity = Quantity::Length,
+           .range = kNotNegative,
+           .default_text = "the drawn size, rounded to half a millimetre"}),
+    field(
+        "size_lower", &PartTolerance::lower_m,
+        "`vps study`: least deviation of diameter or width from the drawn one, in place of `size_tolerance`",
+        {.quantity = Quantity::Length}),
+    field("size_upper", &PartTolerance::upper_m, "`vps study`: the greatest", {.quantity = Quantity::Length}),
+    field("size_of", &PartTolerance::size_of, "`vps study`: what `size_lower` and `size_upper` are of"),
+    field("position_tolerance", &PartTolerance::position_m,
+          "`vps study`: greatest displacement of its place along each of its axes",
+          {.quantity = Quantity::Length, .range = kNotNegative}),
+    field("angle_tolerance_deg", &PartTolerance::angle_rad,
+          "`vps study`: greatest rotation of its place about each of its axes",
+          {.quantity = Quantity::Angle, .range = kNotNegative}),
+    field("friction_tolerance", &PartTolerance::friction, "`vps study`: greatest difference from `friction`",
+          {.range = kNotNegative}),
+    field("distribution", &PartTolerance::distribution,
+          "`vps study`: normal: the limits are three standard deviations from their middle; uniform: even "
+          "between the limits"));
+static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
+
 /// `[[part]]`
 inline constexpr auto kPartKeys = std::make_tuple(
     Key{"file", "file", "", "mesh or CAD file, in any format that `vps import` reads"},
@@ -78,7 +111,8 @@ inline constexpr auto kPartKeys = std::make_tuple(
           "Poisson's ratio, for the force of a press fit; assumed: steel", {.range = {.min = 0, .max = 0.5}}),
     field("scenery", &ScenePart::is_scenery,
           "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
-          "it"));
+          "it"),
+    group("", &ScenePart::tolerance, kToleranceFields));
 
 /// `[[step]]`
 inline constexpr auto kStepKeys = std::make_tuple(

@@ -61,6 +61,10 @@ std::size_t CheckResult::uncertain() const {
   return static_cast<std::size_t>(std::ranges::count(pairs, true, &CheckedPair::is_uncertain));
 }
 
+bool CheckSettings::isAsked(const std::string& part) const {
+  return only_parts.empty() || std::ranges::find(only_parts, part) != only_parts.end();
+}
+
 const CheckedPair* CheckResult::deepestClash() const {
   const auto found =
       std::find_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); });
@@ -69,9 +73,18 @@ const CheckedPair* CheckResult::deepestClash() const {
 
 namespace {
 
-std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, double near_m,
-                                    const Progress& progress) {
-  const auto near = nearPairs(parts, near_m);
+using PartPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+PartPairs pairsAsked(const std::vector<PlacedSurface>& parts, const CheckSettings& settings) {
+  PartPairs near = nearPairs(parts, settings.near_m);
+  std::erase_if(near, [&](const auto& pair) {
+    return !settings.isAsked(parts[pair.first].name) && !settings.isAsked(parts[pair.second].name);
+  });
+  return near;
+}
+
+std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, const PartPairs& near,
+                                    double near_m, const Progress& progress) {
   std::vector<std::optional<CheckedPair>> found(near.size());
   forEachOnCores(near.size(), progress, "measuring pairs", [&](std::size_t i) {
     found[i] = checkPair(parts[near[i].first], parts[near[i].second], near_m);
@@ -90,8 +103,6 @@ void sortPairs(std::vector<CheckedPair>& pairs) {
     return a.clearance_m < b.clearance_m;
   });
 }
-
-using PartPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// The pairs of which fits are needed to judge the overlap.
 PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
@@ -162,11 +173,10 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
     begun_s = wallSeconds();
     return begun_s - before_s;
   };
-  result.pairs = checkPairs(placed, settings.near_m, progress);
+  const PartPairs near = pairsAsked(placed, settings);
+  result.pairs = checkPairs(placed, near, settings.near_m, progress);
   result.pairs_wall_s = lap_s();
-  result.fits = checkFits(
-      placed, settings.has_fits ? nearPairs(placed, settings.near_m) : pairsToJudge(placed, result.pairs),
-      progress);
+  result.fits = checkFits(placed, settings.has_fits ? near : pairsToJudge(placed, result.pairs), progress);
   removeFalseFits(result);
   judgeByFits(placed, result);
   sortPairs(result.pairs);
@@ -176,7 +186,7 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
   result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
-  if (settings.has_play) checkPlay(placed, result, progress);
+  if (settings.has_play) checkPlay(placed, result, settings, progress);
   result.play_wall_s = lap_s();
   return result;
 }

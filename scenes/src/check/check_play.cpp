@@ -62,10 +62,12 @@ bool hasFlushFaces(const PartTask& task) {
 
 }  // namespace
 
-void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const Progress& progress) {
+void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
+               const Progress& progress) {
   std::vector<PartTask> tasks(parts.size());
-  forEachOnCores(parts.size(), progress, "preparing play",
-                 [&](std::size_t i) { tasks[i] = taskOf(parts, i, result); });
+  forEachOnCores(parts.size(), progress, "preparing play", [&](std::size_t i) {
+    if (settings.isAsked(parts[i].name)) tasks[i] = taskOf(parts, i, result);
+  });
   Box all;
   for (const PlacedSurface& part : parts) {
     all.add(part.box_W.min);

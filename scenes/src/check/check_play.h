@@ -8,6 +8,7 @@ namespace vps::scenes::inline v0 {
 
 /// Fills play and ways out of result.parts, which follows the order of `parts`; pairs and fits are there
 /// already. On all cores; the progress is told on the caller's thread.
-void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const Progress& progress);
+void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
+               const Progress& progress);
 
 }  // namespace vps::scenes::inline v0

@@ -2,9 +2,9 @@
 #include "check/placed_surface.h"
 
 #include <tbb/parallel_for.h>
-#include <algorithm>
 
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
 
 #include "models/scene_models.h"
 #include "vps/load_error.h"
@@ -28,17 +28,28 @@ void requireMeasurable(const DrawnPart& part) {
                       " large; a check measures parts of 10 um to 1 km. Is the unit right?"));
 }
 
+bool isSameShape(const DrawnPart& a, const DrawnPart& b) {
+  return a.chord_m == b.chord_m && isEqualGeometry(a.mesh, b.mesh);
+}
+
 }  // namespace
 
-std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress) {
+std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress,
+                                          std::span<const PlacedSurface> prepared) {
   std::vector<PlacedSurface> placed(parts.size());
   std::vector<std::size_t> source(parts.size());
   std::vector<std::size_t> own;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     requireMeasurable(parts[i]);
     source[i] = i;
+    const auto earlier = std::ranges::find_if(
+        prepared, [&](const PlacedSurface& part) { return isSameShape(*part.drawn, parts[i]); });
+    if (earlier != prepared.end()) {
+      placed[i].surface = earlier->surface;
+      continue;
+    }
     for (const std::size_t k : own)
-      if (parts[k].chord_m == parts[i].chord_m && isEqualGeometry(parts[k].mesh, parts[i].mesh)) {
+      if (isSameShape(parts[k], parts[i])) {
         source[i] = k;
         break;
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,7 +22,9 @@ struct PlacedSurface {
 };
 
 /// On all cores; they point to the parts. Throws LoadError; see checkAssembly().
-std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress);
+/// @param prepared  surfaces of earlier parts, which are taken again where the geometry is equal
+std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress,
+                                          std::span<const PlacedSurface> prepared = {});
 
 /// The part of this name, which is among them.
 const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "check/check_placed.h"
 #include "core/length_words.h"
-#include "vps_scenes/check.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -57,15 +57,24 @@ DrawnMisfit ofFit(const Scene& scene, const CheckedFit& fit) {
 
 }  // namespace
 
-DrawnMisfit findDrawnMisfit(const Scene& scene) {
+DrawnFit::DrawnFit(const Scene& scene) : parts_(drawnParts(scene)), placed_(placedSurfaces(parts_, {})) {}
+
+CheckResult DrawnFit::check(const Scene& variant, const CheckSettings& settings) const {
+  const std::vector<DrawnPart> parts = drawnParts(variant);
+  return checkPlaced(variant.name, placedSurfaces(parts, {}, placed_), settings, {});
+}
+
+DrawnMisfit DrawnFit::findMisfit(const Scene& variant) const {
   CheckSettings settings;
   settings.has_play = false;
-  const CheckResult checked = checkAssembly(scene.name, drawnParts(scene), settings);
+  for (const SceneStep& step : variant.steps)
+    settings.only_parts.push_back(variant.parts[step.part].part.name);
+  const CheckResult checked = check(variant, settings);
   for (const CheckedPair& pair : checked.pairs)
-    if (DrawnMisfit found = ofPair(scene, pair); found.isFound()) return found;
+    if (DrawnMisfit found = ofPair(variant, pair); found.isFound()) return found;
   for (const CheckedFit& fit : checked.fits) {
     if (mayOverlap(checked, fit)) continue;
-    if (DrawnMisfit found = ofFit(scene, fit); found.isFound()) return found;
+    if (DrawnMisfit found = ofFit(variant, fit); found.isFound()) return found;
   }
   return {};
 }

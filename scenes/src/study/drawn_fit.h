@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "check/placed_surface.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
@@ -14,8 +16,21 @@ struct DrawnMisfit {
   [[nodiscard]] bool isFound() const { return !reason.empty(); }
 };
 
-/// A misfit is an overlap beyond its error, or a shaft that is larger than its bore, measured on the
-/// cylinders that the meshes stand for. What the scene allows or declares is none.
-DrawnMisfit findDrawnMisfit(const Scene& scene);
+/// Looks for misfits in variants of one scene, of which it has prepared the parts.
+class DrawnFit {
+ public:
+  explicit DrawnFit(const Scene& scene);
+
+  /// A misfit is an overlap beyond its error, or a shaft that is larger than its bore, measured on the
+  /// cylinders that the meshes stand for. What the scene allows or declares is none.
+  [[nodiscard]] DrawnMisfit findMisfit(const Scene& variant) const;
+
+  /// The variant, with the parts that are as they were taken as prepared.
+  [[nodiscard]] CheckResult check(const Scene& variant, const CheckSettings& settings) const;
+
+ private:
+  std::vector<DrawnPart> parts_;
+  std::vector<PlacedSurface> placed_;  // points to the parts
+};
 
 }  // namespace vps::scenes::inline v0

@@ -55,7 +55,8 @@ void narrow(Bracket& bracket, double resolution_m, Try attempt) {
 /// Measures one step, which is the only one of its scene.
 class StepProbe {
  public:
-  StepProbe(Scene scene, const MarginOptions& options) : scene_(std::move(scene)), options_(options) {}
+  StepProbe(Scene scene, const MarginOptions& options)
+      : scene_(std::move(scene)), fit_(scene_), options_(options) {}
 
   StepMargin measure() {
     StepMargin out;
@@ -74,7 +75,7 @@ class StepProbe {
 
   Probe byGeometry(double by_m) {
     ++checks_;
-    DrawnMisfit found = findDrawnMisfit(withGrownStep(scene_, 0, by_m));
+    DrawnMisfit found = fit_.findMisfit(withGrownStep(scene_, 0, by_m));
     return {found.isFound() ? Verdict::Blocked : Verdict::Fits, std::move(found.reason)};
   }
 
@@ -160,7 +161,8 @@ class StepProbe {
     step.X_WP_target.p -= kLift * bounds(lifted.parts[step.part].part.mesh).size().norm() * axis_W;
     CheckSettings settings;
     settings.has_fits = false;
-    const CheckResult checked = checkAssembly(lifted.name, drawnParts(lifted), settings);
+    settings.only_parts = {out.part};
+    const CheckResult checked = fit_.check(lifted, settings);
     ++checks_;
     const auto part =
         std::ranges::find_if(checked.parts, [&](const CheckedPart& p) { return p.name == out.part; });
@@ -181,6 +183,7 @@ class StepProbe {
   }
 
   Scene scene_;
+  DrawnFit fit_;
   const MarginOptions& options_;
   std::size_t checks_ = 0, runs_ = 0;
 };

@@ -14,6 +14,7 @@ using html::format;
 
 constexpr double kWidth = 912, kNames = 200, kValues = 170;  // [px]
 constexpr double kRow = 26, kBarHeight = 16;                 // [px]
+constexpr double kChartHeight = 150, kAxis = 22;             // [px] of a histogram
 
 std::string attribute(const char* name, double value) {
   return std::string(" ").append(name).append("=\"").append(format(value, "%.1f")).append("\"");
@@ -50,6 +51,24 @@ std::string barChart(const std::vector<Bar>& bars, const std::string& caption_ht
     shapes += words(kNames + length + 8, top + 17, "start", bar.text);
   }
   return figure(kRow * static_cast<double>(bars.size()) + 4, shapes, caption_html);
+}
+
+std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
+                      const std::string& right_text, const std::string& caption_html) {
+  double most = 1;
+  for (const Column& column : columns) most = std::max(most, column.lower + column.upper);
+  const double width = kWidth / static_cast<double>(std::max<std::size_t>(1, columns.size()));
+  std::string shapes;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const double x = width * static_cast<double>(i) + 1, scale = kChartHeight / most;
+    const double lower = columns[i].lower * scale, upper = columns[i].upper * scale;
+    if (lower > 0) shapes += rectangle(x, kChartHeight - lower, width - 2, lower, "#1b6e3c");
+    if (upper > 0) shapes += rectangle(x, kChartHeight - lower - upper, width - 2, upper, "#b00020");
+  }
+  shapes += rectangle(0, kChartHeight, kWidth, 1, "#888");
+  shapes += words(0, kChartHeight + 16, "start", left_text);
+  shapes += words(kWidth, kChartHeight + 16, "end", right_text);
+  return figure(kChartHeight + kAxis, shapes, caption_html);
 }
 
 }  // namespace vps::viewer::inline v0

@@ -18,4 +18,15 @@ struct Bar {
 /// A bar below the other, from a common zero; the longest fills the chart. A caption stands below.
 std::string barChart(const std::vector<Bar>& bars, const std::string& caption_html);
 
+/// One column of a histogram: two counts, one on top of the other.
+struct Column {
+  double low = 0, high = 0;  ///< of the horizontal axis
+  double lower = 0, upper = 0;
+};
+
+/// Columns side by side; the ends of the axis and the caption are text that the caller formats. All columns
+/// have the same width. Lower counts are green, upper ones red.
+std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
+                      const std::string& right_text, const std::string& caption_html);
+
 }  // namespace vps::viewer::inline v0

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps study: the yield of a procedure whose parts are off within their tolerances.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "command.h"
+#include "json_out.h"
+#include "output.h"
+#include "progress_bar.h"
+#include "scene_arguments.h"
+#include "study_log.h"
+#include "table.h"
+#include "terminal.h"
+#include "vps/load_error.h"
+#include "vps_scenes/study.h"
+#include "vps_viewer/study_page.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+struct StudyArguments {
+  std::string scene;
+  FidelityArguments fidelity;
+  std::size_t runs = 100, first = 0, last = 0;  ///< last: 0: of all runs
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  bool has_contact = true;
+  std::size_t tasks = 0;            ///< of --print-tasks; 0: not given
+  std::optional<std::size_t> only;  ///< of --repeat
+  std::string log, json, html;      ///< empty: none
+};
+
+/// A word of a POSIX shell.
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::string textOption(const char* name, const std::string& value) {
+  return value.empty() ? std::string() : std::string(" ").append(name).append(" ").append(quoted(value));
+}
+
+/// One line for each task, which a shell, GNU parallel or an array job of Slurm runs. Each has a log of its
+/// own.
+void printTasks(const StudyArguments& given) {
+  const std::string log = given.log.empty() ? "study.jsonl" : given.log;
+  const FidelityArguments& fidelity = given.fidelity;
+  const std::string common =
+      "vps study " + quoted(given.scene) + " --runs " + std::to_string(given.runs) + " --seed " +
+      std::to_string(given.seed) + (given.has_contact ? "" : " --geometry") +
+      (given.threads > 0 ? " --threads " + std::to_string(given.threads) : "") +
+      textOption("--fidelity", fidelity.preset) + textOption("--voxel", fidelity.voxel) +
+      textOption("--spacing", fidelity.spacing) + textOption("--sides", fidelity.sides);
+  const std::size_t tasks = std::min(given.tasks, given.runs);
+  for (std::size_t i = 0; i < tasks; ++i)
+    std::printf("%s --first %zu --last %zu --log %s\n", common.c_str(), i * given.runs / tasks,
+                (i + 1) * given.runs / tasks - 1, quoted(log + "." + std::to_string(i + 1)).c_str());
+}
+
+void printResult(const scenes::StudyResult& result) {
+  Table table({"<tolerance", "lower", "upper", "yield if halved [%]", "gain [points]", "+-"});
+  for (const scenes::StudyEffect& effect : result.effects)
+    table.add({effect.variable.name, deviationText(effect.variable, effect.variable.lower),
+               deviationText(effect.variable, effect.variable.upper), fixed(100 * effect.yield_if_halved, 2),
+               fixed(100 * effect.gain, 2), fixed(100 * effect.gain_error, 2)});
+  std::fputs(table.text().c_str(), stdout);
+  std::printf("yield %s %% (95 %%: %s to %s %%): %zu of %zu runs fit, %zu are blocked, %zu not shown\n",
+              fixed(100 * result.yield, 2).c_str(), fixed(100 * result.yield_low, 2).c_str(),
+              fixed(100 * result.yield_high, 2).c_str(), result.good, result.runs.size(), result.blocked,
+              result.runs.size() - result.good - result.blocked);
+}
+
+/// The runs that are asked for and not in the log.
+std::vector<std::size_t> missingRuns(const StudyArguments& given, const std::vector<scenes::StudyRun>& done) {
+  std::set<std::size_t> known;
+  for (const scenes::StudyRun& run : done) known.insert(run.run);
+  std::vector<std::size_t> missing;
+  for (std::size_t run = given.first; run <= given.last; ++run)
+    if (!known.contains(run)) missing.push_back(run);
+  return missing;
+}
+
+void requireRange(StudyArguments& given, bool has_last) {
+  if (!has_last) given.last = given.runs - 1;
+  if (given.first > given.last || given.last >= given.runs)
+    throw LoadError("", "",
+                    "--first and --last are " + std::to_string(given.first) + " and " +
+                        std::to_string(given.last) + "; expected numbers of runs, from 0 to " +
+                        std::to_string(given.runs - 1));
+}
+
+/// Makes one run again and prints its line.
+int repeatRun(const scenes::Scene& scene, const std::vector<scenes::StudyVariable>& variables,
+              const scenes::StudySettings& settings, const scenes::StudyOptions& options, std::size_t number,
+              const std::vector<scenes::StudyRun>& done, ProgressBar& bar) {
+  const std::vector<scenes::StudyRun> made = scenes::runStudy(scene, variables, settings, {number}, options);
+  throwIfStopped();
+  bar.clear();
+  const std::string line = studyLine(made.at(0));
+  std::printf("%s\n", line.c_str());
+  const auto known = std::ranges::find(done, number, &scenes::StudyRun::run);
+  if (known == done.end()) return kGood;
+  const bool is_same = studyLine(*known) == line;
+  std::printf("%s\n", is_same ? "the same as in the log, to the bit" : "differs from the run in the log");
+  return is_same ? kGood : kBad;
+}
+
+int runStudyCommand(StudyArguments given, bool has_last) {
+  requireRange(given, has_last);
+  if (given.tasks > 0) {
+    printTasks(given);
+    return kGood;
+  }
+  OutputFile json(given.json, {given.scene, given.log}), html(given.html, {given.scene, given.log});
+  requireNotRead(given.log, {given.scene});
+  ProgressBar bar;
+  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.html, given.log});
+  const std::vector<scenes::StudyVariable> variables = scenes::studyVariables(scene);
+  const scenes::StudySettings settings{given.seed, given.has_contact, given.threads};
+  std::optional<StudyLog> log;
+  if (!given.log.empty()) log.emplace(given.log, studyFingerprint(scene, variables, settings), variables);
+  std::vector<scenes::StudyRun> runs = log ? log->runs() : std::vector<scenes::StudyRun>{};
+
+  scenes::StudyOptions options;
+  options.progress = bar.progress();
+  options.warn = warn;
+  options.stop = &stopRequested();
+  if (given.only) return repeatRun(scene, variables, settings, options, *given.only, runs, bar);
+  if (log) options.on_run = [&](const scenes::StudyRun& run) { log->add(run); };
+  std::vector<scenes::StudyRun> made =
+      scenes::runStudy(scene, variables, settings, missingRuns(given, runs), options);
+  throwIfStopped();
+  runs.insert(runs.end(), made.begin(), made.end());
+  std::erase_if(runs, [&](const scenes::StudyRun& run) { return run.run >= given.runs; });
+  const scenes::StudyResult result = sumUpStudy(scene.name, variables, settings, std::move(runs));
+  json.write(toJson(result));
+  html.write(studyPage(result));
+  bar.clear();
+  printResult(result);
+  return kGood;
+}
+
+}  // namespace
+
+void addStudy(CommandLine& line) {
+  const auto given = std::make_shared<StudyArguments>();
+  const auto has_last = std::make_shared<const CLI::Option*>(nullptr);
+  CLI::App& command = addCommand(
+      line, "study", "yield with parts off within their tolerances, and which tolerance costs most",
+      "vps study scenes/peg_in_hole/study.toml --runs 1000 --geometry --html study.html",
+      [given, has_last] { return runStudyCommand(*given, (*has_last)->count() > 0); });
+  addSceneArgument(command, given->scene);
+  command.add_option("--runs", given->runs, "number of runs")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
+  command.add_option("--seed", given->seed, "of the deviations")->capture_default_str();
+  command.add_flag("!--geometry", given->has_contact,
+                   "judge by exact distances alone, without runs of the hand: quick, and an upper bound");
+  command
+      .add_option("--log", given->log,
+                  "file with a line for each run; a study that was cut goes on with what is missing there")
+      ->type_name("FILE");
+  command.add_option("--threads", given->threads, "runs at the same time (default: one for each core)");
+  command.add_option("--first", given->first, "make only the runs from this number on");
+  *has_last = command.add_option("--last", given->last, "and up to this one");
+  command.add_option("--repeat", given->only, "make this run again, print it, and compare it with the log");
+  command
+      .add_option("--print-tasks", given->tasks,
+                  "print so many commands that share the runs, for GNU parallel or Slurm, and stop")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  command.add_option("--html", given->html, "writes a page with histograms")->type_name("FILE");
+  addFidelityOptions(command, given->fidelity);
+  addJsonOption(command, given->json);
+}
+
+}  // namespace vps::viewer::inline v0
