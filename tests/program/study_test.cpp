@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps margin and vps study as a user runs them: tables, logs that were cut, tasks.
+#include <thread>
+
 #include "program/program.h"
+#include "support/child_process.h"
 
 namespace vps {
 namespace {
@@ -84,6 +87,82 @@ TEST_F(StudyProgram, ARunThatIsRepeatedIsTheSameAsInTheLog) {
   log.insert(log.find(seconds, at) + seconds.size(), "1");
   write("study.jsonl", log);
   EXPECT_EQ(run(std::string(kRun) + "--log study.jsonl --repeat 5").status, 1);
+}
+
+/// A Dask scheduler on loopback with two workers that find `vps` on their PATH.
+class StudyOnDask : public StudyProgram {
+ protected:
+  void SetUp() override {
+    StudyProgram::SetUp();
+    if (std::system("dask-scheduler --version >/dev/null 2>&1") != 0)
+      GTEST_SKIP() << "dask-scheduler is not installed";
+    fs::create_directories(folder_ / "bin");
+    fs::create_symlink(VPS_PROGRAM, folder_ / "bin/vps");
+    scheduler_ =
+        start("exec dask-scheduler --host 127.0.0.1 --port 0 --no-dashboard --scheduler-file scheduler.json");
+    ASSERT_TRUE(
+        waitFor([&] { return slurp(folder_ / "scheduler.json").find("tcp://") != std::string::npos; }));
+    const std::string text = slurp(folder_ / "scheduler.json");
+    const std::size_t at = text.find("tcp://");
+    address_ = text.substr(at, text.find('"', at) - at);
+    for (std::size_t i = 0; i < 2; ++i)
+      worker_[i] = start(
+          "exec dask-worker --scheduler-file scheduler.json --nthreads 1 --nworkers 1 --no-nanny "
+          "--no-dashboard --local-directory worker" +
+          std::to_string(i));
+    ASSERT_TRUE(waitFor([&] {
+      const std::string log = slurp(folder_ / "background.txt");
+      return log.find("Registered to", log.find("Registered to") + 1) != std::string::npos;
+    })) << slurp(folder_ / "background.txt");
+  }
+
+  [[nodiscard]] test::ChildProcess start(const std::string& command) const {
+    std::ostringstream line;
+    line << "cd " << folder_ << " && PATH=" << folder_ << "/bin:$PATH && " << command;  // paths in quotes
+    return {{"/bin/sh", "-c", line.str()}, (folder_ / "background.txt").string()};
+  }
+  [[nodiscard]] test::ChildProcess startStudy() const {
+    return start("exec vps " + std::string(kRun) + "--log dask.jsonl --json dask.json --dask " + address_);
+  }
+  template <class Condition>
+  static bool waitFor(Condition isSo) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!isSo() && std::chrono::steady_clock::now() < end)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return isSo();
+  }
+  [[nodiscard]] std::ptrdiff_t lines() const {
+    const std::string log = slurp(folder_ / "dask.jsonl");
+    return std::count(log.begin(), log.end(), '\n');
+  }
+
+  test::ChildProcess scheduler_, worker_[2];
+  std::string address_;
+};
+
+TEST_F(StudyOnDask, AWorkerThatIsKilledLosesNothingAndNothingIsCountedTwice) {
+  ASSERT_EQ(run(std::string(kRun) + "--json local.json").status, 0);
+  test::ChildProcess study = startStudy();
+  ASSERT_TRUE(waitFor([&] { return lines() > 2; }))
+      << slurp(folder_ / "background.txt");  // a head and two runs
+  worker_[0].killNow();
+  EXPECT_EQ(study.wait(), 0) << slurp(folder_ / "background.txt");
+  EXPECT_EQ(lines(), 10);
+  EXPECT_EQ(slurp(folder_ / "dask.json"), slurp(folder_ / "local.json"));
+}
+
+TEST_F(StudyOnDask, ASchedulerThatGoesAwayEndsTheStudyWhichGoesOnLater) {
+  ASSERT_EQ(run(std::string(kRun) + "--json local.json").status, 0);
+  test::ChildProcess study = startStudy();
+  ASSERT_TRUE(waitFor([&] { return lines() > 2; })) << slurp(folder_ / "background.txt");
+  scheduler_.killNow();
+  EXPECT_EQ(study.wait(), 2);
+  EXPECT_NE(slurp(folder_ / "background.txt").find("goes on with those that are missing"), std::string::npos);
+  EXPECT_GT(lines(), 2);
+  EXPECT_LT(lines(), 10);
+  ASSERT_EQ(run(std::string(kRun) + "--log dask.jsonl --json dask.json").status, 0);  // on this machine
+  EXPECT_EQ(lines(), 10);
+  EXPECT_EQ(slurp(folder_ / "dask.json"), slurp(folder_ / "local.json"));
 }
 
 TEST_F(StudyProgram, PagesHaveTheAnswerAndABarForEachStep) {

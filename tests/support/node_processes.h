@@ -2,12 +2,6 @@
 // The nodes of a session as processes, which can be killed and started again, watched from this process.
 #pragma once
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -17,55 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "vps_device/metronome.h"
+#include "support/child_process.h"
 #include "vps_scenes/network/nodes.h"
 
-extern char** environ;
-
 namespace vps::test {
-
-/// A program that runs until it ends by itself or is killed.
-class ChildProcess {
- public:
-  ChildProcess() = default;
-  /// @param output  file that gets what it prints
-  ChildProcess(std::vector<std::string> words, const std::string& output) {
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, 1, output.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-    posix_spawn_file_actions_adddup2(&files, 1, 2);
-    if (posix_spawn(&id_, argv[0], &files, nullptr, argv.data(), environ) != 0) id_ = 0;
-    posix_spawn_file_actions_destroy(&files);
-  }
-  ChildProcess(ChildProcess&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
-  ChildProcess& operator=(ChildProcess&& other) noexcept {
-    std::swap(id_, other.id_);
-    return *this;
-  }
-  ~ChildProcess() { killNow(); }
-
-  /// Returns the time of the kill by the monotonic clock.
-  std::int64_t killNow() {
-    const std::int64_t now_ns = device::monotonicClock().now_ns();
-    if (id_ > 0) {
-      kill(id_, SIGKILL);
-      waitpid(std::exchange(id_, 0), nullptr, 0);
-    }
-    return now_ns;
-  }
-  /// Its exit status; -1: a signal ended it.
-  int wait() {
-    int status = -1;
-    if (id_ > 0) waitpid(std::exchange(id_, 0), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t id_ = 0;
-};
 
 /// The three nodes of one session.
 class NodeProcesses {

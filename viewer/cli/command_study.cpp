@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps study: the yield of a procedure whose parts are off within their tolerances.
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,8 +13,10 @@
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "quoted.h"
 #include "scene_arguments.h"
 #include "study_log.h"
+#include "study_on_dask.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -22,6 +26,9 @@
 namespace vps::viewer::inline v0 {
 
 namespace {
+
+/// Many more than workers, so that none waits long for the last; few beside the start of a process.
+constexpr std::size_t kDaskTasks = 64;
 
 struct StudyArguments {
   std::string scene;
@@ -33,30 +40,39 @@ struct StudyArguments {
   std::size_t tasks = 0;            ///< of --print-tasks; 0: not given
   std::optional<std::size_t> only;  ///< of --repeat
   std::string log, json, html;      ///< empty: none
+  std::string dask;                 ///< address of a scheduler; empty: on this machine
 };
 
-/// A word of a POSIX shell.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+/// The command that makes runs of this study; which ones, is added to it.
+std::vector<std::string> taskWords(const StudyArguments& given, const std::string& scene) {
+  std::vector<std::string> words = {
+      "vps", "study", scene, "--runs", std::to_string(given.runs), "--seed", std::to_string(given.seed)};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {name, value});
+  };
+  if (!given.has_contact) words.emplace_back("--geometry");
+  if (given.threads > 0) add("--threads", std::to_string(given.threads));
+  add("--fidelity", given.fidelity.preset);
+  add("--voxel", given.fidelity.voxel);
+  add("--spacing", given.fidelity.spacing);
+  add("--sides", given.fidelity.sides);
+  return words;
 }
 
-std::string textOption(const char* name, const std::string& value) {
-  return value.empty() ? std::string() : std::string(" ").append(name).append(" ").append(quoted(value));
+/// A shell takes it as it is.
+bool isPlain(const std::string& word) {
+  return std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '/' || c == '_';
+  });
 }
 
 /// One line for each task, which a shell, GNU parallel or an array job of Slurm runs. Each has a log of its
 /// own.
 void printTasks(const StudyArguments& given) {
   const std::string log = given.log.empty() ? "study.jsonl" : given.log;
-  const FidelityArguments& fidelity = given.fidelity;
-  const std::string common =
-      "vps study " + quoted(given.scene) + " --runs " + std::to_string(given.runs) + " --seed " +
-      std::to_string(given.seed) + (given.has_contact ? "" : " --geometry") +
-      (given.threads > 0 ? " --threads " + std::to_string(given.threads) : "") +
-      textOption("--fidelity", fidelity.preset) + textOption("--voxel", fidelity.voxel) +
-      textOption("--spacing", fidelity.spacing) + textOption("--sides", fidelity.sides);
+  std::string common;
+  for (const std::string& word : taskWords(given, given.scene))
+    common += (common.empty() ? "" : " ") + (isPlain(word) ? word : quoted(word));
   const std::size_t tasks = std::min(given.tasks, given.runs);
   for (std::size_t i = 0; i < tasks; ++i)
     std::printf("%s --first %zu --last %zu --log %s\n", common.c_str(), i * given.runs / tasks,
@@ -113,6 +129,8 @@ int repeatRun(const scenes::Scene& scene, const std::vector<scenes::StudyVariabl
 
 int runStudyCommand(StudyArguments given, bool has_last) {
   requireRange(given, has_last);
+  if (!given.dask.empty() && given.log.empty())
+    throw LoadError("", "", "--dask needs --log FILE, where the runs of all workers are gathered");
   if (given.tasks > 0) {
     printTasks(given);
     return kGood;
@@ -133,10 +151,17 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   options.stop = &stopRequested();
   if (given.only) return repeatRun(scene, variables, settings, options, *given.only, runs, bar);
   if (log) options.on_run = [&](const scenes::StudyRun& run) { log->add(run); };
-  std::vector<scenes::StudyRun> made =
-      scenes::runStudy(scene, variables, settings, missingRuns(given, runs), options);
-  throwIfStopped();
-  runs.insert(runs.end(), made.begin(), made.end());
+  const std::vector<std::size_t> missing = missingRuns(given, runs);
+  if (given.dask.empty()) {
+    std::vector<scenes::StudyRun> made = scenes::runStudy(scene, variables, settings, missing, options);
+    throwIfStopped();
+    runs.insert(runs.end(), made.begin(), made.end());
+  } else if (!missing.empty()) {
+    bar.clear();
+    makeOnDask(given.dask, given.log, taskWords(given, std::filesystem::absolute(given.scene).string()),
+               rangesOf(missing, kDaskTasks));
+    runs = StudyLog(given.log, studyFingerprint(scene, variables, settings), variables).runs();
+  }
   std::erase_if(runs, [&](const scenes::StudyRun& run) { return run.run >= given.runs; });
   const scenes::StudyResult result = sumUpStudy(scene.name, variables, settings, std::move(runs));
   json.write(toJson(result));
@@ -174,6 +199,12 @@ void addStudy(CommandLine& line) {
       .add_option("--print-tasks", given->tasks,
                   "print so many commands that share the runs, for GNU parallel or Slurm, and stop")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  command
+      .add_option(
+          "--dask", given->dask,
+          "make the runs on the workers of this Dask scheduler; they need vps and the scene's files in the "
+          "same place")
+      ->type_name("ADDRESS");
   command.add_option("--html", given->html, "writes a page with histograms")->type_name("FILE");
   addFidelityOptions(command, given->fidelity);
   addJsonOption(command, given->json);
