@@ -24,13 +24,22 @@ struct Place {
 
 class LegSearch {
  public:
-  LegSearch(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
-            SearchWork& work)
-      : motions_(motions), part_(part), held_(held), home_(motions.parts()[part]), work_(work) {
-    size_m_ = home_.box_W.size().norm();
-    for (const std::size_t d : motions.axesOf(part))
-      straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
-    for (const CheckedFit& fit : motions.fitsOf(part)) {
+  LegSearch(const PairMotions& motions, const std::vector<std::size_t>& parts,
+            const std::vector<std::size_t>& held, SearchWork& work)
+      : motions_(motions), parts_(parts), held_(held), work_(work) {
+    Box box_W;
+    std::vector<std::size_t> axes;
+    for (const std::size_t part : parts) {
+      box_W.add(motions.parts()[part].box_W.min);
+      box_W.add(motions.parts()[part].box_W.max);
+      for (const std::size_t d : motions.axesOf(part))
+        if (std::ranges::find(axes, d) == axes.end()) axes.push_back(d);
+    }
+    size_m_ = box_W.size().norm();
+    center_W_ = box_W.center();
+    for (const std::size_t d : axes) straight_.push_back({motions.directions()[d], Vec3::Zero(), false});
+    if (parts.size() > 1) return;
+    for (const CheckedFit& fit : motions.fitsOf(parts.front())) {
       if (fit.kind != FitKind::Shaft || hasTurnAbout(fit)) continue;
       for (const double sign : {1.0, -1.0}) turns_.push_back({sign * fit.axis_W, fit.at_W, true});
     }
@@ -58,11 +67,20 @@ class LegSearch {
 
   /// A way if the part leaves straight from there; else adds the places that it comes to.
   std::optional<Way> expand(const Place& from, std::deque<Place>& waiting) {
-    const PlacedSurface placed = displaced(home_, from.X_W);
-    const MotionSearch search = motions_.search(placed, part_, held_);
+    std::vector<PlacedSurface> placed;
+    for (const std::size_t part : parts_) placed.push_back(displaced(motions_.parts()[part], from.X_W));
+    std::vector<MotionSearch> searches;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      searches.push_back(motions_.search(placed[i], parts_[i], held_));
+    const auto reachOf = [&](const Motion& motion, double most) {
+      Reach least{most, false, false, {}};
+      for (const MotionSearch& search : searches)
+        if (const Reach reach = search.reach(motion, least.s, &work_); reach.is_stopped) least = reach;
+      return least;
+    };
     std::vector<std::pair<Motion, double>> legs;
     for (const Motion& motion : straight_) {
-      const Reach reach = search.reach(motion, motions_.leave_m(), &work_);
+      const Reach reach = reachOf(motion, motions_.leave_m());
       if (!reach.is_stopped) {
         Way way{WayKind::Legs, from.legs, kNoDirection, 0};
         way.legs.push_back({motion, motions_.leave_m()});
@@ -72,12 +90,13 @@ class LegSearch {
     }
     if (from.legs.size() + 1 >= kMostLegs) return std::nullopt;
     for (const Motion& motion : turns_) {
-      const double s = search.reach(motion, kTurn_rad, &work_).s;
+      const double s = reachOf(motion, kTurn_rad).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
     // Where it was stopped it can be as deep as is allowed: back to where it is free.
-    for (auto& [motion, s] : legs)
-      s = std::max(0.0, s - 2 * search.rest_m() / (motion.is_turn ? 0.5 * size_m_ : 1));
+    double rest_m = 0;
+    for (const MotionSearch& search : searches) rest_m = std::max(rest_m, search.rest_m());
+    for (auto& [motion, s] : legs) s = std::max(0.0, s - 2 * rest_m / (motion.is_turn ? 0.5 * size_m_ : 1));
     for (const double share : kStops)
       for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
     return std::nullopt;
@@ -86,9 +105,8 @@ class LegSearch {
   void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {
     if (seen_.size() >= kMostPlaces) return;
     const Pose X_W = leg.motion.at(leg.s) * from.X_W;
-    const Vec3 center_W = home_.box_W.center();
     const bool is_known = std::ranges::any_of(seen_, [&](const Pose& other) {
-      return (other * center_W - X_W * center_W).norm() < kLeastLeg * size_m_ &&
+      return (other * center_W_ - X_W * center_W_).norm() < kLeastLeg * size_m_ &&
              rotationVector(other.R.transpose() * X_W.R).norm() < kLeastLeg;
     });
     if (is_known) return;
@@ -98,20 +116,20 @@ class LegSearch {
   }
 
   const PairMotions& motions_;
-  std::size_t part_;
+  const std::vector<std::size_t>& parts_;
   const std::vector<std::size_t>& held_;
-  const PlacedSurface& home_;
   SearchWork& work_;
   double size_m_ = 0;
+  Vec3 center_W_;
   std::vector<Motion> straight_, turns_;
   std::vector<Pose> seen_;
 };
 
 }  // namespace
 
-std::optional<Way> legWay(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
-                          SearchWork& work) {
-  return LegSearch(motions, part, held, work).find();
+std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
+                          const std::vector<std::size_t>& held, SearchWork& work) {
+  return LegSearch(motions, parts, held, work).find();
 }
 
 }  // namespace vps::scenes::inline v0

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "check/on_cores.h"
 #include "plan/take_apart.h"
@@ -54,6 +56,32 @@ Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>
     best.way = {WayKind::Straight, {{{directions[d], Vec3::Zero(), false}, motions.leave_m()}}, d, 0};
   }
   return best;
+}
+
+std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
+                                                      const std::vector<std::size_t>& remaining,
+                                                      const std::vector<std::size_t>& fixed) {
+  constexpr std::size_t kMostGroups = 256;
+  std::vector<std::size_t> movable;
+  std::ranges::set_difference(remaining, fixed, std::back_inserter(movable));
+  std::vector<std::vector<std::size_t>> groups, larger;
+  for (const std::size_t part : movable) larger.push_back({part});
+  while (!larger.empty() && groups.size() < kMostGroups) {
+    std::set<std::vector<std::size_t>> found;  // each by its members in order
+    for (const std::vector<std::size_t>& group : larger)
+      for (const std::size_t part : movable) {
+        if (found.size() + groups.size() >= kMostGroups) break;
+        const bool is_member = std::ranges::binary_search(group, part);
+        if (is_member || std::ranges::none_of(group, [&](std::size_t p) { return motions.areNear(p, part); }))
+          continue;
+        std::vector<std::size_t> with = group;
+        with.insert(std::ranges::upper_bound(with, part), part);
+        found.insert(std::move(with));
+      }
+    larger.assign(found.begin(), found.end());
+    groups.insert(groups.end(), larger.begin(), larger.end());
+  }
+  return groups;
 }
 
 }  // namespace vps::scenes::inline v0

@@ -65,15 +65,43 @@ class TakingApart {
 
   /// Limits of work that do not depend on the machine: some five seconds for each part, a minute in all.
   Removal byLegs() {
-    constexpr std::uint64_t kOfPart = 2'000'000, kOfAll = 40'000'000;
     const std::size_t parts = remaining_.size() - fixed_.size();
-    const std::uint64_t left = kOfAll - std::min(kOfAll, work_of_legs_);
+    const std::uint64_t share = shareOfWork(parts);
     Removal found = alone([&](std::size_t part) {
-      legs_[part] = {std::min(kOfPart, left / parts), 0};
-      return legWay(motions_, part, without(remaining_, {part}), legs_[part]);
+      legs_[part] = {share, 0};
+      return legWay(motions_, {part}, without(remaining_, {part}), legs_[part]);
     });
     for (const std::size_t part : without(remaining_, fixed_)) work_of_legs_ += legs_[part].done;
-    return found;
+    return found.parts.empty() ? groupByLegs() : found;
+  }
+
+  /// The first of the smallest sets that has a way.
+  Removal groupByLegs() {
+    const std::vector<std::vector<std::size_t>> groups = connectedGroups(motions_, remaining_, fixed_);
+    const std::uint64_t share = shareOfWork(groups.size());
+    for (auto first = groups.begin(); first != groups.end();) {
+      const auto end = std::ranges::find_if(first, groups.end(),
+                                            [&](const auto& group) { return group.size() > first->size(); });
+      const auto count = static_cast<std::size_t>(end - first);
+      std::vector<std::optional<Way>> ways(count);
+      std::vector<SearchWork> work(count, SearchWork{share, 0});
+      forEachOnCores(count, progress_, "", [&](std::size_t i) {
+        const std::vector<std::size_t>& group = first[static_cast<std::ptrdiff_t>(i)];
+        ways[i] = legWay(motions_, group, without(remaining_, group), work[i]);
+      });
+      for (const SearchWork& one : work) work_of_legs_ += one.done;
+      for (std::size_t i = 0; i < count; ++i)
+        if (ways[i])
+          return completed({first[static_cast<std::ptrdiff_t>(i)], std::move(*ways[i]), false, {}});
+      first = end;
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::uint64_t shareOfWork(std::size_t searches) const {
+    constexpr std::uint64_t kOfPart = 2'000'000, kOfAll = 40'000'000;
+    const std::uint64_t left = kOfAll - std::min(kOfAll, work_of_legs_);
+    return std::min(kOfPart, left / std::max<std::size_t>(1, searches));
   }
 
   Removal straight() {

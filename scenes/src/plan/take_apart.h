@@ -31,7 +31,8 @@ struct Disassembly {
 /// straight before screws; upwards, along round fits, sideways, down; in the direction of the one before; the
 /// loosest fit, so that pins are in place before what they locate; the highest; the first. Where no part
 /// leaves alone, the smallest set that leaves straight as one does; where none does, ways of several legs are
-/// searched, with limits of work for each part and for all. What is left in the end is blocked. On all cores.
+/// searched, of parts alone and then of sets, with limits of work for each and for all. What is left in the
+/// end is blocked. On all cores.
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
@@ -39,6 +40,12 @@ Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>
 /// direction all that it would push along, of which it needs the least. Empty if there is none.
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
+
+/// Sets of parts without a fixed one, each connected by pairs that are near each other: the smaller first,
+/// and all of those of two or more parts, but 256 at most.
+std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
+                                                      const std::vector<std::size_t>& remaining,
+                                                      const std::vector<std::size_t>& fixed);
 
 /// Sort key of directions: up, sideways, down.
 int slopeOf(const PairMotions& motions, const Vec3& direction_W);

@@ -36,12 +36,12 @@ bool stopsWay(const PairMotions& motions, std::size_t held, std::size_t part, co
 std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
                             const std::vector<std::size_t>& held);
 
-/// A way of several legs, straight along the part's axes or turning about those of its round fits: breadth
-/// first, from each place onwards as far as the part goes and to stops between, so that a way of fewest legs
-/// is found first. Where `work` is spent it ends. Source: the search over pushes of Tian et al., Assemble
-/// Them All, 2022, with exact motions in place of simulated ones. At most 4 legs and 96 places, so that none
-/// found is no proof.
-std::optional<Way> legWay(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
-                          SearchWork& work);
+/// A way of several legs for parts that move as one, straight along their axes or, of one part, turning about
+/// those of its round fits: breadth first, from each place onwards as far as the part goes and to stops
+/// between, so that a way of fewest legs is found first. Where `work` is spent it ends. Source: the search
+/// over pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated ones. At
+/// most 4 legs and 96 places, so that none found is no proof.
+std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
+                          const std::vector<std::size_t>& held, SearchWork& work);
 
 }  // namespace vps::scenes::inline v0
