@@ -55,7 +55,11 @@ PlacedSurface displaced(const PlacedSurface& part, const Pose& X_W) {
 
 PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                          const Vec3& up_W, const Progress& progress)
-    : parts_(parts), axes_(parts.size()), fits_(parts.size()) {
+    : parts_(parts),
+      axes_(parts.size()),
+      fits_(parts.size()),
+      carriers_(parts.size()),
+      carried_(parts.size()) {
   up_ = directions_.add(up_W.normalized());
   Box all;
   for (const PlacedSurface& part : parts) {
@@ -65,7 +69,6 @@ PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckRes
   leave_m_ = 2 * all.size().norm();
   findDirections(checked);
   findNear(checked, progress);
-  known_ = std::vector<std::atomic<std::uint8_t>>(parts.size() * (parts.size() - 1) / 2 * directions_.size());
 }
 
 void PairMotions::findDirections(const CheckResult& checked) {
@@ -100,6 +103,7 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
   std::vector<std::pair<const Pair, Near>*> all;
   for (auto& one : near_) all.push_back(&one);
   const Vec3 down_W = -directions_[up_];
+  std::vector<std::array<bool, 2>> falls(all.size());  // the first, the second
   forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
     auto& [pair, near] = *all[i];
     near.search = std::make_unique<const MotionSearch>(
@@ -107,38 +111,45 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
         std::vector<double>{near.crossing_m}, CrossingDepth::UpToMost);
     near.probes = ContactProbes(parts_[pair.first], parts_[pair.second], near.crossing_m);
     SearchWork down{kMostWork}, up{kMostWork};
-    near.is_first_carried = near.stops({down_W, Vec3::Zero(), false}, kFall_m, down);
-    near.is_second_carried = near.stops({-down_W, Vec3::Zero(), false}, kFall_m, up);
+    falls[i] = {!near.stops({down_W, Vec3::Zero(), false}, kFall_m, down),
+                !near.stops({-down_W, Vec3::Zero(), false}, kFall_m, up)};
   });
+  const auto add = [this](std::size_t carrier, std::size_t part) {
+    carriers_[part].push_back(carrier);
+    carried_[carrier].push_back(part);
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [first, second] = all[i]->first;
+    if (!falls[i][0]) add(second, first);
+    if (!falls[i][1]) add(first, second);
+  }
+  for (auto* lists : {&carriers_, &carried_})
+    for (std::vector<std::size_t>& list : *lists) std::ranges::sort(list);
 }
 
-std::size_t PairMotions::slot(std::size_t a, std::size_t b, std::size_t direction) const {
-  return (b * (b - 1) / 2 + a) * directions_.size() + direction;
+std::uint64_t PairMotions::slot(std::size_t a, std::size_t b, std::size_t direction) const {
+  return (static_cast<std::uint64_t>(b) * (b - 1) / 2 + a) * directions_.size() + direction;
 }
 
 bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t direction) const {
   // The first of a pair moves: that the second moves is the same, backwards.
   if (held < part) return stops(part, held, Directions::opposite(direction));
-  std::atomic<std::uint8_t>& known = known_[slot(part, held, direction)];
-  if (const std::uint8_t now = known.load(std::memory_order_relaxed); now != Unknown) return now == Stops;
   const Motion motion{directions_[direction], Vec3::Zero(), false};
+  const Box &moving = parts_[part].box_W, &fixed = parts_[held].box_W;
+  if (staysBeside(moving, fixed, motion.direction, 0, leave_m_)) return false;
+  const std::uint64_t key = slot(part, held, direction);
+  if (const auto known = known_.find(key); known != known_.end()) return known->second;
   const auto near = near_.find({part, held});
   const bool is_near = near != near_.end();
   const double depth_m = is_near ? near->second.crossing_m : touchOf(parts_[part], parts_[held]);
   SearchWork work{kMostWork};
   const bool is_stopped =
-      !staysBeside(parts_[part].box_W, parts_[held].box_W, motion.direction, depth_m, leave_m_) &&
+      !staysBeside(moving, fixed, motion.direction, depth_m, leave_m_) &&
       (is_near ? near->second.stops(motion, leave_m_, work)
                : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
-  std::uint8_t before = Unknown;  // another thread may have found it meanwhile
-  if (known.compare_exchange_strong(before, is_stopped ? Stops : Passes) && work.isSpent()) ++cut_;
+  // Another thread may have found it meanwhile.
+  if (known_.emplace(key, is_stopped).second && work.isSpent()) ++cut_;
   return is_stopped;
-}
-
-bool PairMotions::carries(std::size_t held, std::size_t part) const {
-  const auto near = near_.find(std::minmax(held, part));
-  if (near == near_.end()) return false;
-  return part < held ? near->second.is_first_carried : near->second.is_second_carried;
 }
 
 MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,

@@ -2,6 +2,8 @@
 // Which part stops which, in which direction.
 #pragma once
 
+#include <tbb/concurrent_unordered_map.h>
+
 #include <atomic>
 #include <cstdint>
 #include <map>
@@ -50,8 +52,10 @@ class PairMotions {
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
   /// How many motions of stops() were too long to be followed to their end.
   [[nodiscard]] std::size_t cutMotions() const { return cut_; }
-  /// Whether the held part keeps the other from falling by more than 1 mm.
-  [[nodiscard]] bool carries(std::size_t held, std::size_t part) const;
+  /// The parts that keep this one from falling by more than 1 mm, ascending.
+  [[nodiscard]] const std::vector<std::size_t>& carriersOf(std::size_t part) const { return carriers_[part]; }
+  /// The parts that this one carries, ascending.
+  [[nodiscard]] const std::vector<std::size_t>& carriedBy(std::size_t part) const { return carried_[part]; }
 
   /// Motions of a part, which may stand elsewhere, past several others.
   [[nodiscard]] MotionSearch search(const PlacedSurface& placed, std::size_t part,
@@ -65,13 +69,12 @@ class PairMotions {
     double crossing_m = 0;  ///< how deep they may be in each other
     std::unique_ptr<const MotionSearch> search;
     ContactProbes probes;
-    bool is_first_carried = false, is_second_carried = false;
     /// Of a straight motion of the first.
     bool stops(const Motion& motion, double most_m, SearchWork& work) const {
       return probes.areStopped(motion.direction) || search->reach(motion, most_m, &work).is_stopped;
     }
   };
-  [[nodiscard]] std::size_t slot(std::size_t a, std::size_t b, std::size_t direction) const;
+  [[nodiscard]] std::uint64_t slot(std::size_t a, std::size_t b, std::size_t direction) const;
   void findDirections(const CheckResult& checked);
   void findNear(const CheckResult& checked, const Progress& progress);
 
@@ -82,10 +85,11 @@ class PairMotions {
   std::vector<std::size_t> around_;
   std::vector<std::vector<CheckedFit>> fits_;
   std::map<Pair, Near> near_;
+  std::vector<std::vector<std::size_t>> carriers_, carried_;
   double leave_m_ = 0;
-  enum Known : std::uint8_t { Unknown, Passes, Stops };
   mutable std::atomic<std::size_t> cut_ = 0;
-  mutable std::vector<std::atomic<std::uint8_t>> known_;  ///< by slot()
+  /// By slot(): whether the part is stopped. Only of pairs whose boxes do not tell.
+  mutable tbb::concurrent_unordered_map<std::uint64_t, bool> known_;
 };
 
 /// A part moved by a motion of the world.

@@ -26,8 +26,9 @@ std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassemb
       const bool is_in_way = isAny(part, later, [&](std::size_t moving, std::size_t held) {
         return stopsWay(motions, held, moving, part.way);
       });
-      const bool is_carrying = isAny(
-          part, later, [&](std::size_t under, std::size_t over) { return motions.carries(under, over); });
+      const bool is_carrying = isAny(part, later, [&](std::size_t under, std::size_t over) {
+        return std::ranges::binary_search(motions.carriedBy(under), over);
+      });
       if (is_in_way)
         found[i].push_back({names[i], names[k], OrderReason::Way});
       else if (is_carrying)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "check/on_cores.h"
@@ -156,16 +157,17 @@ class TakingApart {
     return is_along ? kAlongFit : slope + kMore;
   }
 
-  /// What stopped it before is asked first.
+  /// What stopped it before is asked first. What was free stays free, since parts only go.
   bool leaves(std::size_t part, std::size_t direction) {
-    std::size_t& by = stopped_by_[part][direction];
-    const auto isRemaining = [&](std::size_t p) { return std::ranges::binary_search(remaining_, p); };
-    if (by != 0 && isRemaining(by - 1)) return false;
+    const auto [known, is_new] = stopped_by_[part].try_emplace(direction, part);
+    std::size_t& by = known->second;
+    if (!is_new && (by == part || std::ranges::binary_search(remaining_, by))) return by == part;
     for (const std::size_t held : remaining_) {
       if (held == part || !motions_.stops(held, part, direction)) continue;
-      by = held + 1;
+      by = held;
       return false;
     }
+    by = part;
     return true;
   }
 
@@ -177,16 +179,23 @@ class TakingApart {
     return known.way;
   }
 
-  Removal completed(Removal removal) const {
-    const std::vector<std::size_t> rest = without(remaining_, removal.parts);
-    const auto isCarried = [&](std::size_t part, const std::vector<std::size_t>& by) {
-      return std::ranges::any_of(by, [&](std::size_t held) { return motions_.carries(held, part); });
+  [[nodiscard]] Removal completed(Removal removal) const {
+    const auto isIn = [](const std::vector<std::size_t>& parts, std::size_t part) {
+      return std::ranges::binary_search(parts, part);
     };
-    removal.is_carried =
-        std::ranges::any_of(removal.parts, [&](std::size_t part) { return isCarried(part, rest); });
-    for (const std::size_t part : without(rest, fixed_))
-      if (isCarried(part, removal.parts) && !isCarried(part, without(rest, {part})))
-        removal.falling.push_back(part);
+    const auto isCarried = [&](std::size_t part) {  // by what stays
+      return std::ranges::any_of(motions_.carriersOf(part), [&](std::size_t carrier) {
+        return isIn(remaining_, carrier) && !isIn(removal.parts, carrier);
+      });
+    };
+    removal.is_carried = std::ranges::any_of(removal.parts, isCarried);
+    std::set<std::size_t> falling;
+    for (const std::size_t part : removal.parts)
+      for (const std::size_t carried : motions_.carriedBy(part))
+        if (isIn(remaining_, carried) && !isIn(removal.parts, carried) && !isIn(fixed_, carried) &&
+            !isCarried(carried))
+          falling.insert(carried);
+    removal.falling.assign(falling.begin(), falling.end());
     return removal;
   }
 
@@ -236,8 +245,8 @@ class TakingApart {
   };
   const PairMotions& motions_;
   std::vector<std::size_t> remaining_, fixed_;
-  std::vector<std::map<std::size_t, std::size_t>>
-      stopped_by_;  ///< by part and direction: one more than a part
+  /// By part and direction: what stopped it last; itself if nothing did.
+  std::vector<std::map<std::size_t, std::size_t>> stopped_by_;
   std::vector<Screw> screws_;
   std::vector<SearchWork> legs_;  ///< of the last search for legs, by part
   std::uint64_t work_of_legs_ = 0;
