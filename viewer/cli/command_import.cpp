@@ -19,6 +19,7 @@
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/plan.h"
 #include "vps_scenes/scene_text.h"
 
 namespace vps::viewer::inline v0 {
@@ -62,23 +63,20 @@ Proposal propose(const std::vector<scenes::ImportedPart>& parts) {
   return proposal;
 }
 
-std::string sceneText(const scenes::ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts,
-                      const Proposal& proposal) {
-  std::string out = "# From " + scenes::tomlText(cad.file) +
-                    R"(. Lengths and meshes are in metres; write "5mm" for millimetres.
-unit = "m"
-
-)";
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    out += "[[part]]\nname = " + scenes::tomlText(parts[i].name) +
-           "\nfile = " + scenes::tomlText(parts[i].file) + "\n";
-    if (i == proposal.fixed) out += "fixed = true\n";
-    out += "pose = " + scenes::tomlPose(cad.parts[i].X_WP) + "\n\n";
-  }
-  if (!proposal.steps.empty())
-    out +=
-        R"(# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, and
-# give each fit's diametral clearance (clearance = "20um").
+std::string textOf(const scenes::ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts) {
+  scenes::Scene scene = scenes::sceneOf(cad);
+  const Proposal proposal = propose(cad.parts);
+  scene.parts[proposal.fixed].is_fixed = true;
+  std::vector<std::string> files;
+  for (const ImportedPartAnswer& part : parts) files.push_back(part.file);
+  std::string out = sceneText(scene, files,
+                              "From " + scenes::tomlText(cad.file) +
+                                  R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
+  if (proposal.steps.empty()) return out;
+  out +=
+      R"(
+# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, or let
+# vps plan find order and ways.
 )";
   for (const std::size_t i : proposal.steps)
     out += "[[step]]\npart = " + scenes::tomlText(parts[i].name) + "\n\n";
@@ -118,7 +116,7 @@ int runImport(const ImportArguments& given) {
                row.file});
     answer.parts.push_back(row);
   }
-  out.write("scene.toml", sceneText(cad, answer.parts, propose(cad.parts)));
+  out.write("scene.toml", textOf(cad, answer.parts));
   out.commit();
   json.write(toJson(answer));
   bar.clear();

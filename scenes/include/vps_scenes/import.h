@@ -31,9 +31,10 @@ struct ImportedPart {
   Mesh mesh;         ///< welded, in the part's own frame, metres
   Pose X_WP;         ///< pose in the assembly
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
-  /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP); empty
-  /// for a file of meshes.
+  /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP): as
+  /// asked for, or more where it was measured to be more; empty for a file of meshes.
   std::optional<double> deflection_m = {};
+  std::string note = {};  ///< what is wrong with the mesh beside those faces, also among the warnings
 };
 
 struct ImportedCad {

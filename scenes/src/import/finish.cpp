@@ -23,6 +23,8 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   part.name = raw.name;
   part.color = raw.color;
   part.mesh = raw.mesh;
+  part.deflection_m = raw.deviation_m;
+  part.note = raw.note;
   const Mat3 M = raw.X_WP.linear();
   const double scale = std::cbrt(std::abs(M.determinant()));
   Mat3 R = Mat3::Identity(), rest = M;
@@ -139,6 +141,7 @@ void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback)
 }
 
 void describe(const ImportedPart& part, const MeshReport& report, std::vector<std::string>& warnings) {
+  if (!part.note.empty()) warnings.push_back("part '" + part.name + "': " + part.note);
   const auto warn = [&](std::size_t count, const std::string& text) {
     if (count > 0) warnings.push_back("part '" + part.name + "': " + std::to_string(count) + " " + text);
   };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // importCad(): detects the format, runs its reader, and finishes the parts.
+#include <algorithm>
+
 #include "import/own_process.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -40,8 +42,12 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   import::RawCad raw =
       settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
   import::finish(std::move(raw), cad);
-  if (hasExactFaces(cad.format))
-    for (ImportedPart& part : cad.parts) part.deflection_m = settings.deflection_m;
+  for (ImportedPart& part : cad.parts) {
+    if (hasExactFaces(cad.format))
+      part.deflection_m = std::max(part.deflection_m.value_or(0), settings.deflection_m);
+    else
+      part.deflection_m.reset();
+  }
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;
 }

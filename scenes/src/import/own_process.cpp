@@ -109,6 +109,8 @@ void transfer(Io& io, RawCad& cad) {
     transferArray(io, part.mesh.triangles);
     io(part.X_WP.data(), 16 * sizeof(double));
     io(part.color.data(), sizeof part.color);
+    transfer(io, part.deviation_m);
+    transferArray(io, part.note);
   });
   transferEach(io, cad.warnings, [&](std::string& line) { transferArray(io, line); });
   transfer(io, cad.unit_m);

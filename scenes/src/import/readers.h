@@ -18,6 +18,8 @@ struct RawPart {
   Mesh mesh;
   Eigen::Affine3d X_WP = Eigen::Affine3d::Identity();  ///< may scale or mirror
   std::array<float, 3> color = ImportedPart().color;   ///< linear RGB
+  double deviation_m = 0;  ///< of the mesh from the file's exact faces, as measured
+  std::string note;        ///< what is wrong with it, for a warning; empty: nothing
 };
 
 /// The meaning of open shapes that together form a closed surface.

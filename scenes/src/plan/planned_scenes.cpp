@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plan as scenes that can be run.
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -54,6 +55,8 @@ class SceneMaker {
     for (std::size_t i = 1; i < step.parts.size(); ++i) {
       const ScenePart part = partNamed(step.parts[i]);
       append(whole.part.mesh, transformed(part.part.mesh, whole.X_WP.inverse() * part.X_WP));
+      if (part.deflection_m)
+        whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
     }
     return whole;
   }

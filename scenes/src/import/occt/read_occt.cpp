@@ -27,7 +27,8 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
-#include "import/occt/shape_mesh.h"
+#include "import/occt/pieces.h"
+#include "import/occt/tessellation.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -110,7 +111,7 @@ class Tree {
 
  private:
   struct Piece {
-    Mesh mesh;
+    Tessellation tessellation;
     Color color;
     bool has_color;
   };
@@ -158,7 +159,9 @@ class Tree {
     for (const Piece& piece : piecesOf(product)) {
       RawPart part;
       part.name = name;
-      part.mesh = piece.mesh;
+      part.mesh = piece.tessellation.mesh;
+      part.deviation_m = piece.tessellation.deviation_m;
+      part.note = inWords(piece.tessellation, settings_);
       part.X_WP = X_WP;
       if (piece.has_color) part.color = piece.color;
       if (color) part.color = *color;
@@ -174,7 +177,7 @@ class Tree {
     for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product))) {
       Piece piece;
       piece.has_color = colorOf(shape, piece.color);
-      piece.mesh = meshOf(shape, settings_, 1 / cad_.unit_m);
+      piece.tessellation = tessellate(shape, settings_, 1 / cad_.unit_m);
       it->second.push_back(std::move(piece));
     }
     return it->second;
@@ -275,7 +278,10 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
     }
     for (const TopoDS_Shape& piece : pieces(shape)) {
       RawPart part;
-      part.mesh = meshOf(piece, settings, 1 / cad.unit_m);
+      Tessellation found = tessellate(piece, settings, 1 / cad.unit_m);
+      part.mesh = std::move(found.mesh);
+      part.deviation_m = found.deviation_m;
+      part.note = inWords(found, settings);
       cad.parts.push_back(std::move(part));
     }
     return cad;

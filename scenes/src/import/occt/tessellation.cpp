@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/occt/tessellation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <BRepGProp.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <GProp_GProps.hxx>
+#include <GeomAPI_ProjectPointOnSurf.hxx>
+#include <Geom_Surface.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Poly_Triangulation.hxx>
+#include <Precision.hxx>
+#include <ShapeAnalysis_Surface.hxx>
+#include <ShapeFix_Shape.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Face.hxx>
+
+namespace vps::scenes::inline v0::import {
+
+namespace {
+
+/// Open CASCADE keeps the deflection along edges and checks it at some points within faces.
+/// Assumed: three times as much is still as asked for.
+constexpr double kTimes = 3;
+
+/// Points inside faces. Planes and cylinders keep the deflection by their rims alone, but where a cylinder
+/// has many of them Open CASCADE 7.6 can span it by triangles that are millimetres off.
+enum class Inner { None, AsAsked, Finer };
+
+void appendFace(const TopoDS_Face& face, Mesh& mesh) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (triangulation.IsNull()) return;
+  const gp_Trsf transform = location.Transformation();
+  const auto base = std::uint32_t(mesh.vertices.size());
+  for (int i = 1; i <= triangulation->NbNodes(); ++i) {
+    const gp_Pnt p = triangulation->Node(i).Transformed(transform);
+    mesh.vertices.emplace_back(p.X(), p.Y(), p.Z());
+  }
+  const bool is_flipped = (face.Orientation() == TopAbs_REVERSED) != transform.IsNegative();
+  for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
+    int a = 0, b = 0, c = 0;
+    triangulation->Triangle(i).Get(a, b, c);
+    if (is_flipped) std::swap(b, c);
+    mesh.triangles.push_back(
+        {base + std::uint32_t(a - 1), base + std::uint32_t(b - 1), base + std::uint32_t(c - 1)});
+  }
+}
+
+/// Greatest distance of the triangles' centres from the face's surface. The point of the surface at the
+/// middle of the corners' parameters is near the centre, so that the nearest one is only looked for where
+/// that is farther than `enough`.
+double deviationOf(const TopoDS_Face& face, double enough) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (triangulation.IsNull() || !triangulation->HasUVNodes()) return 0;
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // where the face is
+  if (surface.IsNull()) return 0;
+  Handle(ShapeAnalysis_Surface) nearest;
+  double worst = 0;
+  for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
+    int corner[3];
+    triangulation->Triangle(i).Get(corner[0], corner[1], corner[2]);
+    gp_XYZ center;
+    gp_XY middle;
+    for (const int c : corner) {
+      center += triangulation->Node(c).Transformed(location.Transformation()).XYZ() / 3;
+      middle += triangulation->UVNode(c).XY() / 3;
+    }
+    double distance = surface->Value(middle.X(), middle.Y()).Distance(gp_Pnt(center));
+    if (distance > std::max(enough, worst)) {
+      if (nearest.IsNull()) nearest = new ShapeAnalysis_Surface(surface);
+      const gp_Pnt2d at = nearest->ValueOfUV(gp_Pnt(center), Precision::Confusion());
+      distance = std::min(distance, nearest->Value(at).Distance(gp_Pnt(center)));
+      // That looks near the best of a grid of points, which can be another valley of the distance.
+      if (distance > std::max(enough, worst)) {
+        const GeomAPI_ProjectPointOnSurf all(gp_Pnt(center), surface);
+        if (all.NbPoints() > 0) distance = std::min(distance, all.LowerDistance());
+      }
+    }
+    worst = std::max(worst, distance);
+  }
+  return worst;
+}
+
+Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
+                          Inner inner) {
+  const double finer = inner == Inner::Finer ? 0.25 : 1;
+  IMeshTools_Parameters parameters;
+  parameters.Deflection = finer * settings.deflection_m * units_per_m;
+  parameters.Angle = finer * settings.angle_rad;
+  parameters.InParallel = !settings.in_own_process;  // a forked process may start no threads
+  parameters.InternalVerticesMode = inner != Inner::None;
+  // A BREP file can hold triangles, which may be of another shape by now.
+  BRepTools::Clean(shape);
+  BRepMesh_IncrementalMesh(shape, parameters);
+  Tessellation out;
+  const double enough = kTimes * settings.deflection_m * units_per_m;
+  double deviation = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    const TopoDS_Face face = TopoDS::Face(it.Current());
+    const std::size_t before = out.mesh.triangles.size();
+    appendFace(face, out.mesh);
+    ++out.faces;
+    out.missing += out.mesh.triangles.size() == before;
+    deviation = std::max(deviation, deviationOf(face, enough));
+  }
+  if (shape.ShapeType() == TopAbs_SOLID && !out.mesh.triangles.empty()) {
+    GProp_GProps exact;
+    BRepGProp::VolumeProperties(shape, exact, 1e-4);  // to a ten-thousandth
+    const double volume = std::abs(massProperties(out.mesh).volume_m3),
+                 error = std::abs(volume - std::abs(exact.Mass()));
+    if (error > 1e-3 * volume) deviation = std::max(deviation, error / area(out.mesh));
+  }
+  out.deviation_m = deviation / units_per_m;
+  return out;
+}
+
+}  // namespace
+
+bool Tessellation::isTrusted(const ImportSettings& settings) const {
+  return missing == 0 && deviation_m <= kTimes * settings.deflection_m;
+}
+
+Tessellation tessellate(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m) {
+  Tessellation best = triangulated(shape, settings, units_per_m, Inner::None);
+  const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
+    if (best.isTrusted(settings)) return;
+    Tessellation next = triangulated(other, settings, units_per_m, inner);
+    // Finer triangles alone make the search for contacts slower.
+    const bool is_better = next.missing < best.missing ||
+                           (next.missing == best.missing && next.deviation_m < 0.5 * best.deviation_m);
+    if (!is_better) return;
+    best = std::move(next);
+  };
+  tryThat(shape, Inner::AsAsked);
+  tryThat(shape, Inner::Finer);
+  if (best.isTrusted(settings)) return best;
+  ShapeFix_Shape fix(shape);
+  fix.Perform();
+  tryThat(fix.Shape(), Inner::AsAsked);
+  return best;
+}
+
+std::string inWords(const Tessellation& tessellation, const ImportSettings& settings) {
+  if (tessellation.isTrusted(settings)) return "";
+  char off[160], missing[80] = "";
+  std::snprintf(
+      off, sizeof off,
+      "its triangles are up to %.3g mm from the faces that the file describes, and what is measured on it is "
+      "no surer than that",
+      1e3 * tessellation.deviation_m);
+  if (tessellation.missing > 0)
+    std::snprintf(missing, sizeof missing, "; %d of %d faces have no triangles", tessellation.missing,
+                  tessellation.faces);
+  return std::string(off) + missing + "; export it again";
+}
+
+}  // namespace vps::scenes::inline v0::import
