@@ -58,6 +58,7 @@ PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckRes
     : parts_(parts),
       axes_(parts.size()),
       fits_(parts.size()),
+      mates_(parts.size()),
       carriers_(parts.size()),
       carried_(parts.size()) {
   up_ = directions_.add(up_W.normalized());
@@ -72,6 +73,15 @@ PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckRes
 }
 
 void PairMotions::findDirections(const CheckResult& checked) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
+  for (const CheckedFit& fit : checked.fits) {
+    const std::size_t shaft = index.at(fit.shaft), bore = index.at(fit.bore);
+    for (const auto& [part, mate] : {std::pair(shaft, bore), {bore, shaft}}) {
+      fits_[part].push_back(fit);
+      mates_[part].push_back(mate);
+    }
+  }
   for (int axis = 0; axis < 3; ++axis) directions_.add(Vec3::Unit(axis));
   const std::size_t common = directions_.size();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -81,9 +91,7 @@ void PairMotions::findDirections(const CheckResult& checked) {
       for (const std::size_t one : {d, Directions::opposite(d)})
         if (std::ranges::find(axes_[i], one) == axes_[i].end()) axes_[i].push_back(one);
     };
-    for (const CheckedFit& fit : checked.fits) {
-      if (fit.shaft != parts_[i].name && fit.bore != parts_[i].name) continue;
-      fits_[i].push_back(fit);
+    for (const CheckedFit& fit : fits_[i]) {
       add(fit.along_W.normalized());
       if (fit.kind == FitKind::Key) add(fit.axis_W.cross(fit.along_W).normalized());
     }

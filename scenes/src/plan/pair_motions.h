@@ -46,6 +46,8 @@ class PairMotions {
   /// The other directions: the vertices of a subdivided icosahedron.
   [[nodiscard]] const std::vector<std::size_t>& around() const { return around_; }
   [[nodiscard]] const std::vector<CheckedFit>& fitsOf(std::size_t part) const { return fits_[part]; }
+  /// The other part of each of its fits.
+  [[nodiscard]] const std::vector<std::size_t>& matesOf(std::size_t part) const { return mates_[part]; }
   [[nodiscard]] bool areNear(std::size_t a, std::size_t b) const { return near_.contains(std::minmax(a, b)); }
 
   /// Whether a part that moves away in a direction meets the held one. Kept once it is known. Thread-safe.
@@ -84,6 +86,7 @@ class PairMotions {
   std::vector<std::vector<std::size_t>> axes_;
   std::vector<std::size_t> around_;
   std::vector<std::vector<CheckedFit>> fits_;
+  std::vector<std::vector<std::size_t>> mates_;
   std::map<Pair, Near> near_;
   std::vector<std::vector<std::size_t>> carriers_, carried_;
   double leave_m_ = 0;

@@ -214,12 +214,10 @@ class TakingApart {
   /// Clearance of its tightest fit with a part that remains, to a micrometre; infinite without one.
   [[nodiscard]] double loosenessOf(std::size_t part) const {
     double least_m = std::numeric_limits<double>::infinity();
-    for (const CheckedFit& fit : motions_.fitsOf(part)) {
-      const std::string& own = motions_.parts()[part].name;
-      const std::string& mate = fit.shaft == own ? fit.bore : fit.shaft;
-      if (std::ranges::any_of(remaining_, [&](std::size_t p) { return motions_.parts()[p].name == mate; }))
-        least_m = std::min(least_m, std::round(1e6 * fit.diametral_clearance_m) * 1e-6);
-    }
+    const std::vector<CheckedFit>& fits = motions_.fitsOf(part);
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      if (std::ranges::binary_search(remaining_, motions_.matesOf(part)[i]))
+        least_m = std::min(least_m, std::round(1e6 * fits[i].diametral_clearance_m) * 1e-6);
     return least_m;
   }
 
