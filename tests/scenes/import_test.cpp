@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <set>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -341,6 +342,30 @@ TEST(ImportVrml, WithoutUnitIsInMetresWithAWarning) {
   ASSERT_EQ(cad.warnings.size(), 1u);
   EXPECT_NE(cad.warnings[0].find("metres"), std::string::npos);
   EXPECT_NEAR(volume(importCad(file.string(), inUnit("mm")).parts.at(0)), 6e-9, 1e-14);
+}
+
+TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
+  const std::string file = (kBlock / "bearing_block.glb").string();
+  const ImportedCad as_is = importCad(file);
+  for (const char* name : {"x", "-x", "y", "-y", "z", "-z"}) {
+    ImportSettings settings;
+    settings.up = axisFromText(name);
+    ASSERT_TRUE(settings.up) << name;
+    const ImportedCad turned = importCad(file, settings);
+    const Pose &before = as_is.parts.at(1).X_WP, &after = turned.parts.at(1).X_WP;
+    EXPECT_NEAR((after * Vec3::Ones()).z(), settings.up->dot(before * Vec3::Ones()), 1e-12) << name;
+    EXPECT_NEAR(after.R.determinant(), 1, 1e-12) << name;
+  }
+  for (const char* name : {"", "-", "w", "yy", "--y"}) EXPECT_FALSE(axisFromText(name)) << name;
+}
+
+TEST(ImportFiles, SeveralShareAFrameAndTheirNamesAreUnique) {
+  const std::string file = (kBlock / "bearing_block.glb").string();
+  const ImportedCad one = importCad(file), two = importCad(std::vector<std::string>{file, file});
+  ASSERT_EQ(two.parts.size(), 2 * one.parts.size());
+  EXPECT_EQ(two.format, "glTF");
+  std::set<std::string> names;
+  for (const ImportedPart& part : two.parts) EXPECT_TRUE(names.insert(part.name).second) << part.name;
 }
 
 TEST(ImportErrors, MissingEmptyFolderAndUnknownAreOneLine) {

@@ -29,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ImportArguments {
-  std::string cad, out;
-  std::string units, deflection, json;
+  std::vector<std::string> cad;
+  std::string out, units, up, deflection, json;
   bool is_forced = false;  ///< replaces an existing scene.toml
 };
 
@@ -63,15 +63,17 @@ Proposal propose(const std::vector<scenes::ImportedPart>& parts) {
   return proposal;
 }
 
-std::string textOf(const scenes::ImportedCad& cad, const std::vector<ImportedPartAnswer>& parts) {
+std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string>& read,
+                   const std::vector<ImportedPartAnswer>& parts) {
   scenes::Scene scene = scenes::sceneOf(cad);
   const Proposal proposal = propose(cad.parts);
   scene.parts[proposal.fixed].is_fixed = true;
+  std::string from;
+  for (const std::string& file : read) from += (from.empty() ? "" : ", ") + scenes::tomlText(file);
   std::vector<std::string> files;
   for (const ImportedPartAnswer& part : parts) files.push_back(part.file);
-  std::string out = sceneText(scene, files,
-                              "From " + scenes::tomlText(cad.file) +
-                                  R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
+  std::string out = sceneText(
+      scene, files, "From " + from + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
   if (proposal.steps.empty()) return out;
   out +=
       R"(
@@ -85,30 +87,40 @@ std::string textOf(const scenes::ImportedCad& cad, const std::vector<ImportedPar
 }
 
 int runImport(const ImportArguments& given) {
-  requireCadFile(given.cad);
+  for (const std::string& file : given.cad) requireCadFile(file);
   scenes::ImportSettings settings;
   settings.unit_m = unitFrom(given.units);
   if (!given.deflection.empty())
     settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
   if (!(settings.deflection_m > 0))
     throw LoadError("", "", "--deflection is " + given.deflection + "; expected more than 0");
+  if (!given.up.empty()) {
+    settings.up = scenes::axisFromText(given.up);
+    if (!settings.up)
+      throw LoadError("", "", "--up is '" + given.up + "'; expected one of: x, -x, y, -y, z, -z");
+  }
   std::error_code error;
   if (!given.is_forced && fs::exists(fs::path(given.out) / "scene.toml", error))
     throw LoadError(given.out, "",
                     "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
-  OutputFile json(given.json, {given.cad});
+  OutputFile json(given.json, given.cad);
   ProgressBar bar;
-  const scenes::ImportedCad cad = scenes::importCad(given.cad, settings, bar.progress());
+  scenes::ImportedCad cad = scenes::importCad(given.cad, settings, bar.progress());
+  if (cad.format.find("Inventor") != std::string::npos && !settings.up)
+    cad.warnings.emplace_back(
+        "z is taken to be up, though y often is in Inventor files; --up y turns the parts, --up z says that "
+        "z is "
+        "right");
 
-  ImportAnswer answer{given.cad, cad.format, {}, cad.warnings};
+  ImportAnswer answer{cad.file, cad.format, {}, cad.warnings};
   std::set<std::string> taken;
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
   for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
     const ImportedPartAnswer row{part.name, partFileName(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
-    requireNotRead((fs::path(given.out) / row.file).string(), {given.cad});
+    requireNotRead((fs::path(given.out) / row.file).string(), given.cad);
     out.write(row.file, stlBytes(part.mesh));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
@@ -116,13 +128,14 @@ int runImport(const ImportArguments& given) {
                row.file});
     answer.parts.push_back(row);
   }
-  out.write("scene.toml", textOf(cad, answer.parts));
+  out.write("scene.toml", textOf(cad, given.cad, answer.parts));
   out.commit();
   json.write(toJson(answer));
   bar.clear();
 
   std::fputs(table.text().c_str(), stdout);
-  for (const std::string& warning : cad.warnings) warn(given.cad + ": " + warning);
+  for (const std::string& warning : cad.warnings)
+    warn(given.cad.size() > 1 ? warning : cad.file + ": " + warning);
   std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),
               given.out.c_str());
   return kGood;
@@ -133,15 +146,19 @@ int runImport(const ImportArguments& given) {
 void addImport(CommandLine& line) {
   const auto given = std::make_shared<ImportArguments>();
   CLI::App& command =
-      addCommand(line, "import", "makes a scene from a CAD file: parts, poses and proposed steps",
+      addCommand(line, "import", "makes a scene from CAD files: parts, poses and proposed steps",
                  "vps import assembly.step -o my_scene", [given] { return runImport(*given); });
-  command.add_option("cad", given->cad, "STEP, IGES, glTF, STL, OBJ, PLY, Inventor, ...")
+  command
+      .add_option("cad", given->cad,
+                  "STEP, IGES, glTF, STL, OBJ, PLY, Inventor, ...; several files share one frame")
       ->required()
       ->type_name("CAD");
   command.add_option("-o,--out", given->out, "folder for scene.toml and meshes")
       ->required()
       ->type_name("DIR");
   addUnitsOption(command, given->units);
+  command.add_option("--up", given->up, "the file's axis that is up and becomes z: x, -x, y, -y, z or -z")
+      ->type_name("AXIS");
   command.add_option("--deflection", given->deflection,
                      "greatest distance between curved faces and their triangles, with unit");
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");

@@ -20,6 +20,8 @@ struct ImportSettings {
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
   double angle_rad = 0.35;  ///< greatest angle between neighbouring triangles of a curved face
+  /// The file's axis that is up: the parts are turned so that it becomes z. Empty: the file's axes are kept.
+  std::optional<Vec3> up = {};
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
   /// LoadError. False: in this process, for a debugger, or where other threads use Open CASCADE or Coin
   /// themselves.
@@ -53,6 +55,12 @@ struct ImportedCad {
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 
+/// The parts of several files in one frame, as if they were one file, which has the name of the first.
+VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
+                                     const ImportSettings& settings = {}, const Progress& progress = {});
+
+/// An axis from "x", "-x", "y" and so on; empty for other text.
+VPS_SCENES_API std::optional<Vec3> axisFromText(const std::string& text);
 /// Metres per unit of "mm", "cm", "m", "um" and "inch"; empty for other text.
 VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.

@@ -128,18 +128,6 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
   parts = std::move(kept);
 }
 
-void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
-  std::set<std::string> taken;
-  for (ImportedPart& part : parts) {
-    for (char& c : part.name) {
-      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    }
-    if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
-    const std::string base = part.name;
-    for (int n = 2; !taken.insert(part.name).second; ++n) part.name = base + "_" + std::to_string(n);
-  }
-}
-
 void describe(const ImportedPart& part, const MeshReport& report, std::vector<std::string>& warnings) {
   if (!part.note.empty()) warnings.push_back("part '" + part.name + "': " + part.note);
   const auto warn = [&](std::size_t count, const std::string& text) {
@@ -167,6 +155,18 @@ std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
     linear[i] = c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
   }
   return linear;
+}
+
+void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
+  std::set<std::string> taken;
+  for (ImportedPart& part : parts) {
+    for (char& c : part.name) {
+      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    }
+    if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
+    const std::string base = part.name;
+    for (int n = 2; !taken.insert(part.name).second; ++n) part.name = base + "_" + std::to_string(n);
+  }
 }
 
 void finish(RawCad raw, ImportedCad& cad) {

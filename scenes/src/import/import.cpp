@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // importCad(): detects the format, runs its reader, and finishes the parts.
 #include <algorithm>
+#include <iterator>
 
 #include "import/own_process.h"
 #include "import/readers.h"
@@ -48,8 +49,25 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
     else
       part.deflection_m.reset();
   }
+  if (settings.up) import::turnUp(cad, *settings.up);
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;
+}
+
+ImportedCad importCad(const std::vector<std::string>& files, const ImportSettings& settings,
+                      const Progress& progress) {
+  ImportedCad all;
+  for (const std::string& file : files) {
+    ImportedCad one = importCad(file, settings, progress);
+    if (all.file.empty()) all.file = file;
+    if (all.format.find(one.format) == std::string::npos)
+      all.format += (all.format.empty() ? "" : ", ") + one.format;
+    std::ranges::move(one.parts, std::back_inserter(all.parts));
+    for (const std::string& warning : one.warnings)
+      all.warnings.push_back(files.size() > 1 ? file + ": " + warning : warning);
+  }
+  import::nameUniquely(all.parts, "part");
+  return all;
 }
 
 }  // namespace vps::scenes::inline v0

@@ -47,6 +47,12 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
 /// Converts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds warnings.
 void finish(RawCad raw, ImportedCad& cad);
 
+/// Gives each part another name where one is repeated; `fallback` where it has none.
+void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback);
+
+/// Turns the parts so that the axis becomes z, the shortest way.
+void turnUp(ImportedCad& cad, const Vec3& axis);
+
 /// "STEP", "IGES", "BREP", "Inventor", "VRML", or the extension in capitals; by content where possible.
 /// Throws LoadError for a file that is missing, a folder, empty, or cut (where the format defines its end).
 std::string detectFormat(const std::string& file);
