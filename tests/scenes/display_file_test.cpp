@@ -21,7 +21,10 @@ const std::string kHead =
 class DisplayFile : public testing::Test {
  protected:
   Display load(const std::string& text) {
-    const std::string file = (std::filesystem::path(testing::TempDir()) / "display_file_test.toml").string();
+    // Tests of this file run at the same time.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    const std::string file =
+        (std::filesystem::path(testing::TempDir()) / ("display_" + name + ".toml")).string();
     std::ofstream(file) << text;
     return loadDisplay(file);
   }
