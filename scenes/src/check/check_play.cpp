@@ -5,6 +5,8 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <string_view>
+#include <unordered_map>
 
 #include "check/on_cores.h"
 #include "check/play.h"
@@ -23,29 +25,47 @@ struct PartTask {
   double error_m = 0;
 };
 
-bool isOf(const CheckedPair& pair, const std::string& name) {
-  return pair.a == name || pair.b == name;
-}
+/// The pairs and fits that each part takes part in.
+class Neighbours {
+ public:
+  struct Pair {
+    std::size_t other;
+    const CheckedPair* pair;
+  };
+  Neighbours(const std::vector<PlacedSurface>& parts, const CheckResult& result)
+      : pairs_(parts.size()), fits_(parts.size()) {
+    std::unordered_map<std::string_view, std::size_t> index_of;
+    for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
+    for (const CheckedPair& pair : result.pairs) {
+      const std::size_t a = index_of.at(pair.a), b = index_of.at(pair.b);
+      pairs_[a].push_back({b, &pair});
+      pairs_[b].push_back({a, &pair});
+    }
+    for (const CheckedFit& fit : result.fits)
+      for (const std::string& name : {fit.shaft, fit.bore}) fits_[index_of.at(name)].push_back(&fit);
+  }
+  [[nodiscard]] const std::vector<Pair>& pairsOf(std::size_t part) const { return pairs_[part]; }
+  [[nodiscard]] const std::vector<const CheckedFit*>& fitsOf(std::size_t part) const { return fits_[part]; }
+
+ private:
+  std::vector<std::vector<Pair>> pairs_;
+  std::vector<std::vector<const CheckedFit*>> fits_;
+};
 
 /// Empty for a part that clashes or is pressed in: what overlaps cannot be moved apart by it.
-PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const CheckResult& result) {
+PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours) {
   PartTask task;
-  const std::string& name = parts[part].name;
-  std::vector<const PlacedSurface*> held;
-  std::vector<double> crossing_m;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i == part) continue;
-    held.push_back(&parts[i]);
-    crossing_m.push_back(0);
-    for (const CheckedPair& pair : result.pairs) {
-      if (!isOf(pair, name) || !isOf(pair, parts[i].name)) continue;
-      if (pair.state >= PairState::PressFit) return task;
-      crossing_m.back() = pair.error_m;
-      task.error_m = std::max(task.error_m, pair.error_m);
-    }
+  std::vector<double> crossing_m(parts.size());
+  for (const auto& [other, pair] : neighbours.pairsOf(part)) {
+    if (pair->state >= PairState::PressFit) return {};
+    crossing_m[other] = pair->error_m;
+    task.error_m = std::max(task.error_m, pair->error_m);
   }
-  for (const CheckedFit& fit : result.fits)
-    if (fit.shaft == name || fit.bore == name) task.fits.push_back(fit);
+  crossing_m.erase(crossing_m.begin() + static_cast<std::ptrdiff_t>(part));
+  std::vector<const PlacedSurface*> held;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (i != part) held.push_back(&parts[i]);
+  for (const CheckedFit* fit : neighbours.fitsOf(part)) task.fits.push_back(*fit);
   task.frame = playFrame(parts[part], task.fits);
   task.search = std::make_unique<const MotionSearch>(parts[part], std::move(held), crossing_m);
   task.error_m += task.search->rest_m();
@@ -65,8 +85,9 @@ bool hasFlushFaces(const PartTask& task) {
 void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
                const Progress& progress) {
   std::vector<PartTask> tasks(parts.size());
+  const Neighbours neighbours(parts, result);
   forEachOnCores(parts.size(), progress, "preparing play", [&](std::size_t i) {
-    if (settings.isAsked(parts[i].name)) tasks[i] = taskOf(parts, i, result);
+    if (settings.isAsked(parts[i].name)) tasks[i] = taskOf(parts, i, neighbours);
   });
   Box all;
   for (const PlacedSurface& part : parts) {

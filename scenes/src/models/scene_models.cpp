@@ -33,10 +33,6 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity) {
   return settings;
 }
 
-bool isEqualGeometry(const Mesh& a, const Mesh& b) {
-  return a.triangles == b.triangles && a.vertices == b.vertices;
-}
-
 namespace {
 
 /// What map and shell are built from, and contacts and overlaps of a run are measured with. A rigid part
