@@ -156,8 +156,25 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
   return turning;
 }
 
+double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
+                               const Piece& piece, double most, SearchWork* work, bool& is_given_up) {
+  const int most_steps =
+      piece.motion_H.is_turn && piece.motion_H.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
+  MovingPair there = pair;
+  double s = 0;
+  for (int i = 0; i < most_steps && s < most; ++i) {
+    if (i > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
+    if (i > 0 && work != nullptr && ++work->done >= work->most) return s;
+    const double safe = safeStep(there, moving, held);
+    if (safe < std::min(piece.least, most - s)) return s;
+    s += safe;
+  }
+  is_given_up = s < most;
+  return s;
+}
+
 double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
-                          const PassingFacets* passing, SearchWork* work, Blocker& by) const {
+                          const PassingFacets* passing, SearchWork* work, Reach& reach) const {
   // No structured binding: clang 14 does not let a lambda use one.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
@@ -188,11 +205,12 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
     for (Vec3& p : t) p = X_HM * p;
     const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
     if (!(reaches(boxOf(t), boxOf(fixed.triangle(k)), radius_m) < best)) return;
-    const double safe = safeStep(pair, i, k);
-    if (safe >= best) return;
-    best = safe;
-    by.moving_facet = i;
-    by.held_facet = k;
+    bool is_given_up = false;
+    const double stops = pairStops(pair, i, k, piece, best, work, is_given_up);
+    if (stops >= best) return;
+    best = stops;
+    reach.is_given_up = is_given_up;
+    reach.by = {which, i, k};
   };
 
   struct Waiting {
@@ -271,28 +289,24 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
   double longest = kFirstStep_m / speed;
   const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
   Reach reach;
-  const int most_steps = motion.is_turn && motion.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
-  for (int i = 0; i < most_steps && reach.s < most; ++i) {
-    const double wanted = std::min(longest, most - reach.s);
-    double safe = wanted;
-    for (std::size_t h = 0; h < held_.size() && safe > 0; ++h) {
-      Blocker by{h, 0, 0};
-      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + safe) * forward_m});
-      const double here =
-          step(h, turning, {in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, {back_m, front_m}},
-               passing, work, by);
-      if (here >= safe) continue;
-      safe = here;
-      reach.by = by;
+  for (; reach.s < most && !reach.is_stopped; longest *= 4) {
+    double free = std::min(longest, most - reach.s);
+    for (std::size_t h = 0; h < held_.size() && free > 0; ++h) {
+      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
+      const Piece piece{in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, free, least, {back_m, front_m}};
+      const double here = step(h, turning, piece, passing, work, reach);
+      if (here >= free) continue;
+      free = here;
       reach.is_stopped = true;
     }
-    reach.s = std::min(most, reach.s + safe);
-    if (safe == wanted) longest *= 4;
-    if (safe < std::min(least, wanted)) return backedOff(reach, in_held, speed);
+    reach.s = std::min(most, reach.s + free);
   }
-  if (reach.s >= most) reach.is_stopped = false;
-  reach.is_given_up = reach.is_stopped;
-  return reach;
+  if (!reach.is_stopped || reach.is_given_up) return reach;
+  if (work != nullptr && work->isSpent()) {
+    reach.is_given_up = true;
+    return reach;
+  }
+  return backedOff(reach, in_held, speed);
 }
 
 /// Takes back the rest depth by which facets may enter each other.
