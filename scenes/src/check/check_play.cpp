@@ -2,11 +2,13 @@
 #include "check/check_play.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
-#include <span>
 #include <string_view>
 #include <unordered_map>
+
+#include <tbb/parallel_for.h>
 
 #include "check/on_cores.h"
 #include "check/play.h"
@@ -80,53 +82,50 @@ bool hasFlushFaces(const PartTask& task) {
          });
 }
 
+void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m, CheckedPart& out) {
+  Play play;
+  std::array<std::uint8_t, kAxes> is_given_up = {};
+  tbb::parallel_for(std::size_t{0}, kTasks, [&](std::size_t axis) {
+    if (axis == kAxes) {
+      out.ways_out_W = waysOut(*task.search, part, task.frame, task.fits, leave_m);
+      return;
+    }
+    if (axis > kAxes) {
+      out.screw_ways_out = screwWaysOut(*task.search, part, task.fits, leave_m);
+      return;
+    }
+    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
+    std::array<double, 6>& of = axis < 3 ? play.m : play.rad;
+    of[2 * (axis % 3)] = both.way[0];
+    of[2 * (axis % 3) + 1] = both.way[1];
+    is_given_up[axis] = both.is_given_up ? 1 : 0;
+  });
+  out.play = play;
+  out.play_axes_W = task.frame.axes_W;
+  out.play_center_W = task.frame.center_W;
+  out.play_error_m = task.error_m;
+  out.is_play_certain = !hasFlushFaces(task) && std::ranges::count(is_given_up, 1) == 0;
+  // A contact at half the part's least size from the axis; farther out the error is less.
+  out.play_error_rad = task.error_m / (0.5 * part.surface->box().size().minCoeff());
+}
+
 }  // namespace
 
 void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
                const Progress& progress) {
-  std::vector<PartTask> tasks(parts.size());
   const Neighbours neighbours(parts, result);
-  forEachOnCores(parts.size(), progress, "preparing play", [&](std::size_t i) {
-    if (settings.isAsked(parts[i].name)) tasks[i] = taskOf(parts, i, neighbours);
-  });
   Box all;
   for (const PlacedSurface& part : parts) {
     all.add(part.box_W.min);
     all.add(part.box_W.max);
   }
   const double leave_m = 2 * all.size().norm();
-  std::vector<Play> plays(parts.size());
-  std::vector<std::uint8_t> is_given_up(kTasks * parts.size());
-  forEachOnCores(kTasks * parts.size(), progress, "measuring play", [&](std::size_t i) {
-    const std::size_t part = i / kTasks, axis = i % kTasks;
-    const PartTask& task = tasks[part];
-    if (!task.search) return;
-    if (axis == kAxes) {
-      result.parts[part].ways_out_W = waysOut(*task.search, parts[part], task.frame, task.fits, leave_m);
-      return;
-    }
-    if (axis > kAxes) {
-      result.parts[part].screw_ways_out = screwWaysOut(*task.search, parts[part], task.fits, leave_m);
-      return;
-    }
-    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
-    std::array<double, 6>& of = axis < 3 ? plays[part].m : plays[part].rad;
-    of[2 * (axis % 3)] = both.way[0];
-    of[2 * (axis % 3) + 1] = both.way[1];
-    is_given_up[i] = both.is_given_up ? 1 : 0;
+  // A search knows all parts, so that only those at work are held in memory.
+  forEachOnCores(parts.size(), progress, "measuring play", [&](std::size_t i) {
+    if (!settings.isAsked(parts[i].name)) return;
+    const PartTask task = taskOf(parts, i, neighbours);
+    if (task.search) measurePlay(parts[i], task, leave_m, result.parts[i]);
   });
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!tasks[i].search) continue;
-    CheckedPart& part = result.parts[i];
-    part.play = plays[i];
-    part.play_axes_W = tasks[i].frame.axes_W;
-    part.play_center_W = tasks[i].frame.center_W;
-    part.play_error_m = tasks[i].error_m;
-    const auto given_up = std::span(is_given_up).subspan(kTasks * i, kTasks);
-    part.is_play_certain = !hasFlushFaces(tasks[i]) && std::ranges::count(given_up, 1) == 0;
-    // A contact at half the part's least size from the axis; farther out the error is less.
-    part.play_error_rad = tasks[i].error_m / (0.5 * parts[i].surface->box().size().minCoeff());
-  }
 }
 
 }  // namespace vps::scenes::inline v0

@@ -120,8 +120,9 @@ MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSu
   for (std::size_t i = 0; i < held.size(); ++i) {
     const Pose X_HM = held[i]->X_WP.inverse() * part.X_WP;
     held_.push_back({held[i], X_HM,
-                     depth == CrossingDepth::UpToMost ? kRest_m + crossing_m[i]
-                                                      : restOf(part, *held[i], X_HM, crossing_m[i])});
+                     depth == CrossingDepth::UpToMost || crossing_m[i] == 0
+                         ? kRest_m + crossing_m[i]
+                         : restOf(part, *held[i], X_HM, crossing_m[i])});
   }
 }
 
@@ -140,20 +141,35 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
   if (!motion.is_turn) return std::nullopt;
   const Motion in_moving = motion.in(part_.X_WP.inverse());
   Turning turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
-  const double farthest_m = (part_.box_W.min - motion.center)
-                                .cwiseAbs()
-                                .cwiseMax((part_.box_W.max - motion.center).cwiseAbs())
-                                .norm() +
-                            std::abs(most * motion.forward_m);
-  Box center;
-  center.add(motion.center);
-  for (const Held& held : held_) {
-    std::optional<AxisExtents>& extents = turning.held.emplace_back();
-    if (distance2(center, held.part->box_W) > farthest_m * farthest_m + held.rest_m) continue;
-    const Motion in_held = motion.in(held.part->X_WP.inverse());
-    extents.emplace(*held.part->surface, in_held.direction, in_held.center);
+  turning.held.resize(held_.size());
+  for (const std::size_t h : nearOf(motion, most)) {
+    const PlacedSurface& held = *held_[h].part;
+    const Motion in_held = motion.in(held.X_WP.inverse());
+    turning.held[h].emplace(*held.surface, in_held.direction, in_held.center);
   }
   return turning;
+}
+
+double MotionSearch::farthestFrom(const Motion& turn, double most) const {
+  return (part_.box_W.min - turn.center)
+             .cwiseAbs()
+             .cwiseMax((part_.box_W.max - turn.center).cwiseAbs())
+             .norm() +
+         std::abs(most * turn.forward_m);
+}
+
+std::vector<std::size_t> MotionSearch::nearOf(const Motion& motion, double most) const {
+  std::vector<std::size_t> near;
+  const double farthest_m = motion.is_turn ? farthestFrom(motion, most) : 0;
+  const Box center{motion.center, motion.center};
+  for (std::size_t h = 0; h < held_.size(); ++h) {
+    const Box& box_W = held_[h].part->box_W;
+    const bool is_near =
+        motion.is_turn ? distance2(center, box_W) <= farthest_m * farthest_m + held_[h].rest_m
+                       : entry(grown(part_.box_W, 2 * held_[h].rest_m), box_W, motion.direction) <= most;
+    if (is_near) near.push_back(h);
+  }
+  return near;
 }
 
 double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
@@ -282,8 +298,9 @@ std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
                           const PassingFacets* passing, SearchWork* work) const {
+  const std::vector<std::size_t> near = nearOf(motion, most);
   std::vector<Motion> in_held;
-  for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
+  for (const std::size_t h : near) in_held.push_back(motion.in(held_[h].part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
   const double least = kLeastStep_m / speed;
   double longest = kFirstStep_m / speed;
@@ -291,10 +308,11 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
   Reach reach;
   for (; reach.s < most && !reach.is_stopped; longest *= 4) {
     double free = std::min(longest, most - reach.s);
-    for (std::size_t h = 0; h < held_.size() && free > 0; ++h) {
+    for (std::size_t k = 0; k < near.size() && free > 0; ++k) {
       const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
-      const Piece piece{in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, free, least, {back_m, front_m}};
-      const double here = step(h, turning, piece, passing, work, reach);
+      const Piece piece{
+          in_held[k], in_held[k].at(reach.s) * held_[near[k]].X_HM, free, least, {back_m, front_m}};
+      const double here = step(near[k], turning, piece, passing, work, reach);
       if (here >= free) continue;
       free = here;
       reach.is_stopped = true;
@@ -306,13 +324,13 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
     reach.is_given_up = true;
     return reach;
   }
-  return backedOff(reach, in_held, speed);
+  return backedOff(reach, motion, speed);
 }
 
 /// Takes back the rest depth by which facets may enter each other.
-Reach MotionSearch::backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const {
+Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
   const Held& held = held_[reach.by.held];
-  const Motion& motion = in_held[reach.by.held];
+  const Motion motion = motion_W.in(held.part->X_WP.inverse());
   const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
                         held.rest_m};
   // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.

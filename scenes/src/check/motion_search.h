@@ -101,7 +101,11 @@ class MotionSearch {
   [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion, double most) const;
   [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning,
                             const PassingFacets* passing, SearchWork* work) const;
-  [[nodiscard]] Reach backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const;
+  [[nodiscard]] Reach backedOff(Reach reach, const Motion& motion_W, double speed) const;
+  /// The held parts that may be near on the motion, as their boxes tell. O(held parts), 10 ns each.
+  [[nodiscard]] std::vector<std::size_t> nearOf(const Motion& motion, double most) const;
+  /// How far the part reaches from the centre of a turn.
+  [[nodiscard]] double farthestFrom(const Motion& turn, double most) const;
   /// How far on the piece no facet of a held part stops; where one does, `reach` says which and whether it
   /// was given up.
   double step(std::size_t held, const std::optional<Turning>& turning, const Piece& piece,
