@@ -57,9 +57,12 @@ void writeStl(const fs::path& file, const Mesh& mesh) {
 
 constexpr double kRadius_m = 4e-3, kClearance_m = 0.1e-3, kPitch_m = 20e-3;
 
+/// With a floor, on which the pin stands.
 Mesh bush(std::size_t triangles) {
   const double bore_m = kRadius_m + kClearance_m;
-  return turned({{bore_m, 0}, {8e-3, 0}, {8e-3, 15e-3}, {bore_m + 1e-3, 15e-3}, {bore_m, 14e-3}}, triangles);
+  return turned(
+      {{0, 0}, {8e-3, 0}, {8e-3, 15e-3}, {bore_m + 1e-3, 15e-3}, {bore_m, 14e-3}, {bore_m, 3e-3}, {0, 3e-3}},
+      triangles);
 }
 
 Mesh pin(std::size_t triangles) {
