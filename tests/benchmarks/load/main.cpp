@@ -72,8 +72,7 @@ void productRows(const fs::path& folder) {
   const auto load = [&](const std::string& name) {
     // Ten physics steps: nearly all of it is building the models.
     return run(
-        name,
-        {"simulate", scene, "--seconds", "0.01", "--cache", cache, "--json", folder / (name + ".json")},
+        name, {"simulate", scene, "--seconds", "0.01", "--cache", cache, "--json", folder / (name + ".json")},
         300);
   };
   printRow("load, cold", load("cold"), 0);
