@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "import/own_process.h"
+#include "import/readers.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes {
@@ -283,6 +284,43 @@ TEST(ImportObj, AnInvertedMeshIsFlippedWithAWarning) {
   EXPECT_NEAR(volume(cad.parts.at(0)), 1, 1e-6);
   ASSERT_EQ(cad.warnings.size(), 1u);
   EXPECT_NE(cad.warnings[0].find("inside out"), std::string::npos);
+}
+
+TEST(ImportStl, TheReaderOfBinaryFilesGivesWhatAssimpGives) {
+  const std::string file = (fs::path(VPS_SOURCE_DIR) / "scenes" / "peg_in_hole" / "peg.stl").string();
+  const auto own = import::readBinaryStl(file, inUnit("mm"));
+  ASSERT_TRUE(own && own->parts.size() == 1);
+  const import::RawCad other = import::readAssimp(file, "STL", inUnit("mm"), {});
+  ASSERT_EQ(other.parts.size(), 1U);
+  EXPECT_EQ(own->unit_m, other.unit_m);
+  EXPECT_EQ(own->parts[0].name, other.parts[0].name);
+  EXPECT_EQ(own->parts[0].color, other.parts[0].color);
+  EXPECT_EQ(own->parts[0].mesh.vertices, other.parts[0].mesh.vertices);
+  EXPECT_EQ(own->parts[0].mesh.triangles, other.parts[0].mesh.triangles);
+  EXPECT_TRUE(own->parts[0].X_WP.isApprox(other.parts[0].X_WP, 0));
+}
+
+TEST(ImportStl, ColouredAndTextFilesAreLeftToAssimp) {
+  std::ifstream in(fs::path(VPS_SOURCE_DIR) / "scenes" / "peg_in_hole" / "peg.stl", std::ios::binary);
+  const std::string peg(std::istreambuf_iterator<char>(in), {});
+  const Folder folder;
+  std::string coloured = peg, headed = peg;
+  coloured[84 + 49] = '\x80';
+  headed.replace(0, 6, "COLOR=");
+  for (const std::string& text : {coloured, headed, peg + "x", peg.substr(0, 84), std::string("solid")})
+    EXPECT_FALSE(import::readBinaryStl(folder.write("a.stl", text).string(), inUnit("mm")));
+  EXPECT_TRUE(import::readBinaryStl(folder.write("a.stl", peg).string(), inUnit("mm")));
+}
+
+TEST(ImportStl, EqualNamesOfThousandsOfPartsAreNumberedInTheirOrder) {
+  std::vector<ImportedPart> parts(3000);
+  parts[7].name = "part_3";
+  import::nameUniquely(parts, "part");
+  EXPECT_EQ(parts[0].name, "part");
+  EXPECT_EQ(parts[1].name, "part_2");
+  std::set<std::string> names;
+  for (const ImportedPart& part : parts) names.insert(part.name);
+  EXPECT_EQ(names.size(), parts.size());
 }
 
 TEST(ImportInventor, TransformsUnitsMirrorsAndNamesAreKept) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "scenes/scene_part.h"
 #include "vps/box.h"
+#include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/simulate.h"
@@ -61,6 +64,27 @@ double greatestDistance(const AssembleResult& a, const AssembleResult& b) {
   for (std::size_t i = 0; i < a.trace.size(); ++i)
     greatest_m = std::max(greatest_m, (a.trace[i].X_WP.p - b.trace[i].X_WP.p).norm());
   return greatest_m;
+}
+
+TEST(ModelPlan, ModelsThatDoNotFitTheMemoryAreRefusedInWordsBeforeTheyAreBuilt) {
+  Scene scene = pinsOnPlate();
+  const double needed_bytes =
+      static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
+  AssembleOptions options;
+  options.progress = [](std::string_view doing, double) {
+    if (doing.starts_with("modelling")) ADD_FAILURE() << doing;
+  };
+  options.memory_bytes = 0.1 * needed_bytes;
+  try {
+    assemble(scene, options);
+    FAIL() << "was not refused";
+  } catch (const LoadError& error) {
+    EXPECT_NE(std::string(error.what()).find("MB of memory"), std::string::npos) << error.what();
+  }
+  // The estimate of the models alone is at most that with the fixed field, which is what `most` counts.
+  options.progress = {};
+  options.memory_bytes = 1.01 * needed_bytes;
+  EXPECT_NO_THROW(assemble(scene, options));
 }
 
 TEST(ModelPlan, PartsThatNothingCanTouchAreNotModelledAndTheReasonIsGiven) {

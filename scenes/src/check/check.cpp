@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <string_view>
+#include <unordered_map>
 
 #include "check/check_pair.h"
 #include "check/check_placed.h"
@@ -106,12 +109,11 @@ void sortPairs(std::vector<CheckedPair>& pairs) {
 
 /// The pairs of which fits are needed to judge the overlap.
 PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
-  const auto indexOf = [&](const std::string& name) {
-    return static_cast<std::size_t>(std::ranges::find(parts, name, &PlacedSurface::name) - parts.begin());
-  };
+  std::unordered_map<std::string_view, std::size_t> index_of;
+  for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
   PartPairs out;
   for (const CheckedPair& pair : pairs)
-    if (needsFit(pair)) out.emplace_back(indexOf(pair.a), indexOf(pair.b));
+    if (needsFit(pair)) out.emplace_back(index_of.at(pair.a), index_of.at(pair.b));
   return out;
 }
 
@@ -119,14 +121,19 @@ std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const
                                   const Progress& progress) {
   std::vector<bool> is_near(parts.size());
   for (const auto& [a, b] : near) is_near[a] = is_near[b] = true;
-  std::vector<FitFaces> faces(parts.size());
-  forEachOnCores(parts.size(), progress, "finding round and flat faces", [&](std::size_t i) {
-    if (is_near[i]) faces[i] = fitFaces(*parts[i].surface);
-  });
+  // Equal parts share their surface.
+  std::map<const PartSurface*, FitFaces> faces;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (is_near[i]) faces.try_emplace(parts[i].surface.get());
+  std::vector<decltype(faces)::value_type*> own;
+  for (auto& of_surface : faces) own.push_back(&of_surface);
+  forEachOnCores(own.size(), progress, "finding round and flat faces",
+                 [&](std::size_t i) { own[i]->second = fitFaces(*own[i]->first); });
   std::vector<std::vector<CheckedFit>> found(near.size());
   forEachOnCores(near.size(), progress, "finding fits", [&](std::size_t i) {
     const auto [a, b] = near[i];
-    const FittedPart of_a{parts[a], faces[a]}, of_b{parts[b], faces[b]};
+    const FittedPart of_a{parts[a], faces.at(parts[a].surface.get())},
+        of_b{parts[b], faces.at(parts[b].surface.get())};
     appendShaftFits(of_a, of_b, found[i]);
     appendKeyFits(of_a, of_b, found[i]);
     appendThreadFits(of_a, of_b, found[i]);

@@ -2,9 +2,13 @@
 #include "check/check_play.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
-#include <span>
+#include <string_view>
+#include <unordered_map>
+
+#include <tbb/parallel_for.h>
 
 #include "check/on_cores.h"
 #include "check/play.h"
@@ -23,29 +27,47 @@ struct PartTask {
   double error_m = 0;
 };
 
-bool isOf(const CheckedPair& pair, const std::string& name) {
-  return pair.a == name || pair.b == name;
-}
+/// The pairs and fits that each part takes part in.
+class Neighbours {
+ public:
+  struct Pair {
+    std::size_t other;
+    const CheckedPair* pair;
+  };
+  Neighbours(const std::vector<PlacedSurface>& parts, const CheckResult& result)
+      : pairs_(parts.size()), fits_(parts.size()) {
+    std::unordered_map<std::string_view, std::size_t> index_of;
+    for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
+    for (const CheckedPair& pair : result.pairs) {
+      const std::size_t a = index_of.at(pair.a), b = index_of.at(pair.b);
+      pairs_[a].push_back({b, &pair});
+      pairs_[b].push_back({a, &pair});
+    }
+    for (const CheckedFit& fit : result.fits)
+      for (const std::string& name : {fit.shaft, fit.bore}) fits_[index_of.at(name)].push_back(&fit);
+  }
+  [[nodiscard]] const std::vector<Pair>& pairsOf(std::size_t part) const { return pairs_[part]; }
+  [[nodiscard]] const std::vector<const CheckedFit*>& fitsOf(std::size_t part) const { return fits_[part]; }
+
+ private:
+  std::vector<std::vector<Pair>> pairs_;
+  std::vector<std::vector<const CheckedFit*>> fits_;
+};
 
 /// Empty for a part that clashes or is pressed in: what overlaps cannot be moved apart by it.
-PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const CheckResult& result) {
+PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours) {
   PartTask task;
-  const std::string& name = parts[part].name;
-  std::vector<const PlacedSurface*> held;
-  std::vector<double> crossing_m;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i == part) continue;
-    held.push_back(&parts[i]);
-    crossing_m.push_back(0);
-    for (const CheckedPair& pair : result.pairs) {
-      if (!isOf(pair, name) || !isOf(pair, parts[i].name)) continue;
-      if (pair.state >= PairState::PressFit) return task;
-      crossing_m.back() = pair.error_m;
-      task.error_m = std::max(task.error_m, pair.error_m);
-    }
+  std::vector<double> crossing_m(parts.size());
+  for (const auto& [other, pair] : neighbours.pairsOf(part)) {
+    if (pair->state >= PairState::PressFit) return {};
+    crossing_m[other] = pair->error_m;
+    task.error_m = std::max(task.error_m, pair->error_m);
   }
-  for (const CheckedFit& fit : result.fits)
-    if (fit.shaft == name || fit.bore == name) task.fits.push_back(fit);
+  crossing_m.erase(crossing_m.begin() + static_cast<std::ptrdiff_t>(part));
+  std::vector<const PlacedSurface*> held;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (i != part) held.push_back(&parts[i]);
+  for (const CheckedFit* fit : neighbours.fitsOf(part)) task.fits.push_back(*fit);
   task.frame = playFrame(parts[part], task.fits);
   task.search = std::make_unique<const MotionSearch>(parts[part], std::move(held), crossing_m);
   task.error_m += task.search->rest_m();
@@ -60,52 +82,50 @@ bool hasFlushFaces(const PartTask& task) {
          });
 }
 
+void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m, CheckedPart& out) {
+  Play play;
+  std::array<std::uint8_t, kAxes> is_given_up = {};
+  tbb::parallel_for(std::size_t{0}, kTasks, [&](std::size_t axis) {
+    if (axis == kAxes) {
+      out.ways_out_W = waysOut(*task.search, part, task.frame, task.fits, leave_m);
+      return;
+    }
+    if (axis > kAxes) {
+      out.screw_ways_out = screwWaysOut(*task.search, part, task.fits, leave_m);
+      return;
+    }
+    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
+    std::array<double, 6>& of = axis < 3 ? play.m : play.rad;
+    of[2 * (axis % 3)] = both.way[0];
+    of[2 * (axis % 3) + 1] = both.way[1];
+    is_given_up[axis] = both.is_given_up ? 1 : 0;
+  });
+  out.play = play;
+  out.play_axes_W = task.frame.axes_W;
+  out.play_center_W = task.frame.center_W;
+  out.play_error_m = task.error_m;
+  out.is_play_certain = !hasFlushFaces(task) && std::ranges::count(is_given_up, 1) == 0;
+  // A contact at half the part's least size from the axis; farther out the error is less.
+  out.play_error_rad = task.error_m / (0.5 * part.surface->box().size().minCoeff());
+}
+
 }  // namespace
 
 void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
                const Progress& progress) {
-  std::vector<PartTask> tasks(parts.size());
-  forEachOnCores(parts.size(), progress, "preparing play", [&](std::size_t i) {
-    if (settings.isAsked(parts[i].name)) tasks[i] = taskOf(parts, i, result);
-  });
+  const Neighbours neighbours(parts, result);
   Box all;
   for (const PlacedSurface& part : parts) {
     all.add(part.box_W.min);
     all.add(part.box_W.max);
   }
   const double leave_m = 2 * all.size().norm();
-  std::vector<Play> plays(parts.size());
-  std::vector<std::uint8_t> is_given_up(kTasks * parts.size());
-  forEachOnCores(kTasks * parts.size(), progress, "measuring play", [&](std::size_t i) {
-    const std::size_t part = i / kTasks, axis = i % kTasks;
-    const PartTask& task = tasks[part];
-    if (!task.search) return;
-    if (axis == kAxes) {
-      result.parts[part].ways_out_W = waysOut(*task.search, parts[part], task.frame, task.fits, leave_m);
-      return;
-    }
-    if (axis > kAxes) {
-      result.parts[part].screw_ways_out = screwWaysOut(*task.search, parts[part], task.fits, leave_m);
-      return;
-    }
-    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
-    std::array<double, 6>& of = axis < 3 ? plays[part].m : plays[part].rad;
-    of[2 * (axis % 3)] = both.way[0];
-    of[2 * (axis % 3) + 1] = both.way[1];
-    is_given_up[i] = both.is_given_up ? 1 : 0;
+  // A search knows all parts, so that only those at work are held in memory.
+  forEachOnCores(parts.size(), progress, "measuring play", [&](std::size_t i) {
+    if (!settings.isAsked(parts[i].name)) return;
+    const PartTask task = taskOf(parts, i, neighbours);
+    if (task.search) measurePlay(parts[i], task, leave_m, result.parts[i]);
   });
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (!tasks[i].search) continue;
-    CheckedPart& part = result.parts[i];
-    part.play = plays[i];
-    part.play_axes_W = tasks[i].frame.axes_W;
-    part.play_center_W = tasks[i].frame.center_W;
-    part.play_error_m = tasks[i].error_m;
-    const auto given_up = std::span(is_given_up).subspan(kTasks * i, kTasks);
-    part.is_play_certain = !hasFlushFaces(tasks[i]) && std::ranges::count(given_up, 1) == 0;
-    // A contact at half the part's least size from the axis; farther out the error is less.
-    part.play_error_rad = tasks[i].error_m / (0.5 * parts[i].surface->box().size().minCoeff());
-  }
 }
 
 }  // namespace vps::scenes::inline v0

@@ -120,8 +120,9 @@ MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSu
   for (std::size_t i = 0; i < held.size(); ++i) {
     const Pose X_HM = held[i]->X_WP.inverse() * part.X_WP;
     held_.push_back({held[i], X_HM,
-                     depth == CrossingDepth::UpToMost ? kRest_m + crossing_m[i]
-                                                      : restOf(part, *held[i], X_HM, crossing_m[i])});
+                     depth == CrossingDepth::UpToMost || crossing_m[i] == 0
+                         ? kRest_m + crossing_m[i]
+                         : restOf(part, *held[i], X_HM, crossing_m[i])});
   }
 }
 
@@ -140,24 +141,56 @@ std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motio
   if (!motion.is_turn) return std::nullopt;
   const Motion in_moving = motion.in(part_.X_WP.inverse());
   Turning turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
-  const double farthest_m = (part_.box_W.min - motion.center)
-                                .cwiseAbs()
-                                .cwiseMax((part_.box_W.max - motion.center).cwiseAbs())
-                                .norm() +
-                            std::abs(most * motion.forward_m);
-  Box center;
-  center.add(motion.center);
-  for (const Held& held : held_) {
-    std::optional<AxisExtents>& extents = turning.held.emplace_back();
-    if (distance2(center, held.part->box_W) > farthest_m * farthest_m + held.rest_m) continue;
-    const Motion in_held = motion.in(held.part->X_WP.inverse());
-    extents.emplace(*held.part->surface, in_held.direction, in_held.center);
+  turning.held.resize(held_.size());
+  for (const std::size_t h : nearOf(motion, most)) {
+    const PlacedSurface& held = *held_[h].part;
+    const Motion in_held = motion.in(held.X_WP.inverse());
+    turning.held[h].emplace(*held.surface, in_held.direction, in_held.center);
   }
   return turning;
 }
 
+double MotionSearch::farthestFrom(const Motion& turn, double most) const {
+  return (part_.box_W.min - turn.center)
+             .cwiseAbs()
+             .cwiseMax((part_.box_W.max - turn.center).cwiseAbs())
+             .norm() +
+         std::abs(most * turn.forward_m);
+}
+
+std::vector<std::size_t> MotionSearch::nearOf(const Motion& motion, double most) const {
+  std::vector<std::size_t> near;
+  const double farthest_m = motion.is_turn ? farthestFrom(motion, most) : 0;
+  const Box center{motion.center, motion.center};
+  for (std::size_t h = 0; h < held_.size(); ++h) {
+    const Box& box_W = held_[h].part->box_W;
+    const bool is_near =
+        motion.is_turn ? distance2(center, box_W) <= farthest_m * farthest_m + held_[h].rest_m
+                       : entry(grown(part_.box_W, 2 * held_[h].rest_m), box_W, motion.direction) <= most;
+    if (is_near) near.push_back(h);
+  }
+  return near;
+}
+
+double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
+                               const Piece& piece, double most, SearchWork* work, bool& is_given_up) {
+  const int most_steps =
+      piece.motion_H.is_turn && piece.motion_H.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
+  MovingPair there = pair;
+  double s = 0;
+  for (int i = 0; i < most_steps && s < most; ++i) {
+    if (i > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
+    if (i > 0 && work != nullptr && ++work->done >= work->most) return s;
+    const double safe = safeStep(there, moving, held);
+    if (safe < std::min(piece.least, most - s)) return s;
+    s += safe;
+  }
+  is_given_up = s < most;
+  return s;
+}
+
 double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
-                          const PassingFacets* passing, SearchWork* work, Blocker& by) const {
+                          const PassingFacets* passing, SearchWork* work, Reach& reach) const {
   // No structured binding: clang 14 does not let a lambda use one.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
@@ -188,11 +221,12 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
     for (Vec3& p : t) p = X_HM * p;
     const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
     if (!(reaches(boxOf(t), boxOf(fixed.triangle(k)), radius_m) < best)) return;
-    const double safe = safeStep(pair, i, k);
-    if (safe >= best) return;
-    best = safe;
-    by.moving_facet = i;
-    by.held_facet = k;
+    bool is_given_up = false;
+    const double stops = pairStops(pair, i, k, piece, best, work, is_given_up);
+    if (stops >= best) return;
+    best = stops;
+    reach.is_given_up = is_given_up;
+    reach.by = {which, i, k};
   };
 
   struct Waiting {
@@ -264,41 +298,39 @@ std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
                           const PassingFacets* passing, SearchWork* work) const {
+  const std::vector<std::size_t> near = nearOf(motion, most);
   std::vector<Motion> in_held;
-  for (const Held& held : held_) in_held.push_back(motion.in(held.part->X_WP.inverse()));
+  for (const std::size_t h : near) in_held.push_back(motion.in(held_[h].part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
   const double least = kLeastStep_m / speed;
   double longest = kFirstStep_m / speed;
   const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
   Reach reach;
-  const int most_steps = motion.is_turn && motion.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
-  for (int i = 0; i < most_steps && reach.s < most; ++i) {
-    const double wanted = std::min(longest, most - reach.s);
-    double safe = wanted;
-    for (std::size_t h = 0; h < held_.size() && safe > 0; ++h) {
-      Blocker by{h, 0, 0};
-      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + safe) * forward_m});
-      const double here =
-          step(h, turning, {in_held[h], in_held[h].at(reach.s) * held_[h].X_HM, safe, {back_m, front_m}},
-               passing, work, by);
-      if (here >= safe) continue;
-      safe = here;
-      reach.by = by;
+  for (; reach.s < most && !reach.is_stopped; longest *= 4) {
+    double free = std::min(longest, most - reach.s);
+    for (std::size_t k = 0; k < near.size() && free > 0; ++k) {
+      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
+      const Piece piece{
+          in_held[k], in_held[k].at(reach.s) * held_[near[k]].X_HM, free, least, {back_m, front_m}};
+      const double here = step(near[k], turning, piece, passing, work, reach);
+      if (here >= free) continue;
+      free = here;
       reach.is_stopped = true;
     }
-    reach.s = std::min(most, reach.s + safe);
-    if (safe == wanted) longest *= 4;
-    if (safe < std::min(least, wanted)) return backedOff(reach, in_held, speed);
+    reach.s = std::min(most, reach.s + free);
   }
-  if (reach.s >= most) reach.is_stopped = false;
-  reach.is_given_up = reach.is_stopped;
-  return reach;
+  if (!reach.is_stopped || reach.is_given_up) return reach;
+  if (work != nullptr && work->isSpent()) {
+    reach.is_given_up = true;
+    return reach;
+  }
+  return backedOff(reach, motion, speed);
 }
 
 /// Takes back the rest depth by which facets may enter each other.
-Reach MotionSearch::backedOff(Reach reach, const std::vector<Motion>& in_held, double speed) const {
+Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
   const Held& held = held_[reach.by.held];
-  const Motion& motion = in_held[reach.by.held];
+  const Motion motion = motion_W.in(held.part->X_WP.inverse());
   const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
                         held.rest_m};
   // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.

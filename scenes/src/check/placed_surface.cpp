@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "models/scene_models.h"
+#include "core/equal_meshes.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0 {
@@ -39,6 +39,7 @@ std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, c
   std::vector<PlacedSurface> placed(parts.size());
   std::vector<std::size_t> source(parts.size());
   std::vector<std::size_t> own;
+  EqualMeshes known;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     requireMeasurable(parts[i]);
     source[i] = i;
@@ -48,12 +49,12 @@ std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, c
       placed[i].surface = earlier->surface;
       continue;
     }
-    for (const std::size_t k : own)
-      if (isSameShape(parts[k], parts[i])) {
-        source[i] = k;
-        break;
-      }
-    if (source[i] == i) own.push_back(i);
+    const std::size_t equal =
+        known.findOrAdd(i, parts[i].mesh, [&](std::size_t k) { return isSameShape(parts[k], parts[i]); });
+    if (equal == EqualMeshes::kNone)
+      own.push_back(i);
+    else
+      source[i] = equal;
   }
   if (progress) progress("preparing the parts", 0);
   tbb::parallel_for(std::size_t{0}, own.size(), [&](std::size_t k) {

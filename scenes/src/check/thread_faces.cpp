@@ -108,15 +108,21 @@ void keepOneRadius(std::vector<Flank>& flanks) {
 bool goAllAround(const std::vector<Flank>& flanks) {
   constexpr std::size_t kParts = 12;
   constexpr double kLeastTurns = 1.2;  // between the middles of the first and the last facet
+  // Of the cylinder that they go around; half of it for a metric thread. Chamfers of a plate's many holes lie
+  // all around each of them, and cover a few hundredths.
+  constexpr double kLeastCovered = 0.05;
   std::array<bool, kParts> is_there = {};
-  double from_m = 1e300, to_m = -1e300;
+  double from_m = 1e300, to_m = -1e300, least_m = 1e300, area_m2 = 0;
   for (const Flank& flank : flanks) {
     is_there[std::min(kParts - 1, static_cast<std::size_t>(flank.turn * kParts))] = true;
     from_m = std::min(from_m, flank.along_m);
     to_m = std::max(to_m, flank.along_m);
+    least_m = std::min(least_m, flank.radius_m);
+    area_m2 += flank.area_m2;
   }
   return !flanks.empty() && std::ranges::all_of(is_there, [](bool is) { return is; }) &&
-         to_m - from_m > kLeastTurns * std::abs(flanks.front().lead_m);
+         to_m - from_m > kLeastTurns * std::abs(flanks.front().lead_m) &&
+         area_m2 > kLeastCovered * kTurn_rad * least_m * (to_m - from_m);
 }
 
 /// The facets that face as the flanks do, where the flanks are.

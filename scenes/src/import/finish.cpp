@@ -7,6 +7,9 @@
 #include <numeric>
 #include <set>
 
+#include <tbb/parallel_for.h>
+
+#include "core/equal_meshes.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -148,6 +151,51 @@ void describe(const ImportedPart& part, const MeshReport& report, std::vector<st
 
 }  // namespace
 
+namespace {
+
+/// A mesh as a part gets it.
+struct WeldedMesh {
+  Mesh mesh;
+  MeshReport report;
+  bool is_turned = false;
+};
+
+WeldedMesh weldedOf(const Mesh& mesh) {
+  WeldedMesh out;
+  out.mesh = weldedToClose(mesh, out.report);
+  out.is_turned =
+      !out.mesh.triangles.empty() && out.report.isClosed() && massProperties(out.mesh).volume_m3 < 0;
+  if (out.is_turned) flip(out.mesh);
+  return out;
+}
+
+/// Equal meshes are welded once, different ones on all cores.
+void weldAll(ImportedCad& cad) {
+  EqualMeshes known;
+  std::vector<std::size_t> own, source(cad.parts.size());
+  for (std::size_t i = 0; i < cad.parts.size(); ++i) {
+    source[i] = known.findOrAdd(i, cad.parts[i].mesh, [&](std::size_t k) {
+      return isEqualGeometry(cad.parts[k].mesh, cad.parts[i].mesh);
+    });
+    if (source[i] != EqualMeshes::kNone) continue;
+    source[i] = i;
+    own.push_back(i);
+  }
+  std::vector<WeldedMesh> welded(cad.parts.size());
+  tbb::parallel_for(std::size_t{0}, own.size(),
+                    [&](std::size_t k) { welded[own[k]] = weldedOf(cad.parts[own[k]].mesh); });
+  for (std::size_t i = 0; i < cad.parts.size(); ++i) {
+    ImportedPart& part = cad.parts[i];
+    const WeldedMesh& of = welded[source[i]];
+    part.mesh = of.mesh;
+    requireUsable(part.mesh, cad.file, part.name);
+    if (of.is_turned) cad.warnings.push_back("part '" + part.name + "': was inside out; turned");
+    describe(part, of.report, cad.warnings);
+  }
+}
+
+}  // namespace
+
 std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
   std::array<float, 3> linear{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -159,13 +207,17 @@ std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
 
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
   std::set<std::string> taken;
+  std::map<std::string, int> tried;  // by name: the last number that was tried
   for (ImportedPart& part : parts) {
     for (char& c : part.name) {
       if (static_cast<unsigned char>(c) < 0x20) c = ' ';
     }
     if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
     const std::string base = part.name;
-    for (int n = 2; !taken.insert(part.name).second; ++n) part.name = base + "_" + std::to_string(n);
+    if (taken.insert(base).second) continue;
+    int& n = tried.try_emplace(base, 1).first->second;
+    do part.name = base + "_" + std::to_string(++n);
+    while (!taken.insert(part.name).second);
   }
 }
 
@@ -188,16 +240,7 @@ void finish(RawCad raw, ImportedCad& cad) {
   }
   if (raw.open_shapes != Shapes::AreParts && cad.parts.size() > 1) joinShapes(cad.parts, raw.open_shapes);
   nameUniquely(cad.parts, stem(cad.file));
-  for (ImportedPart& part : cad.parts) {
-    MeshReport report;
-    part.mesh = weldedToClose(part.mesh, report);
-    requireUsable(part.mesh, cad.file, part.name);
-    if (report.isClosed() && massProperties(part.mesh).volume_m3 < 0) {
-      flip(part.mesh);
-      cad.warnings.push_back("part '" + part.name + "': was inside out; turned");
-    }
-    describe(part, report, cad.warnings);
-  }
+  weldAll(cad);
 }
 
 }  // namespace vps::scenes::inline v0::import

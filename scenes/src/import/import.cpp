@@ -2,6 +2,7 @@
 // importCad(): detects the format, runs its reader, and finishes the parts.
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include "import/own_process.h"
 #include "import/readers.h"
@@ -40,9 +41,12 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   if (progress) progress("reading " + import::stem(file), 0);
   const Reader reader = readerOf(cad.format);
   const auto read = [&](const Progress& inner) { return reader.read(file, cad.format, settings, inner); };
-  import::RawCad raw =
-      settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
-  import::finish(std::move(raw), cad);
+  std::optional<import::RawCad> raw;
+  if (cad.format == "STL") raw = import::readBinaryStl(file, settings);
+  if (!raw)
+    raw =
+        settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
+  import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
     if (hasExactFaces(cad.format))
       part.deflection_m = std::max(part.deflection_m.value_or(0), settings.deflection_m);

@@ -16,15 +16,6 @@
 namespace vps::scenes::inline v0::import {
 namespace {
 
-/// Metres per unit of assimp's result. It applies Collada's unit itself, in the root's transform. It drops
-/// the units of 3MF and X3D, so these count as formats without one.
-double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
-  if (format == "glTF" || format == "DAE") return 1;
-  if (settings.unit_m) return *settings.unit_m;
-  throw LoadError(
-      file, "", format + " files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
-}
-
 Eigen::Affine3d affine(const aiMatrix4x4& m) {
   Eigen::Affine3d X;
   X.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
@@ -120,6 +111,15 @@ bool hasAllVertices(const aiMesh& mesh) {
 }
 
 }  // namespace
+
+// Of assimp's result. It applies Collada's unit itself, in the root's transform. It drops
+// the units of 3MF and X3D, so these count as formats without one.
+double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
+  if (format == "glTF" || format == "DAE") return 1;
+  if (settings.unit_m) return *settings.unit_m;
+  throw LoadError(
+      file, "", format + " files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
+}
 
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
                   const Progress&) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,12 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
                 const Progress& progress);
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
                   const Progress& progress);
+
+/// A binary STL file without colours; nothing for any other, which readAssimp() reads. Gives what that gives.
+std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSettings& settings);
+
+/// Metres per unit of a mesh format; throws LoadError where neither the format nor the settings state it.
+double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings);
 
 /// Converts to metres and rigid poses, welds, joins shapes to parts, makes names unique, adds warnings.
 void finish(RawCad raw, ImportedCad& cad);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/equal_meshes.h"
 #include "core/insertion_axis.h"
 #include "models/scene_models.h"
 #include "vps/box.h"
@@ -191,17 +192,20 @@ class Planner {
   }
 
   void shareEqual() {
-    for (std::size_t i = 0; i < plan_.parts.size(); ++i)
-      for (std::size_t j = 0; j < i && !plan_.parts[i].same_as; ++j) share(i, j);
+    EqualMeshes known;
+    for (std::size_t i = 0; i < plan_.parts.size(); ++i) {
+      if (!plan_.parts[i].has_map && !plan_.parts[i].has_shell) continue;
+      const ScenePart& part = scene_.parts[i];
+      const std::size_t equal = known.findOrAdd(i, part.part.mesh, [&](std::size_t j) {
+        const ScenePart& other = scene_.parts[j];
+        return part.press_fit_m == other.press_fit_m && isEqualGeometry(part.part.mesh, other.part.mesh);
+      });
+      if (equal != EqualMeshes::kNone) share(i, equal);
+    }
   }
 
   void share(std::size_t i, std::size_t j) {
     PartModelPlan &a = plan_.parts[j], &b = plan_.parts[i];
-    const bool is_modelled = (a.has_map || a.has_shell) && (b.has_map || b.has_shell);
-    const ScenePart &one = scene_.parts[i], &other = scene_.parts[j];
-    if (!is_modelled || a.same_as || one.press_fit_m != other.press_fit_m ||
-        !isEqualGeometry(one.part.mesh, other.part.mesh))
-      return;
     a.has_map = b.has_map = a.has_map || b.has_map;
     a.has_shell = b.has_shell = a.has_shell || b.has_shell;
     a.kept_P.clear();  // everywhere, because one of the two may move

@@ -6,15 +6,20 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <set>
 #include <utility>
 
+#include "core/machine_memory.h"
 #include "core/wall_clock.h"
 #include "models/shrunk_mesh.h"
 #include "vps/load_error.h"
+#include "vps/map_estimate.h"
+#include "vps/model_estimate.h"
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
 #include "vps_scenes/mesh_warning.h"
@@ -31,10 +36,6 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity) {
   PointShellSettings settings;
   settings.spacing_m = fidelity.spacing_m;
   return settings;
-}
-
-bool isEqualGeometry(const Mesh& a, const Mesh& b) {
-  return a.triangles == b.triangles && a.vertices == b.vertices;
 }
 
 namespace {
@@ -115,6 +116,40 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
   if (scene_part.is_cropped) crop(model, planned.kept_P);
   times.shell_wall_s = wallSeconds() - begun_s;
   return times;
+}
+
+/// Refuses a plan whose models need more memory than there is, since the system would end the program without
+/// a word. The exact estimate is only made where the areas alone do not tell. O(triangles).
+void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
+  const double most_bytes = options.memory_bytes > 0 ? options.memory_bytes : machineMemoryBytes();
+  if (!(most_bytes > 0)) return;
+  const VoxMapSettings voxels = voxMapSettings(scene.fidelity);
+  const PointShellSettings points = pointShellSettings(scene.fidelity);
+  const auto sum = [&](auto bytesOf) {
+    double bytes = 0;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i)
+      if (!plan.parts[i].same_as && (plan.parts[i].has_map || plan.parts[i].has_shell))
+        bytes += bytesOf(scene.parts[i].part.mesh, plan.parts[i]);
+    return bytes;
+  };
+  constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
+  const double at_most = sum([&](const Mesh& mesh, const PartModelPlan&) {
+    return expectedMapBytes(mesh, voxels) +
+           ModelEstimate::shellBytes(kDensest * area(mesh) / (points.spacing_m * points.spacing_m));
+  });
+  if (at_most <= most_bytes) return;
+  const double about = sum([&](const Mesh& mesh, const PartModelPlan& planned) {
+    const ModelEstimate estimate(mesh, voxels, points);
+    return (planned.has_map ? estimate.mapBytes(planned.kept_P) : 0) +
+           (planned.has_shell ? ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P)) : 0);
+  });
+  if (about <= most_bytes) return;
+  std::array<char, 200> words{};
+  std::snprintf(words.data(), words.size(),
+                "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
+                "spacing, or leave parts out that nothing touches (vps explain lists what each part needs)",
+                1e-6 * about, 1e-6 * most_bytes);
+  throw LoadError(scene.file, "", words.data());
 }
 
 /// Builds the models of a scene's parts on all cores. Each part's models depend on that part alone, and
@@ -221,6 +256,7 @@ class ModelBuilder {
 }  // namespace
 
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
+  requireMemory(scene, plan, options);
   if (scene.fidelity_wish)
     throw LoadError(scene.file, "",
                     "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");

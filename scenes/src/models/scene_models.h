@@ -12,9 +12,6 @@ namespace vps::scenes::inline v0 {
 VoxMapSettings voxMapSettings(const Fidelity& fidelity);
 PointShellSettings pointShellSettings(const Fidelity& fidelity);
 
-/// True for meshes with the same vertices and triangles, to the bit.
-bool isEqualGeometry(const Mesh& a, const Mesh& b);
-
 /// Time to build one part's own models; 0 where it has none or shares them.
 struct BuildTimes {
   double map_wall_s = 0, shell_wall_s = 0;

@@ -5,7 +5,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
+#include <span>
 #include <sstream>
 
 #include "scene/read_fields.h"
@@ -55,12 +57,11 @@ std::string didYouMean(const std::string& name, const std::vector<std::string>& 
 template <typename Parts, typename NameOf>
 std::size_t partNamed(const SceneKeys& keys, std::string_view key, const std::string& name,
                       const Parts& parts, NameOf nameOf) {
+  const auto match = std::ranges::find(parts, name, nameOf);
+  if (match != parts.end()) return static_cast<std::size_t>(match - parts.begin());
   std::vector<std::string> names;
   for (const auto& part : parts) names.push_back(nameOf(part));
-  const auto match = std::find(names.begin(), names.end(), name);
-  if (match == names.end())
-    keys.fail(key, "names '" + name + "', which is not the name of a part" + didYouMean(name, names));
-  return static_cast<std::size_t>(match - names.begin());
+  keys.fail(key, "names '" + name + "', which is not the name of a part" + didYouMean(name, names));
 }
 
 const std::string& nameOf(const ScenePart& part) {
@@ -221,8 +222,7 @@ class SceneReader {
       keys.failWhole("has neither 'name' nor 'file'; give one");
     if (cad_count_ == 0) keys.failWhole("has no 'file'; name the mesh it is made of");
     const bool has_node = keys.text("node", node);
-    const std::vector<ScenePart> of_cad(scene_.parts.begin(),
-                                        scene_.parts.begin() + static_cast<std::ptrdiff_t>(cad_count_));
+    const auto of_cad = std::span(scene_.parts).first(cad_count_);
     const std::size_t index =
         partNamed(keys, has_node ? "node" : "name", has_node ? node : name, of_cad, nameOf);
     if (is_described_[index])
@@ -260,14 +260,18 @@ class SceneReader {
 
   /// The distance along +z from its target at which half a part's own height lies between it and all that is
   /// in place by then (fixed parts, and those of earlier steps) [m].
-  [[nodiscard]] double liftToClear(const SceneStep& step) const {
+  [[nodiscard]] double liftToClear(const SceneStep& step) {
+    const auto include = [this](std::size_t part, const Pose& X_WP) {
+      top_m_ = std::max(top_m_, boundsAt(scene_.parts[part].part.mesh, X_WP).max.z());
+    };
+    // All parts have been read by now.
+    for (; topped_parts_ < scene_.parts.size(); ++topped_parts_)
+      if (const ScenePart& part = scene_.parts[topped_parts_]; part.is_fixed)
+        include(topped_parts_, part.X_WP);
+    for (; topped_steps_ < scene_.steps.size(); ++topped_steps_)
+      include(scene_.steps[topped_steps_].part, scene_.steps[topped_steps_].X_WP_target);
     const Box moved = boundsAt(scene_.parts[step.part].part.mesh, step.X_WP_target);
-    double top_m = moved.min.z();
-    for (const ScenePart& part : scene_.parts)
-      if (part.is_fixed) top_m = std::max(top_m, boundsAt(part.part.mesh, part.X_WP).max.z());
-    for (const SceneStep& earlier : scene_.steps)
-      top_m = std::max(top_m, boundsAt(scene_.parts[earlier.part].part.mesh, earlier.X_WP_target).max.z());
-    return top_m - moved.min.z() + 0.5 * moved.size().z();
+    return std::max(top_m_, moved.min.z()) - moved.min.z() + 0.5 * moved.size().z();
   }
 
   static Box boundsAt(const Mesh& mesh, const Pose& X_WP) {
@@ -363,6 +367,10 @@ class SceneReader {
   std::map<std::string, ImportedCad> cads_;
   std::size_t cad_count_ = 0;       ///< the first parts of the scene are those of its 'cad'
   std::vector<bool> is_described_;  ///< of those parts: has a [[part]] of its own
+  /// The highest point of the first fixed parts and of the parts of the first steps, as far as they are in
+  /// it.
+  double top_m_ = -std::numeric_limits<double>::infinity();
+  std::size_t topped_parts_ = 0, topped_steps_ = 0;
 };
 
 }  // namespace

@@ -20,6 +20,7 @@ struct Tessellation {
   double deviation_m = 0;
   int faces = 0;    ///< of the shape
   int missing = 0;  ///< of them without triangles
+  int folded = 0;   ///< triangles that are turned over within their face
 
   [[nodiscard]] bool isTrusted(const ImportSettings& settings) const;
 };
