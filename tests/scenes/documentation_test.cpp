@@ -193,6 +193,7 @@ TEST(Documentation, TheSceneFilesKeysAreThoseOfTheFieldTables) {
   const std::string readme = "scenes/README.md", head = kSettingHead;
   checkSection(readme, "top", head + settingLines<Scene>(kSceneKeys));
   checkSection(readme, "part", head + settingLines<ScenePart>(kPartKeys));
+  checkSection(readme, "group", head + settingLines<PartGroup>(kGroupKeys));
   checkSection(readme, "step", head + settingLines<SceneStep>(kStepKeys));
   checkSection(readme, "device", head + settingLines<DeviceSettings>(kDeviceKeys));
   checkSection(readme, "operator", head + settingLines<OperatorSettings>(kOperatorFields));

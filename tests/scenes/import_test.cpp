@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "import/own_process.h"
+#include "import/part_names.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -127,6 +128,23 @@ std::string cubeObj(double scale, const std::string& name, int first = 1, double
     text += "\n";
   }
   return text;
+}
+
+TEST(PartNames, TheBetterOneOfInstanceAndProductIsTaken) {
+  using import::bestName;
+  EXPECT_EQ(bestName("NAUO7", "bracket"), "bracket");
+  EXPECT_EQ(bestName("=>[0:1:1:2]", "bracket"), "bracket");
+  EXPECT_EQ(bestName("3f2a9c40-11de-4b5c-9f00-0123456789ab", "bracket"), "bracket");
+  EXPECT_EQ(bestName("bracket:3", "bracket"), "bracket");
+  EXPECT_EQ(bestName("bracket_12", "bracket"), "bracket_12");
+  EXPECT_EQ(bestName("bracket<3>", "bracket"), "bracket");
+  EXPECT_EQ(bestName("left bracket", "bracket"), "left bracket");
+  EXPECT_EQ(bestName("left bracket", "SOLID"), "left bracket");
+  EXPECT_EQ(bestName("Body1", "Part 2"), "Part 2");
+  EXPECT_EQ(bestName("SOLID", "COMPOUND"), "");
+  EXPECT_EQ(bestName("", "\xd0\x92\xd0\xb0\xd0\xbb"), "\xd0\x92\xd0\xb0\xd0\xbb");  // not ASCII
+  EXPECT_EQ(bestName("17", "4711"), "");
+  EXPECT_EQ(bestName("decade", "facade"), "decade");  // of hexadecimal digits, and words
 }
 
 TEST(Units, AreReadAndOthersRefused) {
@@ -397,6 +415,34 @@ TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
   for (const char* name : {"", "-", "w", "yy", "--y"}) EXPECT_FALSE(axisFromText(name)) << name;
 }
 
+// An angle bracket on its foot, y up, as Inventor has it; lying on a box that stands well either way, z is
+// kept.
+TEST(ImportUp, IsGuessedWhereTheFormatDoesNotSay) {
+  const Folder folder;
+  const auto write = [&](const std::string& name, const std::string& shapes) {
+    return folder.write(name,
+                        "#Inventor V2.1 ascii\nSeparator { Units { units MILLIMETERS }\n" + shapes + "}\n");
+  };
+  const std::string foot = "DEF foot Separator { Cube { width 60 height 4 depth 40 } }\n";
+  const std::string post =
+      "DEF post Separator { Translation { translation 0 32 3 } Cube { width 6 height 60 depth 6 } }\n";
+  ImportSettings settings;
+  settings.guesses_up = true;
+  const fs::path standing = write("standing.iv", foot + post);
+  IMPORT_OR_SKIP(cad, standing, settings);
+  EXPECT_NEAR((partNamed(cad, "post").X_WP * Vec3::Zero()).z(), 32e-3, 1e-8);
+  ASSERT_EQ(cad.warnings.size(), 1U);
+  EXPECT_NE(cad.warnings[0].find("y is taken to be up"), std::string::npos) << cad.warnings[0];
+  // Said by the user, or not asked for.
+  settings.up = Vec3::UnitZ();
+  EXPECT_NEAR(partNamed(importCad(standing.string(), settings), "post").X_WP.p.z(), 3e-3, 1e-8);
+  EXPECT_NEAR(partNamed(importCad(standing.string()), "post").X_WP.p.z(), 3e-3, 1e-8);
+  settings.up.reset();
+  const ImportedCad cube = importCad(write("cube.iv", foot).string(), settings);
+  EXPECT_LT((cube.parts[0].X_WP.R - Mat3::Identity()).norm(), 1e-12);
+  EXPECT_NE(cube.warnings.at(0).find("z is taken to be up"), std::string::npos) << cube.warnings[0];
+}
+
 TEST(ImportFiles, SeveralShareAFrameAndTheirNamesAreUnique) {
   const std::string file = (kBlock / "bearing_block.glb").string();
   const ImportedCad one = importCad(file), two = importCad(std::vector<std::string>{file, file});
@@ -569,7 +615,7 @@ return cad;
 
 std::string messageOfReader(const std::function<import::RawCad(const Progress&)>& read) {
   try {
-    import::inOwnProcess("a.step", "The library", {}, read);
+    import::inOwnProcess("a.step", "The library", {}, {}, read);
   } catch (const LoadError& e) {
     return e.what();
   }
@@ -581,8 +627,12 @@ TEST(OwnProcess, ReturnsTheReadersResultAndProgress) {
   const pid_t here = ::getpid();
   pid_t there = here;
   const import::RawCad found = import::inOwnProcess(
-      "a.step", "The library",
-      [&](std::string_view doing, double share) { heard.emplace_back(doing, share); },
+      "a.step", "The library", {},
+      [&](std::string_view doing, double share) {
+        // What was said is said again where the machine is slow.
+        const std::pair<std::string, double> now(doing, share);
+        if (now.first != "reading a" && (heard.empty() || heard.back() != now)) heard.push_back(now);
+      },
       [&](const Progress& tell) {
         there = ::getpid();
         tell("meshing", 0.1);
@@ -628,7 +678,7 @@ TEST(OwnProcess, AnErrorKeepsItsText) {
 
 TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
   const auto stop = [](std::string_view, double) { throw std::runtime_error("stop"); };
-  EXPECT_THROW(import::inOwnProcess("a.step", "The library", stop,
+  EXPECT_THROW(import::inOwnProcess("a.step", "The library", {}, stop,
                                     [](const Progress& tell) {
                                       tell("waiting for ever", 0);
                                       for (;;) ::pause();
@@ -636,6 +686,76 @@ TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
                                     }),
                std::runtime_error);
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+/// A reader that says nothing and never ends.
+import::RawCad readForEver(const Progress&) {
+  for (;
+;) ::pause();
+}
+
+TEST(OwnProcess, EndsWithItsProgressWhileTheLibrarySaysNothing) {
+  int asked = 0;
+  const auto stop = [&](std::string_view doing, double) {
+    EXPECT_EQ(doing, "reading a");
+    if (++asked == 2) throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(import::inOwnProcess("a.step", "The library", {}, stop, readForEver), std::runtime_error);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+// A terminal sends the signal to both processes; the parent then throws from its progress.
+TEST(OwnProcess, CtrlCIsAStopAndNoCrash) {
+  pid_t child = 0;
+  const auto progress = [&](std::string_view doing, double share) {
+    if (doing != "here") return;
+    if (child == 0) {
+      child = static_cast<pid_t>(share);
+      ::kill(child, SIGINT);
+      return;
+    }
+    throw std::runtime_error("stopped");
+  };
+  EXPECT_THROW(import::inOwnProcess("a.step", "The library", {}, progress,
+                                    [](const Progress& tell) {
+                                      tell("here", ::getpid());
+                                      for (;;) ::pause();
+                                      return import::RawCad();
+                                    }),
+               std::runtime_error);
+}
+
+TEST(OwnProcess, BeyondItsTimeOrMemoryItIsEndedWithARemedy) {
+  const auto messageWith = [](const ImportSettings& limits, const auto& read) -> std::string {
+    try {
+      import::inOwnProcess("a.step", "The library", limits, {}, read);
+    } catch (const LoadError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  ImportSettings limits;
+  limits.most_s = 0.1;
+  EXPECT_EQ(
+      messageWith(limits, readForEver),
+      "a.step: took more than 0.1 s to read (reading a); a greater deflection needs less, or export fewer "
+      "parts into one file");
+  limits.most_s = 0;
+  limits.most_memory_bytes = 100'000'000;
+  const std::string grown = messageWith(limits, [](const Progress& tell) {
+    std::vector<char> all(300'000'000);
+    for (std::size_t i = 0; i < all.size(); i += 4096) all[i] = 1;
+    tell("meshing", all[4096]);
+    for (;;) ::pause();
+    return import::RawCad();
+  });
+  EXPECT_NE(grown.find("needs more than 0.1 GB of memory to read ("), std::string::npos) << grown;
+  // From outside, as when the kernel ends it.
+  const std::string killed = messageWith({}, [](const Progress&) {
+    std::raise(SIGKILL);
+    return import::RawCad();
+  });
+  EXPECT_NE(killed.find("ended from outside"), std::string::npos) << killed;
 }
 
 TEST(OwnProcess, ThreadsImportConcurrently) {

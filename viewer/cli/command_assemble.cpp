@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "cad_arguments.h"
 #include "command.h"
 #include "file_kind.h"
 #include "json_out.h"
@@ -31,7 +32,7 @@ namespace {
 
 struct AssembleArguments {
   SceneArguments scene;
-  std::string units, deflection;  ///< of a CAD file
+  CadArguments cad;
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
@@ -76,7 +77,7 @@ class HeardRun {
 
 scenes::Verdict runScene(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
-  requireOwnUnits(file, given.units, given.deflection);
+  requireNoCadOptions(file, given.cad);
   OutputFolder out(given.out);
   OutputFile json(given.json, {file});
   OutputFile wav(given.sound, {file});
@@ -173,13 +174,12 @@ int runCad(AssembleArguments given) {
   PlanArguments plan;
   plan.assembly = given.scene.scene;
   plan.out = (std::filesystem::path(given.out) / "plan").string();
-  plan.units = given.units;
-  plan.deflection = given.deflection;
+  plan.cad = given.cad;
   plan.is_forced = true;
   requireNotRead(given.json, {plan.assembly});
   ProgressBar bar;
   const PlannedFolder planned = planInto(plan, bar);
-  given.units = given.deflection = "";
+  given.cad = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
   return statusOf(planned.status == kGood ? verdict : worseOf(verdict, scenes::Verdict::Blocked));
 }
@@ -200,8 +200,7 @@ void addAssemble(CommandLine& line) {
   command.get_option("scene")
       ->description("scene file (TOML), or a CAD file, which is planned first, as vps plan does")
       ->type_name("SCENE|CAD");
-  addUnitsOption(command, given->units);
-  addDeflectionOption(command, given->deflection);
+  addCadOptions(command, given->cad);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <memory>
 
+#include "cad_arguments.h"
 #include "check_report.h"
 #include "command.h"
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
-#include "scene_arguments.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/check.h"
@@ -20,8 +20,8 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 struct CheckArguments {
-  std::string assembly, units, near, json, csv, html;
-  std::string deflection;
+  std::string assembly, near, json, csv, html;
+  CadArguments cad;
   bool has_no_play = false;
 };
 
@@ -31,9 +31,9 @@ struct Assembly {
   std::vector<std::string> read;  ///< files
 };
 
-Assembly readScene(const CheckArguments& given) {
-  requireOwnUnits(given.assembly, given.units, given.deflection);
-  const scenes::Scene scene = scenes::loadScene(given.assembly);
+Assembly readScene(const CheckArguments& given, const Progress& progress) {
+  requireNoCadOptions(given.assembly, given.cad);
+  const scenes::Scene scene = scenes::loadScene(given.assembly, progress);
   for (const std::string& warning : scene.warnings) warn(warning);
   Assembly assembly{scene.name, scenes::drawnParts(scene), {given.assembly}};
   for (const scenes::ScenePart& part : scene.parts) assembly.read.push_back(part.file);
@@ -42,13 +42,10 @@ Assembly readScene(const CheckArguments& given) {
 
 Assembly readCad(const CheckArguments& given, const Progress& progress) {
   requireCadFile(given.assembly);
-  scenes::ImportSettings settings;
-  settings.unit_m = unitFrom(given.units);
-  if (!given.deflection.empty())
-    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
-  const scenes::ImportedCad cad = scenes::importCad(given.assembly, settings, progress);
-  for (const std::string& warning : cad.warnings) warn(given.assembly + ": " + warning);
-  return {given.assembly, scenes::drawnParts(cad), {given.assembly}};
+  const scenes::Scene scene = groupedScene(
+      scenes::importCad(given.assembly, importSettingsFrom(given.cad, kMostTriangles), progress), given.cad);
+  for (const std::string& warning : scene.warnings) warn(given.assembly + ": " + warning);
+  return {given.assembly, scenes::drawnParts(scene), {given.assembly}};
 }
 
 int runCheck(const CheckArguments& given) {
@@ -61,7 +58,7 @@ int runCheck(const CheckArguments& given) {
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
   ProgressBar bar;
   const bool is_cad = isCadExtension(lowerExtension(given.assembly));
-  const Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given);
+  const Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given, bar.progress());
   for (const std::string& output : {given.json, given.csv, given.html}) requireNotRead(output, assembly.read);
   const scenes::CheckResult result =
       scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
@@ -89,9 +86,7 @@ void addCheck(CommandLine& line) {
                   "a CAD file, or a scene file (TOML): its parts at their targets")
       ->required()
       ->type_name("CAD|SCENE");
-  addUnitsOption(command, given->units);
-  command.add_option("--deflection", given->deflection,
-                     "greatest distance between curved faces and their triangles, with unit (STEP, IGES)");
+  addCadOptions(command, given->cad);
   command.add_option("--near", given->near,
                      "clearance up to which pairs are reported, with unit (default: 1mm)");
   command.add_flag("--no-play", given->has_no_play, "leave out play and ways out, which take longest");

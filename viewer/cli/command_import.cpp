@@ -6,20 +6,23 @@
 #include <memory>
 #include <set>
 
+#include "cad_arguments.h"
 #include "command.h"
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "part_file_name.h"
+#include "plan_report.h"
 #include "progress_bar.h"
-#include "scene_arguments.h"
 #include "stl.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps/mesh_repair.h"
+#include "vps_scenes/fasteners.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/plan.h"
+#include "vps_scenes/scene_groups.h"
 #include "vps_scenes/scene_text.h"
 
 namespace vps::viewer::inline v0 {
@@ -29,98 +32,102 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ImportArguments {
-  std::vector<std::string> cad;
-  std::string out, units, up, deflection, json;
+  std::vector<std::string> files;
+  CadArguments cad;
+  std::string out, json;
   bool is_forced = false;  ///< replaces an existing scene.toml
 };
 
-Box boundsAt(const scenes::ImportedPart& part) {
+Box boundsAt(const scenes::ScenePart& part) {
   Box box;
-  for (const Vec3& p_P : part.mesh.vertices) box.add(part.X_WP * p_P);
+  for (const Vec3& p_P : part.part.mesh.vertices) box.add(part.X_WP * p_P);
   return box;
 }
 
-/// A procedure for the user to correct: the largest part is fixed, the others follow from the lowest upwards.
+/// A procedure for the user to correct: the largest body is fixed, the others follow from the lowest upwards.
 struct Proposal {
-  std::size_t fixed = 0;
-  std::vector<std::size_t> steps;
+  std::string fixed;
+  std::vector<std::string> steps;
 };
 
-Proposal propose(const std::vector<scenes::ImportedPart>& parts) {
+Proposal propose(const std::vector<scenes::ScenePart>& bodies) {
   std::vector<double> volume_m3, foot_m;
-  for (const scenes::ImportedPart& part : parts) {
-    const Box box = boundsAt(part);
+  for (const scenes::ScenePart& body : bodies) {
+    const Box box = boundsAt(body);
     volume_m3.push_back(box.size().prod());
     foot_m.push_back(box.min.z());
   }
-  Proposal proposal;
-  proposal.fixed =
+  const auto largest =
       static_cast<std::size_t>(std::max_element(volume_m3.begin(), volume_m3.end()) - volume_m3.begin());
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (i != proposal.fixed) proposal.steps.push_back(i);
-  std::stable_sort(proposal.steps.begin(), proposal.steps.end(),
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (i != largest) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return foot_m[a] < foot_m[b]; });
+  Proposal proposal{bodies[largest].part.name, {}};
+  for (const std::size_t i : order) proposal.steps.push_back(bodies[i].part.name);
   return proposal;
 }
 
+/// A fixed group has one fixed part.
+bool isOf(const std::string& part, const std::string& body, const std::vector<scenes::PartGroup>& groups) {
+  for (const scenes::PartGroup& group : groups)
+    if (group.name == body) return part == group.parts.front();
+  return part == body;
+}
+
 std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string>& read,
-                   const std::vector<ImportedPartAnswer>& parts) {
+                   const std::vector<scenes::PartGroup>& groups, const std::vector<ImportedPartAnswer>& parts,
+                   const std::vector<scenes::Fastener>& fasteners) {
   scenes::Scene scene = scenes::sceneOf(cad);
-  const Proposal proposal = propose(cad.parts);
-  scene.parts[proposal.fixed].is_fixed = true;
+  for (std::size_t i = 0, next = 0; i < scene.parts.size() && next < fasteners.size(); ++i)
+    if (scene.parts[i].part.name == fasteners[next].part) scene.parts[i].fastener = fasteners[next++].words;
+  scenes::Scene united = scene;
+  uniteGroups(united, groups);
+  const Proposal proposal = propose(united.parts);
+  for (scenes::ScenePart& part : scene.parts) part.is_fixed = isOf(part.part.name, proposal.fixed, groups);
   std::string from;
   for (const std::string& file : read) from += (from.empty() ? "" : ", ") + scenes::tomlText(file);
   std::vector<std::string> files;
   for (const ImportedPartAnswer& part : parts) files.push_back(part.file);
   std::string out = sceneText(
       scene, files, "From " + from + R"(. Lengths and meshes are in metres; write "5mm" for millimetres.)");
-  if (proposal.steps.empty()) return out;
-  out +=
-      R"(
-# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, or let
+  out += "\n";
+  for (const scenes::PartGroup& group : groups) out += groupText(group);
+  if (!proposal.steps.empty())
+    out +=
+        R"(# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, or let
 # vps plan find order and ways.
 )";
-  for (const std::size_t i : proposal.steps)
-    out += "[[step]]\npart = " + scenes::tomlText(parts[i].name) + "\n\n";
+  for (const std::string& name : proposal.steps) out += "[[step]]\npart = " + scenes::tomlText(name) + "\n\n";
   out.pop_back();
   return out;
 }
 
 int runImport(const ImportArguments& given) {
-  for (const std::string& file : given.cad) requireCadFile(file);
-  scenes::ImportSettings settings;
-  settings.unit_m = unitFrom(given.units);
-  if (!given.deflection.empty())
-    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
-  if (!(settings.deflection_m > 0))
-    throw LoadError("", "", "--deflection is " + given.deflection + "; expected more than 0");
-  if (!given.up.empty()) {
-    settings.up = scenes::axisFromText(given.up);
-    if (!settings.up)
-      throw LoadError("", "", "--up is '" + given.up + "'; expected one of: x, -x, y, -y, z, -z");
-  }
+  for (const std::string& file : given.files) requireCadFile(file);
+  const scenes::ImportSettings settings = importSettingsFrom(given.cad, kMostTriangles);
   std::error_code error;
   if (!given.is_forced && fs::exists(fs::path(given.out) / "scene.toml", error))
     throw LoadError(given.out, "",
                     "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
-  OutputFile json(given.json, given.cad);
+  OutputFile json(given.json, given.files);
   ProgressBar bar;
-  scenes::ImportedCad cad = scenes::importCad(given.cad, settings, bar.progress());
-  if (cad.format.find("Inventor") != std::string::npos && !settings.up)
-    cad.warnings.emplace_back(
-        "z is taken to be up, though y often is in Inventor files; --up y turns the parts, --up z says that "
-        "z is "
-        "right");
+  scenes::ImportedCad cad = scenes::importCad(given.files, settings, bar.progress());
+  const std::vector<scenes::Fastener> fasteners =
+      scenes::findFasteners(scenes::drawnParts(cad), bar.progress());
+  bar.clear();
+  const std::vector<scenes::PartGroup> groups = groupsOf(cad, given.cad);
 
-  ImportAnswer answer{cad.file, cad.format, {}, cad.warnings};
+  ImportAnswer answer{cad.file, cad.format, {}, groups, fasteners, cad.warnings};
   std::set<std::string> taken;
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
   for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
     const ImportedPartAnswer row{part.name, partFileName(part.name, taken), part.mesh.triangles.size(),
                                  checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
-    requireNotRead((fs::path(given.out) / row.file).string(), given.cad);
+    requireNotRead((fs::path(given.out) / row.file).string(), given.files);
     out.write(row.file, stlBytes(part.mesh));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
@@ -128,14 +135,13 @@ int runImport(const ImportArguments& given) {
                row.file});
     answer.parts.push_back(row);
   }
-  out.write("scene.toml", textOf(cad, given.cad, answer.parts));
+  out.write("scene.toml", textOf(cad, given.files, groups, answer.parts, fasteners));
   out.commit();
   json.write(toJson(answer));
-  bar.clear();
 
-  std::fputs(table.text().c_str(), stdout);
+  std::fputs((table.text() + fastenerText(fasteners)).c_str(), stdout);
   for (const std::string& warning : cad.warnings)
-    warn(given.cad.size() > 1 ? warning : cad.file + ": " + warning);
+    warn(given.files.size() > 1 ? warning : cad.file + ": " + warning);
   std::printf("%zu parts from %s; scene: %s/scene.toml\n", cad.parts.size(), cad.format.c_str(),
               given.out.c_str());
   return kGood;
@@ -149,18 +155,14 @@ void addImport(CommandLine& line) {
       addCommand(line, "import", "makes a scene from CAD files: parts, poses and proposed steps",
                  "vps import assembly.step -o my_scene", [given] { return runImport(*given); });
   command
-      .add_option("cad", given->cad,
+      .add_option("cad", given->files,
                   "STEP, IGES, glTF, STL, OBJ, PLY, Inventor, ...; several files share one frame")
       ->required()
       ->type_name("CAD");
   command.add_option("-o,--out", given->out, "folder for scene.toml and meshes")
       ->required()
       ->type_name("DIR");
-  addUnitsOption(command, given->units);
-  command.add_option("--up", given->up, "the file's axis that is up and becomes z: x, -x, y, -y, z or -z")
-      ->type_name("AXIS");
-  command.add_option("--deflection", given->deflection,
-                     "greatest distance between curved faces and their triangles, with unit");
+  addCadOptions(command, given->cad);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
   addJsonOption(command, given->json);
 }

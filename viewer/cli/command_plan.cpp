@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <memory>
 
+#include "cad_arguments.h"
 #include "command.h"
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "plan_report.h"
 #include "planned_folder.h"
-#include "scene_arguments.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/plan.h"
@@ -22,7 +22,7 @@ int verify(const PlanArguments& given) {
   OutputFile json(given.json, {given.assembly});
   ProgressBar bar;
   requireSceneFile(given.assembly);
-  const scenes::Scene scene = scenes::loadScene(given.assembly);
+  const scenes::Scene scene = scenes::loadScene(given.assembly, bar.progress());
   const std::vector<scenes::WayFault> faults = checkWays(scene, bar.progress());
   throwIfStopped();
   json.write(toJson(scene.name, faults));
@@ -60,8 +60,9 @@ void addPlan(CommandLine& line) {
       ->type_name("DIR");
   command.add_option("--base", given->bases, "a part that stands still, by name; may be given several times")
       ->type_name("NAME");
-  addUnitsOption(command, given->units);
-  addDeflectionOption(command, given->deflection);
+  addCadOptions(command, given->cad);
+  command.add_flag("--bench", given->has_bench,
+                   "lay the parts out around the base; each is lifted over everything to where it goes");
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
   command.add_flag("--verify", given->is_verify,
                    "plan nothing: check that the ways of a scene lead through no part in place");

@@ -125,8 +125,18 @@ std::string toJson(const ImportAnswer& answer) {
                      {"triangles", part.triangles},
                      {"closed", part.is_closed},
                      {"size_m", toValue(part.size_m)}});
-  return text(
-      {{"cad", answer.cad}, {"format", answer.format}, {"parts", parts}, {"warnings", answer.warnings}});
+  Json groups = Json::array();
+  for (const scenes::PartGroup& group : answer.groups)
+    groups.push_back({{"name", group.name}, {"parts", group.parts}, {"reason", group.reason}});
+  Json fasteners = Json::array();
+  for (const scenes::Fastener& one : answer.fasteners)
+    fasteners.push_back(toObject(one, scenes::kFastenerFields));
+  return text({{"cad", answer.cad},
+               {"format", answer.format},
+               {"parts", parts},
+               {"groups", groups},
+               {"fasteners", fasteners},
+               {"warnings", answer.warnings}});
 }
 
 std::string toJson(const ExportAnswer& answer) {

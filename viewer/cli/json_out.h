@@ -62,6 +62,8 @@ struct ImportedPartAnswer {
 struct ImportAnswer {
   std::string cad, format;
   std::vector<ImportedPartAnswer> parts;
+  std::vector<scenes::PartGroup> groups;
+  std::vector<scenes::Fastener> fasteners;
   std::vector<std::string> warnings;
 };
 

@@ -41,17 +41,44 @@ std::string needsText(const scenes::PlannedAssembly& assembly, const scenes::Pla
   return before.empty() ? "" : "after " + listed(before);
 }
 
+/// The way with the least clearance.
+std::string tightestText(const scenes::PlannedAssembly& assembly) {
+  const scenes::PlannedStep* tightest = nullptr;
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (step.clearance_m && (tightest == nullptr || *step.clearance_m < *tightest->clearance_m))
+      tightest = &step;
+  if (tightest == nullptr) return "";
+  return "The least clearance on a way, to parts that it passes: '" + tightest->name + "' passes '" +
+         tightest->nearest + "' at " + fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
+}
+
+std::string benchText(const scenes::PlannedAssembly& assembly) {
+  std::vector<std::string> left;
+  bool is_any = false;
+  for (const scenes::PlannedStep& step : assembly.steps) {
+    is_any = is_any || step.is_on_bench;
+    if (!step.is_on_bench) left.push_back(step.name);
+  }
+  if (!is_any || left.empty()) return "";
+  return "Covered on all sides when it is mounted, so not laid out on the bench: " + listed(left) + ".\n";
+}
+
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   std::string out =
       assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
-  Table table({"step", "<part", "<way", "<moves", "<stays", "<order"});
+  Table table({"step", "<part", "<way", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
   for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
     const scenes::PlannedStep& step = assembly.steps[i];
     const std::string name = step.parts.size() == 1 ? step.name : step.name + " (" + listed(step.parts) + ")";
-    table.add({std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
-               step.is_carried ? "by itself" : "held", needsText(assembly, step)});
+    table.add(
+        {std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
+         step.is_carried ? "by itself" : "held",
+         step.clearance_m ? fixed(1e3 * *step.clearance_m, 3) : "> " + fixed(1e3 * scenes::kNearWay_m, 0),
+         step.fit_clearance_m ? fixed(1e3 * *step.fit_clearance_m, 3) : "", needsText(assembly, step)});
   }
   if (!assembly.steps.empty()) out += table.text();
+  out += tightestText(assembly);
+  out += benchText(assembly);
   std::vector<std::string> held;
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.is_carried) held.push_back(step.name);
@@ -69,23 +96,28 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
 
 }  // namespace
 
+std::string fastenerText(const std::vector<scenes::Fastener>& fasteners) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_words;
+  for (const scenes::Fastener& one : fasteners) {
+    const auto known = std::ranges::find(by_words, one.words, [](const auto& entry) { return entry.first; });
+    if (known == by_words.end())
+      by_words.emplace_back(one.words, std::vector<std::string>{one.part});
+    else
+      known->second.push_back(one.part);
+  }
+  std::string out;
+  for (const auto& [words, parts] : by_words)
+    out += "  " + std::to_string(parts.size()) + " x " + words + ": " + listed(parts) + "\n";
+  return out.empty() ? "" : "Fasteners, by their shapes:\n" + out;
+}
+
 std::string planTables(const scenes::PlanResult& plan) {
   std::string out;
   for (const scenes::PlannedAssembly& assembly : plan.assemblies)
     out += (out.empty() ? "" : "\n") + assemblyTable(assembly);
-  if (!plan.overlaps.empty()) out += "\n";
-  for (const scenes::DrawnTwice& twice : plan.twice)
-    out += "'" + twice.first + "' and '" + twice.second +
-           "' are equal and in one place: is a part drawn twice? Remove one of them.\n";
-  const auto isTwice = [&](const scenes::CheckedPair& pair) {
-    return std::ranges::any_of(plan.twice, [&](const scenes::DrawnTwice& twice) {
-      return twice.first == pair.a && twice.second == pair.b;
-    });
-  };
-  for (const scenes::CheckedPair& pair : plan.overlaps)
-    if (!isTwice(pair))
-      out += "'" + pair.a + "' and '" + pair.b + "' overlap by " + fixed(1e3 * pair.interference_depth_m, 3) +
-             " mm as drawn; on their ways they may overlap as much.\n";
+  if (const std::string fasteners = fastenerText(plan.fasteners); !fasteners.empty()) out += "\n" + fasteners;
+  if (!plan.choices.empty()) out += "\n";
+  for (const scenes::OverlapChoice& choice : plan.choices) out += choice.words + ".\n";
   if (plan.cut_motions > 0)
     out +=
         std::to_string(plan.cut_motions) +

@@ -8,6 +8,8 @@
 
 namespace vps::viewer::inline v0 {
 
+/// A line for each different fastener with the names of the parts; empty if there are none.
+std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
 /// The steps of all assemblies, and what cannot be taken apart.
 std::string planTables(const scenes::PlanResult& plan);
 /// The answer in a sentence.

@@ -13,7 +13,6 @@
 #include "output.h"
 #include "part_file_name.h"
 #include "plan_report.h"
-#include "scene_arguments.h"
 #include "stl.h"
 #include "table.h"
 #include "terminal.h"
@@ -26,41 +25,18 @@ namespace {
 
 /// Faces of splines can have a hundred times the triangles of the same faces as cylinders: those of one
 /// public bolt have 227,717. The search for ways takes time with their product.
-void coarsen(scenes::ImportedCad& cad, scenes::ImportSettings settings, const Progress& progress) {
-  constexpr std::size_t kMany = 50'000;
-  constexpr double kTimes = 4, kMost_m = 16e-6;
-  const double asked_m = settings.deflection_m;
-  const auto largest = [&] {
-    return std::ranges::max_element(cad.parts, {},
-                                    [](const auto& part) { return part.mesh.triangles.size(); });
-  };
-  if (cad.parts.empty() || !cad.parts.front().deflection_m) return;
-  const std::string name = largest()->name;
-  const std::size_t before = largest()->mesh.triangles.size();
-  while (largest()->mesh.triangles.size() > kMany && kTimes * settings.deflection_m < 1.01 * kMost_m) {
-    settings.deflection_m *= kTimes;
-    cad = scenes::importCad(cad.file, settings, progress);
-  }
-  if (settings.deflection_m > asked_m)
-    warn(cad.file + ": '" + name + "' has " + std::to_string(before) + " triangles within " +
-         fixed(1e6 * asked_m, 0) + " um; planned with a deflection of " +
-         fixed(1e6 * settings.deflection_m, 0) + " um (--deflection " + fixed(1e6 * asked_m, 0) +
-         "um keeps them all)");
-}
+constexpr std::size_t kMostToPlan = 50'000;
+constexpr double kCoarsestToPlan_m = 16e-6;
 
 scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) {
   if (!isCadExtension(lowerExtension(given.assembly))) {
-    requireOwnUnits(given.assembly, given.units, given.deflection);
-    return scenes::loadScene(given.assembly);
+    requireNoCadOptions(given.assembly, given.cad);
+    return scenes::loadScene(given.assembly, progress);
   }
   requireCadFile(given.assembly);
-  scenes::ImportSettings settings;
-  settings.unit_m = unitFrom(given.units);
-  if (!given.deflection.empty())
-    settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
-  scenes::ImportedCad cad = scenes::importCad(given.assembly, settings, progress);
-  if (given.deflection.empty()) coarsen(cad, settings, progress);
-  return scenes::sceneOf(cad);
+  scenes::ImportSettings settings = importSettingsFrom(given.cad, kMostToPlan);
+  settings.coarsest_m = kCoarsestToPlan_m;
+  return groupedScene(scenes::importCad(given.assembly, settings, progress), given.cad);
 }
 
 /// Of the product, which comes first, and of each subassembly.
@@ -120,6 +96,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   for (const std::string& warning : scene.warnings) warn(given.assembly + ": " + warning);
   scenes::PlanSettings settings;
   settings.fixed = given.bases;
+  settings.has_bench = given.has_bench;
   const scenes::PlanResult plan = planAssembly(scene, settings, bar.progress());
   std::vector<std::string> read{given.assembly};
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);

@@ -5,15 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "cad_arguments.h"
 #include "progress_bar.h"
 #include "vps_scenes/plan.h"
 
 namespace vps::viewer::inline v0 {
 
 struct PlanArguments {
-  std::string assembly, out, units, deflection, json;
+  std::string assembly, out, json;
+  CadArguments cad;
   std::vector<std::string> bases;
   bool is_forced = false;
+  bool has_bench = false;  ///< see scenes::PlanSettings
 };
 
 /// What planInto() came to.
@@ -24,8 +27,8 @@ struct PlannedFolder {
 };
 
 /// Plans a CAD file or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json and
-/// plan.dot, and prints the plan and what is wrong with it. A CAD file whose parts have very many triangles
-/// is read once more with a greater deflection, and this is said, unless --deflection is given.
+/// plan.dot, and prints the plan and what is wrong with it. Parts of a CAD file that have very many triangles
+/// are read with a greater deflection, and this is said, unless --deflection is given.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
 }  // namespace vps::viewer::inline v0

@@ -144,7 +144,9 @@ void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std:
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
                         const std::vector<std::string>& outputs) {
   requireSceneFile(file);
-  scenes::Scene scene = scenes::loadScene(file);
+  ProgressBar bar;
+  scenes::Scene scene = scenes::loadScene(file, bar.progress());
+  bar.clear();
   std::vector<std::string> read;
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
   if (!scene.device.data.empty()) read.push_back(scene.device.data);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,12 +22,22 @@ struct ImportSettings {
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
   double angle_rad = 0.35;  ///< greatest angle between neighbouring triangles of a curved face
+  /// A part that would have more triangles is read with a greater deflection, by powers of four up to
+  /// coarsest_m, and a warning says so. 0: no limit.
+  std::size_t most_triangles = 0;
+  double coarsest_m = 64e-6;
   /// The file's axis that is up: the parts are turned so that it becomes z. Empty: the file's axes are kept.
   std::optional<Vec3> up = {};
+  /// Where `up` is empty and no file states what is up (Inventor, VRML): y or z, whichever gives the parts
+  /// the better stand, and a warning says which.
+  bool guesses_up = false;
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
   /// LoadError. False: in this process, for a debugger, or where other threads use Open CASCADE or Coin
   /// themselves.
   bool in_own_process = true;
+  /// Of that process: beyond these it is ended, with a LoadError.
+  std::uint64_t most_memory_bytes = 0;  ///< 0: half of the machine's
+  double most_s = 0;                    ///< 0: no limit
 };
 
 struct ImportedPart {
@@ -37,6 +49,9 @@ struct ImportedPart {
   /// asked for, or more where it was measured to be more; empty for a file of meshes.
   std::optional<double> deflection_m = {};
   std::string note = {};  ///< what is wrong with the mesh beside those faces, also among the warnings
+  /// Names of the assemblies that it is in, from the outermost, and last of its product, where the format has
+  /// a tree (STEP, IGES). Each instance has a name of its own: a repeated one becomes "<name>_2" and so on.
+  std::vector<std::string> within = {};
 };
 
 struct ImportedCad {
@@ -58,6 +73,24 @@ VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettin
 /// The parts of several files in one frame, as if they were one file, which has the name of the first.
 VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
                                      const ImportSettings& settings = {}, const Progress& progress = {});
+
+/// Parts that move as one body.
+struct PartGroup {
+  std::string name;
+  std::vector<std::string> parts;  ///< names of two or more
+  std::string reason;              ///< in words
+};
+
+struct GroupWishes {
+  bool is_proposed = true;  ///< groups are looked for
+  /// Each the name of an assembly or product of the file, or a pattern of part names with *: one group.
+  std::vector<std::string> names = {};
+};
+
+/// The groups that are wished for, and those that the file suggests: the solids of one product, and open
+/// surfaces that meet along their edges. Where all parts would be one, none is suggested, and `cad.warnings`
+/// says so. Throws LoadError for a wish that names fewer than two parts, or parts of another group.
+VPS_SCENES_API std::vector<PartGroup> partGroups(ImportedCad& cad, const GroupWishes& wishes);
 
 /// An axis from "x", "-x", "y" and so on; empty for other text.
 VPS_SCENES_API std::optional<Vec3> axisFromText(const std::string& text);

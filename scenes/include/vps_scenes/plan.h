@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vps_scenes/check.h"
+#include "vps_scenes/fasteners.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -14,6 +16,9 @@ struct PlanSettings {
   /// Parts that stand still, by name; empty: one is proposed, the part that holds most among the largest.
   std::vector<std::string> fixed;
   Vec3 up_W = Vec3::UnitZ();  ///< unit, against gravity
+  /// The parts start beside each other around those that stand still, and are lifted over them. False: each
+  /// starts on its last leg, just outside.
+  bool has_bench = false;
 };
 
 enum class WayKind {
@@ -35,7 +40,15 @@ struct PlannedStep {
   double lead_m = 0;                 ///< of a screw: its way in one turn; negative: left-hand
   bool is_carried = false;           ///< something in place keeps it from falling once it is home
   std::vector<std::string> falling;  ///< parts in place already that nothing carries until it is there
+  bool is_on_bench = false;          ///< it starts there, see PlanSettings
+  /// Least clearance on the whole way to parts in place that it does not touch or fit at home, to a
+  /// micrometre; empty: none of them is nearer than kNearWay_m.
+  std::optional<double> clearance_m;
+  std::string nearest;  ///< the part of that clearance
+  /// Diametral clearance of its tightest fit with parts in place; empty: it has none.
+  std::optional<double> fit_clearance_m;
 };
+inline constexpr double kNearWay_m = 5e-3;
 
 /// Why one step comes before another.
 enum class OrderReason {
@@ -70,8 +83,38 @@ struct DrawnTwice {
   std::string first, second;
 };
 
+/// What an overlap of two parts as drawn is taken for.
+enum class OverlapKind {
+  Thread,    ///< a screw and its nut or hole, drawn as plain cylinders
+  PressFit,  ///< a shaft that is a little larger than its bore
+  Twice,     ///< one part drawn twice
+  Flexible,  ///< a spring, belt or seal that is drawn undeformed
+  Clash,     ///< nothing explains it
+};
+VPS_SCENES_API const char* toText(OverlapKind kind);
+
+/// A cylinder of a part that is made thinner or wider, in the part's frame.
+struct Resized {
+  Vec3 axis = Vec3::UnitZ(), p = Vec3::Zero();
+  double from_m = 0, to_m = 0;  ///< along the axis from p
+  double from_radius_m = 0, to_radius_m = 0;
+};
+
+/// An overlap and what is done about it.
+struct OverlapChoice {
+  std::string a, b;
+  OverlapKind kind = OverlapKind::Clash;
+  std::string words;               ///< all of it, for a person
+  std::string left_out;            ///< a part that is scenery in the planned scenes; empty: none
+  std::string changed;             ///< a part that is changed there; empty: none
+  double press_fit_m = 0;          ///< that it is given
+  std::optional<Resized> resized;  ///< how its mesh is changed
+};
+
 struct PlanResult {
   std::string assembly;
+  std::vector<Fastener> fasteners;
+  std::vector<OverlapChoice> choices;       ///< one for each overlap that is not allowed
   std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
   /// Overlaps as drawn. On their ways these parts may overlap as deep as they are drawn.
   std::vector<CheckedPair> overlaps;

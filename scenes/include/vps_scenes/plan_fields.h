@@ -21,7 +21,15 @@ inline constexpr auto kPlannedStepFields = std::make_tuple(
     field("lead_m", &PlannedStep::lead_m, "of a screw: its way in one turn; negative: left-hand"),
     field("is_carried", &PlannedStep::is_carried,
           "something in place keeps it from falling; false: its step says `holds`"),
-    field("falling", &PlannedStep::falling, "parts in place that nothing else carries until it is there"));
+    field("falling", &PlannedStep::falling, "parts in place that nothing else carries until it is there"),
+    field("is_on_bench", &PlannedStep::is_on_bench,
+          "it starts beside the others around the base (`--bench`)"),
+    field(
+        "clearance_m", &PlannedStep::clearance_m,
+        "least clearance on the way to parts that it neither touches nor fits at home; null: more than 5 mm"),
+    field("nearest", &PlannedStep::nearest, "the part of that clearance"),
+    field("fit_clearance_m", &PlannedStep::fit_clearance_m,
+          "diametral clearance of its tightest fit with parts in place; null: it has none"));
 static_assert(coversAllMembers<PlannedStep>(kPlannedStepFields));
 
 inline constexpr auto kPlannedOrderFields =
@@ -52,8 +60,28 @@ inline constexpr auto kDrawnTwiceFields =
                     field("second", &DrawnTwice::second, "a part of equal geometry in the same place"));
 static_assert(coversAllMembers<DrawnTwice>(kDrawnTwiceFields));
 
+inline constexpr auto kFastenerFields = std::make_tuple(
+    field("part", &Fastener::part, "a part with the shape of a fastener"),
+    field("kind", &Fastener::kind, "`screw`, `stud`, `nut`, `washer`, `pin`, `key`, `circlip`"),
+    field("words", &Fastener::words, "with its sizes"));
+static_assert(coversAllMembers<Fastener>(kFastenerFields));
+
+inline constexpr auto kOverlapChoiceFields = std::make_tuple(
+    field("a", &OverlapChoice::a, "a part"),
+    field("b", &OverlapChoice::b, "another one that overlaps it as drawn"),
+    field("kind", &OverlapChoice::kind,
+          "what that is taken for: `thread` (drawn as cylinders), `press fit`, `twice` (drawn twice), "
+          "`flexible` "
+          "(a spring, belt or seal drawn undeformed), or `clash`: nothing explains it"),
+    field("words", &OverlapChoice::words, "in words, with what is done"),
+    field("left_out", &OverlapChoice::left_out, "a part that is scenery in the planned scene; empty: none"),
+    field("changed", &OverlapChoice::changed, "a part with another mesh or `press_fit` there; empty: none"),
+    field("press_fit_m", &OverlapChoice::press_fit_m, "that it is given; 0: none"));
+
 inline constexpr auto kPlanFields =
     std::make_tuple(field("assembly", &PlanResult::assembly, "what was planned"),
+                    list("fasteners", &PlanResult::fasteners, kFastenerFields),
+                    list("choices", &PlanResult::choices, kOverlapChoiceFields),
                     field("blocked_count", &PlanResult::blocked, "parts that were not taken off"),
                     list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
                     list("overlaps", &PlanResult::overlaps, kCheckedPairFields),

@@ -12,6 +12,7 @@
 
 #include "vps/fidelity.h"
 #include "vps/part_model.h"
+#include "vps/progress.h"
 #include "vps_scenes/export.h"
 
 namespace vps::scenes::inline v0 {
@@ -65,6 +66,8 @@ struct ScenePart {
   double poissons_ratio = 0.3;
   PartTolerance tolerance;
   std::string file;                    ///< file that the mesh was read from, for messages
+  std::vector<std::string> members;    ///< of a group: the parts that it is made of
+  std::string fastener;                ///< what it is taken for by its shape, in words: "nut M8"; empty: none
   std::optional<double> deflection_m;  ///< see ImportedPart
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
@@ -157,7 +160,7 @@ struct Scene {
 };
 
 /// Reads a scene file and the CAD files that it names; builds no models. Throws LoadError with file, line,
-/// key and remedy.
-VPS_SCENES_API Scene loadScene(const std::string& file);
+/// key and remedy, and what `progress` throws.
+VPS_SCENES_API Scene loadScene(const std::string& file, const Progress& progress = {});
 
 }  // namespace vps::scenes::inline v0

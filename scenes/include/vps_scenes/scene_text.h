@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
@@ -15,6 +16,9 @@ namespace vps::scenes::inline v0 {
 /// @param comment  a line at the top
 VPS_SCENES_API std::string sceneText(const Scene& scene, const std::vector<std::string>& files,
                                      const std::string& comment);
+
+/// A `[[group]]` of a scene file, with its reason as a comment.
+VPS_SCENES_API std::string groupText(const PartGroup& group);
 
 /// A TOML basic string.
 VPS_SCENES_API std::string tomlText(const std::string& text);

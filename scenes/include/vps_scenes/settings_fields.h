@@ -42,7 +42,7 @@ inline constexpr auto kSceneKeys = std::make_tuple(
           {.range = kNotNegative, .type = "seconds"}),
     Key{"material", "table", "steel",
         "`density`, `friction`, `restitution`, `stiffness` of all parts that do not state their own"},
-    Key{"part"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
+    Key{"part"}, Key{"group"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
     Key{"record"});
 
 inline constexpr auto kMaterialFields = std::make_tuple(
@@ -115,7 +115,15 @@ inline constexpr auto kPartKeys = std::make_tuple(
     field("scenery", &ScenePart::is_scenery,
           "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
           "it"),
+    field("fastener", &ScenePart::fastener,
+          "what `vps plan` takes the part for by its shape, as `\"nut M8\"`; for readers, it changes nothing",
+          {.default_text = "none"}),
     group("", &ScenePart::tolerance, kToleranceFields));
+
+/// `[[group]]`
+inline constexpr auto kGroupKeys = std::make_tuple(
+    Key{"name", "text", "required", "name of the body, which the steps use in place of its parts' names"},
+    Key{"parts", "list of texts", "required", "names of two or more parts, which are in no other group"});
 
 /// `[[step]]`
 inline constexpr auto kStepKeys = std::make_tuple(

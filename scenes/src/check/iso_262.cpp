@@ -83,4 +83,28 @@ MetricThread metricThread(double major_m, double lead_m) {
   return {};
 }
 
+std::string metricSize(double major_m) {
+  constexpr double kAbove_mm = 1e-3;
+  for (const Size& size : kSizes) {
+    const double above_mm = 1e3 * major_m - size.nominal;
+    if (above_mm <= kAbove_mm && above_mm >= lowest_mm(size.coarse))
+      return nameOf(size.nominal, size.coarse, true, false);
+  }
+  return "";
+}
+
+std::string metricHole(double minor_m) {
+  constexpr double kMost = 1.0825, kLeast = 1, kSlack = 0.1;
+  const auto is = [&](double nominal_mm, double pitch_mm) {
+    const double below = (nominal_mm - 1e3 * minor_m) / pitch_mm;
+    return pitch_mm > 0 && below < kMost + kSlack && below > kLeast - kSlack;
+  };
+  for (const Size& size : kSizes)
+    if (is(size.nominal, size.coarse)) return nameOf(size.nominal, size.coarse, true, false);
+  for (const Size& size : kSizes)
+    for (const double fine_mm : size.fine)
+      if (is(size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+  return "";
+}
+
 }  // namespace vps::scenes::inline v0

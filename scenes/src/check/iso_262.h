@@ -18,4 +18,12 @@ struct MetricThread {
 /// Source: ISO 262:1998 (selected sizes), ISO 965-1:2013 (deviations of the major diameter).
 MetricThread metricThread(double major_m, double lead_m);
 
+/// "M8" for a plain cylinder that stands for a thread of that size: the nominal diameter, within 8g of it.
+/// Empty if there is none.
+std::string metricSize(double major_m);
+
+/// "M8" for a plain hole that stands for a thread of that size: with the minor diameter of a nut, D - 1.0825
+/// P, or that of its drill, D - P, of a coarse or fine pitch, within 0.1 P. Empty if there is none.
+std::string metricHole(double minor_m);
+
 }  // namespace vps::scenes::inline v0

@@ -28,6 +28,7 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   part.mesh = raw.mesh;
   part.deflection_m = raw.deviation_m;
   part.note = raw.note;
+  part.within = raw.within;
   const Mat3 M = raw.X_WP.linear();
   const double scale = std::cbrt(std::abs(M.determinant()));
   Mat3 R = Mat3::Identity(), rest = M;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // importCad(): detects the format, runs its reader, and finishes the parts.
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <set>
 
+#include "core/machine_memory.h"
 #include "import/own_process.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -27,14 +31,37 @@ Reader readerOf(const std::string& format) {
   return {"assimp", import::readAssimp};
 }
 
-}  // namespace
+/// Gives assemblies and products other names where another file has the same.
+void nameTreeApart(ImportedCad& one, const ImportedCad& others) {
+  std::set<std::string> taken, own;
+  for (const ImportedPart& part : others.parts) taken.insert(part.within.begin(), part.within.end());
+  for (const ImportedPart& part : one.parts) own.insert(part.within.begin(), part.within.end());
+  std::map<std::string, std::string> renamed;
+  for (ImportedPart& part : one.parts)
+    for (std::string& name : part.within) {
+      const auto [known, is_new] = renamed.try_emplace(name, name);
+      if (is_new && taken.contains(name)) {
+        for (int n = 2; taken.contains(known->second) || own.contains(known->second); ++n)
+          known->second = name + "_" + std::to_string(n);
+        own.insert(known->second);
+      }
+      name = known->second;
+    }
+}
 
-ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
+/// Formats in which y is up as often as z, and no file says which.
+bool isUpOpen(const std::string& format) {
+  return format == "Inventor" || format == "VRML";
+}
+
+ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
   if (settings.unit_m && !(*settings.unit_m > 0))
     throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
   if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
     throw LoadError(file, "", "needs a deflection and an angle of more than 0");
   }
+  if (settings.most_memory_bytes == 0)
+    settings.most_memory_bytes = static_cast<std::uint64_t>(0.5 * machineMemoryBytes());
   ImportedCad cad;
   cad.file = file;
   cad.format = import::detectFormat(file);
@@ -45,7 +72,7 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
   if (cad.format == "STL") raw = import::readBinaryStl(file, settings);
   if (!raw)
     raw =
-        settings.in_own_process ? import::inOwnProcess(file, reader.library, progress, read) : read(progress);
+        settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read) : read(progress);
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
     if (hasExactFaces(cad.format))
@@ -53,24 +80,40 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
     else
       part.deflection_m.reset();
   }
-  if (settings.up) import::turnUp(cad, *settings.up);
   if (progress) progress("reading " + import::stem(file), 1);
+  return cad;
+}
+
+void setUp(ImportedCad& cad, bool is_open, const ImportSettings& settings) {
+  if (settings.up) return import::turnUp(cad, *settings.up);
+  if (is_open && settings.guesses_up) import::guessUp(cad);
+}
+
+}  // namespace
+
+ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
+  ImportedCad cad = withFileAxes(file, settings, progress);
+  setUp(cad, isUpOpen(cad.format), settings);
   return cad;
 }
 
 ImportedCad importCad(const std::vector<std::string>& files, const ImportSettings& settings,
                       const Progress& progress) {
   ImportedCad all;
+  bool is_up_open = true;
   for (const std::string& file : files) {
-    ImportedCad one = importCad(file, settings, progress);
+    ImportedCad one = withFileAxes(file, settings, progress);
     if (all.file.empty()) all.file = file;
+    is_up_open = is_up_open && isUpOpen(one.format);
     if (all.format.find(one.format) == std::string::npos)
       all.format += (all.format.empty() ? "" : ", ") + one.format;
+    nameTreeApart(one, all);
     std::ranges::move(one.parts, std::back_inserter(all.parts));
     for (const std::string& warning : one.warnings)
       all.warnings.push_back(files.size() > 1 ? file + ": " + warning : warning);
   }
   import::nameUniquely(all.parts, "part");
+  setUp(all, is_up_open, settings);
   return all;
 }
 

@@ -4,7 +4,7 @@
 #if !defined(__unix__)
 
 namespace vps::scenes::inline v0::import {
-RawCad inOwnProcess(const std::string&, const std::string&, const Progress& progress,
+RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings&, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read) {
   return read(progress);
 }
@@ -12,7 +12,9 @@ RawCad inOwnProcess(const std::string&, const std::string&, const Progress& prog
 
 #else
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -24,8 +26,10 @@ RawCad inOwnProcess(const std::string&, const std::string&, const Progress& prog
 #include <new>
 #include <system_error>
 #include <type_traits>
+#include <vector>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -66,13 +70,46 @@ class Writer {
 
 class Reader {
  public:
-  explicit Reader(Stream stream) : stream_(std::move(stream)) {}
+  /// @param wait  called while nothing comes, five times a second; may throw
+  Reader(Stream stream, std::function<void()> wait) : stream_(std::move(stream)), wait_(std::move(wait)) {
+    ready_.resize(kBuffer);
+  }
   void operator()(void* data, std::size_t size) {
-    if (size > 0 && std::fread(data, 1, size, stream_.get()) != size) throw Broken();
+    for (auto* to = static_cast<char*>(data); size > 0;) {
+      if (next_ == end_) fill();
+      const std::size_t count = std::min(size, end_ - next_);
+      std::memcpy(to, ready_.data() + next_, count);
+      next_ += count;
+      to += count;
+      size -= count;
+    }
   }
 
  private:
+  static constexpr std::size_t kBuffer = 65536;
+  static constexpr int kWait_ms = 200;
+
+  void fill() {
+    const int from = ::fileno(stream_.get());
+    pollfd waiting{from, POLLIN, 0};
+    for (;;) {
+      const int ready = ::poll(&waiting, 1, kWait_ms);
+      if (ready > 0) break;
+      if (ready < 0 && errno != EINTR) throw Broken();
+      wait_();
+    }
+    ssize_t count = 0;
+    do count = ::read(from, ready_.data(), ready_.size());
+    while (count < 0 && errno == EINTR);
+    if (count <= 0) throw Broken();
+    next_ = 0;
+    end_ = static_cast<std::size_t>(count);
+  }
+
   Stream stream_;
+  std::function<void()> wait_;
+  std::vector<char> ready_;
+  std::size_t next_ = 0, end_ = 0;
 };
 
 // One transfer() for each type serves both directions, so that they cannot disagree: `io` copies the bytes of
@@ -111,6 +148,7 @@ void transfer(Io& io, RawCad& cad) {
     io(part.color.data(), sizeof part.color);
     transfer(io, part.deviation_m);
     transferArray(io, part.note);
+    transferEach(io, part.within, [&](std::string& name) { transferArray(io, name); });
   });
   transferEach(io, cad.warnings, [&](std::string& line) { transferArray(io, line); });
   transfer(io, cad.unit_m);
@@ -122,8 +160,10 @@ void prepareToCrash() {
   // No core file, and none of the signal handlers that the program has set for itself.
   const rlimit no_core = {0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT, SIGPIPE})
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGPIPE})
     std::signal(signal, SIG_DFL);
+  // A terminal sends Ctrl-C to both processes. The parent decides, and ends this one.
+  std::signal(SIGINT, SIG_IGN);
   // The parent writes what it has not flushed yet. stderr is unbuffered, and sanitizers use it.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
@@ -178,15 +218,82 @@ class Child {
   explicit Child(pid_t id) : id_(id) {}
   ~Child() {
     // Its result has been read, or progress threw and it is not needed.
-    ::kill(id_, SIGKILL);
-    while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
-    }
+    if (!is_gone_) end();
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
+  /// Ends it if it has not ended. The signal that ended it; 0: none did.
+  int end() {
+    // One that closed its pipe is about to end by itself, with the signal that is asked for.
+    int status = 0;
+    constexpr int kRounds = 100;
+    for (int i = 0; i < kRounds && !is_gone_; ++i) {
+      is_gone_ = ::waitpid(id_, &status, WNOHANG) == id_;
+      if (!is_gone_ && i == 0 && !is_closed_) break;
+      if (!is_gone_) ::usleep(1000);
+    }
+    if (!is_gone_) {
+      ::kill(id_, SIGKILL);
+      while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+      }
+      is_gone_ = true;
+      return 0;  // by this
+    }
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+  void setClosed() { is_closed_ = true; }
+
+  /// Memory that it occupies itself; 0 where that is not known.
+  [[nodiscard]] std::uint64_t memory_bytes() const {
+    const Stream statm(std::fopen(("/proc/" + std::to_string(id_) + "/statm").c_str(), "r"));
+    unsigned long long all = 0, resident = 0, shared = 0;
+    if (!statm || std::fscanf(statm.get(), "%llu %llu %llu", &all, &resident, &shared) != 3) return 0;
+    return (resident - std::min(resident, shared)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  }
+
  private:
   pid_t id_;
+  bool is_gone_ = false, is_closed_ = false;
+};
+
+/// Calls progress while the child computes, and watches its limits.
+class Watch {
+ public:
+  Watch(const Child& child, const std::string& file, const ImportSettings& limits, const Progress& progress)
+      : child_(child), file_(file), limits_(limits), progress_(progress), doing_("reading " + stem(file)) {}
+
+  void said(const std::string& doing, double share) {
+    doing_ = doing;
+    share_ = share;
+    look();
+  }
+  void look() const {
+    if (progress_) progress_(doing_, share_);
+    const std::string remedy =
+        " (" + doing_ + "); a greater deflection needs less, or export fewer parts into one file";
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    if (limits_.most_s > 0 && seconds > limits_.most_s)
+      throw LoadError(file_, "", "took more than " + number(limits_.most_s) + " s to read" + remedy);
+    if (limits_.most_memory_bytes > 0 && child_.memory_bytes() > limits_.most_memory_bytes)
+      throw LoadError(file_, "",
+                      "needs more than " + number(1e-9 * static_cast<double>(limits_.most_memory_bytes)) +
+                          " GB of memory to read" + remedy);
+  }
+
+ private:
+  static std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+  }
+  const Child& child_;
+  const std::string& file_;
+  const ImportSettings& limits_;
+  const Progress& progress_;
+  std::string doing_;
+  double share_ = 0;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -209,7 +316,7 @@ bool mayFork() {
 #endif
 }
 
-RawCad receive(Reader& in, const Progress& progress) {
+RawCad receive(Reader& in, Watch& watch) {
   for (;;) {
     auto message = Message::Failed;
     transfer(in, message);
@@ -223,14 +330,14 @@ RawCad receive(Reader& in, const Progress& progress) {
     if (message == Message::Progressed) transfer(in, share);
     transferArray(in, text);
     if (message != Message::Progressed) throw LoadError("", "", text);
-    progress(text, share);
+    watch.said(text, share);
   }
 }
 
 }  // namespace
 
-RawCad inOwnProcess(const std::string& file, const std::string& library, const Progress& progress,
-                    const std::function<RawCad(const Progress&)>& read) {
+RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
+                    const Progress& progress, const std::function<RawCad(const Progress&)>& read) {
   if (!mayFork()) return read(progress);
   // A child that is forked meanwhile would keep this pipe open, and hide a crash until it ends.
   static std::mutex one_at_a_time;
@@ -249,11 +356,20 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const P
   }
   to_parent.reset();
   lock.unlock();
-  const Child child(id);
-  Reader in(std::move(from_child));
+  Child child(id);
+  Watch watch(child, file, limits, progress);
+  Reader in(std::move(from_child), [&] { watch.look(); });
   try {
-    return receive(in, progress);
+    return receive(in, watch);
   } catch (const Broken&) {
+    watch.look();  // a stop is told before its consequence
+    child.setClosed();
+    const int signal = child.end();
+    if (signal == SIGKILL || signal == SIGTERM || signal == SIGINT)
+      throw LoadError(
+          file, "",
+          "was not read, because the process that reads it was ended from outside, as when memory "
+          "runs out; a greater deflection needs less");
     throw LoadError(file, "", library + " crashed while reading it; the file is damaged, so export it again");
   }
 }

@@ -19,8 +19,9 @@ struct RawPart {
   Mesh mesh;
   Eigen::Affine3d X_WP = Eigen::Affine3d::Identity();  ///< may scale or mirror
   std::array<float, 3> color = ImportedPart().color;   ///< linear RGB
-  double deviation_m = 0;  ///< of the mesh from the file's exact faces, as measured
-  std::string note;        ///< what is wrong with it, for a warning; empty: nothing
+  double deviation_m = 0;                ///< of the mesh from the file's exact faces, as measured
+  std::string note;                      ///< what is wrong with it, for a warning; empty: nothing
+  std::vector<std::string> within = {};  ///< see ImportedPart
 };
 
 /// The meaning of open shapes that together form a closed surface.
@@ -59,6 +60,9 @@ void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback)
 
 /// Turns the parts so that the axis becomes z, the shortest way.
 void turnUp(ImportedCad& cad, const Vec3& axis);
+/// Turns the parts so that y becomes z if they stand better on the side that faces -y than on the one that
+/// faces -z, and adds a warning with the answer.
+void guessUp(ImportedCad& cad);
 
 /// "STEP", "IGES", "BREP", "Inventor", "VRML", or the extension in capitals; by content where possible.
 /// Throws LoadError for a file that is missing, a folder, empty, or cut (where the format defines its end).

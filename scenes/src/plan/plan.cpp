@@ -10,7 +10,11 @@
 #include "check/check_placed.h"
 #include "core/wall_clock.h"
 #include "plan/base_part.h"
+#include "plan/bench.h"
+#include "plan/drawn_overlaps.h"
+#include "plan/fasteners_in.h"
 #include "plan/precedence.h"
+#include "plan/way_clearance.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0 {
@@ -167,14 +171,6 @@ class Planner {
   std::set<std::string> names_;
 };
 
-/// Parts of equal geometry share their surface.
-bool isDrawnTwice(const PlacedSurface& a, const PlacedSurface& b) {
-  constexpr double kSame_m = 1e-6;
-  if (a.surface != b.surface) return false;
-  return std::ranges::all_of(a.surface->mesh().vertices,
-                             [&](const Vec3& p) { return (a.X_WP * p - b.X_WP * p).norm() < kSame_m; });
-}
-
 std::vector<std::size_t> indicesOf(const std::vector<std::string>& names,
                                    const std::vector<DrawnPart>& parts) {
   std::vector<std::size_t> out;
@@ -204,15 +200,28 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   const CheckResult checked = checkPlaced(name, placed, check, progress);
   for (const CheckedPair& pair : checked.pairs) {
     if (pair.state >= PairState::PressFit) result.overlaps.push_back(pair);
-    if (isDrawnTwice(named(placed, pair.a), named(placed, pair.b))) result.twice.push_back({pair.a, pair.b});
     if (pair.is_uncertain) result.uncertain.push_back(pair);
   }
   result.check_wall_s = wallSeconds() - begun_s;
   begun_s = wallSeconds();
+  const std::vector<std::optional<FastenerShape>> shapes = fastenerShapes(placed, progress);
+  result.fasteners = fastenersIn(placed, checked, shapes);
+  result.choices = overlapChoices(placed, checked, shapes, fixed);
+  for (const OverlapChoice& choice : result.choices)
+    if (choice.kind == OverlapKind::Twice) result.twice.push_back({choice.a, choice.b});
   const PairMotions motions(placed, checked, settings.up_W, progress);
   std::vector<std::size_t> members(parts.size());
   std::iota(members.begin(), members.end(), std::size_t{0});
+  const std::vector<std::size_t> left_out = leftOut(placed, result.choices);
+  std::erase_if(members, [&](std::size_t part) {
+    return std::ranges::binary_search(left_out, part) && !std::ranges::binary_search(fixed, part);
+  });
   Planner(motions, progress).plan(name, members, fixed, "as asked for", result.assemblies);
+  const Placing placing{placed, checked, settings.up_W};
+  for (PlannedAssembly& assembly : result.assemblies) {
+    if (settings.has_bench) layOnBench(placing, assembly);
+    measureWays(placing, assembly, progress);
+  }
   result.cut_motions = motions.cutMotions();
   result.plan_wall_s = wallSeconds() - begun_s;
   return result;

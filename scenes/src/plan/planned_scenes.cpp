@@ -1,14 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plan as scenes that can be run.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "vps_scenes/plan.h"
+#include "vps_scenes/scene_groups.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
+
+/// Moves the corners of a cylinder, and of chamfers at its ends, that are farther out (in a hole: farther in)
+/// than it is to be.
+void resize(Mesh& mesh, const Resized& to) {
+  constexpr double kOn = 1e-3;  // of the radius
+  const bool is_wider = to.to_radius_m > to.from_radius_m;
+  const double reach_m = is_wider ? 0.1 * to.from_radius_m : to.from_radius_m;
+  for (Vec3& x : mesh.vertices) {
+    const double along_m = to.axis.dot(x - to.p);
+    if (along_m < to.from_m - reach_m || along_m > to.to_m + reach_m) continue;
+    const Vec3 out = x - to.p - along_m * to.axis;
+    const double radius_m = out.norm();
+    const bool is_moved = is_wider ? radius_m < to.to_radius_m && radius_m > (1 - kOn) * to.from_radius_m
+                                   : radius_m > to.to_radius_m && radius_m < (1 + kOn) * to.from_radius_m;
+    if (is_moved) x += (to.to_radius_m / radius_m - 1) * out;
+  }
+}
 
 class SceneMaker {
  public:
@@ -16,6 +36,11 @@ class SceneMaker {
     for (std::size_t i = 0; i < scene.parts.size(); ++i) index_[scene.parts[i].part.name] = i;
     for (const SceneStep& step : scene.steps) given_[scene.parts[step.part].part.name] = &step;
     drawn_ = drawnParts(scene);
+    for (const Fastener& fastener : plan.fasteners) fasteners_[fastener.part] = fastener.words;
+    for (const OverlapChoice& choice : plan.choices) {
+      if (!choice.changed.empty()) changes_[choice.changed].push_back(&choice);
+      if (!choice.left_out.empty()) left_out_.insert(choice.left_out);
+    }
   }
 
   Scene make(const PlannedAssembly& assembly) const {
@@ -33,8 +58,12 @@ class SceneMaker {
       out.steps.push_back(stepOf(step, out.parts.size() - 1, out.parts.back().X_WP));
     }
     if (&assembly == &plan_.assemblies.front())
-      for (const ScenePart& part : scene_.parts)
-        if (part.is_scenery) out.parts.push_back(part);
+      for (const ScenePart& part : scene_.parts) {
+        if (!part.is_scenery && !left_out_.contains(part.part.name)) continue;
+        out.parts.push_back(part);
+        out.parts.back().is_scenery = true;
+        out.parts.back().is_fixed = false;
+      }
     return out;
   }
 
@@ -45,20 +74,21 @@ class SceneMaker {
     ScenePart part = scene_.parts[i];
     part.X_WP = drawn_[i].X_WP;
     part.V_WP_W = {};
+    if (const auto known = fasteners_.find(name); known != fasteners_.end()) part.fastener = known->second;
+    const auto changes = changes_.find(name);
+    if (changes == changes_.end()) return part;
+    for (const OverlapChoice* choice : changes->second) {
+      part.press_fit_m = std::max(part.press_fit_m, choice->press_fit_m);
+      if (choice->resized) resize(part.part.mesh, *choice->resized);
+    }
     return part;
   }
 
   /// The parts of a subassembly as one, in the frame of the first.
   [[nodiscard]] ScenePart united(const PlannedStep& step) const {
-    ScenePart whole = partNamed(step.parts.front());
-    whole.part.name = step.name;
-    for (std::size_t i = 1; i < step.parts.size(); ++i) {
-      const ScenePart part = partNamed(step.parts[i]);
-      append(whole.part.mesh, transformed(part.part.mesh, whole.X_WP.inverse() * part.X_WP));
-      if (part.deflection_m)
-        whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
-    }
-    return whole;
+    std::vector<ScenePart> parts;
+    for (const std::string& name : step.parts) parts.push_back(partNamed(name));
+    return unitedPart(step.name, parts);
   }
 
   [[nodiscard]] SceneStep stepOf(const PlannedStep& planned, std::size_t part, const Pose& X_WP) const {
@@ -71,10 +101,25 @@ class SceneMaker {
     for (std::size_t i = 1; i < planned.before_W.size(); ++i)
       step.way_points.push_back(planned.before_W[i] * X_WP);
     if (!planned.is_carried) step.is_held = true;
+    if (planned.is_on_bench) step.timeout_s = std::max(step.timeout_s, timeFor(step));
     step.motion = planned.kind == WayKind::Screw ? StepMotion::Screw : StepMotion::Push;
     step.pitch_m = planned.kind == WayKind::Screw ? planned.lead_m : 0;
     if (step.motion == StepMotion::Push) step.torque_Nm = 0;
     return step;
+  }
+
+  /// The hand's time on the way, with the device recentred every 0.2 m, and as much again for what is usual.
+  [[nodiscard]] double timeFor(const SceneStep& step) const {
+    constexpr double kBetween_m = 0.2, kRecentre_s = 2;
+    double way_m = 0;
+    Vec3 from = step.X_WP_start.p;
+    for (const Pose& point : step.way_points) {
+      way_m += (point.p - from).norm();
+      from = point.p;
+    }
+    way_m += (step.X_WP_target.p - from).norm();
+    const double way_s = way_m / scene_.hand.speed_m_s + kRecentre_s * way_m / kBetween_m;
+    return std::ceil(SceneStep().timeout_s + 2 * way_s);
   }
 
   const Scene& scene_;
@@ -82,6 +127,9 @@ class SceneMaker {
   std::map<std::string, std::size_t> index_;
   std::map<std::string, const SceneStep*> given_;
   std::vector<DrawnPart> drawn_;
+  std::map<std::string, std::string> fasteners_;
+  std::map<std::string, std::vector<const OverlapChoice*>> changes_;  ///< by part
+  std::set<std::string> left_out_;
 };
 
 }  // namespace

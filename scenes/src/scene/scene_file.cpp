@@ -17,6 +17,7 @@
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/scene_groups.h"
 #include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes::inline v0 {
@@ -94,8 +95,8 @@ constexpr double kAutoTolerance_m = 10e-6;
 
 class SceneReader {
  public:
-  SceneReader(const toml::table& root, const std::string& file)
-      : context_{file, std::nullopt}, top_(root, context_, "", keysOf(kSceneKeys)) {
+  SceneReader(const toml::table& root, const std::string& file, const Progress& progress)
+      : context_{file, std::nullopt}, top_(root, context_, "", keysOf(kSceneKeys)), progress_(progress) {
     scene_.file = file;
   }
 
@@ -104,6 +105,8 @@ class SceneReader {
     readCad();
     for (const toml::table* table : top_.tables("part")) readPart(*table);
     if (scene_.parts.empty()) top_.failWhole(R"(has no part; name one in [[part]] with file = "part.stl")");
+    for (const toml::table* table : top_.tables("group")) readGroup(*table);
+    uniteGroups(scene_, groups_);
     for (const toml::table* table : top_.tables("step")) readStep(*table);
     requireNearOrigin();
     readDevice();
@@ -146,7 +149,7 @@ class SceneReader {
     const auto known = cads_.find(file);
     if (known != cads_.end()) return known->second;
     try {
-      const ImportedCad& cad = cads_.emplace(file, importCad(path(file), import_)).first->second;
+      const ImportedCad& cad = cads_.emplace(file, importCad(path(file), import_, progress_)).first->second;
       for (const std::string& warning : cad.warnings) scene_.warnings.push_back(file + ": " + warning);
       return cad;
     } catch (const LoadError& error) {
@@ -232,11 +235,43 @@ class SceneReader {
     return scene_.parts[index];
   }
 
+  void readGroup(const toml::table& table) {
+    const SceneKeys keys(table, context_, "[[group]]", keysOf(kGroupKeys));
+    PartGroup group;
+    if (!keys.text("name", group.name) || group.name.empty())
+      keys.failWhole("has no 'name'; give the body one");
+    if (!keys.texts("parts", group.parts)) keys.failWhole("has no 'parts'; list the names of its parts");
+    if (group.parts.size() < 2) keys.fail("parts", "names fewer than two parts; a group has two or more");
+    const ScenePart* first = nullptr;
+    for (const std::string& name : group.parts) {
+      const ScenePart& part = scene_.parts[partNamed(keys, "parts", name, scene_.parts, nameOf)];
+      if (const auto in = group_of_.find(name); in != group_of_.end())
+        keys.fail("parts", "names '" + name + "', which is in the group '" + in->second + "' already");
+      group_of_[name] = group.name;
+      if (first == nullptr) first = &part;
+      if (part.is_scenery != first->is_scenery)
+        keys.fail("parts", "names '" + first->part.name + "' and '" + name +
+                               "', of which only one is scenery; a body is scenery as a whole or not at all");
+    }
+    for (const PartGroup& other : groups_)
+      if (other.name == group.name)
+        keys.fail("name", "is '" + group.name + "', which another group has; give it another one");
+    for (const ScenePart& part : scene_.parts)
+      if (part.part.name == group.name && std::ranges::find(group.parts, group.name) == group.parts.end())
+        keys.fail("name", "is '" + group.name + "', which a part has that is not in it; give it another one");
+    groups_.push_back(std::move(group));
+  }
+
   void readStep(const toml::table& table) {
     const SceneKeys keys(table, context_, "[[step]]", keysOf(kStepKeys));
     SceneStep step;
     std::string name;
     if (!keys.text("part", name)) keys.failWhole("has no 'part'; name the part it mounts");
+    if (const auto in = group_of_.find(name);
+        in != group_of_.end() && in->second != name &&
+        std::ranges::find(scene_.parts, name, nameOf) == scene_.parts.end())
+      keys.fail("part", "names '" + name + "', which is part of the group '" + in->second +
+                            "'; name the group, which moves as one");
     step.part = partNamed(keys, "part", name, scene_.parts, nameOf);
     const ScenePart& part = scene_.parts[step.part];
     if (part.is_fixed) keys.fail("part", "names '" + name + "', which is fixed; a step moves its part");
@@ -361,10 +396,13 @@ class SceneReader {
 
   SceneFileContext context_;
   SceneKeys top_;
+  const Progress& progress_;
   Scene scene_;
   ImportSettings import_;
   Material material_;  ///< [material]: of the parts that do not state their own
   std::map<std::string, ImportedCad> cads_;
+  std::vector<PartGroup> groups_;
+  std::map<std::string, std::string> group_of_;  ///< by part
   std::size_t cad_count_ = 0;       ///< the first parts of the scene are those of its 'cad'
   std::vector<bool> is_described_;  ///< of those parts: has a [[part]] of its own
   /// The highest point of the first fixed parts and of the parts of the first steps, as far as they are in
@@ -375,9 +413,9 @@ class SceneReader {
 
 }  // namespace
 
-Scene loadScene(const std::string& file) {
+Scene loadScene(const std::string& file, const Progress& progress) {
   const toml::table root = parseToml(readTomlText(file, "scene file", "scene.toml"), file);
-  return SceneReader(root, file).read();
+  return SceneReader(root, file, progress).read();
 }
 
 }  // namespace vps::scenes::inline v0

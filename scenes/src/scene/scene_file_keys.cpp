@@ -128,6 +128,17 @@ bool SceneKeys::text(std::string_view key, std::string& out) const {
   return true;
 }
 
+bool SceneKeys::texts(std::string_view key, std::vector<std::string>& out) const {
+  const toml::node* found = node(key);
+  if (!found) return false;
+  if (!found->is_array()) fail(key, "is " + describe(*found) + "; expected a list of texts in []");
+  for (const toml::node& element : *found->as_array()) {
+    if (!element.is_string()) fail(key, "has " + describe(element) + " in it; expected texts only");
+    out.push_back(*element.value<std::string>());
+  }
+  return true;
+}
+
 bool SceneKeys::number(std::string_view key, double& out, Range range) const {
   const toml::node* found = node(key);
   if (!found) return false;

@@ -45,6 +45,7 @@ class SceneKeys {
 
   bool flag(std::string_view key, bool& out) const;
   bool text(std::string_view key, std::string& out) const;
+  bool texts(std::string_view key, std::vector<std::string>& out) const;
   bool number(std::string_view key, double& out, Range range = kAny) const;
   bool integer(std::string_view key, std::int64_t& out, Range range = kAny) const;
   bool numbers(std::string_view key, std::size_t count, double* out, Range range = kAny) const;

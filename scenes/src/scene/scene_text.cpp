@@ -149,6 +149,26 @@ std::string tomlPose(const Pose& pose) {
          "], rotation_xyzw = [" + n(q.x()) + ", " + n(q.y()) + ", " + n(q.z()) + ", " + n(q.w()) + "]}";
 }
 
+std::string groupText(const PartGroup& group) {
+  constexpr std::size_t kWidth = 100;
+  std::string out = "[[group]]";
+  if (!group.reason.empty()) out += "  # " + group.reason;
+  out += "\nname = " + tomlText(group.name) + "\nparts = [";
+  std::size_t line = out.size() - out.rfind('\n');
+  for (std::size_t i = 0; i < group.parts.size(); ++i) {
+    const std::string part = tomlText(group.parts[i]) + (i + 1 < group.parts.size() ? "," : "]");
+    if (line + part.size() + 1 > kWidth) {
+      out += "\n  ";
+      line = 2;
+    } else if (i > 0) {
+      out += " ";
+    }
+    out += part;
+    line += part.size() + 1;
+  }
+  return out + "\n\n";
+}
+
 std::string sceneText(const Scene& scene, const std::vector<std::string>& files, const std::string& comment) {
   std::string out = "# " + comment + "\nname = " + tomlText(scene.name) + "\nunit = \"m\"\n";
   if (scene.gravity_W != Scene().gravity_W)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
-#include <cctype>
+#include <algorithm>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -29,6 +30,7 @@
 
 #include "import/occt/pieces.h"
 #include "import/occt/tessellation.h"
+#include "import/part_names.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -72,19 +74,17 @@ Eigen::Affine3d affine(const gp_Trsf& t) {
   return X;
 }
 
-/// The label's name; empty for names without meaning, as Open CASCADE's own paths and other writers'
-/// counters.
 std::string nameOf(const TDF_Label& label) {
   Handle(TDataStd_Name) attribute;
   if (!label.FindAttribute(TDataStd_Name::GetID(), attribute)) return "";
   const TCollection_AsciiString utf8(attribute->Get());
-  std::string name = utf8.ToCString();
-  if (name.starts_with("=>[")) return "";
-  const std::size_t digits = name.find_first_of("0123456789");
-  const bool is_counter = digits != std::string::npos &&
-                          name.find_first_not_of("0123456789", digits) == std::string::npos &&
-                          (digits == 0 || name.compare(0, digits, "NAUO") == 0);
-  return is_counter ? "" : name;
+  return utf8.ToCString();
+}
+
+/// Of the triangles from the faces.
+double errorOf(const Tessellation& made, const ImportSettings& settings) {
+  return made.deflection_m > settings.deflection_m ? std::max(made.deviation_m, made.deflection_m)
+                                                   : made.deviation_m;
 }
 
 /// Visits the leaves of an assembly's tree and meshes each product once.
@@ -105,7 +105,7 @@ class Tree {
     for (const TDF_Label& root : roots) {
       // A single shape may have a location.
       const Color* none = nullptr;
-      visit(root, "", Eigen::Affine3d::Identity(), none);
+      visit(root, {}, Eigen::Affine3d::Identity(), none);
     }
   }
 
@@ -138,12 +138,19 @@ class Tree {
     }
   }
 
-  void visit(const TDF_Label& label, const std::string& name_above, const Eigen::Affine3d& X_WParent,
+  /// What is above an instance.
+  struct Above {
+    std::string name;
+    std::vector<std::string> within;
+  };
+
+  void visit(const TDF_Label& label, Above above, const Eigen::Affine3d& X_WParent,
              const Color* color_above) {
     const TDF_Label product = referred(label);
-    std::string name = nameOf(label);
-    if (name.empty()) name = nameOf(product);
-    if (name.empty()) name = name_above;
+    const std::string own_name = bestName(nameOf(label), nameOf(product));
+    if (!own_name.empty()) above.name = own_name;
+    const std::string& name = above.name;
+    above.within.push_back(uniqueName(name.empty() ? "product" : name));
     const Eigen::Affine3d X_WP =
         label == product ? X_WParent
                          : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
@@ -152,7 +159,7 @@ class Tree {
     const bool has_own = colorOf(label, own) || colorOf(product, own);
     const Color* color = has_own ? &own : color_above;
     if (XCAFDoc_ShapeTool::IsAssembly(product)) {
-      forComponents(product, [&](const TDF_Label& component) { visit(component, name, X_WP, color); });
+      forComponents(product, [&](const TDF_Label& component) { visit(component, above, X_WP, color); });
       return;
     }
     if (progress_) progress_("meshing " + name, double(leaf_done_++) / double(leaf_count_));
@@ -160,13 +167,20 @@ class Tree {
       RawPart part;
       part.name = name;
       part.mesh = piece.tessellation.mesh;
-      part.deviation_m = piece.tessellation.deviation_m;
+      part.deviation_m = errorOf(piece.tessellation, settings_);
       part.note = inWords(piece.tessellation, settings_);
       part.X_WP = X_WP;
+      part.within = above.within;
       if (piece.has_color) part.color = piece.color;
       if (color) part.color = *color;
       cad_.parts.push_back(std::move(part));
     }
+  }
+
+  std::string uniqueName(const std::string& name) {
+    std::string unique = name;
+    for (int n = 2; !instances_.insert(unique).second; ++n) unique = name + "_" + std::to_string(n);
+    return unique;
   }
 
   const std::vector<Piece>& piecesOf(const TDF_Label& product) {
@@ -219,6 +233,7 @@ class Tree {
   const Progress& progress_;
   RawCad& cad_;
   std::map<std::string, std::vector<Piece>> products_;
+  std::set<std::string> instances_;
   std::size_t leaf_count_ = 0, leaf_done_ = 0;
 };
 
@@ -280,7 +295,7 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
       RawPart part;
       Tessellation found = tessellate(piece, settings, 1 / cad.unit_m);
       part.mesh = std::move(found.mesh);
-      part.deviation_m = found.deviation_m;
+      part.deviation_m = errorOf(found, settings);
       part.note = inWords(found, settings);
       cad.parts.push_back(std::move(part));
     }

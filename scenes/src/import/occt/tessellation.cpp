@@ -115,8 +115,8 @@ double deviationOf(const TopoDS_Face& face, double enough) {
   return worst;
 }
 
-Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
-                          Inner inner, IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
+void triangulate(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m, Inner inner,
+                 IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
   const double finer = inner == Inner::Finer ? 0.25 : 1;
   IMeshTools_Parameters parameters;
   parameters.Deflection = finer * settings.deflection_m * units_per_m;
@@ -127,7 +127,49 @@ Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& setti
   // A BREP file can hold triangles, which may be of another shape by now.
   BRepTools::Clean(shape);
   BRepMesh_IncrementalMesh(shape, parameters);
+}
+
+std::size_t triangleCount(const TopoDS_Shape& shape) {
+  std::size_t count = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    TopLoc_Location location;
+    const Handle(Poly_Triangulation) triangulation =
+        BRep_Tool::Triangulation(TopoDS::Face(it.Current()), location);
+    if (!triangulation.IsNull()) count += static_cast<std::size_t>(triangulation->NbTriangles());
+  }
+  return count;
+}
+
+/// The least deflection from the one asked for on, by powers of four, with which the shape has no more
+/// triangles than asked for. From the coarsest down, so that a shape that needs too many is never made: a
+/// cylinder has twice as many with a quarter of the deflection, and a ball four times.
+double affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
+  constexpr double kStep = 4, kRounding = 1.01;
+  const double asked_m = settings.deflection_m;
+  if (settings.most_triangles == 0 || settings.coarsest_m < kStep * asked_m) return asked_m;
+  double deflection_m = asked_m;
+  while (kStep * deflection_m < kRounding * settings.coarsest_m) deflection_m *= kStep;
+  const auto countAt = [&](double d_m) {
+    settings.deflection_m = d_m;
+    triangulate(shape, settings, units_per_m, Inner::None);
+    return triangleCount(shape);
+  };
+  const std::size_t coarse = countAt(deflection_m);
+  if (static_cast<double>(coarse) * deflection_m / asked_m <= static_cast<double>(settings.most_triangles))
+    return asked_m;
+  for (std::size_t count = coarse; deflection_m > kRounding * asked_m; deflection_m /= kStep) {
+    if (2 * count > settings.most_triangles) return deflection_m;
+    count = countAt(deflection_m / kStep);
+    if (count > settings.most_triangles) return deflection_m;
+  }
+  return asked_m;
+}
+
+Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m,
+                          Inner inner, IMeshTools_MeshAlgoType algorithm = IMeshTools_MeshAlgoType_DEFAULT) {
+  triangulate(shape, settings, units_per_m, inner, algorithm);
   Tessellation out;
+  out.deflection_m = settings.deflection_m;
   const double enough = kTimes * settings.deflection_m * units_per_m;
   double deviation = 0;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
@@ -152,19 +194,20 @@ Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& setti
 
 }  // namespace
 
-bool Tessellation::isTrusted(const ImportSettings& settings) const {
-  return missing == 0 && deviation_m <= kTimes * settings.deflection_m;
+bool Tessellation::isTrusted() const {
+  return missing == 0 && deviation_m <= kTimes * deflection_m;
 }
 
-Tessellation tessellate(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m) {
+Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
+  settings.deflection_m = affordable(shape, settings, units_per_m);
   if (hasManyHoles(shape)) {
     Tessellation quick =
         triangulated(shape, settings, units_per_m, Inner::None, IMeshTools_MeshAlgoType_Delabella);
-    if (quick.isTrusted(settings) && quick.folded == 0) return quick;
+    if (quick.isTrusted() && quick.folded == 0) return quick;
   }
   Tessellation best = triangulated(shape, settings, units_per_m, Inner::None);
   const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
-    if (best.isTrusted(settings)) return;
+    if (best.isTrusted()) return;
     Tessellation next = triangulated(other, settings, units_per_m, inner);
     // Finer triangles alone make the search for contacts slower.
     const bool is_better = next.missing < best.missing ||
@@ -174,7 +217,7 @@ Tessellation tessellate(const TopoDS_Shape& shape, const ImportSettings& setting
   };
   tryThat(shape, Inner::AsAsked);
   tryThat(shape, Inner::Finer);
-  if (best.isTrusted(settings)) return best;
+  if (best.isTrusted()) return best;
   ShapeFix_Shape fix(shape);
   fix.Perform();
   tryThat(fix.Shape(), Inner::AsAsked);
@@ -182,7 +225,17 @@ Tessellation tessellate(const TopoDS_Shape& shape, const ImportSettings& setting
 }
 
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings) {
-  if (tessellation.isTrusted(settings)) return "";
+  std::string coarser;
+  if (tessellation.deflection_m > settings.deflection_m) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "is read within %.4g um of its curved faces, since within %.4g um it would have more than "
+                  "%zu triangles (--deflection %.4gum keeps them all)",
+                  1e6 * tessellation.deflection_m, 1e6 * settings.deflection_m, settings.most_triangles,
+                  1e6 * settings.deflection_m);
+    coarser = text;
+  }
+  if (tessellation.isTrusted()) return coarser;
   char off[160], missing[80] = "";
   std::snprintf(
       off, sizeof off,
@@ -192,7 +245,7 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
   if (tessellation.missing > 0)
     std::snprintf(missing, sizeof missing, "; %d of %d faces have no triangles", tessellation.missing,
                   tessellation.faces);
-  return std::string(off) + missing + "; export it again";
+  return coarser + (coarser.empty() ? "" : "; ") + std::string(off) + missing + "; export it again";
 }
 
 }  // namespace vps::scenes::inline v0::import

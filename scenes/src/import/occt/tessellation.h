@@ -18,11 +18,12 @@ struct Tessellation {
   /// Greatest distance of a triangle's centre from its exact face, or, where the volume is wrong, its error
   /// over the area [m].
   double deviation_m = 0;
-  int faces = 0;    ///< of the shape
-  int missing = 0;  ///< of them without triangles
-  int folded = 0;   ///< triangles that are turned over within their face
+  double deflection_m = 0;  ///< that it was made with: as asked for, or more, see ImportSettings
+  int faces = 0;            ///< of the shape
+  int missing = 0;          ///< of them without triangles
+  int folded = 0;           ///< triangles that are turned over within their face
 
-  [[nodiscard]] bool isTrusted(const ImportSettings& settings) const;
+  [[nodiscard]] bool isTrusted() const;
 };
 
 /// Open CASCADE can triangulate a face in quite another place without an error: of 17 solids of one public
@@ -30,7 +31,7 @@ struct Tessellation {
 /// faces, and where they are not as asked for the shape is triangulated with points inside its faces, then
 /// finer, and then as Open CASCADE's healing leaves it; the best is returned. Cost besides the triangulation:
 /// a surface's point for each triangle, and the volume of a solid.
-Tessellation tessellate(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
+Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m);
 
 /// A warning about a part that is not as asked for; empty if it is.
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/part_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace vps::scenes::inline v0::import {
+
+namespace {
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool isLetter(char c) {
+  // A byte beyond ASCII is of a letter of another script.
+  return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+}
+
+/// Without what numbers an instance: digits in brackets, or after a separator, or the digits themselves.
+std::string withoutNumber(std::string name) {
+  const auto endsIn = [&](std::string_view set) {
+    return !name.empty() && set.find(name.back()) != std::string_view::npos;
+  };
+  while (endsIn(" )>]")) name.pop_back();
+  while (!name.empty() && isDigit(name.back())) name.pop_back();
+  while (endsIn(" _-:.#(<[")) name.pop_back();
+  return name;
+}
+
+std::string wordOf(const std::string& name) {
+  std::string lower = withoutNumber(name);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+/// Words of exporters and kernels for things of which they know no name.
+bool isOfExporter(const std::string& name) {
+  const std::string word = wordOf(name);
+  constexpr std::array<std::string_view, 10> kWords = {"nauo",
+                                                       "solid",
+                                                       "compound",
+                                                       "shell",
+                                                       "shape",
+                                                       "face",
+                                                       "label",
+                                                       "default",
+                                                       "manifold_solid_brep",
+                                                       "next_assembly_usage_occurrence"};
+  return std::ranges::find(kWords, word) != kWords.end() ||
+         word.starts_with("open cascade step translator") || word.starts_with("=>[");
+}
+
+/// Words that any part could have.
+bool isGeneric(const std::string& name) {
+  constexpr std::array<std::string_view, 7> kWords = {"part",    "body",    "component", "product",
+                                                      "unnamed", "no name", "group"};
+  return std::ranges::find(kWords, wordOf(name)) != kWords.end();
+}
+
+/// Long, of hexadecimal digits and separators, with several decimal ones.
+bool isIdentifier(const std::string& name) {
+  constexpr std::ptrdiff_t kLeast = 16, kLeastDigits = 4;
+  const auto hex = std::ranges::count_if(
+      name, [](unsigned char c) { return std::isxdigit(c) != 0 || c == '-' || c == '{' || c == '}'; });
+  return hex == std::ssize(name) && hex >= kLeast && std::ranges::count_if(name, isDigit) >= kLeastDigits;
+}
+
+/// 0: nothing, 1: a word that any part could have, 2: a name.
+int meaningOf(const std::string& name) {
+  if (!std::ranges::any_of(name, isLetter) || isOfExporter(name) || isIdentifier(name)) return 0;
+  return isGeneric(name) ? 1 : 2;
+}
+
+}  // namespace
+
+std::string bestName(const std::string& instance, const std::string& product) {
+  const int of_instance = meaningOf(instance), of_product = meaningOf(product);
+  if (std::max(of_instance, of_product) == 0) return "";
+  if (of_instance != of_product) return of_instance > of_product ? instance : product;
+  if (of_product == 1) return product;
+  // "bolt:3" and "bolt<3>" are counters of CAD systems; "bolt_3" can be a name that a person gave.
+  const bool is_counted = instance.starts_with(product) && withoutNumber(instance) == product &&
+                          instance.find_first_of(":<#", product.size()) == product.size();
+  return is_counted ? product : instance;
+}
+
+}  // namespace vps::scenes::inline v0::import

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What overlaps as drawn are taken for.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "check/fastener_shape.h"
+#include "vps_scenes/plan.h"
+
+namespace vps::scenes::inline v0 {
+
+/// A choice for each overlap of the parts: one of OverlapKind, with what follows from it. A part that is left
+/// out needs no other.
+/// @param shapes of the parts, see fastenerShapes()
+/// @param fixed  parts that are not left out, ascending
+std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                                          const std::vector<std::optional<FastenerShape>>& shapes,
+                                          const std::vector<std::size_t>& fixed);
+
+/// The parts of which choices say that they are left out: of parts drawn twice all but the first, and
+/// flexible ones. Ascending.
+std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
+                                 const std::vector<OverlapChoice>& choices);
+
+}  // namespace vps::scenes::inline v0

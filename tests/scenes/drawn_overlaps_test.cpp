@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CAD that interferes as it is usually drawn: what each overlap is taken for, and what the plan does about
+// it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scenes/assemblies_to_plan.h"
+#include "support/swept.h"
+#include "vps_scenes/plan.h"
+
+namespace vps::scenes {
+namespace {
+
+Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
+  return test::lathe(
+      {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
+      64);
+}
+
+const ScenePart& partOf(const Scene& scene, const std::string& name) {
+  return *std::ranges::find(scene.parts, name, [](const ScenePart& part) { return part.part.name; });
+}
+
+struct Planned {
+  PlanResult plan;
+  Scene scene;
+};
+Planned planned(const std::vector<DrawnPart>& parts, const std::string& base) {
+  PlanSettings settings;
+  settings.fixed = {base};
+  Planned out{planAssembly("test", parts, settings), {}};
+  out.scene = plannedScenes(sceneOf(parts), out.plan).front();
+  for (const WayFault& fault : checkWays(out.scene))
+    ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m;
+  return out;
+}
+
+// M6 in the minor diameter of its thread, 5 mm deep below a plate with a through hole.
+TEST(DrawnOverlaps, AScrewInTheMinorDiameterIsAThread) {
+  Mesh base = test::lathe({{2.459e-3, -20e-3}, {20e-3, -20e-3}, {20e-3, -5e-3}, {2.459e-3, -5e-3}}, 64);
+  const std::vector<DrawnPart> parts = {at("base", base, {0, 0, 0}),
+                                        at("plate", makeTube(20e-3, 3.3e-3, 5e-3, 64), {0, 0, -2.5e-3}),
+                                        at("screw", headed(3e-3, 15e-3, 5e-3, 6e-3), {0, 0, 0})};
+  const auto [plan, scene] = planned(parts, "base");
+  ASSERT_EQ(plan.choices.size(), 1U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::Thread);
+  EXPECT_EQ(plan.choices[0].changed, "screw");
+  EXPECT_EQ(plan.blocked(), 0U);
+  const PlannedStep& step = plan.assemblies[0].steps.back();
+  EXPECT_EQ(step.name, "screw");
+  EXPECT_NEAR(step.insertion_W.z(), -1, 1e-6);
+  // In the planned scene it passes, and its head is as it was.
+  const Scene drawn = sceneOf(parts);
+  EXPECT_EQ(checkAssembly("drawn", drawnParts(drawn)).clashes(), 1U);
+  EXPECT_EQ(checkAssembly("planned", drawnParts(scene)).clashes(), 0U);
+  const Mesh& mesh = partOf(scene, "screw").part.mesh;
+  EXPECT_NEAR(bounds(mesh).size().x(), 10e-3, 1e-9);
+  EXPECT_NEAR(bounds(mesh).size().z(), 21e-3, 1e-9);
+  EXPECT_TRUE(checkMesh(mesh).isClosed());
+  EXPECT_NE(partOf(scene, "screw").fastener.find("M6"), std::string::npos);
+}
+
+TEST(DrawnOverlaps, ANutWithAPlainHoleIsAThreadAndItsHoleIsWidened) {
+  constexpr int kColumns = 96;
+  const Mesh nut = test::sweptSections(kColumns, [&](int i) {
+    const double angle = test::kTurn_rad * (i % kColumns) / kColumns;
+    const double out_m = test::polygonRadius(7.5e-3, 6, angle);
+    return std::vector<Vec3>{test::polar(3.324e-3, angle, 0), test::polar(out_m, angle, 0),
+                             test::polar(out_m, angle, 6.5e-3), test::polar(3.324e-3, angle, 6.5e-3)};
+  });
+  const std::vector<DrawnPart> parts = {at("plate", makeTube(20e-3, 4.3e-3, 10e-3, 64), {0, 0, -5e-3}),
+                                        at("bolt", headed(4e-3, 25e-3, 6.5e-3, 8e-3), {0, 0, 0}),
+                                        at("nut", nut, {0, 0, -16.5e-3})};
+  const auto [plan, scene] = planned(parts, "plate");
+  ASSERT_EQ(plan.choices.size(), 1U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::Thread);
+  EXPECT_EQ(plan.choices[0].changed, "nut");
+  EXPECT_EQ(plan.blocked(), 0U);
+  EXPECT_EQ(checkAssembly("planned", drawnParts(scene)).clashes(), 0U);
+  // The bolt is as drawn.
+  EXPECT_NEAR(massProperties(partOf(scene, "bolt").part.mesh).volume_m3,
+              massProperties(parts[1].mesh).volume_m3, 1e-15);
+}
+
+TEST(DrawnOverlaps, ALittleTooLargeIsAPressFit) {
+  for (const double too_large_m : {10e-6, 30e-6}) {
+    const std::vector<DrawnPart> parts = {
+        at("hub", makeTube(15e-3, 5e-3, 20e-3, 96), {0, 0, 0}),
+        at("pin", makeCylinder(5e-3 + 0.5 * too_large_m, 30e-3, 96), {0, 0, 0})};
+    const auto [plan, scene] = planned(parts, "hub");
+    ASSERT_EQ(plan.choices.size(), 1U) << too_large_m;
+    EXPECT_EQ(plan.choices[0].kind, OverlapKind::PressFit);
+    const ScenePart& pin = partOf(scene, "pin");
+    EXPECT_GE(pin.press_fit_m, too_large_m - 1e-9);
+    EXPECT_LT(pin.press_fit_m, too_large_m + 5e-6);
+    EXPECT_EQ(checkAssembly("planned", drawnParts(scene)).clashes(), 0U);
+  }
+}
+
+TEST(DrawnOverlaps, MuchTooLargeIsAClash) {
+  const std::vector<DrawnPart> parts = {at("hub", makeTube(15e-3, 5e-3, 20e-3, 96), {0, 0, 0}),
+                                        at("pin", makeCylinder(5.2e-3, 30e-3, 96), {0, 0, 0})};
+  const PlanResult plan = planAssembly("test", parts);
+  ASSERT_EQ(plan.choices.size(), 1U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::Clash);
+  EXPECT_TRUE(plan.choices[0].changed.empty() && plan.choices[0].left_out.empty());
+}
+
+TEST(DrawnOverlaps, FacesThatCoincideAreNone) {
+  const std::vector<DrawnPart> parts = {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+                                        at("a", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("b", makeBox(Vec3::Constant(0.02)), {0.02, 0, 0.015}),
+                                        at("hub", makeTube(15e-3, 5e-3, 20e-3, 64), {-0.03, -0.03, 0.015}),
+                                        at("pin", makeCylinder(5e-3, 20e-3, 64), {-0.03, -0.03, 0.015})};
+  const PlanResult plan = planAssembly("test", parts);
+  EXPECT_TRUE(plan.choices.empty());
+  EXPECT_EQ(plan.blocked(), 0U);
+}
+
+TEST(DrawnOverlaps, OfPartsDrawnTwiceAllButTheFirstAreLeftOut) {
+  const Mesh brick = makeBox(Vec3::Constant(0.02));
+  const std::vector<DrawnPart> parts = {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+                                        at("one", brick, {0, 0, 0.015}), at("two", brick, {0, 0, 0.015}),
+                                        at("three", brick, {0, 0, 0.015})};
+  const auto [plan, scene] = planned(parts, "plate");
+  EXPECT_EQ(plan.steps(), 1U);
+  EXPECT_EQ(plan.blocked(), 0U);
+  EXPECT_FALSE(partOf(scene, "one").is_scenery);
+  EXPECT_TRUE(partOf(scene, "two").is_scenery);
+  EXPECT_TRUE(partOf(scene, "three").is_scenery);
+}
+
+// An O-ring of 2 mm, drawn round, in a groove that is 1.5 mm deep below a lid.
+TEST(DrawnOverlaps, ASealThatIsDrawnRoundIsLeftOut) {
+  const Mesh base = test::lathe({{0, 0},
+                                 {20e-3, 0},
+                                 {20e-3, 10e-3},
+                                 {12e-3, 10e-3},
+                                 {12e-3, 8.5e-3},
+                                 {9e-3, 8.5e-3},
+                                 {9e-3, 10e-3},
+                                 {0, 10e-3}},
+                                64);
+  const std::vector<DrawnPart> parts = {at("base", base, {0, 0, 0}),
+                                        at("seal", ring(10.5e-3, 1e-3), {0, 0, 9.5e-3}),
+                                        at("lid", makeCylinder(20e-3, 5e-3, 64), {0, 0, 12.5e-3})};
+  const auto [plan, scene] = planned(parts, "base");
+  ASSERT_EQ(plan.choices.size(), 1U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::Flexible);
+  EXPECT_EQ(plan.choices[0].left_out, "seal");
+  EXPECT_TRUE(partOf(scene, "seal").is_scenery);
+  EXPECT_EQ(plan.steps(), 1U);
+}
+
+TEST(DrawnOverlaps, AThinBracketThatClashesIsNoSeal) {
+  Mesh bracket = block({0, 0, 0}, {0.05, 0.02, 0.002});
+  append(bracket, block({0, 0, 0}, {0.002, 0.02, 0.05}));
+  const PlanResult plan =
+      planAssembly("test", {at("base", block({-0.05, -0.05, -0.02}, {0.1, 0.1, 0.001}), {0, 0, 0}),
+                            at("bracket", bracket, {0, 0, 0})});
+  ASSERT_EQ(plan.choices.size(), 1U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::Clash);
+}
+
+}  // namespace
+}  // namespace vps::scenes

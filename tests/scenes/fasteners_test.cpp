@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fasteners of known kinds and sizes, and parts that are none.
+#include "vps_scenes/fasteners.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "scenes/assemblies_to_plan.h"
+#include "support/screw.h"
+#include "vps_scenes/plan.h"
+
+namespace vps::scenes {
+namespace {
+
+/// A plain hexagonal nut around z.
+Mesh plainNut(double hole_m, double corner_m, double height_m) {
+  constexpr int kColumns = 96;
+  return test::sweptSections(kColumns, [&](int i) {
+    const double angle = test::kTurn_rad * (i % kColumns) / kColumns;
+    const double out_m = test::polygonRadius(corner_m, 6, angle);
+    return std::vector<Vec3>{test::polar(hole_m, angle, 0), test::polar(out_m, angle, 0),
+                             test::polar(out_m, angle, height_m), test::polar(hole_m, angle, height_m)};
+  });
+}
+
+/// With a round head, its shank downwards from z = 0.
+Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
+  return test::lathe(
+      {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
+      64);
+}
+
+/// Of each part its words; "" if it is none.
+std::map<std::string, std::string> wordsOf(const std::vector<DrawnPart>& parts) {
+  std::map<std::string, std::string> out;
+  for (const DrawnPart& part : parts) out[part.name] = "";
+  for (const Fastener& one : findFasteners(parts)) out[one.part] = one.words;
+  return out;
+}
+
+TEST(Fasteners, AreNamedWithTheirSizes) {
+  // They may lie anywhere.
+  const Pose X_W(rotationFromVector({0.3, -1.1, 0.4}), {0.1, 0.2, -0.3});
+  std::vector<DrawnPart> parts = {at("bolt", headed(4e-3, 30e-3, 6.5e-3, 8e-3), {0, 0, 0}),
+                                  at("nut", plainNut(3.324e-3, 7.5e-3, 6.5e-3), {0, 0, 0}),
+                                  at("washer", makeTube(8e-3, 4.2e-3, 1.6e-3, 64), {0, 0, 0}),
+                                  at("pin", makeCylinder(3e-3, 20e-3, 48), {0, 0, 0}),
+                                  at("clip", ringPiece(9e-3, 11e-3, 0, 1e-3, 20, 340), {0, 0, 0})};
+  for (DrawnPart& part : parts) part.X_WP = X_W;
+  std::map<std::string, std::string> words = wordsOf(parts);
+  EXPECT_EQ(words["bolt"], "screw M8 x 30");
+  EXPECT_EQ(words["nut"], "nut for M8");
+  EXPECT_EQ(words["washer"], "washer 8.4 x 16 x 1.6 mm");
+  EXPECT_EQ(words["pin"], "pin 6 x 20 mm");
+  EXPECT_EQ(words["clip"], "circlip 18 x 22 x 1 mm");
+}
+
+TEST(Fasteners, ThreadsGiveTheirStandardSize) {
+  test::ThreadShape thread{.major_m = 5e-3, .pitch_m = 1.5e-3, .length_m = 12e-3, .columns = 96};
+  Mesh screw = test::makeThreadedRod(thread);
+  std::map<std::string, std::string> words = wordsOf({at("rod", screw, {0, 0, 0})});
+  EXPECT_EQ(words["rod"], "stud M10 x 12");
+  thread.clearance_m = 0;
+  EXPECT_EQ(wordsOf({at("nut", test::makeNut(thread, 9.2e-3), {0, 0, 0})})["nut"], "nut M10");
+}
+
+TEST(Fasteners, OtherPartsAreNone) {
+  const std::vector<DrawnPart> parts = {at("box", makeBox(Vec3(0.01, 0.02, 0.03)), {0, 0, 0}),
+                                        at("housing", makeTube(30e-3, 10e-3, 40e-3, 96), {0, 0, 0}),
+                                        at("bush", makeTube(8e-3, 6e-3, 12e-3, 64), {0, 0, 0}),
+                                        at("disc", makeCylinder(30e-3, 10e-3, 96), {0, 0, 0}),
+                                        at("rope", makeCylinder(2e-3, 300e-3, 48), {0, 0, 0}),
+                                        at("ball", makeSphere(5e-3, 3), {0, 0, 0}),
+                                        at("plate", perforatedPlate(2, 20e-3, 4e-3, 5e-3), {0, 0, 0}),
+                                        at("stepped",
+                                           test::lathe({{0, 0},
+                                                        {4e-3, 0},
+                                                        {4e-3, 10e-3},
+                                                        {6e-3, 10e-3},
+                                                        {6e-3, 20e-3},
+                                                        {3e-3, 20e-3},
+                                                        {3e-3, 40e-3},
+                                                        {0, 40e-3}},
+                                                       64),
+                                           {0, 0, 0})};
+  for (const auto& [name, words] : wordsOf(parts)) EXPECT_EQ(words, "") << name;
+}
+
+TEST(Fasteners, AKeyIsABarBetweenTwoParts) {
+  // A shaft and a hub with a slot each, as boxes.
+  Mesh shaft = block({-0.01, -0.02, -0.02}, {0.01, 0.02, -0.003});
+  append(shaft, block({-0.01, -0.02, -0.003}, {-0.003, 0.02, 0}));
+  append(shaft, block({0.003, -0.02, -0.003}, {0.01, 0.02, 0}));
+  Mesh hub = block({-0.01, -0.02, 0.003}, {0.01, 0.02, 0.02});
+  append(hub, block({-0.01, -0.02, 0}, {-0.00301, 0.02, 0.003}));
+  append(hub, block({0.00301, -0.02, 0}, {0.01, 0.02, 0.003}));
+  const PlanResult plan =
+      planAssembly("test", {at("shaft", shaft, {0, 0, 0}), at("hub", hub, {0, 0, 0}),
+                            at("key", block({-0.003, -0.01, -0.003}, {0.003, 0.01, 0.003}), {0, 0, 0})});
+  ASSERT_EQ(plan.fasteners.size(), 1U);
+  EXPECT_EQ(plan.fasteners[0].part, "key");
+  EXPECT_EQ(plan.fasteners[0].words, "key 6 x 6 x 20 mm");
+}
+
+TEST(Fasteners, APinIsOneOnlyWhereItFits) {
+  const std::vector<DrawnPart> fitted = {at("block", blindHole(), {0, 0, 0}),
+                                         at("peg", makeCylinder(4e-3, 0.02, 96), {0, 0, 0.01})};
+  EXPECT_EQ(planAssembly("test", fitted).fasteners.size(), 1U);
+  const std::vector<DrawnPart> loose = {at("block", makeBox(Vec3::Constant(0.05)), {0, 0, -0.025}),
+                                        at("peg", makeCylinder(4e-3, 0.02, 96), {0, 0, 0.01})};
+  EXPECT_TRUE(planAssembly("test", loose).fasteners.empty());
+}
+
+}  // namespace
+}  // namespace vps::scenes

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options of commands that read CAD files.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "vps_scenes/import.h"
+#include "vps_scenes/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace vps::viewer::inline v0 {
+
+/// A part that would have more is read coarser: a check of it takes minutes.
+inline constexpr std::size_t kMostTriangles = 250'000;
+
+struct CadArguments {
+  std::string units, deflection, up;  ///< as text; empty: not given
+  double time_limit_s = 0;
+  scenes::GroupWishes groups;
+  bool has_no_groups = false;
+  [[nodiscard]] bool isAny() const;  ///< whether one of them is given
+};
+
+/// Adds --units, --deflection, --up, --group, --no-groups and --time-limit.
+void addCadOptions(CLI::App& command, CadArguments& given);
+
+/// What was given, and otherwise what suits a file that nobody has looked at: parts of more than
+/// `most_triangles` are read coarser, and what is up is guessed. Throws LoadError naming the option.
+scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t most_triangles);
+
+/// Finds the groups of the file, and says on stderr which and why.
+std::vector<scenes::PartGroup> groupsOf(scenes::ImportedCad& cad, const CadArguments& given);
+
+/// The scene of a CAD file, with its groups as bodies and its warnings.
+scenes::Scene groupedScene(scenes::ImportedCad cad, const CadArguments& given);
+
+/// Throws LoadError when one of the options is given for a scene file, which states all of that itself.
+void requireNoCadOptions(const std::string& scene, const CadArguments& given);
+
+}  // namespace vps::viewer::inline v0
