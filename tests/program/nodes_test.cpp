@@ -100,5 +100,69 @@ TEST_F(NodesProgram, BadSessionNamesAreRefused) {
     expectRefused(std::string(command) + " --session a/b", "letters, digits");
 }
 
+/// The same over UDP on this machine, with certificates.
+class NodesOverUdp : public NodesProgram {
+ protected:
+  void SetUp() override {
+    NodesProgram::SetUp();
+    write("one.toml", kScene);
+    if (run("render one.toml --network none0 --session a").err.find("has no network") != std::string::npos)
+      GTEST_SKIP() << "this build has no network";
+    if (std::system("command -v openssl >/dev/null 2>&1") != 0) GTEST_SKIP() << "openssl is not installed";
+    for (const char* keys : {"keys", "foreign_keys"}) {
+      const std::string command = "'" VPS_SOURCE_DIR "/scenes/make_certificates.sh' '" +
+                                  (folder_ / keys).string() + "' render device watch > /dev/null";
+      ASSERT_EQ(std::system(command.c_str()), 0);
+    }
+    nodes_.emplace(VPS_PROGRAM, (folder_ / "pin_down.toml").string(), session_, folder_, "lo");
+  }
+  /// A process beside the nodes. `security`: folder below this test's; empty: none.
+  test::ChildProcess start(const std::string& command, const std::string& security,
+                           const std::string& output) {
+    std::vector<std::string> words = {VPS_PROGRAM, command, "--session", session_, "--network", "lo"};
+    if (!security.empty()) words.insert(words.end(), {"--security", (folder_ / security).string()});
+    return {std::move(words), (folder_ / output).string()};
+  }
+
+  std::string session_ = "udp-program-" + std::to_string(getpid());
+};
+
+TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
+  nodes_->security = (folder_ / "keys/render").string();
+  nodes_->startRender();
+  {
+    // Without any, of another authority, and a watcher that poses as a device.
+    const test::ChildProcess bare = start("device", "", "bare.txt"),
+                             foreign = start("device", "foreign_keys/device", "foreign.txt"),
+                             posing = start("device", "keys/watch", "posing.txt"),
+                             spy = start("watch", "", "spy.txt"),
+                             foreign_spy = start("watch", "foreign_keys/watch", "foreign_spy.txt");
+    const auto says = [this](const char* file, const char* words) {
+      return test::NodeProcesses::waitFor(
+          [&] { return slurp(folder_ / file).find(words) != std::string::npos; }, 30);
+    };
+    for (const char* file : {"bare.txt", "foreign.txt", "spy.txt", "foreign_spy.txt"})
+      EXPECT_TRUE(says(file, "waiting for")) << file << ": " << slurp(folder_ / file);
+    EXPECT_TRUE(says("posing.txt", "Not Allowed By Security")) << slurp(folder_ / "posing.txt");
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // another two tries of each to join
+  }
+  for (const char* file : {"bare.txt", "foreign.txt", "posing.txt"})
+    EXPECT_EQ(slurp(folder_ / file).find("joins"), std::string::npos) << slurp(folder_ / file);
+  for (const char* file : {"spy.txt", "foreign_spy.txt"})
+    EXPECT_EQ(slurp(folder_ / file).find("watching"), std::string::npos) << slurp(folder_ / file);
+  EXPECT_EQ(texts().find("has joined"), std::string::npos) << texts();
+  nodes_->security = (folder_ / "keys/watch").string();
+  nodes_->startWatch();
+  nodes_->security = (folder_ / "keys/device").string();
+  nodes_->startDevice();
+  EXPECT_EQ(nodes_->render.wait(), 0) << texts();
+  EXPECT_EQ(nodes_->watch.wait(), 0) << texts();
+}
+
+TEST_F(NodesOverUdp, InterfacesThatOthersReachNeedCertificates) {
+  expectRefused("watch --network eth7 --session x", "add --security FOLDER");
+  expectRefused("watch --network lo --session x --security nowhere", "has no ca.pem");
+}
+
 }  // namespace
 }  // namespace vps

@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "network/link.h"
+#include "network/packed_rotation.h"
 #include "support/no_alloc.h"
 
 namespace vps::scenes {
@@ -192,6 +196,57 @@ TEST(Messages, TheHapticThreadsMessagesAreWrittenAndReadWithoutAllocating) {
   EXPECT_EQ(reader.read(writer.write(haptic), haptic_read), Reading::Good);
   EXPECT_EQ(reader.read(writer.write(physics), physics_read), Reading::Good);
   EXPECT_FALSE(writer.write(log).empty());
+}
+
+// Over UDP. A pose is right to a float's rounding (6e-8 of a length) and 20 bits of a quaternion, twist and
+// wrench to a half float's (5e-4).
+TEST(Messages, CompactStatesAreRightToTheirRoundingAndASixthAsLong) {
+  MessageWriter exact(5), compact(5, WireForm::Compact);
+  MessageReader reader;
+  reader.bindTo(5);
+  HapticMessage sent = someHaptic(), read;
+  sent.state.safety.fault = device::SafetyFault::None;
+  sent.state.tick = 16;  // one with all values
+  ASSERT_EQ(reader.read(compact.write(sent), read), Reading::Good);
+  const device::TickReport &a = sent.state.report, &b = read.state.report;
+  EXPECT_EQ(b.time_s, a.time_s);
+  EXPECT_EQ(b.status, a.status);
+  EXPECT_EQ(read.state.safety.fault, sent.state.safety.fault);
+  EXPECT_EQ(read.hand, sent.hand);
+  EXPECT_LT((b.X_WG.p - a.X_WG.p).norm(), 1e-7 * a.X_WG.p.norm());
+  EXPECT_LT(rotationVector(b.X_WG.R * a.X_WG.R.transpose()).norm(), 4e-6);
+  EXPECT_LT((b.V_WG.v - a.V_WG.v).norm(), 5e-4 * a.V_WG.v.norm());
+  EXPECT_LT((b.F_hand_W.f - a.F_hand_W.f).norm(), 5e-4 * a.F_hand_W.f.norm());
+  EXPECT_EQ(read.state.passivity.injected_J, 6);
+  // The next one has neither force nor energy; those of this one stay.
+  sent.state.tick = 17;
+  sent.state.report.X_WG = somePose(3);
+  sent.state.report.F_hand_W.f = Vec3(100, 0, 0);
+  ASSERT_EQ(reader.read(compact.write(sent), read), Reading::Good);
+  EXPECT_LT((read.state.report.X_WG.p - somePose(3).p).norm(), 1e-6);
+  EXPECT_EQ(read.state.report.F_hand_W.f.x(), 1);
+  // 16 of envelope, 4 + 8 + 4 of numbers and flags, 20 of a pose, 12 of a twist.
+  EXPECT_EQ(compact.write(sent).size(), 64u);
+  EXPECT_GT(exact.write(sent).size(), 5 * 64u);
+  PhysicsMessage physics = somePhysics();
+  EXPECT_EQ(compact.write(physics).size(), 16u + 4 + 8 + 1 + 20 + 12 + 5);
+}
+
+TEST(Messages, EveryRotationIsPackedToTwentyBits) {
+  double worst_rad = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 turn = Vec3(std::sin(0.7 * i), std::cos(1.3 * i), std::sin(2.1 * i + 1)).normalized() *
+                      (3.1415926 * i / 20000);
+    const Mat3 R = rotationFromVector(turn);
+    const std::optional<Mat3> read = unpackedRotation(packedRotation(R));
+    ASSERT_TRUE(read.has_value());
+    worst_rad = std::max(worst_rad, rotationVector(*read * R.transpose()).norm());
+  }
+  // Three components are off by half a step of 1.35e-6 each, and a turn is twice a quaternion's way; the
+  // largest one follows from them.
+  EXPECT_LT(worst_rad, 4e-6);
+  EXPECT_FALSE(unpackedRotation(~std::uint64_t{0}).has_value());
+  EXPECT_FALSE(unpackedRotation((std::uint64_t{1} << 60U) - 1).has_value());
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <string>
+#include <variant>
 
 #include "haptics/haptic_driver.h"
 #include "network/device_end.h"
@@ -16,9 +18,11 @@ class ScriptedDevice final : public Link {
  public:
   ScriptedDevice() { replies_.emplace_back(writer_.write(HelloMessage{})); }
 
-  void addState(std::int32_t tick, device::OperatorPhase phase) {
+  void addState(std::int32_t tick, device::OperatorPhase phase, std::uint64_t faults = 0) {
     HapticMessage message;
     message.state.tick = tick;
+    message.state.safety.faults = faults;
+    if (faults > 0) message.state.safety.fault = device::SafetyFault::BadPose;
     message.hand = device::toByte({phase, {}});
     states_.emplace_back(writer_.write(message));
   }
@@ -78,6 +82,35 @@ TEST(RemoteDriver, AStateFromBeforeACommandDoesNotShowWhatTheHandDoesAfterIt) {
   device.addState(11, OperatorPhase::Press);
   ASSERT_TRUE(driver->advance());
   EXPECT_EQ(driver->phase(), OperatorPhase::Press);
+}
+
+/// What physics logs, in words.
+class WrittenLog final : public device::RunLog {
+ public:
+  void add(const device::LogEntry& entry) noexcept override {
+    if (const auto* event = std::get_if<device::SyncEvent>(&entry))
+      if (event->kind == device::SyncEventKind::Step) order += "step " + std::to_string(event->tick) + "; ";
+  }
+  std::string order;
+};
+
+// A replay reads the loop's state after it has logged the step. A run that reported the fault before it was
+// not replayed: "comes with /run/sync_event where the recording has /run/event".
+TEST(RemoteDriver, AFaultIsReportedAfterTheStepThatSeesIt) {
+  ScriptedDevice device;
+  DeviceEnd end(device, nullptr, [](const std::string&) {});
+  ASSERT_TRUE(end.waitForDevice());
+  const Scene scene = twoPins();
+  const std::unique_ptr<Hand> hand = remoteHand(end, scene);
+  WrittenLog log;
+  const std::unique_ptr<HapticDriver> driver = hand->makeDriver(
+      {}, 5e-3, [&log](const std::string&) { log.order += "fault; "; }, &log);
+  driver->resume();
+  device.addState(1, device::OperatorPhase::Insert);
+  ASSERT_TRUE(driver->advance());
+  device.addState(2, device::OperatorPhase::Insert, 1);
+  ASSERT_TRUE(driver->advance());
+  EXPECT_EQ(log.order, "step 1; step 2; fault; ");
 }
 
 }  // namespace

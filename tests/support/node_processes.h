@@ -95,11 +95,14 @@ class NodeProcesses {
 
   ChildProcess render, device, watch;
   std::unique_ptr<scenes::SessionWatcher> watcher;
+  /// Folder of certificates of the processes that are started from now on; empty: none.
+  std::string security;
 
  private:
   [[nodiscard]] ChildProcess start(std::vector<std::string> words, const std::string& output) const {
     words.insert(words.end(), {"--session", session_});
     if (!network_.empty()) words.insert(words.end(), {"--network", network_});
+    if (!security.empty()) words.insert(words.end(), {"--security", security});
     return {std::move(words), (folder_ / output).string()};
   }
 

@@ -29,7 +29,7 @@ struct DeviceArguments {
   std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
   std::string json;
   std::string session;  ///< empty: none
-  std::string network;
+  scenes::SessionNetwork network;
   bool rearms = false, stays = false;
 };
 

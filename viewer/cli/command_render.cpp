@@ -20,7 +20,8 @@ namespace {
 
 struct RenderArguments {
   SceneArguments scene;
-  std::string session = kDefaultSession, network;
+  std::string session = kDefaultSession;
+  scenes::SessionNetwork network;
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none

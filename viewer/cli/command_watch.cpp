@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps watch: prints what happens in a session. A watcher reads only, so that it can disturb nobody.
+// vps watch --web: shows a session, or a run of a scene, in web browsers.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -7,18 +8,27 @@
 
 #include "command.h"
 #include "run_report.h"
+#include "scene_arguments.h"
 #include "session_option.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps/load_error.h"
 #include "vps_scenes/network/nodes.h"
+#include "vps_scenes/network/ros_topics.h"
+#include "vps_viewer/web.h"
 
 namespace vps::viewer::inline v0 {
 
 namespace {
 
 struct WatchArguments {
-  std::string session = kDefaultSession, network;
-  double rate_hz = 1;  ///< lines a second about the part in hand; 0: none
+  std::string session = kDefaultSession;
+  scenes::SessionNetwork network;
+  double rate_hz = 1;   ///< lines a second about the part in hand; 0: none
+  int ros_domain = -1;  ///< negative: no topics of ROS 2
+  SceneArguments scene;
+  int port = -1;  ///< of the web page; negative: none
+  WebOptions web;
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
@@ -26,7 +36,12 @@ constexpr std::chrono::milliseconds kWatchPoll{5};
 /// What a watcher knows.
 class Watching {
  public:
-  Watching(scenes::SessionWatcher& watcher, double rate_hz) : watcher_(watcher), rate_hz_(rate_hz) {}
+  Watching(scenes::SessionWatcher& watcher, const WatchArguments& given)
+      : watcher_(watcher), rate_hz_(given.rate_hz) {
+    const std::string interface = given.network.empty() ? "lo" : given.network.interface;
+    if (given.ros_domain >= 0)
+      ros_ = std::make_unique<scenes::RosTopics>(given.ros_domain, interface, given.session, watcher.scene());
+  }
 
   /// Until the session is over, or the user stops.
   void run() {
@@ -44,9 +59,13 @@ class Watching {
  private:
   void readAll() {
     while (const auto news = watcher_.takeNews()) tell(*news);
-    if (const auto force = watcher_.takeForce()) force_ = *force;
+    if (const auto force = watcher_.takeForce()) {
+      force_ = *force;
+      if (ros_) ros_->publish(force_.F_hand_W, systemTime_ns());
+    }
     if (auto snapshot = watcher_.takeSnapshot()) {
       ++snapshots_;
+      if (ros_) ros_->publish(*snapshot, systemTime_ns());
       follow(*snapshot);
     }
   }
@@ -75,11 +94,16 @@ class Watching {
                     force_.is_faulted ? " (the device is safe: no force)" : "");
     std::fflush(stdout);
   }
+  static std::int64_t systemTime_ns() {
+    const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count();
+  }
   static std::string millimetres(const Vec3& p) {
     return fixed(1e3 * p.x(), 2) + ", " + fixed(1e3 * p.y(), 2) + ", " + fixed(1e3 * p.z(), 2);
   }
 
   scenes::SessionWatcher& watcher_;
+  std::unique_ptr<scenes::RosTopics> ros_;  ///< null: none
   double rate_hz_;
   std::optional<scenes::Verdict> verdict_;
   scenes::SessionForce force_;
@@ -88,7 +112,30 @@ class Watching {
   double next_s_ = 0;
 };
 
+int serveWeb(const WatchArguments& given) {
+  WebOptions web = given.web;
+  web.port = static_cast<std::uint16_t>(given.port);
+  web.session = given.session;
+  web.network = given.network;
+  web.stop = &stopRequested();
+  web.say = [](const std::string& words) { say(words); };
+  if (given.scene.scene.empty()) {
+    serveSession(web);
+    return kGood;
+  }
+  const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {});
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  web.models.cache = cache ? &*cache : nullptr;
+  web.models.models_everything = given.scene.models_everything;
+  serveScene(scene, web);
+  return kGood;
+}
+
 int runWatch(const WatchArguments& given) {
+  if (given.port >= 0) return serveWeb(given);
+  if (!given.scene.scene.empty())
+    throw LoadError(given.scene.scene, "",
+                    "only a session is followed in the terminal; add --web PORT, or use vps view");
   bool has_said = false;
   while (!stopRequested()) {
     const std::unique_ptr<scenes::SessionWatcher> watcher =
@@ -101,7 +148,7 @@ int runWatch(const WatchArguments& given) {
     }
     has_said = false;
     say("watching '" + watcher->scene().name + "'");
-    Watching watching(*watcher, given.rate_hz);
+    Watching watching(*watcher, given);
     watching.run();
     if (watching.verdict()) {
       std::printf("%zu snapshots seen\n", watching.snapshots());
@@ -118,13 +165,51 @@ int runWatch(const WatchArguments& given) {
 void addWatch(CommandLine& line) {
   const auto given = std::make_shared<WatchArguments>();
   CLI::App& command = addCommand(
-      line, "watch", "follows a session of vps render: its steps, the part in hand, forces and verdict",
-      "vps watch --session demo", [given] { return runWatch(*given); });
+      line, "watch",
+      "follows a session of vps render: its steps, the part in hand, forces and verdict; in web browsers "
+      "too, or a run of a scene",
+      "vps watch --session demo --web 8080", [given] { return runWatch(*given); });
+  addSceneOptions(command, given->scene);
+  command.get_option("scene")->required(false)->description(
+      "scene file (TOML) that is run for the web page; without one, a session is followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
   command.add_option("--rate", given->rate_hz, "lines a second about the part in hand; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
+  command
+      .add_option("--ros", given->ros_domain,
+                  "publish what is seen as topics of ROS 2 in this domain (ROS_DOMAIN_ID): handle "
+                  "(PoseStamped), force (WrenchStamped) and /tf, at the interface of --network, or else lo")
+      ->type_name("DOMAIN")
+      ->check(CLI::Range(0, 232));
+  CLI::Option* web =
+      command
+          .add_option("--web", given->port,
+                      "serve a page for web browsers at this port; 0: one that is free. The page turns and "
+                      "cuts the run, shows forces and verdict, sounds, and points for the others")
+          ->type_name("PORT")
+          ->excludes("--ros")
+          ->check(CLI::Range(0, 65535));
+  command.get_option("scene")->needs(web);
+  command
+      .add_option("--listen", given->web.address,
+                  "address of this machine at which the page is served. Beyond loopback a token is needed: "
+                  "whoever knows it can watch, and use what --allow-hand allows")
+      ->capture_default_str()
+      ->type_name("ADDRESS")
+      ->needs(web);
+  command
+      .add_option("--token", given->web.token,
+                  "token of at least 16 letters, digits, - and _; without it a new one is made where one is "
+                  "needed. Others on this machine can see it on the command line")
+      ->envname("VPS_WEB_TOKEN")
+      ->needs(web);
+  command
+      .add_flag("--allow-hand", given->web.allows_hand,
+                "one browser at a time may take the part in hand, by mouse, finger or a headset's "
+                "controller; this program is then the session's device")
+      ->needs(web);
 }
 
 }  // namespace vps::viewer::inline v0

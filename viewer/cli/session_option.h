@@ -5,17 +5,26 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "vps_scenes/network/session_network.h"
+
 namespace vps::viewer::inline v0 {
 
 inline constexpr const char* kDefaultSession = "default";
 
-/// Adds --network.
-inline CLI::Option* addNetworkOption(CLI::App& command, std::string& network) {
-  return command
-      .add_option("--network", network,
-                  "meet over UDP through this network interface, in place of shared memory; lo: this machine "
-                  "only. Beyond it, whoever reaches the interface can read and move everything")
-      ->type_name("INTERFACE");
+/// Adds --network and --security. Returns the first.
+inline CLI::Option* addNetworkOption(CLI::App& command, scenes::SessionNetwork& network) {
+  CLI::Option* option = command
+                            .add_option("--network", network.interface,
+                                        "meet over UDP through this network interface, in place of shared "
+                                        "memory; lo: this machine only. Beyond it --security is needed")
+                            ->type_name("INTERFACE");
+  command
+      .add_option("--security", network.security,
+                  "folder with this node's certificates (scenes/make_certificates.sh): others can neither "
+                  "read nor move anything; none: everybody can who reaches the interface")
+      ->type_name("FOLDER")
+      ->needs(option);
+  return option;
 }
 
 /// Adds --session.

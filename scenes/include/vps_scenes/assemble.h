@@ -56,6 +56,9 @@ struct AssembleOptions : ModelOptions {
   bool has_local_contact = false;
 };
 
+/// Least time that a person has for each step of a run by hand. assumed: longer than a person tries
+inline constexpr double kPersonTimeout_s = 600;
+
 /// Builds the models that the scene requires and lacks (model_plan.h), then runs every step: the hand moves
 /// the device's handle, the handle's proxy pulls the part through the coupling, and contact decides where the
 /// part goes. The part is released, watched for scene.release_s, and cooked into the fixed field. Unless

@@ -39,7 +39,11 @@ double peerPhysicsLimit_s(double physics_s) {
 }
 
 DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say)
-    : link_(link), stop_(stop), say_(std::move(say)), writer_(link.sessionId()), buffer_(kLongestMessage) {}
+    : link_(link),
+      stop_(stop),
+      say_(std::move(say)),
+      writer_(link.sessionId(), link.form()),
+      buffer_(kLongestMessage) {}
 
 void DeviceEnd::welcome(const HelloMessage& hello) {
   const std::uint64_t sender = hello_reader_.envelope().sender;

@@ -80,10 +80,10 @@ class DeviceSession {
         link_(link),
         sender_(newSender()),
         writer_(sender_),
-        haptic_writer_(sender_),
+        haptic_writer_(sender_, link.form()),
         buffer_(kLongestMessage),
-        scene_(sceneFromBytes(link.sceneBytes(), sessionWords(options.session))),
-        hand_(makeHand(scene_, true)),
+        scene_(sceneOf(link, options)),
+        hand_(makeHand(scene_, true, options.wish)),
         log_(link, haptic_writer_),
         remote_(link, haptic_writer_, hand_state_) {
     reader_.bindTo(link.sessionId());
@@ -115,13 +115,19 @@ class DeviceSession {
   [[nodiscard]] std::string deviceName() const { return std::string(hand_->device().name()); }
 
  private:
+  static Scene sceneOf(const Link& link, const DeviceNodeOptions& options) {
+    Scene scene = sceneFromBytes(link.sceneBytes(), sessionWords(options.session));
+    if (!options.kind.empty()) scene.device.kind = options.kind;
+    return scene;
+  }
   void sayHello() {
     HelloMessage hello;
     hello.limits = hand_->device().limits();
     const std::string_view name = hand_->device().name();
     std::memcpy(hello.name.data(), name.data(), std::min(name.size(), hello.name.size() - 1));
     const device::DeviceKind* kind = device::findDeviceKind(scene_.device.kind);
-    hello.may_rearm = options_.rearms || (kind != nullptr && kind->isSimulated());
+    hello.is_by_person = kind != nullptr && !kind->isSimulated();
+    hello.may_rearm = options_.rearms || !hello.is_by_person;
     link_.send(Channel::Reply, writer_.write(hello));
   }
   void sendTimes() {

@@ -13,6 +13,8 @@
 
 #include "network/broadcast_ring.h"
 #include "network/shared_region.h"
+#include "network/wire_form.h"
+#include "vps_scenes/network/session_network.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -75,6 +77,9 @@ class Link {
   /// Messages of a channel that were overwritten before they were received.
   [[nodiscard]] virtual std::uint64_t lost(Channel channel) const noexcept = 0;
 
+  /// In which states are sent.
+  [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
+
   // The functions below may call the system.
   /// Whether a process has the role now.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
@@ -98,16 +103,16 @@ std::unique_ptr<Link> makeSession(const std::string& session, std::string_view s
 /// version of this program, or another device has joined it.
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role);
 
-/// The same over UDP, through the network interface of that name ("lo", "eth0"); empty: in shared memory.
-/// Waits up to a second for a session to be found. Throws LoadError also where this build has no network.
+/// The same where the network says. Over UDP it waits up to a second for a session to be found. Throws
+/// LoadError also where this build has no network.
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
-                                  const std::string& interface);
-std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const std::string& interface);
+                                  const SessionNetwork& network);
+std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const SessionNetwork& network);
 
 /// Over UDP only; in dds/.
 std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string_view scene_bytes,
-                                         const std::string& interface);
+                                         const SessionNetwork& network);
 std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
-                                         const std::string& interface);
+                                         const SessionNetwork& network);
 
 }  // namespace vps::scenes::inline v0

@@ -127,6 +127,7 @@ void fields(HelloMessage& m, V& visit) {
   visit(limits.resolution_rad);
   visit(limits.workspace_rad);
   visit(m.name);
+  visit(m.is_by_person);
   visit(m.may_rearm);
 }
 
@@ -204,6 +205,7 @@ void fields(SnapshotMessage& m, V& visit) {
     visit(mark.p_W);
     visit(mark.n_W);
     visit(mark.depth_m);
+    visit(mark.force_N);
   });
 }
 

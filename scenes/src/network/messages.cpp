@@ -6,8 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "network/compact_fields.h"
 #include "network/link.h"
 #include "network/message_fields.h"
+#include "network/packed_rotation.h"
 #include "vps_device/detail/bytes.h"
 #include "vps_device/metronome.h"
 
@@ -18,10 +20,17 @@ namespace {
 constexpr double kLargest = 1e12;        // of any number that a node sends in good faith
 constexpr double kRotationError = 1e-6;  // assumed: far above rounding, far below what is felt
 constexpr std::size_t kEnvelopeBytes = 28;
+// Of a compact message: kind and version, sender, number, microseconds.
+constexpr std::size_t kCompactEnvelopeBytes = 16;
+constexpr std::uint16_t kCompactBit = 0x80;
 constexpr std::uint32_t kLongestList = 1024;  // bodies, or contacts, of a snapshot; the rest is left out
 
 template <typename Message>
 constexpr MessageKind kKindOf = MessageKind::Haptic;
+template <typename Message>
+constexpr bool kHasCompact =
+    std::is_same_v<Message, HapticMessage> || std::is_same_v<Message, PhysicsMessage> ||
+    std::is_same_v<Message, SnapshotMessage>;
 template <>
 constexpr MessageKind kKindOf<PhysicsMessage> = MessageKind::Physics;
 template <>
@@ -97,6 +106,131 @@ class Visit {
  private:
   Self& self() { return static_cast<Self&>(*this); }
 };
+
+/// The same for the compact form.
+template <typename Self>
+class CompactVisit {
+ public:
+  void operator()(double& x) { self().number(x); }
+  void operator()(Vec3& x) {
+    for (double& component : x) self().number(component);
+  }
+  void operator()(Pose& x) {
+    (*this)(x.p);
+    self().rotation(x.R);
+  }
+  void operator()(std::optional<double>& x) {
+    bool has_value = x.has_value();
+    double value = x.value_or(0);
+    exact(has_value);
+    if (has_value) self().number(value);
+    x = has_value ? std::optional(value) : std::nullopt;
+  }
+  void coarse(Twist& x) {
+    for (Vec3* part : {&x.w, &x.v}) self().half(*part);
+  }
+  void coarse(Wrench& x) {
+    for (Vec3* part : {&x.tau, &x.f}) self().half(*part);
+  }
+  template <typename T>
+  void exact(T& x) {
+    if constexpr (std::is_same_v<T, bool>)
+      self().flag(x);
+    else
+      self().whole(x);
+  }
+  template <typename Enum>
+  void choice(Enum& e, unsigned count) {
+    std::uint8_t byte = static_cast<std::uint8_t>(e);
+    self().whole(byte);
+    if (byte >= count) return self().refuse();
+    e = static_cast<Enum>(byte);
+  }
+  [[nodiscard]] static bool isDue(std::int32_t number, std::int32_t every) { return number % every == 0; }
+
+ private:
+  Self& self() { return static_cast<Self&>(*this); }
+};
+
+class CompactPut : public CompactVisit<CompactPut> {
+ public:
+  explicit CompactPut(std::string& out) : writer_(out) {}
+  void number(double x) { writer_.put(static_cast<float>(x)); }
+  void half(const Vec3& x) {
+    for (const double component : x) {
+      const auto bounded = static_cast<float>(std::clamp(component, -kLargestHalf, kLargestHalf));
+      writer_.put(std::bit_cast<std::uint16_t>(Eigen::half(bounded)));
+    }
+  }
+  void rotation(const Mat3& R) { writer_.put(packedRotation(R)); }
+  void flag(bool x) { writer_.put(static_cast<std::uint8_t>(x)); }
+  template <typename T>
+  void whole(T x) {
+    writer_.put(x);
+  }
+  void refuse() {}
+  template <typename List, typename Each>
+  void list(List& items, const Each& each) {
+    const std::size_t count = std::min<std::size_t>(items.size(), kLongestList);
+    writer_.put(static_cast<std::uint16_t>(count));
+    for (std::size_t i = 0; i < count; ++i) each(items[i]);
+  }
+
+ private:
+  static constexpr double kLargestHalf = 65504;
+  device::ByteWriter writer_;
+};
+
+class CompactGet : public CompactVisit<CompactGet> {
+ public:
+  explicit CompactGet(std::string_view bytes) : reader_(bytes) {}
+  [[nodiscard]] bool isAllRead() const { return reader_.isGood() && reader_.left() == 0; }
+  [[nodiscard]] bool isGood() const { return is_good_; }
+
+  void number(double& x) { check(x = reader_.getFloat()); }
+  void half(Vec3& x) {
+    for (double& component : x)
+      check(component = static_cast<float>(std::bit_cast<Eigen::half>(reader_.get<std::uint16_t>())));
+  }
+  void rotation(Mat3& R) {
+    const std::optional<Mat3> read = unpackedRotation(reader_.get<std::uint64_t>());
+    if (!read) return refuse();
+    R = *read;
+  }
+  void flag(bool& x) {
+    const auto byte = reader_.get<std::uint8_t>();
+    if (byte > 1) refuse();
+    x = byte == 1;
+  }
+  void whole(double& x) { check(x = reader_.getDouble()); }
+  void whole(std::int32_t& x) { x = reader_.getInt(); }
+  template <std::unsigned_integral T>
+  void whole(T& x) {
+    x = reader_.get<T>();
+  }
+  void refuse() { is_good_ = false; }
+  template <typename List, typename Each>
+  void list(List& items, const Each& each) {
+    const auto count = reader_.get<std::uint16_t>();
+    items.clear();
+    if (count > kLongestList) return refuse();
+    for (std::uint32_t i = 0; i < count && reader_.isGood(); ++i) each(items.emplace_back());
+  }
+
+ private:
+  void check(double x) {
+    if (!(std::abs(x) <= kLargest)) refuse();
+  }
+  device::ByteReader reader_;
+  bool is_good_ = true;
+};
+
+/// The time that has these lower bits of its microseconds and is nearest to now.
+std::int64_t nearNow_ns(std::uint32_t low_us) {
+  const std::int64_t now_us = device::monotonicClock().now_ns() / 1000;
+  const auto ahead = static_cast<std::int32_t>(low_us - static_cast<std::uint32_t>(now_us));
+  return 1000 * (now_us + ahead);
+}
 
 class Put : public Visit<Put> {
  public:
@@ -202,7 +336,7 @@ const char* toText(Reading reading) {
   return "unknown";
 }
 
-MessageWriter::MessageWriter(std::uint64_t sender) : sender_(sender) {
+MessageWriter::MessageWriter(std::uint64_t sender, WireForm form) : sender_(sender), form_(form) {
   out_.reserve(kLongestMessage);
 }
 
@@ -210,6 +344,19 @@ template <typename Message>
 std::string_view MessageWriter::write(const Message& message) noexcept {
   constexpr MessageKind kKind = kKindOf<Message>;
   out_.clear();
+  if constexpr (kHasCompact<Message>) {
+    if (form_ == WireForm::Compact) {
+      device::ByteWriter head(out_);
+      head.put(static_cast<std::uint16_t>(static_cast<std::uint16_t>(kKind) | kCompactBit));
+      head.put(kMessageVersion);
+      head.put(static_cast<std::uint32_t>(sender_));
+      head.put(static_cast<std::uint32_t>(++numbers_[static_cast<std::size_t>(kKind)]));
+      head.put(static_cast<std::uint32_t>(device::monotonicClock().now_ns() / 1000));
+      CompactPut put(out_);
+      wire::compactFields(const_cast<Message&>(message), put);  // it changes nothing
+      return out_;
+    }
+  }
   Put put(out_);
   put.number(static_cast<std::uint16_t>(kKind));
   put.number(kMessageVersion);
@@ -227,18 +374,39 @@ template <typename Message>
 Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
   constexpr MessageKind kKind = kKindOf<Message>;
   const Reading reading = [&] {
-    if (bytes.size() < kEnvelopeBytes) return Reading::BadSize;
+    if (bytes.size() < kCompactEnvelopeBytes) return Reading::BadSize;
     device::ByteReader head(bytes);
-    if (head.get<std::uint16_t>() != static_cast<std::uint16_t>(kKind)) return Reading::BadKind;
+    const auto kind = head.get<std::uint16_t>();
+    const bool is_compact = kHasCompact<Message> && kind == (static_cast<std::uint16_t>(kKind) | kCompactBit);
+    if (!is_compact && bytes.size() < kEnvelopeBytes) return Reading::BadSize;
+    if (!is_compact && kind != static_cast<std::uint16_t>(kKind)) return Reading::BadKind;
     if (head.get<std::uint16_t>() != kMessageVersion) return Reading::BadVersion;
-    Get get(bytes.substr(4));
     Envelope envelope;
-    wire::fields(envelope, get);
-    if (sender_ != 0 && envelope.sender != sender_) return Reading::WrongSender;
     Message read = message;
-    wire::fields(read, get);
-    if (!get.isAllRead()) return get.isGood() ? Reading::BadSize : Reading::BadValue;
-    if (!get.isGood()) return Reading::BadValue;
+    const auto take = [&](auto& get, const auto& fields) {
+      fields(read, get);
+      if (!get.isAllRead()) return get.isGood() ? Reading::BadSize : Reading::BadValue;
+      return get.isGood() ? Reading::Good : Reading::BadValue;
+    };
+    Reading taken = Reading::BadKind;
+    if (is_compact) {
+      if constexpr (kHasCompact<Message>) {
+        envelope.sender = head.get<std::uint32_t>();
+        if (sender_ != 0 && envelope.sender != static_cast<std::uint32_t>(sender_))
+          return Reading::WrongSender;
+        if (sender_ != 0) envelope.sender = sender_;
+        envelope.number = head.get<std::uint32_t>();
+        envelope.time_ns = nearNow_ns(head.get<std::uint32_t>());
+        CompactGet get(bytes.substr(kCompactEnvelopeBytes));
+        taken = take(get, [](Message& m, CompactGet& visit) { wire::compactFields(m, visit); });
+      }
+    } else {
+      Get get(bytes.substr(4));
+      wire::fields(envelope, get);
+      if (sender_ != 0 && envelope.sender != sender_) return Reading::WrongSender;
+      taken = take(get, [](Message& m, Get& visit) { wire::fields(m, visit); });
+    }
+    if (taken != Reading::Good) return taken;
     std::uint64_t& last = numbers_[static_cast<std::size_t>(kKind)];
     if (envelope.number <= last && envelope.sender == envelope_.sender) return Reading::Replayed;
     last = envelope.number;

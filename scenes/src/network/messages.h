@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "network/shared_region.h"
+#include "network/wire_form.h"
 #include "vps_device/coupling_port.h"
 #include "vps_device/operator.h"
 #include "vps_device/run_log.h"
@@ -23,7 +24,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 2;
+inline constexpr std::uint16_t kMessageVersion = 3;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -40,7 +41,7 @@ enum class MessageKind : std::uint16_t {
 
 /// At the start of each message.
 struct Envelope {
-  std::uint64_t sender = 0;  ///< a number that no other process has
+  std::uint64_t sender = 0;  ///< a number that no other process has; of compact ones the lower half
   std::uint64_t number = 0;  ///< of the message, counted by its sender for each kind, from 1
   std::int64_t time_ns = 0;  ///< of sending, by the sender's monotonic clock
 };
@@ -86,6 +87,7 @@ struct ReplyMessage {
 struct HelloMessage {
   device::DeviceLimits limits;
   std::array<char, 64> name{};  ///< of the device, zero-terminated
+  bool is_by_person = false;    ///< moved by a person, who takes longer than the virtual operator
   bool may_rearm = false;       ///< after a lost peer, the render node may re-arm the loop
 };
 
@@ -122,7 +124,7 @@ struct NewsMessage {
   std::array<char, 512> text{};  ///< zero-terminated
 };
 
-/// That a node lives, over a network; each 5 ms. It sends the last beat of each peer back, for the clocks.
+/// That a node lives, over a network; each 20 ms. It sends the last beat of each peer back, for the clocks.
 struct BeatMessage {
   NodeRole role = NodeRole::Render;
   std::uint64_t session = 0;  ///< Link::sessionId()
@@ -149,7 +151,7 @@ const char* toText(Reading reading);
 class MessageWriter {
  public:
   /// @param sender  Envelope::sender
-  explicit MessageWriter(std::uint64_t sender);
+  explicit MessageWriter(std::uint64_t sender, WireForm form = WireForm::Exact);
 
   /// The bytes, which stay until the next call. The time is that of the call.
   template <typename Message>
@@ -163,6 +165,7 @@ class MessageWriter {
  private:
   std::string out_;
   std::uint64_t sender_;
+  WireForm form_;
   std::array<std::uint64_t, 16> numbers_{};
 };
 
@@ -174,7 +177,8 @@ class MessageReader {
     sender_ = sender;
     numbers_ = {};
   }
-  /// Good: `message` has the values. Otherwise it is unchanged. Allocates for snapshots only.
+  /// Good: `message` has the values. Otherwise it is unchanged. Takes both forms; of a compact state some
+  /// values may be those that `message` had. Allocates for snapshots only.
   template <typename Message>
   Reading read(std::string_view bytes, Message& message) noexcept;
 

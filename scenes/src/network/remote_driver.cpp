@@ -69,7 +69,8 @@ class RemoteDriver final : public ClockedDriver {
     if (is_running_ && ask({.kind = RequestKind::Stop})) {
       takeLog();
       haptic_log_.passUntil(device::SyncEventKind::Paused);
-      takeView();
+      takeState();
+      setView(newest_);
     }
     is_running_ = false;
     clock_.stop();
@@ -86,13 +87,15 @@ class RemoteDriver final : public ClockedDriver {
   bool advance() override {
     clock_.wait();
     end_.poll();
-    takeViewSinceRequest();
+    takeStateSinceRequest();
     if (!keepDevice()) return false;
     rearmWhenGood();
-    takeViewSinceRequest();
+    takeStateSinceRequest();
     takeLog();
-    haptic_log_.passUpTo(view_.tick);
-    haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Step});
+    haptic_log_.passUpTo(newest_.tick);
+    haptic_log_.addFromPhysics({newest_.report.time_s, newest_.tick, 1, 0, device::SyncEventKind::Step});
+    // Only now: it reports faults, which a replay logs after the step, too.
+    setView(newest_);
     return true;
   }
   bool hasSettled(bool is_ready) override {
@@ -160,19 +163,19 @@ class RemoteDriver final : public ClockedDriver {
   void rearmWhenGood();
   /// A state that was sent before the last request was carried out shows the hand as it was before: a phase
   /// that is over, such as Done of the step before.
-  void takeView() {
+  void takeState() {
     const HapticMessage* message = end_.takeState();
     if (message == nullptr || message->state.tick < end_.reply().tick) return;
     if (message->state.tick > end_.reply().tick) known_state_ = device::stateFromByte(message->hand);
-    setView(message->state);
+    newest_ = message->state;
   }
   /// Over UDP a reply may come before the states that were sent before it.
-  void takeViewSinceRequest() {
-    takeView();
-    for (double left_s = kPeerLimit_s; left_s > 0 && is_running_ && view_.tick < end_.reply().tick;
+  void takeStateSinceRequest() {
+    takeState();
+    for (double left_s = kPeerLimit_s; left_s > 0 && is_running_ && newest_.tick < end_.reply().tick;
          left_s -= 1e-4) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
-      takeView();
+      takeState();
     }
   }
   void takeLog() {
@@ -185,6 +188,7 @@ class RemoteDriver final : public ClockedDriver {
   device::RunLog* log_;
   HapticLog haptic_log_;
   device::OperatorState known_state_;  ///< as of the last advance() or command
+  device::HapticState newest_;         ///< of the loop; view_ follows in advance()
   device::PhysicsState part_;          ///< the last one
   CouplingGains gains_;
   std::optional<HandCommand> begun_;  ///< the hand works on this
@@ -304,7 +308,7 @@ bool RemoteDriver::restoreHold(device::OperatorPhase phase) {
 // As a person does; the force then returns gradually, from a new grasp of the part where it is.
 void RemoteDriver::rearmWhenGood() {
   const bool waits =
-      is_running_ && end_.hello().may_rearm && view_.safety.fault == device::SafetyFault::PhysicsStalled;
+      is_running_ && end_.hello().may_rearm && newest_.safety.fault == device::SafetyFault::PhysicsStalled;
   good_steps_ = waits ? good_steps_ + 1 : 0;
   if (good_steps_ < kStepsUntilRearm) return;
   good_steps_ = 0;

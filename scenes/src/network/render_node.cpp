@@ -109,6 +109,8 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   result.scene = scene.name;
   if (!end.waitForDevice()) return result;
 
+  if (end.hello().is_by_person)
+    for (SceneStep& step : scene.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
   const std::unique_ptr<Hand> hand = remoteHand(end, scene);
   device::LoopSettings settings = loopSettings(scene, hand->device(), networkDelay_s(end, given));
   if (!given.network.empty()) {

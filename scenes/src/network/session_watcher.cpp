@@ -20,13 +20,16 @@ struct SessionWatcher::Work {
   Scene scene;
   std::vector<char> buffer;
   MessageReader reader;         ///< of the render node
+  std::int64_t shot_ns = 0;     ///< when it sent the last snapshot
   MessageReader device_reader;  ///< of any device
+  HapticMessage haptic;         ///< the last one, of which a compact one repeats a part
 };
 
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
 SessionWatcher::~SessionWatcher() = default;
 
-std::unique_ptr<SessionWatcher> SessionWatcher::join(const std::string& session, const std::string& network) {
+std::unique_ptr<SessionWatcher> SessionWatcher::join(const std::string& session,
+                                                     const SessionNetwork& network) {
   std::unique_ptr<Link> link = joinSession(session, NodeRole::Watch, network);
   if (link == nullptr) return nullptr;
   return std::unique_ptr<SessionWatcher>(
@@ -41,11 +44,16 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
   SnapshotMessage message;
   const std::string_view bytes = work_->link->receive(Channel::Snapshot, work_->buffer);
   if (bytes.empty() || work_->reader.read(bytes, message) != Reading::Good) return {};
+  work_->shot_ns = work_->reader.envelope().time_ns;
   const std::size_t parts = work_->scene.parts.size();
   for (const BodySnapshot& body : message.snapshot.bodies)
     if (body.part >= parts) return {};
   if (message.snapshot.has_target && message.snapshot.target_part >= parts) return {};
   return std::move(message.snapshot);
+}
+
+std::int64_t SessionWatcher::snapshotSent_ns() const {
+  return work_->shot_ns;
 }
 
 std::optional<SessionNews> SessionWatcher::takeNews() {
@@ -57,10 +65,9 @@ std::optional<SessionNews> SessionWatcher::takeNews() {
 }
 
 std::optional<SessionForce> SessionWatcher::takeForce() {
-  HapticMessage message;
   const std::string_view bytes = work_->link->receive(Channel::Haptic, work_->buffer);
-  if (bytes.empty() || work_->device_reader.read(bytes, message) != Reading::Good) return {};
-  const device::HapticState& state = message.state;
+  if (bytes.empty() || work_->device_reader.read(bytes, work_->haptic) != Reading::Good) return {};
+  const device::HapticState& state = work_->haptic.state;
   return SessionForce{state.report.time_s, work_->device_reader.envelope().time_ns, state.report.F_hand_W,
                       state.proxy.is_coupled, state.safety.fault != device::SafetyFault::None};
 }

@@ -123,13 +123,13 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
 }
 
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
-                                  const std::string& interface) {
-  return interface.empty() ? makeSession(session, scene_bytes)
-                           : makeNetworkSession(session, scene_bytes, interface);
+                                  const SessionNetwork& network) {
+  return network.empty() ? makeSession(session, scene_bytes)
+                         : makeNetworkSession(session, scene_bytes, network);
 }
 
-std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const std::string& interface) {
-  return interface.empty() ? joinSession(session, role) : joinNetworkSession(session, role, interface);
+std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const SessionNetwork& network) {
+  return network.empty() ? joinSession(session, role) : joinNetworkSession(session, role, network);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -38,11 +38,12 @@ bool wireRow(const std::string& scene, const WireFaults& faults) {
   LossyWire wire(faults);
   const auto begun = std::chrono::steady_clock::now();
   const std::string render_text = folder.path() / "render.txt", json_file = folder.path() / "run.json";
-  test::ChildProcess device(inSpace("b", {VPS_PROGRAM, "device", "--session", "wire", "--network", "wire"}),
-                            folder.path() / "device.txt");
+  test::ChildProcess device(
+      inSpace("b", {VPS_PROGRAM, "device", "--session", "wire", "--network", "wire", "--security", "none"}),
+      folder.path() / "device.txt");
   test::ChildProcess render(
-      inSpace("a", {VPS_PROGRAM, "render", scene, "--session", "wire", "--network", "wire", "--no-pictures",
-                    "--out", folder.path() / "out", "--json", json_file}),
+      inSpace("a", {VPS_PROGRAM, "render", scene, "--session", "wire", "--network", "wire", "--security",
+                    "none", "--no-pictures", "--out", folder.path() / "out", "--json", json_file}),
       render_text);
   render.wait();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;

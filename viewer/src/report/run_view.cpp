@@ -17,6 +17,7 @@
 #include "report/run_view_script.h"
 #include "report/text_file.h"
 #include "report/thinned_trace.h"
+#include "report/three.h"
 #include "vps_viewer/renderer.h"
 
 namespace vps::viewer::inline v0 {
@@ -24,8 +25,6 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kThreeFolder = "/usr/share/javascript/three/";  // of Debian's package libjs-three
 
 // The notice that its licence asks for.
 constexpr const char* kThreeNotice = R"(<!--

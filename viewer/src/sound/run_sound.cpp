@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "sound/beeper.h"
-#include "sound/part_voice.h"
-#include "vps/solid.h"
+#include "sound/scene_voice.h"
 #include "vps/voxmap.h"
 #include "vps_device/random.h"
 #include "vps_viewer/sound.h"
@@ -21,32 +20,8 @@ constexpr double kHalfTurn = std::numbers::pi;
 constexpr double kLeastRise_N = 0.05;
 // Forces of resting contacts jitter from step to step: a stroke exceeds what there was for this long. assumed
 constexpr double kMemory_s = 0.01;
-constexpr double kCurvature_m = 5e-3;  // radius at the place of contact. assumed: edges and rounds of a part
 constexpr double kRoughness_m = 0.1e-3;  // length of a wave of the surface's roughness. assumed: milled
 constexpr double kRubShare = 0.1;        // of the normal force that roughness modulates. assumed
-
-/// Duration of the contact of a stroke. Source: Hertz, in Johnson, "Contact Mechanics", 1985, section 11.4:
-/// 2.94 (15/16)^(2/5) (m^2 / (R E^2 v))^(1/5).
-double strokeDuration_s(double mass_kg, double plane_strain_Pa, double speed_m_s) {
-  const double v = std::max(speed_m_s, 1e-4);
-  return 2.87 * std::pow(mass_kg * mass_kg / (kCurvature_m * plane_strain_Pa * plane_strain_Pa * v), 0.2);
-}
-
-struct Stroke {
-  Touch touch;
-  double impulse_Ns = 0;
-  long start = 0;     ///< sample
-  double length = 1;  ///< samples, at least 1
-
-  /// Half a sine, whose sum over the samples is the impulse.
-  [[nodiscard]] double force_N(long sample, double rate_hz) const {
-    const double from = static_cast<double>(sample - start), to = std::min(from + 1, length);
-    if (from >= length) return 0;
-    const double share = 0.5 * (std::cos(kHalfTurn * from / length) - std::cos(kHalfTurn * to / length));
-    return impulse_Ns * share * rate_hz;
-  }
-  [[nodiscard]] bool isOver(long sample) const { return static_cast<double>(sample - start) >= length; }
-};
 
 /// The contacts of one step as one force.
 struct TotalContact {
@@ -103,25 +78,8 @@ Sounding& RunSound::Impl::sounding(std::size_t index) {
   Sounding& sounding = parts[index];
   if (sounding.voice) return sounding;
   const scenes::ScenePart& part = scene.parts[index];
-  const Material& material = part.part.material;
-  const Elasticity elasticity = {part.youngs_modulus_Pa, part.poissons_ratio};
-  sounding.plane_strain_Pa =
-      0.5 * elasticity.youngs_modulus_Pa / (1 - elasticity.poissons_ratio * elasticity.poissons_ratio);
-  const double volume_m3 = std::max(1e-12, std::abs(massProperties(part.part.mesh).volume_m3));
-  BodyModes modes;
-  if (settings.has_rings) {
-    const bool has_map = part.model && part.model->map && !part.is_cropped;
-    std::optional<Solid> solid;
-    if (!has_map) solid.emplace(part.part.mesh, part.part.name);
-    modes = findModes(
-        bounds(part.part.mesh),
-        [&](const Vec3& p_P) {
-          return has_map ? part.model->map->isInsideCoarse(p_P) : solid->isInside(p_P);
-        },
-        material.density_kg_m3, elasticity);
-  }
-  sounding.voice.emplace(std::move(modes), volume_m3, volume_m3 * material.density_kg_m3, settings.rate_hz,
-                         settings.distance_m);
+  sounding.plane_strain_Pa = planeStrain_Pa(part);
+  sounding.voice.emplace(partVoice(part, settings));
   return sounding;
 }
 

@@ -31,6 +31,9 @@ class VPS_VIEWER_API HandDrag {
   void drag(const Camera& camera, const PixelPlace& drag, PictureSize size, HandMotion motion);
   /// By the wheel: towards the viewer.
   void pull(const Camera& camera, double way_m);
+  /// The grabbed point along a way, or about a rotation vector, in W.
+  void move(const Vec3& way_W);
+  void turn(const Vec3& turn_W);
   /// The button is up: the handle goes to the part, so that the spring relaxes and the part stays where it
   /// is.
   void letGo(const scenes::Snapshot& shot);
@@ -43,9 +46,6 @@ class VPS_VIEWER_API HandDrag {
   [[nodiscard]] const Vec3& cursorPoint() const { return cursor_W_; }
 
  private:
-  void move(const Vec3& way_W);
-  void turn(const Vec3& turn_W);
-
   double scale_;
   std::shared_ptr<device::HandleWish> wish_ = std::make_shared<device::HandleWish>();
   Pose X_DH_;                   ///< the wish

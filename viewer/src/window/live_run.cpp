@@ -31,7 +31,8 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
   is_by_clock_ = isByPerson(scene_.device.kind);
   if (is_by_clock_) {
     is_paused_ = false;
-    for (scenes::SceneStep& step : scene_.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
+    for (scenes::SceneStep& step : scene_.steps)
+      step.timeout_s = std::max(step.timeout_s, scenes::kPersonTimeout_s);
   }
   if (settings.has_sound) {
     std::string why;

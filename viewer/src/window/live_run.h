@@ -29,9 +29,8 @@ struct LiveSettings {
 };
 
 /// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
-/// take kPersonTimeout_s at most.
+/// take scenes::kPersonTimeout_s at least.
 [[nodiscard]] VPS_VIEWER_API bool isByPerson(const std::string& kind);
-inline constexpr double kPersonTimeout_s = 600;  ///< assumed: longer than a person tries
 
 /// What is known of a run, for those who watch.
 struct LiveStatus {

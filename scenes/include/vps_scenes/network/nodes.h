@@ -13,6 +13,7 @@
 
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/network/session_network.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
@@ -24,9 +25,7 @@ using Say = std::function<void(const std::string&)>;
 
 struct RenderOptions : AssembleOptions {
   std::string session = "default";
-  /// The interface through which the nodes meet by UDP: "lo" for this machine only, or one to other machines,
-  /// which then can read and move everything in the session. Empty: shared memory. The same in all nodes.
-  std::string network;
+  SessionNetwork network;
   Say say;                      ///< may be empty
   double picture_rate_hz = 60;  ///< snapshots for the watchers, in simulated time
 };
@@ -40,13 +39,15 @@ VPS_SCENES_API AssembleResult renderNode(Scene& scene, const RenderOptions& opti
 
 struct DeviceNodeOptions {
   std::string session = "default";
-  std::string network;  ///< as in RenderOptions
+  SessionNetwork network;
   const std::atomic<bool>* stop = nullptr;
   Say say;  ///< may be empty
   /// After the render node was lost and is back, force returns by itself. Otherwise a device that a person
   /// holds is re-armed at the next step; a simulated one always re-arms.
   bool rearms = false;
-  bool stays = false;  ///< waits for the next session when one has ended
+  bool stays = false;                                  ///< waits for the next session when one has ended
+  std::string kind = {};                               ///< of the device; empty: the scene's
+  std::shared_ptr<device::HandleWish> wish = nullptr;  ///< as in AssembleOptions
 };
 
 struct DeviceNodeResult {
@@ -84,12 +85,14 @@ struct SessionForce {
 class VPS_SCENES_API SessionWatcher {
  public:
   /// Null: there is no such session now. Throws LoadError where it cannot be watched.
-  static std::unique_ptr<SessionWatcher> join(const std::string& session, const std::string& network = "");
+  static std::unique_ptr<SessionWatcher> join(const std::string& session, const SessionNetwork& network = {});
   ~SessionWatcher();
 
   [[nodiscard]] const Scene& scene() const;
   /// The newest snapshot, once.
   std::optional<Snapshot> takeSnapshot();
+  /// When the last one was sent, by the monotonic clock of the render node's machine.
+  [[nodiscard]] std::int64_t snapshotSent_ns() const;
   /// The next news, each once.
   std::optional<SessionNews> takeNews();
   std::optional<SessionForce> takeForce();

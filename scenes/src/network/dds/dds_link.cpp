@@ -25,7 +25,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr std::int64_t kBeat_ns = 5'000'000;
+constexpr std::int64_t kBeat_ns = 20'000'000;
 constexpr double kAlive_s = 0.1;  ///< a node whose last beat is older is lost
 constexpr double kFind_s = 1;     ///< for a session to be found
 constexpr double kListen_s =
@@ -64,8 +64,8 @@ struct Peer {
 
 class DdsLink final : public Link {
  public:
-  DdsLink(const std::string& session, NodeRole role, const std::string& interface)
-      : role_(role), writer_(newSender()), participant_(interface) {
+  DdsLink(const std::string& session, NodeRole role, const SessionNetwork& network)
+      : role_(role), writer_(newSender()), participant_(network) {
     sem_init(&wake_, 0, 0);
     std::string prefix = "vps/" + session + "/";
     std::replace(prefix.begin(), prefix.end(), '-', '/');  // names of topics have no -
@@ -122,6 +122,7 @@ class DdsLink final : public Link {
     return waitFor(kListen_s, [&] { return isAlive(role); });
   }
 
+  [[nodiscard]] WireForm form() const noexcept override { return WireForm::Compact; }
   bool send(Channel channel, std::string_view message) noexcept override {
     const bool is_sent = writers_[static_cast<std::size_t>(channel)].write(message);
     sem_post(&wake_);  // does not wait
@@ -304,25 +305,25 @@ void DdsLink::takeBeat(std::string_view bytes) {
 }  // namespace
 
 std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string_view scene_bytes,
-                                         const std::string& interface) {
+                                         const SessionNetwork& network) {
   requireSessionName(session);
   {
-    DdsLink other(session, NodeRole::Watch, interface);
+    DdsLink other(session, NodeRole::Watch, network);
     other.start();
     if (other.find() && other.isAlive(NodeRole::Render))
       throw LoadError("", "",
                       sessionWords(session) + ": another vps render runs it; choose another --session");
   }
-  auto link = std::make_unique<DdsLink>(session, NodeRole::Render, interface);
+  auto link = std::make_unique<DdsLink>(session, NodeRole::Render, network);
   link->open(scene_bytes);
   link->start();
   return link;
 }
 
 std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
-                                         const std::string& interface) {
+                                         const SessionNetwork& network) {
   requireSessionName(session);
-  auto link = std::make_unique<DdsLink>(session, role, interface);
+  auto link = std::make_unique<DdsLink>(session, role, network);
   link->start();
   if (!link->find()) return nullptr;
   if (!link->isSameVersion())

@@ -2,6 +2,7 @@
 // In place of dds_link.cpp where Cyclone DDS is missing.
 #include "network/link.h"
 #include "vps/load_error.h"
+#include "vps_scenes/network/ros_topics.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -15,11 +16,19 @@ namespace {
 
 }  // namespace
 
-std::unique_ptr<Link> makeNetworkSession(const std::string&, std::string_view, const std::string&) {
+std::unique_ptr<Link> makeNetworkSession(const std::string&, std::string_view, const SessionNetwork&) {
   refuseNetwork();
 }
-std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const std::string&) {
+std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const SessionNetwork&) {
   refuseNetwork();
 }
+
+struct RosTopics::Work {};
+RosTopics::RosTopics(int, const std::string&, const std::string&, const Scene&) {
+  refuseNetwork();
+}
+RosTopics::~RosTopics() = default;
+void RosTopics::publish(const Snapshot&, std::int64_t) {}
+void RosTopics::publish(const Wrench&, std::int64_t) {}
 
 }  // namespace vps::scenes::inline v0

@@ -3,9 +3,12 @@
 
 #include <cctype>
 #include <cstddef>
+#include <cstdlib>
 #include <map>
 #include <mutex>
+#include <utility>
 
+#include "network/dds/certificates.h"
 #include "vps/load_error.h"
 #include "vps_device/periodic_thread.h"
 
@@ -53,16 +56,28 @@ void raiseThisThread() {
   has_asked = true;
 }
 
-/// One domain for each interface and process; a domain cannot be made twice.
-dds_domainid_t domainOf(const std::string& interface) {
-  static std::mutex mutex;
-  static std::map<std::string, dds_domainid_t> domains;
-  const std::lock_guard lock(mutex);
-  const auto found = domains.find(interface);
-  if (found != domains.end()) return found->second;
+void requireName(const std::string& interface) {
   for (const char c : interface)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != ':' && c != '-' && c != '_')
       throw LoadError("", "", "--network " + interface + " names no network interface; `ip link` lists them");
+}
+
+/// A domain cannot be made twice by a process.
+dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
+  struct Made {
+    dds_domainid_t domain;
+    std::string security;
+  };
+  static std::mutex mutex;
+  static std::map<std::pair<std::string, int>, Made> domains;
+  const std::lock_guard lock(mutex);
+  const std::string& interface = network.interface;
+  const auto found = domains.find({interface, wanted});
+  if (found != domains.end()) {
+    if (found->second.security == network.security) return found->second.domain;
+    throw LoadError("", "", "--network " + interface + " was used with other certificates by this process");
+  }
+  requireName(interface);
   // Loopback has no multicast, so the participants look for each other at the ports of the first few.
   const std::string find =
       isLoopback(interface)
@@ -72,12 +87,14 @@ dds_domainid_t domainOf(const std::string& interface) {
           : "</General>";
   const std::string settings =
       "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"" + interface +
-      "\"/></Interfaces>" + find + "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>";
-  // Domains of different interfaces are apart on one machine; on the wire all have the same ports as domain 0
-  // of their interface would have.
-  const dds_domainid_t domain = isLoopback(interface) ? 77 : 78;
+      "\"/></Interfaces>" + find + securitySettings(network, isLoopback(interface)) +
+      "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>";
+  // Sessions at different interfaces are apart on one machine.
+  const dds_domainid_t domain = wanted >= 0             ? static_cast<dds_domainid_t>(wanted)
+                                : isLoopback(interface) ? 77
+                                                        : 78;
   require(dds_create_domain(domain, settings.c_str()), ("interface " + interface).c_str());
-  domains[interface] = domain;
+  domains[{interface, wanted}] = {domain, network.security};
   return domain;
 }
 
@@ -101,9 +118,14 @@ struct Qos {
 
 }  // namespace
 
-DdsParticipant::DdsParticipant(const std::string& interface)
-    : entity_(dds_create_participant(domainOf(interface), nullptr, nullptr)) {
-  require(entity_, ("interface " + interface).c_str());
+DdsParticipant::DdsParticipant(const SessionNetwork& network, int domain)
+    : entity_(dds_create_participant(domainOf(network, domain), nullptr, nullptr)) {
+  require(entity_, network.security.empty()
+                       ? ("interface " + network.interface).c_str()
+                       : ("the certificates in " + network.security + " do not belong together").c_str());
+  // Threads of DDS use the security plugins until they end, which must be before those are unloaded at exit.
+  static const bool ends_in_order = std::atexit([] { dds_delete(DDS_CYCLONEDDS_HANDLE); }) == 0;
+  (void)ends_in_order;
 }
 
 DdsParticipant::~DdsParticipant() {

@@ -9,12 +9,16 @@
 #include <string>
 #include <string_view>
 
+#include "vps_scenes/network/session_network.h"
+
 namespace vps::scenes::inline v0 {
 
-/// A participant in a domain of one network interface. Throws LoadError where the system refuses.
+/// A participant in a domain of one network interface. Throws LoadError where the system refuses, and where
+/// the network needs certificates and has none.
 class DdsParticipant {
  public:
-  explicit DdsParticipant(const std::string& interface);
+  /// @param domain  of other programs; negative: that of sessions
+  explicit DdsParticipant(const SessionNetwork& network, int domain = -1);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sound/scene_voice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "vps/solid.h"
+#include "vps/voxmap.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+constexpr double kCurvature_m = 5e-3;  // radius at the place of contact. assumed: edges and rounds of a part
+
+}  // namespace
+
+double planeStrain_Pa(const scenes::ScenePart& part) {
+  return 0.5 * part.youngs_modulus_Pa / (1 - part.poissons_ratio * part.poissons_ratio);
+}
+
+double strokeDuration_s(double mass_kg, double plane_strain_Pa, double speed_m_s) {
+  const double v = std::max(speed_m_s, 1e-4);
+  return 2.87 * std::pow(mass_kg * mass_kg / (kCurvature_m * plane_strain_Pa * plane_strain_Pa * v), 0.2);
+}
+
+double Stroke::force_N(long sample, double rate_hz) const {
+  constexpr double kHalfTurn = std::numbers::pi;
+  const double from = static_cast<double>(sample - start), to = std::min(from + 1, length);
+  if (from >= length) return 0;
+  const double share = 0.5 * (std::cos(kHalfTurn * from / length) - std::cos(kHalfTurn * to / length));
+  return impulse_Ns * share * rate_hz;
+}
+
+PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings) {
+  const Material& material = part.part.material;
+  const double volume_m3 = std::max(1e-12, std::abs(massProperties(part.part.mesh).volume_m3));
+  BodyModes modes;
+  if (settings.has_rings) {
+    const bool has_map = part.model && part.model->map && !part.is_cropped;
+    std::optional<Solid> solid;
+    if (!has_map) solid.emplace(part.part.mesh, part.part.name);
+    modes = findModes(bounds(part.part.mesh),
+                      [&](const Vec3& p_P) {
+                        return has_map ? part.model->map->isInsideCoarse(p_P) : solid->isInside(p_P);
+                      },
+                      material.density_kg_m3, {part.youngs_modulus_Pa, part.poissons_ratio});
+  }
+  return {std::move(modes), volume_m3, volume_m3 * material.density_kg_m3, settings.rate_hz,
+          settings.distance_m};
+}
+
+}  // namespace vps::viewer::inline v0

@@ -1,0 +1,656 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The page of vps watch --web. Lengths are metres from the middle of the scene, in the group `root`, which is drawn in
+// millimetres on a screen and at the size of a table in a headset. The messages are described in README.md.
+(function () {
+  "use strict";
+  const $ = function (id) { return document.getElementById(id); };
+  const canvas = $("view");
+  const kInHand = 0x2f6fde, kForceColor = 0x8a2be2, kScreenScale = 1000;
+  // For tests, and for the curious: what the page has seen.
+  const seen = window.vps = { snapshots: 0, drawn: 0, ages_ms: [], blows: 0, pointers: {}, bodies: {}, hand: null, you: 0 };
+
+  // ---- drawing
+
+  let renderer;
+  try {
+    const context = canvas.getContext("webgl", { antialias: true, xrCompatible: true });
+    renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, antialias: true });
+  } catch (error) {
+    $("doing").textContent = "This browser shows no three-dimensional view (it has no WebGL).";
+    return;
+  }
+  renderer.setClearColor(0xffffff);
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+  renderer.localClippingEnabled = true;
+
+  const world = new THREE.Scene();
+  const camera = new THREE.PerspectiveCamera(30, 1, 1, 1e5);
+  camera.up.set(0, 0, 1);
+  world.add(camera);
+  world.add(new THREE.HemisphereLight(0xffffff, 0x9a9a9a, 0.75));
+  const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
+  world.add(lamp);
+  const root = new THREE.Group();
+  root.scale.setScalar(kScreenScale);
+  world.add(root);
+  const controls = new THREE.OrbitControls(camera, canvas);
+  let isDue = true;
+  function redraw() { isDue = true; }
+  controls.addEventListener("change", redraw);
+
+  const kLooks = {
+    corner: [0.75, -1.25, 0.85], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0], left: [-1, 0, 0],
+    top: [0, -0.001, 1]
+  };
+  let radius_m = 0.1;
+  function look(name) {
+    const half = 0.5 * camera.fov * Math.PI / 180;
+    const away = 1.1 * kScreenScale * radius_m / Math.sin(Math.min(half, Math.atan(Math.tan(half) * camera.aspect)));
+    camera.position.fromArray(kLooks[name]).normalize().multiplyScalar(away);
+    camera.near = 0.01 * away;
+    camera.far = 20 * away;
+    camera.updateProjectionMatrix();
+    controls.target.set(0, 0, 0);
+    controls.update();
+    redraw();
+  }
+  function resize() {
+    renderer.setSize(window.innerWidth, window.innerHeight, false);
+    camera.aspect = window.innerWidth / window.innerHeight;
+    camera.updateProjectionMatrix();
+    redraw();
+  }
+  window.addEventListener("resize", resize);
+
+  // ---- the scene
+
+  let scene = null;      // of the hello
+  let parts = [];        // by index: group, paint, surface
+  let inHand = -1, target = null;
+  const lines = new THREE.LineBasicMaterial({ color: 0x222222 });
+  const hint = new THREE.Group();
+  const hintPaint = new THREE.MeshBasicMaterial({ color: kInHand, transparent: true, opacity: 0.16, depthWrite: false });
+  const cutPlane = new THREE.Plane();
+  const center = new THREE.Vector3();
+
+  function place(object, pose) {
+    object.position.set(pose[0], pose[1], pose[2]);
+    object.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
+  }
+  function centered(pose) {
+    return [pose[0] - center.x, pose[1] - center.y, pose[2] - center.z].concat(pose.slice(3));
+  }
+
+  function begin(hello) {
+    for (const part of parts) root.remove(part.group);
+    parts = [];
+    inHand = -1;
+    target = null;
+    seen.bodies = {};
+    scene = hello;
+    center.fromArray(hello.center);
+    radius_m = hello.radius;
+    $("name").textContent = hello.name;
+    $("verdict").textContent = "";
+    parts = hello.parts.map(function (part, index) {
+      const group = new THREE.Group();
+      group.visible = part.fixed;
+      if (part.fixed) place(group, centered(part.pose));
+      root.add(group);
+      const entry = {
+        group: group, name: part.name, color: new THREE.Color(part.color), surface: null,
+        paint: new THREE.MeshPhongMaterial({
+          specular: 0x222222, shininess: 25, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
+          polygonOffsetUnits: 1
+        }),
+        inside: new THREE.MeshBasicMaterial({ side: THREE.BackSide })
+      };
+      entry.paint.color.copy(entry.color);
+      entry.inside.color.copy(entry.color).multiplyScalar(0.55);
+      fetchPart(entry, hello.run, index, part.triangles);
+      return entry;
+    });
+    root.add(hint);
+    hint.visible = false;
+    applyCut();
+    look($("looks").value);
+  }
+
+  function fetchPart(entry, run, index, triangles) {
+    const loader = new THREE.GLTFLoader();
+    const path = "/part/" + run + "/" + index + "/";
+    function show(file) {
+      if (!scene || parts[index] !== entry) return;
+      while (entry.group.children.length) entry.group.remove(entry.group.children[0]);
+      entry.surface = null;
+      file.scene.updateMatrixWorld(true);
+      file.scene.traverse(function (object) {
+        if (!object.isMesh && !object.isLineSegments) return;
+        const geometry = object.geometry.clone().applyMatrix(object.matrixWorld);
+        if (object.isLineSegments) {
+          entry.group.add(new THREE.LineSegments(geometry, lines));
+          return;
+        }
+        entry.surface = new THREE.Mesh(geometry, entry.paint);
+        entry.back = new THREE.Mesh(geometry, entry.inside);
+        entry.group.add(entry.surface, entry.back);
+      });
+      if (target && target.part === index) showTarget();
+      applyCut();
+      redraw();
+    }
+    function fine() { loader.load(path + "fine.glb", show); }
+    const kWorthCoarse = 6000;
+    if (triangles < kWorthCoarse) return fine();
+    loader.load(path + "coarse.glb", function (file) { show(file); fine(); });
+  }
+
+  function showTarget() {
+    while (hint.children.length) hint.remove(hint.children[0]);
+    hint.visible = Boolean(target);
+    if (!target) return;
+    const part = parts[target.part];
+    if (part && part.surface) hint.add(new THREE.Mesh(part.surface.geometry, hintPaint));
+    place(hint, target.pose);
+  }
+
+  // The part in hand stays whole, as in technical drawings.
+  function applyCut() {
+    const axis = $("cut").value;
+    $("cut-at").hidden = !axis;
+    const share = Number($("cut-at").value) / 100;
+    if (axis) {
+      const normal = new THREE.Vector3(axis === "x" ? 1 : 0, axis === "y" ? 1 : 0, axis === "z" ? -1 : 0);
+      if (axis === "x") normal.set(-1, 0, 0);
+      root.updateMatrixWorld(true);
+      cutPlane.setFromNormalAndCoplanarPoint(normal, normal.clone().multiplyScalar(-share * radius_m));
+      cutPlane.applyMatrix4(root.matrixWorld);
+    }
+    parts.forEach(function (part, index) {
+      const isCut = Boolean(axis) && index !== inHand;
+      part.paint.clippingPlanes = isCut ? [cutPlane] : null;
+      part.inside.clippingPlanes = isCut ? [cutPlane] : null;
+      part.paint.side = isCut ? THREE.FrontSide : THREE.DoubleSide;
+      part.paint.needsUpdate = part.inside.needsUpdate = true;
+      if (part.back) part.back.visible = isCut;
+    });
+    redraw();
+  }
+
+  // ---- forces and contacts
+
+  const marks = new THREE.Group();
+  root.add(marks);
+  const handArrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, kForceColor);
+  handArrow.visible = false;
+  for (const part of [handArrow.line, handArrow.cone]) {  // seen through the parts
+    part.material.depthTest = false;
+    part.material.transparent = true;
+    part.renderOrder = 2;
+  }
+  marks.add(handArrow);
+  const kMostContacts = 256;
+  const contactShape = new THREE.BufferGeometry();
+  contactShape.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6 * kMostContacts), 3));
+  contactShape.setAttribute("color", new THREE.BufferAttribute(new Float32Array(6 * kMostContacts), 3));
+  contactShape.setDrawRange(0, 0);
+  const contactLines = new THREE.LineSegments(contactShape, new THREE.LineBasicMaterial(
+    { vertexColors: THREE.VertexColors, depthTest: false, transparent: true }));
+  contactLines.frustumCulled = false;
+  contactLines.renderOrder = 2;
+  marks.add(contactLines);
+
+  function arrow(object, from, vector, fullScale) {
+    const size = vector.length();
+    object.visible = size > 1e-3 * fullScale;
+    if (!object.visible) return;
+    const length = radius_m * Math.min(1.5, 0.6 * size / fullScale) + 0.02 * radius_m;
+    object.position.copy(from);
+    object.setDirection(vector.clone().normalize());
+    object.setLength(length, 0.3 * length, 0.12 * length);
+  }
+
+  const kFullForce_N = 15, kFullDepth_um = 20;
+  function showContacts(contacts) {
+    const places = contactShape.attributes.position.array, colors = contactShape.attributes.color.array;
+    const color = new THREE.Color();
+    contacts.forEach(function (contact, i) {
+      const length = radius_m * (0.05 + 0.3 * Math.min(1, contact.force_N / kFullForce_N));
+      for (let k = 0; k < 3; ++k) {
+        places[6 * i + k] = contact.p[k];
+        places[6 * i + 3 + k] = contact.p[k] + length * contact.n[k];
+      }
+      color.setHSL(0.33 * (1 - Math.min(1, Math.max(0, contact.depth_um) / kFullDepth_um)), 0.9, 0.42);
+      color.toArray(colors, 6 * i);
+      color.toArray(colors, 6 * i + 3);
+    });
+    contactShape.setDrawRange(0, 2 * contacts.length);
+    contactShape.attributes.position.needsUpdate = contactShape.attributes.color.needsUpdate = true;
+  }
+
+  // ---- snapshots
+
+  let socket = null, clockOffset_ms = null;
+  let last = null;  // the newest snapshot
+  const kBlowKind = 2;
+  const kRoles = ["waiting", "in hand", "released", "mounted"];
+
+  function decode(buffer) {
+    const view = new DataView(buffer);
+    let at = 1;  // after the kind
+    function u8() { return view.getUint8(at++); }
+    function u16() { at += 2; return view.getUint16(at - 2, true); }
+    function u32() { at += 4; return view.getUint32(at - 4, true); }
+    function f32() { at += 4; return view.getFloat32(at - 4, true); }
+    function f64() { at += 8; return view.getFloat64(at - 8, true); }
+    function floats(count) { const all = []; for (let i = 0; i < count; ++i) all.push(f32()); return all; }
+    const shot = { number: u32(), time_s: f64(), taken_ms: f64(), step: (u16() << 16) >> 16 };
+    const flags = u8();
+    shot.isWhole = Boolean(flags & 4);
+    shot.bodies = [];
+    for (let left = u16(); left > 0; --left) shot.bodies.push({ part: u16(), role: u8(), pose: floats(7) });
+    if (flags & 1) shot.target = { part: u16(), pose: floats(7) };
+    if (flags & 2) shot.hand = { pose: floats(7), force: floats(3), torque: floats(3) };
+    shot.contacts = [];
+    for (let left = u16(); left > 0; --left) {
+      const p = floats(3);
+      const n = [view.getInt8(at) / 127, view.getInt8(at + 1) / 127, view.getInt8(at + 2) / 127];
+      at += 3;
+      shot.contacts.push({ p: p, n: n, depth_um: f32(), force_N: f32() });
+    }
+    return shot;
+  }
+
+  function show(shot) {
+    last = shot;
+    ++seen.snapshots;
+    if (!scene) return;
+    if (shot.isWhole) {
+      seen.bodies = {};
+      parts.forEach(function (part, index) { part.group.visible = scene.parts[index].fixed; });
+    }
+    for (const body of shot.bodies) {
+      const part = parts[body.part];
+      if (!part) continue;
+      if (body.role === 255) delete seen.bodies[body.part];
+      else seen.bodies[body.part] = { role: kRoles[body.role], pose: body.pose };
+      part.group.visible = body.role !== 255 && (body.role !== 0 || scene.parts[body.part].fixed);
+      place(part.group, body.pose);
+    }
+    let held = -1;
+    for (const index in seen.bodies) if (seen.bodies[index].role === "in hand") held = Number(index);
+    if (held !== inHand) {
+      if (parts[inHand]) parts[inHand].paint.color.copy(parts[inHand].color);
+      if (parts[held]) parts[held].paint.color.set(kInHand);
+      inHand = held;
+      applyCut();
+    }
+    const isNewTarget = Boolean(shot.target) !== Boolean(target) ||
+      (shot.target && (shot.target.part !== target.part || shot.target.pose.join() !== target.pose.join()));
+    if (isNewTarget) {
+      target = shot.target || null;
+      showTarget();
+    }
+    const hasForce = Boolean(shot.hand) && $("forces").getAttribute("aria-pressed") === "true";
+    if (hasForce)
+      arrow(handArrow, new THREE.Vector3().fromArray(shot.hand.pose), new THREE.Vector3().fromArray(shot.hand.force), kFullForce_N);
+    else handArrow.visible = false;
+    showContacts($("forces").getAttribute("aria-pressed") === "true" ? shot.contacts : []);
+    const step = scene.steps[shot.step];
+    $("step").textContent = shot.time_s.toFixed(2) + " s" +
+      (step ? " · step " + (shot.step + 1) + " of " + scene.steps.length + ": " + step.name : "");
+    const force = shot.hand ? new THREE.Vector3().fromArray(shot.hand.force).length() : 0;
+    $("force").textContent = shot.hand ? force.toFixed(1) + " N on the hand · " + shot.contacts.length + " contacts" : "";
+    redraw();
+  }
+
+  // ---- what others do
+
+  const pointers = {};
+  const kPointerColors = [0xd7263d, 0xf46036, 0x1b998b, 0xc5a100, 0x6a0572];
+  function showPointer(pointer) {
+    if (!pointers[pointer.who]) {
+      const ball = new THREE.Mesh(new THREE.SphereBufferGeometry(1, 20, 14), new THREE.MeshBasicMaterial(
+        { color: kPointerColors[pointer.who % kPointerColors.length], depthTest: false, transparent: true, opacity: 0.85 }));
+      ball.renderOrder = 3;
+      root.add(ball);
+      pointers[pointer.who] = ball;
+    }
+    const ball = pointers[pointer.who];
+    ball.visible = Boolean(pointer.p);
+    seen.pointers[pointer.who] = pointer.p;
+    if (pointer.p) ball.position.fromArray(pointer.p).sub(center);
+    ball.scale.setScalar(0.025 * radius_m);
+    redraw();
+  }
+
+  function showHand(hand) {
+    seen.hand = hand;
+    const button = $("take"), isMine = hand.holder === seen.you && seen.you !== 0;
+    button.hidden = !hand.may_take;
+    button.disabled = hand.holder !== 0 && !isMine;
+    button.setAttribute("aria-pressed", String(isMine));
+    button.textContent = isMine ? "Let go" : hand.holder !== 0 ? "Browser " + hand.holder + " has the part" : "Take the part";
+    if (!isMine) endGrab();
+  }
+
+  function tell(news) {
+    const item = document.createElement("li");
+    item.textContent = (news.time_s ? news.time_s.toFixed(2) + " s  " : "") + news.text;
+    $("news").appendChild(item);
+    while ($("news").children.length > 50) $("news").removeChild($("news").firstChild);
+    $("news").scrollTop = $("news").scrollHeight;
+    if (news.verdict) {
+      $("verdict").textContent = news.text;
+      $("verdict").className = news.verdict.replace(" ", "_");
+    }
+  }
+
+  // ---- sound
+
+  let audio = null, ear = null;
+  function openAudio() {
+    audio = new (window.AudioContext || window.webkitAudioContext)();
+    ear = audio.createDynamicsCompressor();
+    ear.connect(audio.destination);
+  }
+  // An impact as the server synthesised it: u32 rate, f32 pressure of the number 32767, i16 samples.
+  function playBlow(buffer) {
+    ++seen.blows;
+    if (!audio || audio.state !== "running") return;
+    const view = new DataView(buffer), count = (buffer.byteLength - 9) / 2, kFull_Pa = 0.5;
+    const samples = audio.createBuffer(1, count, view.getUint32(1, true));
+    const data = samples.getChannelData(0), scale = view.getFloat32(5, true) / (32767 * kFull_Pa);
+    for (let i = 0; i < count; ++i) data[i] = Math.max(-1, Math.min(1, scale * view.getInt16(9 + 2 * i, true)));
+    const source = audio.createBufferSource();
+    source.buffer = samples;
+    source.connect(ear);
+    source.start();
+  }
+
+  // ---- the connection
+
+  function send(message) {
+    if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  }
+  const kHear = {
+    hello: function (hello) {
+      seen.you = hello.you;
+      if (hello.run) begin(hello);
+    },
+    doing: function (words) { $("doing").textContent = words; },
+    news: tell,
+    pointer: showPointer,
+    hand: showHand,
+    watchers: function (count) { seen.watchers = count; }
+  };
+  function connect() {
+    socket = new WebSocket("ws://" + window.location.host + "/run");
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = function (event) {
+      if (typeof event.data !== "string") {
+        if (new Uint8Array(event.data)[0] === kBlowKind) return playBlow(event.data);
+        return show(decode(event.data));
+      }
+      const message = JSON.parse(event.data);
+      if (message.pong !== undefined)
+        clockOffset_ms = message.now_ms - 0.5 * (message.pong + performance.now());
+      for (const key in message) if (kHear[key]) kHear[key](message[key]);
+    };
+    socket.onclose = function () {
+      $("doing").textContent = "the connection is lost";
+      setTimeout(connect, 1000);
+    };
+    socket.onopen = function () {
+      $("news").textContent = "";
+      send({ ping: performance.now() });
+      if (isPressed("sound")) send({ sound: 1 });
+    };
+  }
+  setInterval(function () { send({ ping: performance.now() }); }, 2000);
+
+  function showAge() {
+    const ages = seen.ages_ms.slice().sort(function (a, b) { return a - b; });
+    const age = ages.length ? ages[Math.floor(ages.length / 2)].toFixed(0) + " ms from physics to picture · " : "";
+    $("link").textContent = age + (seen.watchers || 0) + " watching · you are browser " + seen.you;
+  }
+  setInterval(showAge, 1000);
+
+  let acked = 0;
+  function draw() {
+    updateGrabInHeadset();
+    if (!isDue && !renderer.vr.isPresenting()) return;
+    isDue = false;
+    lamp.position.copy(camera.position);
+    renderer.render(world, camera);
+    if (!last || last.number === acked) return;
+    acked = last.number;
+    send({ ack: acked });
+    ++seen.drawn;
+    if (clockOffset_ms === null) return;
+    seen.ages_ms.push(performance.now() + clockOffset_ms - last.taken_ms);
+    if (seen.ages_ms.length > 120) seen.ages_ms.shift();
+  }
+
+  // ---- the hand and the pointer, by mouse or finger
+
+  const ray = new THREE.Raycaster();
+  const fingers = {};  // by pointerId: x, y
+  let grab = null;     // { point: in world units, how: "move" | "turn" }
+
+  function hit(x, y) {
+    const box = canvas.getBoundingClientRect();
+    ray.setFromCamera({ x: 2 * (x - box.left) / box.width - 1, y: 1 - 2 * (y - box.top) / box.height }, camera);
+    return hitAlongRay();
+  }
+  function hitAlongRay() {
+    const surfaces = parts.filter(function (part) { return part.group.visible && part.surface; })
+      .map(function (part) { return part.surface; });
+    root.updateMatrixWorld(true);
+    for (const found of ray.intersectObjects(surfaces)) {
+      const index = parts.findIndex(function (part) { return part.surface === found.object; });
+      const planes = parts[index].paint.clippingPlanes;
+      if (planes && planes[0].distanceToPoint(found.point) < 0) continue;
+      return { part: index, point: found.point };
+    }
+    return null;
+  }
+  // From world units to metres in the scene's frame.
+  function inScene(point) {
+    return root.worldToLocal(point.clone()).add(center);
+  }
+  function vectorInScene(way) {
+    return way.clone().applyQuaternion(root.quaternion.clone().inverse()).divideScalar(root.scale.x);
+  }
+  // Where a part's middle is on the page, in pixels.
+  seen.placeOf = function (index) {
+    const part = parts[index];
+    if (!part || !part.surface) return null;
+    root.updateMatrixWorld(true);
+    camera.updateMatrixWorld(true);
+    part.surface.geometry.computeBoundingBox();
+    const middle = part.surface.geometry.boundingBox.getCenter(new THREE.Vector3());
+    const at = part.surface.localToWorld(middle).project(camera), box = canvas.getBoundingClientRect();
+    return [box.left + 0.5 * box.width * (1 + at.x), box.top + 0.5 * box.height * (1 - at.y)];
+  };
+  function isMine() { return Boolean(seen.hand) && seen.you !== 0 && seen.hand.holder === seen.you; }
+  function isPressed(id) { return $(id).getAttribute("aria-pressed") === "true"; }
+
+  function endGrab() {
+    if (grab) send({ drop: null });
+    grab = null;
+    controls.enabled = true;
+  }
+
+  canvas.addEventListener("pointerdown", function (event) {
+    canvas.focus();
+    fingers[event.pointerId] = { x: event.clientX, y: event.clientY };
+    if (grab) return;
+    const found = hit(event.clientX, event.clientY);
+    if (isMine() && found && found.part === inHand) {
+      controls.enabled = false;
+      canvas.setPointerCapture(event.pointerId);
+      grab = { point: found.point, isTurn: event.button === 2 };
+      send({ grab: inScene(found.point).toArray() });
+    } else if (isPressed("point")) {
+      controls.enabled = false;
+      pointAt(event);
+    }
+  }, true);
+
+  let nextPoint = 0;
+  function pointAt(event) {
+    if (performance.now() < nextPoint) return;
+    nextPoint = performance.now() + 30;
+    const found = hit(event.clientX, event.clientY);
+    send({ point: found ? inScene(found.point).toArray() : null });
+  }
+
+  canvas.addEventListener("pointermove", function (event) {
+    const finger = fingers[event.pointerId];
+    if (!finger) {
+      if (isPressed("point") && event.pointerType === "mouse") pointAt(event);
+      return;
+    }
+    const count = Object.keys(fingers).length;
+    const dx = (event.clientX - finger.x) / count, dy = (event.clientY - finger.y) / count;
+    finger.x = event.clientX;
+    finger.y = event.clientY;
+    if (!grab) {
+      if (isPressed("point")) pointAt(event);
+      return;
+    }
+    // Two fingers turn, as the right button does; Shift is depth, or a twist.
+    if (grab.isTurn || count > 1) {
+      const angle = Math.PI / window.innerHeight;
+      const turn = event.shiftKey ? new THREE.Vector3(0, 0, -angle * dx) : new THREE.Vector3(angle * dy, angle * dx, 0);
+      send({ turn: vectorInScene(turn.applyQuaternion(camera.quaternion)).multiplyScalar(root.scale.x).toArray() });
+      return;
+    }
+    const away = grab.point.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    const perPixel = -2 * away * Math.tan(0.5 * camera.fov * Math.PI / 180) / window.innerHeight;
+    if (event.shiftKey) return moveGrab(camera.position.clone().sub(grab.point).normalize().multiplyScalar(perPixel * dy));
+    moveGrab(new THREE.Vector3(perPixel * dx, -perPixel * dy, 0).applyQuaternion(camera.quaternion));
+  });
+  function moveGrab(way) {
+    grab.point.add(way);
+    send({ move: vectorInScene(way).toArray() });
+  }
+  function lift(event) {
+    delete fingers[event.pointerId];
+    if (Object.keys(fingers).length) return;
+    if (grab) endGrab();
+    controls.enabled = true;
+  }
+  canvas.addEventListener("pointerup", lift);
+  canvas.addEventListener("pointercancel", lift);
+  canvas.addEventListener("contextmenu", function (event) { event.preventDefault(); });
+  canvas.addEventListener("wheel", function (event) {
+    if (!grab) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    moveGrab(camera.position.clone().sub(grab.point).normalize()
+      .multiplyScalar(-Math.sign(event.deltaY) * 0.02 * radius_m * root.scale.x));
+  }, { capture: true, passive: false });
+
+  // ---- a headset
+
+  // On a table before the viewer, 0.6 m wide, upright.
+  function setForHeadset(isOn) {
+    if (isOn) {
+      root.scale.setScalar(0.3 / radius_m);
+      root.rotation.set(-0.5 * Math.PI, 0, 0);
+      root.position.set(0, 1.1, -0.8);
+    } else {
+      root.scale.setScalar(kScreenScale);
+      root.rotation.set(0, 0, 0);
+      root.position.set(0, 0, 0);
+    }
+    applyCut();
+    if (!isOn) look($("looks").value);
+  }
+  let held = null;  // by a controller: its pose when the part was grabbed last
+  const controller = renderer.vr.getController(0);
+  controller.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3(0, 0, -3)]),
+    new THREE.LineBasicMaterial({ color: kInHand })));
+  world.add(controller);
+  controller.addEventListener("selectstart", function () {
+    controller.updateMatrixWorld(true);
+    ray.ray.origin.setFromMatrixPosition(controller.matrixWorld);
+    ray.ray.direction.set(0, 0, -1).transformDirection(controller.matrixWorld);
+    const found = hitAlongRay();
+    if (!found) return send({ point: null });
+    if (!isMine() || found.part !== inHand) return send({ point: inScene(found.point).toArray() });
+    grab = { point: found.point, isTurn: false };
+    held = { p: new THREE.Vector3().setFromMatrixPosition(controller.matrixWorld), q: new THREE.Quaternion().setFromRotationMatrix(controller.matrixWorld) };
+    send({ grab: inScene(found.point).toArray() });
+  });
+  controller.addEventListener("selectend", function () {
+    held = null;
+    endGrab();
+  });
+  let nextHeld = 0;
+  function updateGrabInHeadset() {
+    if (!held || !grab || performance.now() < nextHeld) return;
+    nextHeld = performance.now() + 15;
+    controller.updateMatrixWorld(true);
+    const p = new THREE.Vector3().setFromMatrixPosition(controller.matrixWorld);
+    const q = new THREE.Quaternion().setFromRotationMatrix(controller.matrixWorld);
+    moveGrab(p.clone().sub(held.p));
+    const change = q.clone().multiply(held.q.clone().inverse());
+    const sine = Math.sqrt(change.x * change.x + change.y * change.y + change.z * change.z);
+    if (sine > 1e-6) {
+      const angle = 2 * Math.atan2(sine, change.w) / sine;
+      const turn = new THREE.Vector3(angle * change.x, angle * change.y, angle * change.z);
+      send({ turn: vectorInScene(turn).multiplyScalar(root.scale.x).toArray() });
+    }
+    held = { p: p, q: q };
+  }
+
+  const headset = $("headset");
+  let session = null;
+  if (navigator.xr && navigator.xr.isSessionSupported)
+    navigator.xr.isSessionSupported("immersive-vr").then(function (isThere) { headset.hidden = !isThere; }).catch(function () {});
+  headset.addEventListener("click", function () {
+    if (session) return session.end();
+    navigator.xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor"] }).then(function (begun) {
+      session = begun;
+      session.addEventListener("end", function () {
+        session = null;
+        renderer.vr.enabled = false;
+        headset.textContent = "Headset";
+        setForHeadset(false);
+      });
+      renderer.vr.enabled = true;
+      renderer.vr.setSession(session);
+      headset.textContent = "Leave headset";
+      setForHeadset(true);
+    }).catch(function (error) { tell({ text: "the headset does not start: " + error.message }); });
+  });
+
+  // ---- tools
+
+  function toggle(id, then) {
+    $(id).addEventListener("click", function () {
+      $(id).setAttribute("aria-pressed", String(!isPressed(id)));
+      then(isPressed(id));
+    });
+  }
+  $("looks").addEventListener("change", function () { look($("looks").value); });
+  $("cut").addEventListener("change", applyCut);
+  $("cut-at").addEventListener("input", applyCut);
+  toggle("forces", function () { if (last) show(Object.assign({}, last, { bodies: [], isWhole: false })); });
+  toggle("sound", function (isOn) {
+    send({ sound: isOn ? 1 : 0 });
+    if (!audio) openAudio();
+    if (isOn) audio.resume();
+    else audio.suspend();
+  });
+  toggle("point", function (isOn) { if (!isOn) send({ point: null }); });
+  $("take").addEventListener("click", function () { send(isMine() ? { leave: null } : { take: null }); });
+
+  resize();
+  look("corner");
+  renderer.setAnimationLoop(draw);
+  connect();
+})();
