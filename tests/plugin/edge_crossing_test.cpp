@@ -27,7 +27,7 @@ EdgeSet edgesOf(const Mesh& mesh) {
 
 std::vector<EdgeCrossing> crossings(const EdgeSet& a, const EdgeSet& b, const Pose& X_ab, double cutoff) {
   std::vector<EdgeCrossing> out;
-  findCrossings(a, b, X_ab, cutoff, cutoff, out);
+  findCrossings(a, b, X_ab, {cutoff, cutoff, X_ab}, out);
   return out;
 }
 
@@ -89,9 +89,10 @@ TEST(EdgeCrossing, IsFoundUpToTheGivenDepth) {
   const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, 2 * std::sqrt(0.5) - 0.1)),
       X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3::Zero());
   std::vector<EdgeCrossing> out;
-  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.09, out);
+  const Pose X_01 = X_W0.inverse() * X_W1;
+  findCrossings(along_x, along_y, X_01, {0.01, 0.09, X_01}, out);
   EXPECT_TRUE(out.empty());
-  findCrossings(along_x, along_y, X_W0.inverse() * X_W1, 0.01, 0.11, out);
+  findCrossings(along_x, along_y, X_01, {0.01, 0.11, X_01}, out);
   ASSERT_EQ(out.size(), 1U);
   EXPECT_NEAR(out[0].gap_m, -0.1, kRounding);
 }
@@ -258,6 +259,30 @@ TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
   }
 }
 
+// Two roofs whose ridges cross at a right angle, 100 um apart: within the cutoff only if they come nearer in
+// the step, and not if they have passed each other's ends by then.
+TEST(FindCrossings, EdgesThatComeNearInTheStepAreFound) {
+  const double gap_m = 100e-6, cutoff_m = 20e-6;
+  EdgeSegment s;
+  s.from = {-5e-3, 0, 0};
+  s.to = {5e-3, 0, 0};
+  s.outward = Vec3::UnitZ();
+  for (int i = 0; i < 2; ++i) s.into[i] = Vec3(0, i == 0 ? 1 : -1, -1).normalized();
+  const EdgeSet below(std::vector<EdgeSegment>{s}), above = below;
+  const Mat3 over = turned(Vec3::UnitZ(), std::numbers::pi / 2) * turned(Vec3::UnitX(), std::numbers::pi);
+  const Pose start(over, Vec3(0, 0, gap_m));
+  const auto found = [&](const Vec3& step_m) {
+    std::vector<EdgeCrossing> out;
+    findCrossings(below, above, start, {cutoff_m, cutoff_m, Pose(over, start.p + step_m)}, out);
+    return out.size();
+  };
+  EXPECT_EQ(found({0, 0, 0}), 0u);
+  EXPECT_EQ(found({0, 0, -(gap_m - 2 * cutoff_m)}), 0u);
+  EXPECT_EQ(found({0, 0, -(gap_m - 0.9 * cutoff_m)}), 1u);
+  EXPECT_EQ(found({1e-3, 1e-3, -2 * gap_m}), 1u);
+  EXPECT_EQ(found({6e-3, 0, -2 * gap_m}), 0u);
+}
+
 // A thread's rod that turns into its nut, fast and slowly, and jumps.
 TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   test::ThreadShape thread;
@@ -269,14 +294,19 @@ TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   CrossingMemory memory;
   std::size_t count = 0;
   double turn_rad = 0;
+  const auto poseAt = [&](int i) {
+    return Pose{rotationFromVector(Vec3(2e-3 * std::sin(0.1 * i), 0, turn_rad)),
+                Vec3(50e-6 * std::sin(0.3 * i), 0, turn_rad / (2 * std::numbers::pi) * thread.pitch_m)};
+  };
   for (int i = 0; i < 300; ++i) {
+    const Pose X = poseAt(i);
     turn_rad += i % 100 == 50 ? 1.0 : i < 150 ? 1e-3 : 2e-2;
-    const Pose X{rotationFromVector(Vec3(2e-3 * std::sin(0.1 * i), 0, turn_rad)),
-                 Vec3(50e-6 * std::sin(0.3 * i), 0, turn_rad / (2 * std::numbers::pi) * thread.pitch_m)};
-    const double cutoff_m = i % 7 == 0 ? 120e-6 : 30e-6;
+    // The step is known, or thought to be none.
+    const CrossingRange range{i % 7 == 0 ? 120e-6 : 30e-6, 60e-6,
+                              i % 3 == 0 || i % 100 == 50 ? X : poseAt(i + 1)};
     std::vector<EdgeCrossing> with, without;
-    findCrossings(nut, rod, X, cutoff_m, 60e-6, without);
-    findCrossings(nut, rod, X, cutoff_m, 60e-6, with, &memory);
+    findCrossings(nut, rod, X, range, without);
+    findCrossings(nut, rod, X, range, with, &memory);
     ASSERT_EQ(with.size(), without.size()) << i;
     for (std::size_t k = 0; k < with.size(); ++k) {
       ASSERT_EQ(with[k].edge[0], without[k].edge[0]);

@@ -75,7 +75,8 @@ Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose&
       Box box;
       for (const std::uint32_t v : facets.facets()[f]) box.add(facets.vertices()[v]);
       const Vec3& n = facets.normal(f);
-      bool can_touch = (p - p.cwiseMax(box.min).cwiseMin(box.max)).norm() <= margin_m;
+      bool can_touch = (p - p.cwiseMax(box.min).cwiseMin(box.max)).norm() <= margin_m &&
+                       std::abs(n.dot(p - facets.vertices()[facets.facets()[f][0]])) <= margin_m;
       for (const Vec3& ray : corners.raysAt(c))
         can_touch = can_touch && n.dot(R * ray) >= -kTouchSlope - slack_rad;
       if (facets.isCurved(f))
@@ -107,7 +108,7 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
   const auto compare = [&](const FeatureSet& a, const FeatureSet& b, const Pose& X, double margin_m,
                            double slack_rad) {
     std::vector<TouchPair> found;
-    findTouchPairs(a, b, X, margin_m, slack_rad, found);
+    findTouchPairs(a, b, {X, X}, margin_m, slack_rad, found);
     Pairs pairs;
     for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
     EXPECT_EQ(pairs.size(), found.size());
@@ -133,6 +134,41 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
   EXPECT_GT(count, 1000u);
 }
 
+// What is found at any place of a straight way is found for the whole way.
+TEST(TouchSearch, FindsWhatComesNearOnAWay) {
+  test::ThreadShape thread;
+  thread.columns = 48;
+  thread.rows_per_pitch = 16;
+  thread.length_m = 2 * thread.pitch_m;
+  const FeatureSet nut = featuresOf(test::makeNut(thread, 1.8 * thread.major_m));
+  const FeatureSet box = featuresOf(makeBox(Vec3(6e-3, 8e-3, 5e-3)));
+  const FeatureSet tube = featuresOf(makeTube(5e-3, 3e-3, 6e-3, 60));
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> away(0, 4e-3), margin(10e-6, 0.3e-3), way(0, 2e-3);
+  std::size_t count = 0, least = 0;
+  const FeatureSet* all[] = {&nut, &box, &tube};
+  for (const FeatureSet* a : all)
+    for (const FeatureSet* b : all)
+      for (int trial = 0; trial < 4; ++trial) {
+        const Pose from(rotationFromVector(3 * direction(random)), away(random) * direction(random));
+        const Pose to(from.R, from.p + way(random) * direction(random));
+        const double margin_m = margin(random);
+        std::vector<TouchPair> found;
+        findTouchPairs(*a, *b, {from, to}, margin_m, 0, found);
+        Pairs pairs;
+        for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
+        for (const double share : {0.0, 0.4, 1.0}) {
+          const Pose X(from.R, from.p + share * (to.p - from.p));
+          const Pairs near = searchAll(*a, *b, X, margin_m * (1 - 1e-9), Mat3::Identity(), 0);
+          EXPECT_TRUE(holds(pairs, near));
+          least += near.size();
+        }
+        count += pairs.size();
+      }
+  EXPECT_GT(least, 300u);
+  EXPECT_GT(count, 300u);
+}
+
 // A thread in its nut: its crests cannot touch anything but faces that lie flush on theirs.
 TEST(TouchSearch, LeavesOutFlushThreads) {
   test::ThreadShape thread;
@@ -142,7 +178,8 @@ TEST(TouchSearch, LeavesOutFlushThreads) {
   thread.clearance_m = 20e-6;
   const FeatureSet nut = featuresOf(test::makeNut(thread, 1.8 * thread.major_m));
   std::vector<TouchPair> found;
-  findTouchPairs(rod, nut, Pose::translation({0, 0, 2.5 * thread.pitch_m}), 100e-6, 0.01, found);
+  const Pose X = Pose::translation({0, 0, 2.5 * thread.pitch_m});
+  findTouchPairs(rod, nut, {X, X}, 100e-6, 0.01, found);
   EXPECT_LT(found.size(), rod.corners().size());
 }
 

@@ -105,12 +105,11 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
                                   const Settings& settings, std::vector<Candidate>& out,
                                   std::size_t& points_tested);
 
-/// Crossings of the edges of two Shapes that are nearer than the cutoff or overlap by no more than the depth;
-/// their distance and normal are exact.
+/// Crossings of the edges of two Shapes in a range, at their models' frames; distance and normal are exact.
 /// @param memory  of the two Shapes, or null
 /// @return how many exceeded settings.candidate_limit, which counts all candidates in `out`
-std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, double cutoff_m,
-                                   double depth_m, const Settings& settings, CrossingMemory* memory,
+std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
+                                   const Settings& settings, CrossingMemory* memory,
                                    std::vector<Candidate>& out);
 
 // Reducing.

@@ -24,6 +24,31 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * queryRange_m(pair)) : cutoff_m;
 }
 
+// Edges do not come to overlap by more than the cutoff in a step: only where the last one found overlaps, or
+// in a pair's first, can they be deep.
+bool mayOverlapDeeply(const Selection& last, double cutoff_m) {
+  constexpr double kShare = 0.25;
+  return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
+                                       [&](const Candidate& c) { return c.distance_m < -kShare * cutoff_m; });
+}
+
+// Body 1 in body 0, in their models' frames, after the step's motion.
+Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
+  const Vec3 center = pair.center_W();
+  const Mat3 R = rotationFromVector(motion.dt_s * motion.V.w);
+  const Pose step(R, center + motion.dt_s * motion.velocityAt(center) - R * center);
+  return (step * pair.side(0).X_WM).inverse() * pair.side(1).X_WM;
+}
+
+// Points are looked for as far as they may move in any direction; edges, whose motion is known, only where
+// they come near on it.
+CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairState* state) {
+  if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.side(0).X_WM.inverse() * pair.side(1).X_WM};
+  const double near_m = state->motion.contact_margin_m + state->motion.anyWay_m();
+  const double depth_m = mayOverlapDeeply(state->selection, near_m) ? edgeDepth_m(pair, near_m) : near_m;
+  return {near_m, depth_m, poseAfterStep(pair, state->motion)};
+}
+
 QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   std::optional<QueryState>& own = state.query_state[i];
   return own ? *own : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell);
@@ -72,7 +97,7 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
   // Penalty points represent areas, and a crossing has none.
   if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
       pair.shape[0] && pair.shape[1])
-    left_out += findCrossingCandidates(pair.side(0), pair.side(1), cutoff_m, edgeDepth_m(pair, cutoff_m),
+    left_out += findCrossingCandidates(pair.side(0), pair.side(1), crossingRange(pair, cutoff_m, state),
                                        context.settings, state ? &state->crossings : nullptr, out);
   context.points_tested += tested;
   context.left_out += left_out;

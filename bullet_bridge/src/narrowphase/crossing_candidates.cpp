@@ -91,14 +91,14 @@ bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
 
 }  // namespace
 
-std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, double cutoff_m,
-                                   double depth_m, const Settings& settings, CrossingMemory* memory,
+std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
+                                   const Settings& settings, CrossingMemory* memory,
                                    std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();
   const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
-  findCrossings(edges0, edges1, X_01, cutoff_m, depth_m, crossings, memory);
+  findCrossings(edges0, edges1, X_01, range, crossings, memory);
   std::erase_if(crossings, [&, X_10 = X_01.inverse()](const EdgeCrossing& at) {
     return isCovered(at, body0, body1, X_10);
   });

@@ -23,8 +23,9 @@ double tileSize_m(const PointShell& shell, const Settings& settings) {
 
 }  // namespace
 
-void QueryState::lead(const PointShell& shell, const Settings& settings) {
-  leading.emplace(shell, tileSize_m(shell, settings));
+void QueryState::lead(const PointShell& shell, std::span<const std::uint8_t> on_edge,
+                      const Settings& settings) {
+  leading.emplace(shell, tileSize_m(shell, settings), on_edge);
 }
 
 // Every penalty point counts; of the points of rigid contact only a few do.

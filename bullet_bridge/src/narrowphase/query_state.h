@@ -2,7 +2,9 @@
 // What a pair stores from step to step for the points of one side in the other's map.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include "vps/representative_points.h"
 #include "vps_bullet/settings.h"
@@ -14,10 +16,10 @@ struct QueryState {
   QueryState(const VoxMap& map, const PointShell& shell) : query(map, shell) {}
 
   QueryMemory query;  ///< valid for one cutoff
-  /// One representative point per surface tile; for constraint contact, as soon as more points than
-  /// smallQueryLimit() have been near. O(points) to make: most pairs never need it.
+  /// Two representative points of each group of neighbours with similar normals; for constraint contact, as
+  /// soon as more points than smallQueryLimit() have been near. O(points) to make: most pairs never need it.
   std::optional<RepresentativePoints> leading;
-  void lead(const PointShell& shell, const Settings& settings);
+  void lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, const Settings& settings);
 };
 
 /// Up to this number of near points of one side, all of them are examined.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -37,7 +38,9 @@ VPS_API void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner
                          std::vector<EdgeSegment>& out);
 
 struct EdgeCrossing;
+struct CrossingRange;
 class CrossingMemory;
+class MotionTube;
 
 /// Edges with a hierarchy of bounding spheres.
 class VPS_API EdgeSet {
@@ -55,7 +58,7 @@ class VPS_API EdgeSet {
  private:
   friend class EdgePairSearch;
   friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
-                                    double cutoff_m, double depth_m, std::vector<EdgeCrossing>& out,
+                                    const CrossingRange& range, std::vector<EdgeCrossing>& out,
                                     CrossingMemory* memory);
   struct Node {
     Vec3 center = Vec3::Zero();
@@ -92,36 +95,48 @@ struct EdgeCrossing {
   double gap_m = 0;
 };
 
-/// The pairs of edges that are near each other, kept while two parts move little.
+/// Which crossings are looked for.
+struct CrossingRange {
+  double cutoff_m = 0;  ///< greatest gap, beside what the edges come nearer in the step
+  double depth_m = 0;   ///< greatest overlap
+  Pose X_01_end;        ///< set 1 in set 0 after the step
+};
+
+/// The pairs of edges that come near each other, kept while two parts move as expected.
 class VPS_API CrossingMemory {
  public:
+  CrossingMemory();
+  ~CrossingMemory();
+  CrossingMemory(CrossingMemory&&) noexcept;
+  CrossingMemory& operator=(CrossingMemory&&) noexcept;
   /// To be called when a set changes.
   void reset() noexcept { is_valid_ = false; }
 
  private:
   friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
-                                    double cutoff_m, double depth_m, std::vector<EdgeCrossing>& out,
+                                    const CrossingRange& range, std::vector<EdgeCrossing>& out,
                                     CrossingMemory* memory);
   struct Pair {
     std::uint32_t edge[2];
-    double distance_m;  // at the search
   };
-  void search(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m);
+  void search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m);
 
   std::vector<Pair> near_;
-  Pose searched_at_, last_;
+  std::unique_ptr<MotionTube> tube_;  // of the search
   double reach_m_ = 0;
   bool is_valid_ = false;
 };
 
-/// Appends the crossings with -depth_m <= gap <= cutoff_m, sorted by edge of set 0, then of set 1. Edges
-/// within 5 degrees of parallel have no single crossing; the shells' points find their contacts.
+/// Appends the crossings with -depth_m <= gap <= cutoff_m now, or gap <= cutoff_m at the end of the step to
+/// first order, sorted by edge of set 0, then of set 1. Edges within 5 degrees of parallel have no single
+/// crossing; the shells' points find their contacts.
 /// @param X_01  frame of set 1 in that of set 0
 /// @param memory  of these two sets, from earlier poses; it changes the cost and not the answer
-/// Cost: a search for near pairs, with a memory only when the motion has used its margin, and 30 ns for each
-/// pair. Allocates in `out` and the memory.
+/// Cost: a search for near pairs, with a memory only when the parts have left the motion for which the last
+/// one was made, and 30 ns for each pair. Allocates in `out` and the memory.
 /// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
-VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                           double depth_m, std::vector<EdgeCrossing>& out, CrossingMemory* memory = nullptr);
+VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                           const CrossingRange& range, std::vector<EdgeCrossing>& out,
+                           CrossingMemory* memory = nullptr);
 
 }  // namespace vps::inline v0

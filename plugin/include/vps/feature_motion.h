@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "vps/export.h"
@@ -30,9 +31,16 @@ struct FeatureContact {
   [[nodiscard]] VPS_API Vec3 normal_0(const Pose& X_01) const;
 };
 
+class MotionTube;
+
 /// The features of two parts that are near each other, kept from step to step.
 class VPS_API FeatureMotion {
  public:
+  FeatureMotion();
+  ~FeatureMotion();
+  FeatureMotion(FeatureMotion&&) noexcept;
+  FeatureMotion& operator=(FeatureMotion&&) noexcept;
+
   /// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
   /// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
   static constexpr double kRest_m = 0.5e-6;
@@ -58,10 +66,10 @@ class VPS_API FeatureMotion {
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
   /// surfaces, so that they slide smoothly.
   ///
-  /// Cost: some 50 ns for each pair of near features, and a search for these pairs when the motion since the
-  /// last search has used its margin. Allocates where the lists grow. Source: conservative advancement
-  /// (Mirtich 1996), here along the separating plane of the nearest points, which sliding features never
-  /// reach.
+  /// Cost: some 50 ns for each pair of features that come near, and a search for these pairs when the parts
+  /// have left the motion for which the last one was made, or reached its end. Allocates where the lists
+  /// grow. Source: conservative advancement (Mirtich 1996), here along the separating plane of the nearest
+  /// points, which sliding features never reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              bool holds_close, std::vector<FeatureContact>& out);
   /// To be called when a part's features change.
@@ -74,17 +82,16 @@ class VPS_API FeatureMotion {
     double distance_m;  // at least this when they were last measured
     double path_m;      // way of the parts until then
   };
-  void search(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01, double margin_m);
+  void search(const FeatureSet& part0, const FeatureSet& part1);
   void checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& to,
                     const Pose& end, bool holds_close, std::vector<FeatureContact>& out);
 
   std::vector<Near> near_;
   std::vector<Pose> way_10_;  // scratch
   bool is_valid_ = false;
-  Pose last_;            // X_01 of the last call
-  Pose searched_at_;     // X_01
-  double path_m_ = 0;    // way since the search, upper bound
-  double margin_m_ = 0;  // of the search
+  Pose last_;                         // X_01 of the last call
+  std::unique_ptr<MotionTube> tube_;  // of the search
+  double path_m_ = 0;                 // way since the search, upper bound
 };
 
 /// Upper bound of how far any vertex of the smaller part moves relative to the other between two poses.

@@ -11,7 +11,8 @@
 #include "query/edge_joints.h"
 #include "query/feature_angles.h"
 #include "query/feature_points.h"
-#include "query/kept_list.h"
+#include "query/motion_tube.h"
+#include "query/moving_features.h"
 
 namespace vps::inline v0 {
 
@@ -139,11 +140,13 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-/// Descends both hierarchies at once; calls visit(i0, i1, distance) for each pair of segments within reach_m.
+/// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that come within reach_m
+/// while those of set 1 move on straight lines between two poses.
 class EdgePairSearch {
  public:
-  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m)
-      : edges0_(edges0), edges1_(edges1), X_01_(X_01), X_10_(X_01.inverse()), reach_m_(reach_m) {}
+  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& from_01, const Pose& to_01,
+                 double reach_m)
+      : edges0_(edges0), edges1_(edges1), from_01_(from_01), to_01_(to_01), reach_m_(reach_m) {}
 
   template <typename Visit>
   void run(const Visit& found) const {
@@ -157,17 +160,19 @@ class EdgePairSearch {
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   template <typename Visit>
   void visit(const Node& a, const Node& b, const Visit& found) const {
-    const Vec3 b_center = X_01_ * b.center;
-    const double reach_m = a.radius_m + b.radius_m + reach_m_;
-    if ((a.center - b_center).squaredNorm() > reach_m * reach_m) return;
+    const Vec3 from = from_01_ * b.center, to = to_01_ * b.center, way = to - from;
+    const double reach_m = a.radius_m + b.radius_m + reach_m_, square = way.squaredNorm();
+    const double share = square > 0 ? std::clamp((a.center - from).dot(way) / square, 0.0, 1.0) : 0;
+    if ((a.center - from - share * way).squaredNorm() > reach_m * reach_m) return;
     // The sphere of a long segment contains much space that is far from the segment.
-    if (a.is_leaf != 0 && !edges0_.isNear(a.first, b_center, b.radius_m + reach_m_)) return;
-    if (b.is_leaf != 0 && !edges1_.isNear(b.first, X_10_ * a.center, a.radius_m + reach_m_)) return;
+    if (a.is_leaf != 0) {
+      const EdgeSegment& s = edges0_.segments_[a.first];
+      const Nearest nearest = nearestOfSegments(s.from, s.to, from, to);
+      const double own_m = b.radius_m + reach_m_;
+      if ((nearest.p - nearest.q).squaredNorm() > own_m * own_m) return;
+    }
     if (a.is_leaf != 0 && b.is_leaf != 0) {
-      const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
-      const Nearest nearest = nearestOfSegments(s0.from, s0.to, X_01_ * s1.from, X_01_ * s1.to);
-      const double distance_m = (nearest.p - nearest.q).norm();
-      if (distance_m <= reach_m_) found(a.first, b.first, distance_m);
+      if (comeNear(edges0_.segments_[a.first], edges1_.segments_[b.first])) found(a.first, b.first);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
       for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b, found);
     } else {
@@ -175,24 +180,44 @@ class EdgePairSearch {
     }
   }
 
+  [[nodiscard]] bool comeNear(const EdgeSegment& s0, const EdgeSegment& s1) const {
+    Features f;  // the moving ones first
+    f.a_count = f.b_count = 2;
+    f.own[0] = s1.from;
+    f.own[1] = s1.to;
+    f.b[0] = s0.from;
+    f.b[1] = s0.to;
+    f.moveFrom(from_01_, to_01_);
+    Reach reach;
+    reach.nearest = nearestOf(FeatureContact::Kind::EdgeOnEdge, f.a, f.b);
+    const double distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    return distance_m <= reach_m_ ||
+           findReach(FeatureContact::Kind::EdgeOnEdge, f, reach_m_, distance_m, reach);
+  }
+
   const EdgeSet &edges0_, &edges1_;
-  const Pose& X_01_;
-  const Pose X_10_;
+  const Pose &from_01_, &to_01_;
   double reach_m_;
 };
 
 namespace {
 
+// Segments that cross with this gap are within this distance of each other: both points may lie past an end.
+double reachOfCrossing_m(double gap_m) {
+  return gap_m + 2 * (kPast_m + kPastShare * gap_m);
+}
+
 /// Tests pairs of segments.
 class CrossingTest {
  public:
-  CrossingTest(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-               double depth_m, std::vector<EdgeCrossing>& out)
+  CrossingTest(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const CrossingRange& range,
+               std::vector<EdgeCrossing>& out)
       : segments0_(edges0.segments()),
         segments1_(edges1.segments()),
         X_01_(X_01),
-        cutoff_m_(cutoff_m),
-        depth_m_(depth_m),
+        X_01_end_(range.X_01_end),
+        cutoff_m_(range.cutoff_m),
+        depth_m_(range.depth_m),
         out_(out) {}
 
   void cross(std::uint32_t i0, std::uint32_t i1) {
@@ -208,7 +233,7 @@ class CrossingTest {
     c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
     const Vec3 r = s0.from - from1;
     c.gap_m = c.n.dot(r);
-    if (!(c.gap_m <= cutoff_m_ && c.gap_m >= -depth_m_)) return;
+    if (!(c.gap_m >= -depth_m_ && c.gap_m <= cutoff_m_ + nearer_m(c.n, s1))) return;
     // The nearest points of two lines [Ericson 2005, section 5.1.8].
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
@@ -220,6 +245,7 @@ class CrossingTest {
     if (!isOn(s0, at0_m, length0_m) || !isOn(s1, at1_m, length1_m)) return;
     for (int k = 0; k < 2; ++k)
       if (-c.n.dot(s0.into[k]) > kLean || c.n.dot(X_01_.R * s1.into[k]) > kLean) return;
+    if (c.gap_m > cutoff_m_ && !meetsInStep(s0, s1, c.n)) return;
     c.edge[0] = i0;
     c.edge[1] = i1;
     c.p[0] = s0.from + at0_m * d0;
@@ -228,53 +254,68 @@ class CrossingTest {
   }
 
  private:
+  // How far any place of a segment of set 1 comes nearer in the step.
+  [[nodiscard]] double nearer_m(const Vec3& n, const EdgeSegment& s1) const {
+    const Vec3 from = X_01_ * s1.from, to = X_01_ * s1.to;
+    return std::max({0.0, n.dot(X_01_end_ * s1.from - from), n.dot(X_01_end_ * s1.to - to)});
+  }
+  // True for edges that overlap then, or are near: not for those that have passed each other's ends.
+  [[nodiscard]] bool meetsInStep(const EdgeSegment& s0, const EdgeSegment& s1, const Vec3& n) const {
+    const Nearest then = nearestOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
+    return (!then.is_end && n.dot(then.p - then.q) < 0) ||
+           (then.p - then.q).norm() <= reachOfCrossing_m(cutoff_m_);
+  }
+
   const std::vector<EdgeSegment>&segments0_, &segments1_;
-  const Pose& X_01_;
+  const Pose &X_01_, &X_01_end_;
   double cutoff_m_, depth_m_;
   std::vector<EdgeCrossing>& out_;
 };
 
-// Segments that cross are within this distance of each other: both points may lie past an end.
-double reachOfCrossing_m(double cutoff_m, double depth_m) {
-  const double gap_m = std::max(cutoff_m, depth_m);
-  return gap_m + 2 * (kPast_m + kPastShare * gap_m);
-}
-
 }  // namespace
 
-void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double reach_m) {
+CrossingMemory::CrossingMemory() : tube_(std::make_unique<MotionTube>()) {}
+CrossingMemory::~CrossingMemory() = default;
+CrossingMemory::CrossingMemory(CrossingMemory&&) noexcept = default;
+CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
+
+void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m) {
   near_.clear();
-  EdgePairSearch(edges0, edges1, X_01, reach_m)
-      .run([&](std::uint32_t i0, std::uint32_t i1, double distance_m) {
-        near_.push_back({{i0, i1}, distance_m});
+  EdgePairSearch(edges0, edges1, tube_->from(), tube_->to(), reach_m + tube_->margin_m())
+      .run([&](std::uint32_t i0, std::uint32_t i1) {
+        near_.push_back({{i0, i1}});
       });
-  searched_at_ = X_01;
   reach_m_ = reach_m;
   is_valid_ = true;
 }
 
-void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, double cutoff_m,
-                   double depth_m, std::vector<EdgeCrossing>& out, CrossingMemory* memory) {
+void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const CrossingRange& range,
+                   std::vector<EdgeCrossing>& out, CrossingMemory* memory) {
   if (edges0.segments().empty() || edges1.segments().empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  const double needed_m = reachOfCrossing_m(cutoff_m, depth_m);
-  CrossingTest test(edges0, edges1, X_01, cutoff_m, depth_m, out);
-  if (memory == nullptr) {
-    EdgePairSearch(edges0, edges1, X_01, needed_m).run([&](std::uint32_t i0, std::uint32_t i1, double) {
-      test.cross(i0, i1);
-    });
-  } else {
+  // Near now, or at the end of the step.
+  const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
+  CrossingTest test(edges0, edges1, X_01, range, out);
+  MotionTube once;
+  const auto isKept = [&] {
+    return memory->is_valid_ && reach_m <= memory->reach_m_ && memory->tube_->holds(X_01) &&
+           memory->tube_->holds(range.X_01_end);
+  };
+  if (memory == nullptr || !isKept()) {
     const Ball ball0{edges0.nodes_[0].center, edges0.nodes_[0].radius_m};
     const Ball ball1{edges1.nodes_[0].center, edges1.nodes_[0].radius_m};
-    double way_m = memory->is_valid_ ? travel_m(ball0, ball1, memory->searched_at_, X_01) : 0;
-    if (!memory->is_valid_ || way_m + needed_m > memory->reach_m_) {
-      const double step_m = memory->is_valid_ ? travel_m(ball0, ball1, memory->last_, X_01) : 0;
-      memory->search(edges0, edges1, X_01, needed_m + searchMargin_m(step_m, ball0, ball1));
-      way_m = 0;
+    once = MotionTube(ball0, ball1, X_01, range.X_01_end);
+  }
+  if (memory == nullptr) {
+    EdgePairSearch(edges0, edges1, once.from(), once.to(), reach_m + once.margin_m())
+        .run([&](std::uint32_t i0, std::uint32_t i1) { test.cross(i0, i1); });
+  } else {
+    constexpr double kMore = 1.5;  // assumed: the cutoff follows the speed
+    if (!isKept()) {
+      *memory->tube_ = once;
+      memory->search(edges0, edges1, kMore * reach_m);
     }
-    memory->last_ = X_01;
-    for (const CrossingMemory::Pair& pair : memory->near_)
-      if (pair.distance_m - way_m <= needed_m) test.cross(pair.edge[0], pair.edge[1]);
+    for (const CrossingMemory::Pair& pair : memory->near_) test.cross(pair.edge[0], pair.edge[1]);
   }
   std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
     return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];

@@ -4,119 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/feature_points.h"
 #include "query/flush_features.h"
-#include "query/kept_list.h"
+#include "query/motion_tube.h"
+#include "query/moving_features.h"
 
 namespace vps::inline v0 {
 
 namespace {
 
 using Kind = FeatureContact::Kind;
-
-/// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
-struct Features {
-  Vec3 own[3];  ///< of part 0, in its own frame
-  Vec3 a[3], way[3], b[3];
-  int a_count = 0, b_count = 0;
-
-  void moveTo(double share, Vec3 (&at)[3]) const {
-    for (int i = 0; i < a_count; ++i) at[i] = a[i] + share * way[i];
-  }
-};
-
-/// Where features reach a distance.
-struct Reach {
-  double share = 0;
-  Nearest nearest;
-};
-
-// Up to which share of the step the slab between both features along n stays wider than least_m.
-double slabShare(const Features& f, const Vec3& n, double least_m) {
-  double top = n.dot(f.b[0]);
-  for (int i = 1; i < f.b_count; ++i) top = std::max(top, n.dot(f.b[i]));
-  double share = 2;
-  for (int i = 0; i < f.a_count; ++i) {
-    const double speed = n.dot(f.way[i]);
-    if (speed < 0) share = std::min(share, (top + least_m - n.dot(f.a[i])) / speed);
-  }
-  return share;
-}
-
-/// A vector that changes linearly between two shares.
-struct Linear {
-  Vec3 from, to;
-};
-
-// The vectors whose product C = A x B is across both edges, or across the facet, and r between them.
-void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, Linear& B, Linear& r) {
-  Vec3 at[2][3];
-  f.moveTo(from, at[0]);
-  f.moveTo(to, at[1]);
-  const auto of = [&](Linear& out, const auto& get) { out = {get(at[0]), get(at[1])}; };
-  using Points = Vec3[3];
-  if (kind == Kind::EdgeOnEdge) {
-    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
-    B = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
-    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
-  } else if (kind == Kind::CornerOnFacet) {
-    A = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
-    B = {f.b[2] - f.b[0], f.b[2] - f.b[0]};
-    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
-  } else {
-    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
-    of(B, [](const Points& a) { return Vec3(a[2] - a[0]); });
-    of(r, [&](const Points& a) { return Vec3(f.b[0] - a[0]); });
-  }
-}
-
-// True if the lines of both edges, or the corner and the facet's plane, stay farther apart than least_m
-// between two shares: C . r is a cubic polynomial, which lies between its Bernstein coefficients.
-bool staysApart(Kind kind, const Features& f, double from, double to, double least_m) {
-  Linear A, B, r;
-  vectorsOf(kind, f, from, to, A, B, r);
-  const Vec3 C[3] = {A.from.cross(B.from), 0.5 * (A.from.cross(B.to) + A.to.cross(B.from)), A.to.cross(B.to)};
-  const double h[4] = {C[0].dot(r.from), (C[0].dot(r.to) + 2 * C[1].dot(r.from)) / 3,
-                       (2 * C[1].dot(r.to) + C[2].dot(r.from)) / 3, C[2].dot(r.to)};
-  const double limit = least_m * std::max({C[0].norm(), C[1].norm(), C[2].norm()});
-  const double sign = h[0] < 0 ? -1 : 1;
-  return sign * h[0] > limit && sign * h[1] > limit && sign * h[2] > limit && sign * h[3] > limit;
-}
-
-// The share up to which they are known to stay apart in that sense; at least `least_share`.
-double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
-  constexpr int kMost = 6;
-  double to = 1;
-  for (int k = 0; k < kMost && to > least_share; ++k, to = 0.5 * (from + to))
-    if (staysApart(kind, f, from, to, least_m)) return to;
-  return least_share;
-}
-
-/// False: they stay farther apart than least_m.
-/// @param reach  holds their nearest points at the start
-bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
-  constexpr int kMost = 60;  // assumed; most need two or three
-  const double near_m = 1.1 * least_m;
-  double distance_m = start_m;
-  double fastest_m = 0;
-  for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
-  for (int k = 0; k < kMost; ++k) {
-    const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
-    // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
-    const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
-    const double slab = std::max(slabShare(f, n, least_m), reach.share + least_step);
-    if (!(slab < 1)) return false;
-    // A long edge that turns leaves its slab soon, though the edges stay apart where they are nearest.
-    reach.share = planeShare(kind, f, reach.share, slab, least_m);
-    if (!(reach.share < 1)) return false;
-    Vec3 at[3];
-    f.moveTo(reach.share, at);
-    reach.nearest = nearestOf(kind, at, f.b);
-    distance_m = (reach.nearest.p - reach.nearest.q).norm();
-    if (distance_m <= near_m) return true;
-  }
-  return true;
-}
 
 // The corner of a facet that another does not have, as a place.
 Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
@@ -216,45 +112,6 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-/// The way between two poses: the smaller part's centre moves on a straight line, and it turns evenly.
-class Way {
- public:
-  Way(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end)
-      : is_first_(part0.radius_m() <= part1.radius_m()),
-        from_(is_first_ ? start.inverse() : start),
-        to_(is_first_ ? end.inverse() : end),
-        turn_(rotationVector(to_.R * from_.R.transpose())),
-        center_((is_first_ ? part0 : part1).box().center()),
-        radius_m_((is_first_ ? part0 : part1).radius_m()) {}
-
-  /// Of part 0 in part 1.
-  [[nodiscard]] Pose at(double share) const {
-    const Vec3 c_from = from_ * center_, c_to = to_ * center_;
-    Pose X = share < 1 ? from_ : to_;
-    if (share > 0 && share < 1) {
-      X.R = rotationFromVector(share * turn_) * from_.R;
-      X.p = c_from + share * (c_to - c_from) - X.R * center_;
-    }
-    return is_first_ ? X : X.inverse();
-  }
-
-  /// Poses between which vertices move on nearly straight lines.
-  void divide(std::vector<Pose>& way_10) const {
-    constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
-    constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
-    const double sagitta_m = turn_.squaredNorm() * radius_m_ / 8;
-    const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
-    way_10.clear();
-    for (int k = 0; k <= pieces; ++k) way_10.push_back(at(static_cast<double>(k) / pieces));
-  }
-
- private:
-  bool is_first_;
-  Pose from_, to_;  // of the smaller part in the other
-  Vec3 turn_, center_;
-  double radius_m_;
-};
-
 double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                   const Pose& X_01) {
   Vec3 a[3], b[3];
@@ -274,10 +131,7 @@ struct Met {
 };
 
 void placeAt(Features& f, const std::vector<Pose>& way_10, std::size_t piece) {
-  for (int v = 0; v < f.a_count; ++v) {
-    f.a[v] = way_10[piece] * f.own[v];
-    f.way[v] = way_10[piece + 1] * f.own[v] - f.a[v];
-  }
+  f.moveFrom(way_10[piece], way_10[piece + 1]);
 }
 
 bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
@@ -297,6 +151,11 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 
 }  // namespace
 
+FeatureMotion::FeatureMotion() : tube_(std::make_unique<MotionTube>()) {}
+FeatureMotion::~FeatureMotion() = default;
+FeatureMotion::FeatureMotion(FeatureMotion&&) noexcept = default;
+FeatureMotion& FeatureMotion::operator=(FeatureMotion&&) noexcept = default;
+
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
   const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
@@ -305,7 +164,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const int stretches =
       static_cast<int>(std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, kMost));
   if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
-  const Way way(part0, part1, start, end);
+  const Way way(ballAround(part0), ballAround(part1), start, end);
   const std::size_t first = out.size();
   Pose from = start;
   for (int k = 0; k < stretches && out.size() < first + kEnough; ++k) {
@@ -330,8 +189,10 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
-  if (!is_valid_ || travel_m(part0, part1, searched_at_, start) + step_m + looked_at_m > margin_m_)
-    search(part0, part1, start, searchMargin_m(step_m, ballAround(part0), ballAround(part1)));
+  if (!is_valid_ || !tube_->holds(start) || !tube_->holds(to)) {
+    *tube_ = MotionTube(ballAround(part0), ballAround(part1), start, to);
+    search(part0, part1);
+  }
   is_valid_ = true;
   last_ = start;
   way_10_.clear();
@@ -348,7 +209,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     near.distance_m = (nearest.p - nearest.q).norm();
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
-    if (way_10_.empty()) Way(part0, part1, start, to).divide(way_10_);
+    if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/representative_points.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -14,83 +15,139 @@ namespace {
 
 constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
 
-/// The leaf's first normal if all its normals are within 20 degrees of it; zero otherwise.
-Vec3 commonNormal(const PointShell& shell, const ShellBlock& leaf) {
-  const Vec3& normal = shell.inward[leaf.first];
-  for (std::uint32_t id = leaf.first + 1; id < leaf.first + leaf.count; ++id)
-    if (normal.dot(shell.inward[id]) < kCosSameNormal) return Vec3::Zero();
-  return normal;
+constexpr std::size_t kMostGroups = 254;  // of a tile
+constexpr double kEdgeShare = 0.25;       // of a tile's size. assumed
+
+Box grownBy(const Box& box, const PointShell& shell, const ShellBlock& leaf) {
+  Box grown = box;
+  for (std::uint32_t id = leaf.first; id < leaf.first + leaf.count; ++id) grown.add(shell.points[id]);
+  return grown;
 }
-
-/// A tile to which leaves are added while they fit.
-class TileGrowth {
- public:
-  TileGrowth(const PointShell& shell, double size_m) : shell_(shell), size_m_(size_m) {}
-
-  [[nodiscard]] bool takes(const ShellBlock& leaf, const Vec3& normal) {
-    Box grown = box_;
-    for (std::uint32_t id = leaf.first; id < leaf.first + leaf.count; ++id) grown.add(shell_.points[id]);
-    if (count_ > 0 && (normal.dot(normal_) < kCosSameNormal || grown.size().norm() > size_m_)) return false;
-    if (count_ == 0) normal_ = normal;
-    box_ = grown;
-    ++count_;
-    return true;
-  }
-
- private:
-  const PointShell& shell_;
-  const double size_m_;
-  Box box_;
-  Vec3 normal_ = Vec3::Zero();
-  int count_ = 0;
-};
 
 }  // namespace
 
-RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_size_m)
-    : shell_(&shell), tile_of_leaf_(shell.leaf_blocks, kNone) {
+/// Sorts the points of a tile into groups: each joins the first that takes it.
+class RepresentativePoints::Grouping {
+ public:
+  Grouping(const PointShell& shell, double size_m, std::span<const std::uint8_t> on_edge)
+      : shell_(shell), edge_size_m_(kEdgeShare * size_m), on_edge_(on_edge) {}
+
+  std::uint8_t add(std::uint32_t id) {
+    const bool is_edge = !on_edge_.empty() && on_edge_[id] != 0;
+    for (std::size_t g = 0; g < members_.size(); ++g)
+      if (takes(members_[g], id, is_edge)) return join(g, id);
+    if (members_.size() == kMostGroups) return kNoGroup;
+    members_.push_back({shell_.inward[id], is_edge, {}, {}});
+    return join(members_.size() - 1, id);
+  }
+  [[nodiscard]] std::size_t size() const { return members_.size(); }
+  [[nodiscard]] std::span<const std::uint32_t> ids(std::size_t g) const { return members_[g].ids; }
+
+ private:
+  struct Members {
+    Vec3 normal;
+    bool is_edge;
+    Box box;
+    std::vector<std::uint32_t> ids;
+  };
+
+  [[nodiscard]] bool takes(const Members& group, std::uint32_t id, bool is_edge) const {
+    if (group.is_edge != is_edge || group.normal.dot(shell_.inward[id]) < kCosSameNormal) return false;
+    if (!is_edge) return true;
+    Box grown = group.box;
+    grown.add(shell_.points[id]);
+    return grown.size().norm() <= edge_size_m_;
+  }
+  std::uint8_t join(std::size_t g, std::uint32_t id) {
+    members_[g].box.add(shell_.points[id]);
+    members_[g].ids.push_back(id);
+    return static_cast<std::uint8_t>(g);
+  }
+
+  const PointShell& shell_;
+  const double edge_size_m_;
+  std::span<const std::uint8_t> on_edge_;
+  std::vector<Members> members_;
+};
+
+RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_size_m,
+                                           std::span<const std::uint8_t> on_edge)
+    : shell_(&shell),
+      tile_of_leaf_(shell.leaf_blocks, kNone),
+      group_of_(shell.size(), kNoGroup),
+      group_of_leaf_(shell.leaf_blocks, kMixed) {
   if (!(tile_size_m > 0)) throw std::invalid_argument("RepresentativePoints: a tile's size must be positive");
-  chosen_.reserve(shell.size());
+  chosen_.reserve(2 * shell.size() + 2 * kMostGroups);  // a tile's may be there twice until sorted
   for (std::size_t leaf = 0; leaf < shell.leaf_blocks;) {
     const std::size_t first = leaf;
-    TileGrowth tile(shell, tile_size_m);
+    Box box = grownBy({}, shell, shell.blocks[leaf++]);
     for (; leaf < shell.leaf_blocks; ++leaf) {
-      const Vec3 normal = commonNormal(shell, shell.blocks[leaf]);
-      if (normal.isZero(0) || !tile.takes(shell.blocks[leaf], normal)) break;
+      const Box grown = grownBy(box, shell, shell.blocks[leaf]);
+      if (grown.size().norm() > tile_size_m) break;
+      box = grown;
     }
-    if (leaf == first)
-      ++leaf;  // a leaf at an edge belongs to no tile
+    if (box.size().norm() <= tile_size_m)
+      addTile(first, leaf, tile_size_m, on_edge);
     else
-      addTile(first, leaf);
-    reduces_contacts_ |= leaf - first > 1;
+      addLoose(first);
   }
 }
 
-void RepresentativePoints::addTile(std::size_t first_leaf, std::size_t end_leaf) {
-  const auto tile_index = static_cast<std::uint32_t>(tiles_.size());
-  std::fill(tile_of_leaf_.begin() + static_cast<std::ptrdiff_t>(first_leaf),
-            tile_of_leaf_.begin() + static_cast<std::ptrdiff_t>(end_leaf), tile_index);
-  const std::uint32_t first = shell_->blocks[first_leaf].first;
-  const ShellBlock& last = shell_->blocks[end_leaf - 1];
-  const std::uint32_t end = last.first + last.count;
-  Tile tile;
-  for (std::uint32_t id = first; id < end; ++id) {
-    tile.center += shell_->points[id] / (end - first);
-    tile.inward += shell_->inward[id] / (end - first);
+// A leaf that is larger than a tile may be: its points stand for themselves.
+void RepresentativePoints::addLoose(std::size_t leaf) {
+  tile_of_leaf_[leaf] = static_cast<std::uint32_t>(tiles_.size());
+  tiles_.push_back({static_cast<std::uint32_t>(groups_.size()), 0});
+}
+
+std::uint32_t RepresentativePoints::groupOf(std::uint32_t id) const noexcept {
+  if (group_of_[id] == kNoGroup) return kNone;
+  const auto leaf = std::partition_point(
+      shell_->blocks.begin(), shell_->blocks.begin() + static_cast<std::ptrdiff_t>(shell_->leaf_blocks),
+      [id](const ShellBlock& block) { return block.first + block.count <= id; });
+  const auto index = static_cast<std::size_t>(leaf - shell_->blocks.begin());
+  return tiles_[tile_of_leaf_[index]].first_group + group_of_[id];
+}
+
+void RepresentativePoints::addTile(std::size_t first_leaf, std::size_t end_leaf, double tile_size_m,
+                                   std::span<const std::uint8_t> on_edge) {
+  Grouping grouping(*shell_, tile_size_m, on_edge);
+  for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
+    const ShellBlock& block = shell_->blocks[leaf];
+    tile_of_leaf_[leaf] = static_cast<std::uint32_t>(tiles_.size());
+    for (std::uint32_t id = block.first; id < block.first + block.count; ++id)
+      group_of_[id] = grouping.add(id);
+    const std::uint8_t first = group_of_[block.first];
+    const auto begin = group_of_.begin() + block.first;
+    if (std::all_of(begin, begin + block.count, [first](std::uint8_t g) { return g == first; }))
+      group_of_leaf_[leaf] = first;
   }
-  // Least squares: bend = sum(dn dp^T) sum(dp dp^T)^-1. A flat tile does not determine the derivative along
+  tiles_.push_back({static_cast<std::uint32_t>(groups_.size()), static_cast<std::uint32_t>(grouping.size())});
+  for (std::size_t g = 0; g < grouping.size(); ++g) {
+    groups_.push_back(fitted(grouping.ids(g)));
+    reduces_contacts_ |= grouping.ids(g).size() > 2;
+  }
+}
+
+RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::uint32_t> ids) const {
+  Group group;
+  const auto count = static_cast<double>(ids.size());
+  for (const std::uint32_t id : ids) {
+    group.center += shell_->points[id] / count;
+    group.inward += shell_->inward[id] / count;
+  }
+  // Least squares: bend = sum(dn dp^T) sum(dp dp^T)^-1. A flat group does not determine the derivative along
   // its own normal; the ridge makes it zero.
   Mat3 places = Mat3::Zero(), turns = Mat3::Zero();
-  for (std::uint32_t id = first; id < end; ++id) {
-    const Vec3 dp = shell_->points[id] - tile.center;
+  for (const std::uint32_t id : ids) {
+    const Vec3 dp = shell_->points[id] - group.center;
     places += dp * dp.transpose();
-    turns += (shell_->inward[id] - tile.inward) * dp.transpose();
-    tile.radius_m = std::max(tile.radius_m, dp.norm());
+    turns += (shell_->inward[id] - group.inward) * dp.transpose();
+    group.radius_m = std::max(group.radius_m, dp.norm());
   }
   constexpr double kRidge = 1e-3;
   if (const double size = places.trace(); size > 0)
-    tile.bend = turns * (places + kRidge * size * Mat3::Identity()).inverse();
-  tiles_.push_back(tile);
+    group.bend = turns * (places + kRidge * size * Mat3::Identity()).inverse();
+  return group;
 }
 
 /// One walk over the near leaves.
@@ -111,22 +168,29 @@ class RepresentativePoints::Search {
     least_ = std::min(least_, leaf.least());
     if (!(leaf.least() <= cutoff_)) return;
     near_ += leaf.block.count;
-    takeRequired(leaf);
-    const std::uint32_t tile = self_.tile_of_leaf_[leaf.index];
-    if (tile == kNone) return takeAll(leaf);
-    if (tile != tile_) {
+    if (const std::uint32_t tile = self_.tile_of_leaf_[leaf.index]; tile != tile_) {
       finish();
       begin(tile);
     }
-    updateNow(leaf);
-    if (has_slope_) updateThen(leaf);
+    takeRequired(leaf);
+    const std::uint8_t group = self_.group_of_leaf_[leaf.index];
+    if (group == kMixed) return takeMixed(leaf);
+    updateNow(leaf, best_[group]);
+    if (best_[group].has_slope) updateThen(leaf, best_[group]);
   }
 
   /// After the last leaf.
   void finish() noexcept {
     if (tile_ == kNone) return;
-    add(now_);
-    if (has_slope_) add(then_);
+    auto& chosen = self_.chosen_;
+    for (std::size_t g = 0; g < self_.tiles_[tile_].group_count; ++g)
+      for (const Best* best : {&best_[g].now, &best_[g].then})
+        if (best->point.id != kNone) chosen.push_back(best->point);
+    const auto first = chosen.begin() + static_cast<std::ptrdiff_t>(first_chosen_);
+    std::sort(first, chosen.end(), [](const Chosen& a, const Chosen& b) { return a.id < b.id; });
+    chosen.erase(
+        std::unique(first, chosen.end(), [](const Chosen& a, const Chosen& b) { return a.id == b.id; }),
+        chosen.end());
     tile_ = kNone;
   }
 
@@ -139,49 +203,88 @@ class RepresentativePoints::Search {
     Chosen point{kNone, kNone};
   };
 
+  /// The nearest points of a group, now and after the step.
+  struct GroupBest {
+    Best now, then;
+    bool has_slope = false;
+    Vec3 center;
+    Eigen::Vector3f slope;  ///< of the change of the gap in the step [quanta/m]
+    float steepest = 0;
+  };
+
   void begin(std::uint32_t index) noexcept {
     tile_ = index;
-    now_ = then_ = {};
+    first_chosen_ = self_.chosen_.size();
     const Tile& tile = self_.tiles_[index];
-    const Vec3 slope =
-        tile.bend.transpose() * (shift_P_ + turn_P_.cross(tile.center)) + tile.inward.cross(turn_P_);
-    const double length = slope.norm();
-    has_slope_ = length * tile.radius_m > kSame_m;
-    slope_ = (slope / quantum_m_).cast<float>();
-    steepest_ = static_cast<float>(length / quantum_m_);
+    for (std::size_t g = 0; g < tile.group_count; ++g) {
+      const Group& group = self_.groups_[tile.first_group + g];
+      GroupBest& best = best_[g];
+      const Vec3 slope =
+          group.bend.transpose() * (shift_P_ + turn_P_.cross(group.center)) + group.inward.cross(turn_P_);
+      const double length = slope.norm();
+      best.now = best.then = {};
+      best.has_slope = length * group.radius_m > kSame_m;
+      best.center = group.center;
+      best.slope = (slope / quantum_m_).cast<float>();
+      best.steepest = static_cast<float>(length / quantum_m_);
+    }
   }
 
-  void updateNow(const ReadLeaf& leaf) noexcept {
-    if (!(leaf.least() < now_.value)) return;
+  static void updateNow(const ReadLeaf& leaf, GroupBest& best) noexcept {
+    if (!(leaf.least() < best.now.value)) return;
     std::uint32_t lane = 0;
     while (leaf.value(static_cast<int>(lane)) != leaf.least()) ++lane;
-    now_ = {leaf.least(), {leaf.index, leaf.block.first + lane}};
+    best.now = {leaf.least(), {leaf.index, leaf.block.first + lane}};
   }
 
-  /// Compares gaps at the end of the step; the part that the whole tile has in common is left out.
-  void updateThen(const ReadLeaf& leaf) noexcept {
-    const Vec3& center = self_.tiles_[tile_].center;
+  static float slopeAt(const GroupBest& best, const ShellBlock& block) noexcept {
+    float at = 0;
+    for (int k = 0; k < 3; ++k) at += best.slope[k] * static_cast<float>(block.center[k] - best.center[k]);
+    return at;
+  }
+
+  /// Compares gaps at the end of the step; the part that the whole group has in common is left out.
+  void updateThen(const ReadLeaf& leaf, GroupBest& best) const noexcept {
     const ShellBlock& block = leaf.block;
-    float at_center = 0;
-    for (int k = 0; k < 3; ++k) at_center += slope_[k] * static_cast<float>(block.center[k] - center[k]);
-    if (leaf.least() + at_center - steepest_ * static_cast<float>(block.radius_m) >= then_.value) return;
+    const float at_center = slopeAt(best, block);
+    if (leaf.least() + at_center - best.steepest * static_cast<float>(block.radius_m) >= best.then.value)
+      return;
     // Unused lanes repeat the first.
     float then[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       const float now = leaf.value(i);
-      const float to =
-          now + at_center + slope_[0] * block.x[i] + slope_[1] * block.y[i] + slope_[2] * block.z[i];
+      const float to = now + at_center + best.slope[0] * block.x[i] + best.slope[1] * block.y[i] +
+                       best.slope[2] * block.z[i];
       then[i] = now <= cutoff_ ? to : std::numeric_limits<float>::infinity();
     }
     const float least = *std::min_element(then, then + kLanes);
-    if (!(least < then_.value)) return;
+    if (!(least < best.then.value)) return;
     const auto lane = static_cast<std::uint32_t>(std::find(then, then + kLanes, least) - then);
-    then_ = {least, {leaf.index, block.first + lane}};
+    best.then = {least, {leaf.index, block.first + lane}};
   }
 
-  void takeAll(const ReadLeaf& leaf) noexcept {
-    for (std::uint32_t lane = 0; lane < leaf.block.count; ++lane)
-      if (leaf.value(static_cast<int>(lane)) <= cutoff_) add({0, {leaf.index, leaf.block.first + lane}});
+  void takeMixed(const ReadLeaf& leaf) noexcept {
+    const ShellBlock& block = leaf.block;
+    std::uint8_t last = kNoGroup;
+    float at_center = 0;
+    for (std::uint32_t lane = 0; lane < block.count; ++lane) {
+      const auto i = static_cast<int>(lane);
+      const float now = leaf.value(i);
+      if (!(now <= cutoff_)) continue;
+      const std::uint8_t group = self_.group_of_[block.first + lane];
+      const Chosen point{leaf.index, block.first + lane};
+      if (group == kNoGroup) {
+        self_.chosen_.push_back(point);
+        continue;
+      }
+      GroupBest& best = best_[group];
+      if (now < best.now.value) best.now = {now, point};
+      if (!best.has_slope) continue;
+      if (std::exchange(last, group) != group) at_center = slopeAt(best, block);
+      const float then = now + at_center + best.slope[0] * block.x[i] + best.slope[1] * block.y[i] +
+                         best.slope[2] * block.z[i];
+      if (then < best.then.value) best.then = {then, point};
+    }
   }
 
   void takeRequired(const ReadLeaf& leaf) noexcept {
@@ -189,17 +292,7 @@ class RepresentativePoints::Search {
     while (!required_.empty() && required_.front() < first) required_ = required_.subspan(1);
     for (; !required_.empty() && required_.front() < end; required_ = required_.subspan(1))
       if (leaf.value(static_cast<int>(required_.front() - first)) <= cutoff_)
-        add({0, {leaf.index, required_.front()}});
-  }
-
-  /// Ids arrive nearly in order, some of them twice.
-  void add(const Best& best) noexcept {
-    if (best.point.id == kNone) return;
-    auto& chosen = self_.chosen_;
-    auto at = chosen.end();
-    while (at != chosen.begin() && std::prev(at)->id > best.point.id) --at;
-    if (at != chosen.begin() && std::prev(at)->id == best.point.id) return;
-    chosen.insert(at, best.point);  // there is capacity for every point
+        self_.chosen_.push_back({leaf.index, required_.front()});
   }
 
   RepresentativePoints& self_;
@@ -208,10 +301,8 @@ class RepresentativePoints::Search {
   const Vec3 turn_P_, shift_P_;  ///< the step, about P's origin, in P
   std::span<const std::uint32_t> required_;
   std::uint32_t tile_ = kNone;
-  Best now_, then_;
-  bool has_slope_ = false;
-  Eigen::Vector3f slope_ = Eigen::Vector3f::Zero();  ///< of the change of the gap in the step [quanta/m]
-  float steepest_ = 0;
+  std::size_t first_chosen_ = 0;  ///< of the tile
+  GroupBest best_[kMostGroups];   ///< of the tile
   float least_ = std::numeric_limits<float>::infinity();
   std::size_t near_ = 0;
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -88,6 +89,14 @@ void FacetTree::build(const FeatureSet& part) {
       cones.push_back(coneOf(facet));
     }
     b.normals = coneOver(cones);
+    b.low_m = std::numeric_limits<double>::infinity();
+    b.high_m = -b.low_m;
+    for (std::uint32_t k = node.first; k < node.end; ++k)
+      for (const std::uint32_t v : part.facets()[tree.order[k]]) {
+        const double at_m = b.normals.axis.dot(part.vertices()[v]);
+        b.low_m = std::min(b.low_m, at_m);
+        b.high_m = std::max(b.high_m, at_m);
+      }
   }
 }
 
@@ -153,7 +162,8 @@ void CornerTree::build(const FeatureSet& part) {
       all.push_back(faces[tree.order[k]]);
     }
     b.center = box.center();
-    b.radius_m = 0.5 * box.size().norm();
+    b.half = 0.5 * box.size();
+    b.radius_m = b.half.norm();
     b.touch = coneOver(cones);
     const Faces over = facesOver(all);
     for (const int k : {0, 1}) b.faces[k] = over.cone[k];
@@ -165,18 +175,37 @@ namespace {
 
 const double kFlush_rad = std::acos(kCosFlush);
 
-double squaredDistance(const Box& box, const Vec3& p) {
-  return (p - p.cwiseMax(box.min).cwiseMin(box.max)).squaredNorm();
-}
+/// A straight way, in the frame of the facets.
+struct Track {
+  Vec3 from, to;
+
+  Track(const Sweep& X, const Vec3& p) : from(X.from * p), to(X.to * p) {}
+};
 
 /// A node of the corners, in the frame of the facets.
 struct Placed {
-  Vec3 center, touch, faces[2];
+  Track center;
+  Vec3 half;  ///< of a box around them at each place of the track
+  Vec3 touch, faces[2];
+
+  // At most the distance from a box on the way; of a place that does not move, exactly the distance.
+  [[nodiscard]] double leastSquaredDistance(const Box& box) const {
+    const Vec3 above = center.from.cwiseMin(center.to) - half - box.max,
+               below = box.min - half - center.from.cwiseMax(center.to);
+    return above.cwiseMax(below).cwiseMax(0.0).squaredNorm();
+  }
+  // True if they stay farther than margin_m from a slab along n.
+  [[nodiscard]] bool isBeside(const Vec3& n, double low_m, double high_m, double radius_m,
+                              double margin_m) const {
+    const double a_m = n.dot(center.from), b_m = n.dot(center.to);
+    const double reach_m = std::min(radius_m, n.cwiseAbs().dot(half)) + margin_m;
+    return std::min(a_m, b_m) > high_m + reach_m || std::max(a_m, b_m) < low_m - reach_m;
+  }
 };
 
 class TouchSearch {
  public:
-  TouchSearch(const FeatureSet& with_corners, const FeatureSet& with_facets, const Pose& X_fc,
+  TouchSearch(const FeatureSet& with_corners, const FeatureSet& with_facets, const Sweep& X_fc,
               double margin_m, double slack_rad, std::vector<TouchPair>& found)
       : corners_of_(with_corners),
         facets_of_(with_facets),
@@ -201,9 +230,12 @@ class TouchSearch {
   void visit(std::uint32_t c, std::vector<std::uint32_t>& list, std::size_t first) {
     const CornerTree::Bounds& corner = corners_.bounds[c];
     const DirectedTree::Node& node = corners_.tree.nodes[c];
-    const Placed at{X_ * corner.center,
-                    X_.R * corner.touch.axis,
-                    {X_.R * corner.faces[0].axis, X_.R * corner.faces[1].axis}};
+    const Mat3& R = X_.from.R;
+    // Corners on straight ways between two poses stay in the box that holds them at both.
+    const Placed at{Track(X_, corner.center),
+                    (R.cwiseAbs() * corner.half).cwiseMax(X_.to.R.cwiseAbs() * corner.half),
+                    R * corner.touch.axis,
+                    {R * corner.faces[0].axis, R * corner.faces[1].axis}};
     const std::size_t end = list.size();
     for (std::size_t i = first; i < end; ++i) descend(corner, at, node.left == 0, list[i], list);
     if (node.left == 0) {
@@ -231,8 +263,8 @@ class TouchSearch {
 
   [[nodiscard]] bool canTouch(const CornerTree::Bounds& corner, const Placed& at,
                               const FacetTree::Bounds& facet) const {
-    const double reach_m = corner.radius_m + margin_m_;
-    if (!(squaredDistance(facet.box, at.center) <= reach_m * reach_m)) return false;
+    if (!(at.leastSquaredDistance(facet.box) <= margin_m_ * margin_m_)) return false;
+    if (at.isBeside(facet.normals.axis, facet.low_m, facet.high_m, corner.radius_m, margin_m_)) return false;
     if (areApart(corner.touch, at.touch, facet.normals, slack_rad_)) return false;
     if (!facet.is_curved) return true;
     for (const int k : {0, 1})
@@ -250,10 +282,10 @@ class TouchSearch {
 
   void surround(std::uint32_t corner) {
     rays_.clear();
-    for (const Vec3& ray : corners_of_.raysAt(corner)) rays_.push_back(X_.R * ray);
+    for (const Vec3& ray : corners_of_.raysAt(corner)) rays_.push_back(X_.from.R * ray);
     faces_.clear();
     for (const std::uint32_t edge : corners_of_.edgesAt(corner))
-      for (const Vec3& n : corners_of_.edges()[edge].normal) faces_.push_back(X_.R * n);
+      for (const Vec3& n : corners_of_.edges()[edge].normal) faces_.push_back(X_.from.R * n);
   }
 
   [[nodiscard]] bool canTouch(std::uint32_t facet) const {
@@ -269,7 +301,7 @@ class TouchSearch {
   const FeatureSet &corners_of_, &facets_of_;
   const CornerTree& corners_;
   const FacetTree& facets_;
-  const Pose& X_;
+  const Sweep& X_;
   double margin_m_, slack_rad_, surely_flush_;
   std::vector<TouchPair>& found_;
   // What surrounds a corner, in the frame of the facets.
@@ -278,7 +310,7 @@ class TouchSearch {
 
 }  // namespace
 
-void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Pose& X_fc,
+void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Sweep& X_fc,
                     double margin_m, double slack_rad, std::vector<TouchPair>& found) {
   found.clear();
   TouchSearch(with_corners, with_facets, X_fc, margin_m, slack_rad, found).run();

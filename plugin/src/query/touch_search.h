@@ -32,7 +32,8 @@ struct FacetTree {
   struct Bounds {
     Box box;
     DirectionCone normals;
-    bool is_curved = true;  ///< all of them
+    double low_m = 0, high_m = 0;  ///< of the corners along the cone's axis
+    bool is_curved = true;         ///< all of them
   };
   DirectedTree tree;
   std::vector<Bounds> bounds;  ///< of the nodes
@@ -43,7 +44,7 @@ struct FacetTree {
 /// Corners with bounds of their places and of the planes that they can touch.
 struct CornerTree {
   struct Bounds {
-    Vec3 center;
+    Vec3 center, half;  ///< of a box around their places
     double radius_m = 0;
     DirectionCone touch;
     DirectionCone faces[2];  ///< each corner has a face with its normal in each
@@ -59,12 +60,17 @@ struct TouchPair {
   std::uint32_t corner, facet;
 };
 
+/// Two poses of the part with the corners in that with the facets; its points move on straight lines.
+struct Sweep {
+  Pose from, to;
+};
+
 /// Lists the corners of a part and the facets of another that can touch while the parts turn by less than
-/// slack_rad, and of which the corner is nearer than margin_m to the facet's box. In a fixed order. Corners
-/// with faces that lie flush on a facet of a curved surface are left out. Clears `found`.
-/// Cost: some 50 ns for each pair of nodes that are looked at; features of a thread in its nut are left out
-/// by hundreds at once. Source: spatialised normal cones (Johnson and Cohen 2001).
-void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Pose& X_fc,
+/// slack_rad, and of which the corner comes nearer than margin_m to the facet's box and to its plane. In a
+/// fixed order. Corners with faces that lie flush on a facet of a curved surface are left out. Clears
+/// `found`. Cost: some 50 ns for each pair of nodes that are looked at; features of a thread in its nut are
+/// left out by hundreds at once. Source: spatialised normal cones (Johnson and Cohen 2001).
+void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Sweep& X_fc,
                     double margin_m, double slack_rad, std::vector<TouchPair>& found);
 
 }  // namespace vps::inline v0

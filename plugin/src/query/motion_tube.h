@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How long a list of near pairs of two parts stays complete while they move.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "query/way.h"
+
+namespace vps::inline v0 {
+
+/// A motion that is expected of two parts, and a margin around it. A list of what comes near on this motion
+/// stays complete while the parts follow it to within the margin. In a thread that turns, hundred times more
+/// features are as near as its steps are long than come near on its motion.
+class MotionTube {
+ public:
+  MotionTube() = default;
+
+  /// The motion from `start` to `end` goes on with the same twist for a few steps. Poses of part 1 in part 0.
+  MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end)
+      : ball0_(ball0), ball1_(ball1) {
+    // assumed, by measurement on threads, gears and a heap: a wider margin lasts longer, but more is near.
+    constexpr double kLeast_m = 25e-6, kMost_m = 150e-6, kOfStep = 0.5;
+    constexpr double kLongest = 8;
+    const double step_m = travel_m(ball0, ball1, start, end);
+    slack_m_ = std::clamp(kOfStep * step_m, kLeast_m, kMost_m);
+    const double step_rad = Way(ball0, ball1, start, end).turn_rad();
+    const double bend_m = bendOf(step_m, step_rad);
+    double steps = kLongest;
+    if (step_m > 0) steps = std::min(steps, 2 * longestStretch_m(ball0, ball1) / step_m);
+    if (bend_m > 0) steps = std::min(steps, std::sqrt(0.5 * slack_m_ / bend_m));
+    Pose to = end;
+    const Pose once = start.inverse() * end;
+    for (int k = 2; k <= static_cast<int>(steps); ++k) to = to * once;
+    from_ = start;
+    to_ = to;
+    way_ = Way(ball0, ball1, start, to);
+    bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
+  }
+
+  /// Poses of part 1 in part 0.
+  [[nodiscard]] const Pose& from() const { return from_; }
+  [[nodiscard]] const Pose& to() const { return to_; }
+  /// While holds() is true for the ends of a motion, each point of a part near the other is within this of
+  /// the straight line from its place at from() to that at to(), in the frame of the other part.
+  [[nodiscard]] double margin_m() const { return slack_m_ + bend_m_; }
+  /// Greatest turn from from() to a pose within the tube.
+  [[nodiscard]] double turn_rad() const {
+    return way_.turn_rad() + slack_m_ / std::min(ball0_.radius_m, ball1_.radius_m);
+  }
+  /// True if a pose of part 1 in part 0 is so near the motion that the way between two such poses lies in the
+  /// tube.
+  [[nodiscard]] bool holds(const Pose& X_01) const {
+    constexpr double kShare = 0.9;  // turns interpolate by rotations, which lie on a curved space
+    const Pose nearest_10 = way_.at(way_.nearestShare(X_01));
+    return travel_m(ball0_, ball1_, nearest_10.inverse(), X_01) <= kShare * slack_m_;
+  }
+
+ private:
+  // How far a point leaves the straight line from its first to its last place, on a way of this length and
+  // turn. Of a point q of the larger part, seen from the smaller one, whose centre is at c: R'(q - c) has a
+  // second derivative of at most turn^2 |q - c| + 2 turn |c'|. With turn |q - c| <= way + turn (slack + way),
+  // and turns below 1, an eighth of that is at most this.
+  [[nodiscard]] double bendOf(double way_m, double turn_rad) const {
+    return turn_rad * (3 * way_m + slack_m_) / 8;
+  }
+
+  Ball ball0_, ball1_;
+  Pose from_, to_;
+  Way way_;
+  double slack_m_ = 0, bend_m_ = 0;
+};
+
+}  // namespace vps::inline v0

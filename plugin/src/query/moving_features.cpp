@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/moving_features.h"
+
+#include <algorithm>
+
+namespace vps::inline v0 {
+
+namespace {
+
+using Kind = FeatureContact::Kind;
+
+// Up to which share of the step the slab between both features along n stays wider than least_m.
+double slabShare(const Features& f, const Vec3& n, double least_m) {
+  double top = n.dot(f.b[0]);
+  for (int i = 1; i < f.b_count; ++i) top = std::max(top, n.dot(f.b[i]));
+  double share = 2;
+  for (int i = 0; i < f.a_count; ++i) {
+    const double speed = n.dot(f.way[i]);
+    if (speed < 0) share = std::min(share, (top + least_m - n.dot(f.a[i])) / speed);
+  }
+  return share;
+}
+
+/// A vector that changes linearly between two shares.
+struct Linear {
+  Vec3 from, to;
+};
+
+// The vectors whose product C = A x B is across both edges, or across the facet, and r between them.
+void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, Linear& B, Linear& r) {
+  Vec3 at[2][3];
+  f.moveTo(from, at[0]);
+  f.moveTo(to, at[1]);
+  const auto of = [&](Linear& out, const auto& get) { out = {get(at[0]), get(at[1])}; };
+  using Points = Vec3[3];
+  if (kind == Kind::EdgeOnEdge) {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    B = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else if (kind == Kind::CornerOnFacet) {
+    A = {f.b[1] - f.b[0], f.b[1] - f.b[0]};
+    B = {f.b[2] - f.b[0], f.b[2] - f.b[0]};
+    of(r, [&](const Points& a) { return Vec3(a[0] - f.b[0]); });
+  } else {
+    of(A, [](const Points& a) { return Vec3(a[1] - a[0]); });
+    of(B, [](const Points& a) { return Vec3(a[2] - a[0]); });
+    of(r, [&](const Points& a) { return Vec3(f.b[0] - a[0]); });
+  }
+}
+
+// True if the lines of both edges, or the corner and the facet's plane, stay farther apart than least_m
+// between two shares: C . r is a cubic polynomial, which lies between its Bernstein coefficients.
+bool staysApart(Kind kind, const Features& f, double from, double to, double least_m) {
+  Linear A, B, r;
+  vectorsOf(kind, f, from, to, A, B, r);
+  const Vec3 C[3] = {A.from.cross(B.from), 0.5 * (A.from.cross(B.to) + A.to.cross(B.from)), A.to.cross(B.to)};
+  const double h[4] = {C[0].dot(r.from), (C[0].dot(r.to) + 2 * C[1].dot(r.from)) / 3,
+                       (2 * C[1].dot(r.to) + C[2].dot(r.from)) / 3, C[2].dot(r.to)};
+  const double limit = least_m * std::max({C[0].norm(), C[1].norm(), C[2].norm()});
+  const double sign = h[0] < 0 ? -1 : 1;
+  return sign * h[0] > limit && sign * h[1] > limit && sign * h[2] > limit && sign * h[3] > limit;
+}
+
+// The share up to which they are known to stay apart in that sense; at least `least_share`.
+double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
+  constexpr int kMost = 6;
+  double to = 1;
+  for (int k = 0; k < kMost && to > least_share; ++k, to = 0.5 * (from + to))
+    if (staysApart(kind, f, from, to, least_m)) return to;
+  return least_share;
+}
+
+}  // namespace
+
+bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
+  constexpr int kMost = 60;  // assumed; most need two or three
+  const double near_m = 1.1 * least_m;
+  double distance_m = start_m;
+  double fastest_m = 0;
+  for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
+  for (int k = 0; k < kMost; ++k) {
+    const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
+    // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
+    const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
+    const double slab = std::max(slabShare(f, n, least_m), reach.share + least_step);
+    if (!(slab < 1)) return false;
+    // A long edge that turns leaves its slab soon, though the edges stay apart where they are nearest.
+    reach.share = planeShare(kind, f, reach.share, slab, least_m);
+    if (!(reach.share < 1)) return false;
+    Vec3 at[3];
+    f.moveTo(reach.share, at);
+    reach.nearest = nearestOf(kind, at, f.b);
+    distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    if (distance_m <= near_m) return true;
+  }
+  return true;
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two features that move on straight lines, and where they come near each other.
+#pragma once
+
+#include "query/feature_points.h"
+
+namespace vps::inline v0 {
+
+/// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
+struct Features {
+  Vec3 own[3];  ///< of part 0, in its own frame
+  Vec3 a[3], way[3], b[3];
+  int a_count = 0, b_count = 0;
+
+  /// The way of part 0's points between two poses of it in part 1.
+  void moveFrom(const Pose& from_10, const Pose& to_10) {
+    for (int i = 0; i < a_count; ++i) {
+      a[i] = from_10 * own[i];
+      way[i] = to_10 * own[i] - a[i];
+    }
+  }
+  void moveTo(double share, Vec3 (&at)[3]) const {
+    for (int i = 0; i < a_count; ++i) at[i] = a[i] + share * way[i];
+  }
+};
+
+/// Where features reach a distance.
+struct Reach {
+  double share = 0;
+  Nearest nearest;
+};
+
+/// False: they stay farther apart than least_m. Else `reach` is where they come within 1.1 times that, or a
+/// place before it. Source: conservative advancement (Mirtich 1996), here along the separating plane of the
+/// nearest points.
+/// @param start_m  their distance at the start, positive
+/// @param reach  holds their nearest points at the start
+bool findReach(FeatureContact::Kind kind, const Features& f, double least_m, double start_m, Reach& reach);
+
+}  // namespace vps::inline v0
