@@ -71,8 +71,8 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
   std::optional<import::RawCad> raw;
   if (cad.format == "STL") raw = import::readBinaryStl(file, settings);
   if (!raw)
-    raw =
-        settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read) : read(progress);
+    raw = settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read)
+                                  : read(progress);
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
     if (hasExactFaces(cad.format))
