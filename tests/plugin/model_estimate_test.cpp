@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "vps/mesh.h"
 #include "vps/shell_crop.h"
 #include "vps/solid.h"
@@ -61,6 +63,14 @@ TEST(ModelEstimate, ABoxBesideThePartKeepsNothing) {
   const Box far{Vec3::Constant(0.1), Vec3::Constant(0.11)};
   EXPECT_EQ(estimate.pointCount({far}), 0);
   EXPECT_LT(estimate.mapBytes({far}), 0.2 * estimate.mapBytes());
+}
+
+TEST(ModelEstimate, AMeshThatCannotBeBuiltCostsNothing) {
+  Mesh mesh = makeBox({20 * kMm, 15 * kMm, 10 * kMm});
+  mesh.vertices[3].y() = NAN;
+  const ModelEstimate estimate(mesh, {}, {});
+  EXPECT_EQ(estimate.mapBytes(), 0);
+  EXPECT_EQ(estimate.pointCount(), 0);
 }
 
 }  // namespace

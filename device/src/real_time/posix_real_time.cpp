@@ -44,11 +44,13 @@ int lockMemory() {
   return mlockall(is_free ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0 ? 0 : errno;
 }
 
+// Made before main(): the first call of a function's own static may be on the haptic thread, and allocates.
+constinit MonotonicClock the_monotonic_clock;  // no state
+
 }  // namespace
 
 RealTimeClock& monotonicClock() noexcept {
-  static MonotonicClock clock;  // no state
-  return clock;
+  return the_monotonic_clock;
 }
 
 void leaveRealTime() noexcept {

@@ -28,6 +28,10 @@ bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
 
 ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels,
                              const PointShellSettings& points) {
+  // A mesh that cannot be built costs nothing; building it says why.
+  const bool is_finite = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                                     [](const Vec3& vertex) { return vertex.allFinite(); });
+  if (!is_finite) return;
   area_m2_ = area(mesh);
   cell_m_ = VoxMap::kBrick * voxels.voxel_m;
   // The bricks that meet a slab as thick as the band: its thickness, and one for where the slab starts.

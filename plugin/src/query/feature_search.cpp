@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "query/motion_tube.h"
 #include "query/moving_features.h"
 #include "query/touch_search.h"
 #include "vps/feature_motion.h"
