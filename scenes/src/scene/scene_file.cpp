@@ -403,8 +403,8 @@ class SceneReader {
   std::map<std::string, ImportedCad> cads_;
   std::vector<PartGroup> groups_;
   std::map<std::string, std::string> group_of_;  ///< by part
-  std::size_t cad_count_ = 0;       ///< the first parts of the scene are those of its 'cad'
-  std::vector<bool> is_described_;  ///< of those parts: has a [[part]] of its own
+  std::size_t cad_count_ = 0;                    ///< the first parts of the scene are those of its 'cad'
+  std::vector<bool> is_described_;               ///< of those parts: has a [[part]] of its own
   /// The highest point of the first fixed parts and of the parts of the first steps, as far as they are in
   /// it.
   double top_m_ = -std::numeric_limits<double>::infinity();
