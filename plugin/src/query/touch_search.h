@@ -23,7 +23,7 @@ struct DirectedTree {
   std::vector<Node> nodes;
   std::vector<std::uint32_t> order;
 
-  /// Halves by direction while these differ much, then by place. O(n log n).
+  /// Halves by place or direction, by what differs more. O(n log n).
   void build(const std::vector<Item>& items);
 };
 
@@ -33,6 +33,7 @@ struct FacetTree {
     Box box;
     DirectionCone normals;
     double low_m = 0, high_m = 0;  ///< of the corners along the cone's axis
+    double spread_m = 0;           ///< size of a box around the facets' centres; 0: a single one
     bool is_curved = true;         ///< all of them
   };
   DirectedTree tree;
@@ -66,10 +67,11 @@ struct Sweep {
 };
 
 /// Lists the corners of a part and the facets of another that can touch while the parts turn by less than
-/// slack_rad, and of which the corner comes nearer than margin_m to the facet's box and to its plane. In a
-/// fixed order. Corners with faces that lie flush on a facet of a curved surface are left out. Clears
-/// `found`. Cost: some 50 ns for each pair of nodes that are looked at; features of a thread in its nut are
-/// left out by hundreds at once. Source: spatialised normal cones (Johnson and Cohen 2001).
+/// slack_rad, and of which the corner comes nearer than margin_m to the facet; with them some that come as
+/// near only to the facet's box and to its plane. In a fixed order. Corners with faces that lie flush on a
+/// facet of a curved surface are left out. Clears `found`. Cost: some 50 ns for each pair of nodes that are
+/// looked at; features of a thread in its nut are left out by hundreds at once. Source: spatialised normal
+/// cones (Johnson and Cohen 2001).
 void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Sweep& X_fc,
                     double margin_m, double slack_rad, std::vector<TouchPair>& found);
 
