@@ -149,6 +149,32 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   EXPECT_NEAR(c.gap_m(end.inverse()), height_m - fall_m, 1e-12);
 }
 
+// The same corner elsewhere above the face: height and place by the formula, while it is near and outside.
+TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  const Body tip(mesh);
+  const auto at = [](double x_m, double height_m) {
+    return Pose::translation(Vec3(x_m, 2e-3, 5e-3 + height_m)).inverse();
+  };
+  const auto found = check(tip, floor, at(1e-3, 1e-6), at(1e-3, -1e-6));
+  ASSERT_EQ(found.size(), 1u);
+  FeatureContact c = found[0];
+  ASSERT_TRUE(measureAgain(tip.features, floor.features, at(1.5e-3, 1.7e-6), 2e-6, c));
+  EXPECT_EQ(c.feature[0], found[0].feature[0]);
+  EXPECT_EQ(c.feature[1], found[0].feature[1]);
+  EXPECT_NEAR(c.start_m, 1.7e-6, 1e-12);
+  EXPECT_NEAR(c.gap_m(at(1.5e-3, 1.7e-6)), 1.7e-6, 1e-12);
+  EXPECT_LE((c.p[1] - Vec3(1.5e-3, 2e-3, 5e-3)).norm(), 1e-12);
+  for (const double height_m :
+       {2.3e-6, 0.5e-9, -1e-6}) {  // too far, of no known direction, and behind the face
+    FeatureContact away = found[0];
+    EXPECT_FALSE(measureAgain(tip.features, floor.features, at(1e-3, height_m), 2e-6, away)) << height_m;
+  }
+}
+
 // A tip that is far away when the step begins: a long way is looked at in stretches.
 TEST(FeatureMotion, AFastCornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));

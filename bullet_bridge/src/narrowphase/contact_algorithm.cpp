@@ -34,6 +34,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.selection = {};
     state.penalty.points.clear();
     state.features.reset();
+    state.missed_features.clear();
     state.crossings.reset();
     for (auto& query_state : state.query_state) query_state.reset();
     for (auto& ids : state.always) ids.clear();

@@ -47,6 +47,49 @@ bool isOnSheet(const FeatureContact& c, const PairView& pair) {
   return pair.shape[with_facet]->features().isTwoSided(c.feature[with_facet]);
 }
 
+/// Contacts of features, where both bodies are at the start of a step.
+struct FeaturePlacer {
+  Pose X_01, X_WM0;
+  double rest_m;
+
+  explicit FeaturePlacer(const PairView& start)
+      : X_01(poseBetween(start, start.X_WS)),
+        X_WM0(start.X_WS[0] * start.shape[0]->X_SM()),
+        rest_m(FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features())) {}
+  [[nodiscard]] Candidate operator()(const FeatureContact& c) const {
+    Candidate at;
+    at.n_W = X_WM0.R * c.normal_0(X_01);
+    at.p_W = X_WM0 * c.p[0];
+    at.distance_m = c.gap_m(X_01);
+    at.id = codeOf(c, 0);
+    at.crossed = codeOf(c, 1) + 1;
+    at.rest_m = rest_m;
+    at.plane_of = c.kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c.plane_of;
+    return at;
+  }
+};
+
+// A point of a shell or a crossing at the same place of the same plane: its own point may be the one of the
+// other body, across the gap.
+bool isAmong(const std::vector<Candidate>& contacts, const Candidate& at) {
+  constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed, as in isRepeated()
+  return std::any_of(contacts.begin(), contacts.end(), [&](const Candidate& c) {
+    const Vec3 to = c.p_W - at.p_W;
+    const double height_m = at.n_W.dot(to);
+    return at.n_W.dot(c.n_W) > kCosSame && std::abs(height_m) < std::abs(at.distance_m) + kNear_m &&
+           (to - height_m * at.n_W).squaredNorm() < kNear_m * kNear_m;
+  });
+}
+
+void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
+  constexpr std::size_t kMost = 2 * kMostAdded;  // assumed; a body is held by six
+  std::erase_if(known, [&](const FeatureContact& k) {
+    return k.kind == c.kind && std::equal(k.feature, k.feature + 2, c.feature);
+  });
+  if (known.size() == kMost) known.erase(known.begin());
+  known.push_back(c);
+}
+
 }  // namespace
 
 bool hasFeatures(const PairView& pair, const Settings& settings) {
@@ -73,27 +116,42 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
                    [](const FeatureContact& a, const FeatureContact& b) { return a.share < b.share; });
   for (const FeatureContact& c : found)
     if (chosen.size() < kMostAdded && !isRepeated(c, chosen)) chosen.push_back(&c);
-  const Pose X_01 = poseBetween(start, start.X_WS), X_01_end = poseBetween(start, end.X_WS);
-  const Pose X_WM0 = start.X_WS[0] * start.shape[0]->X_SM();
-  const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
+  const Pose X_01_end = poseBetween(start, end.X_WS);
+  const FeaturePlacer place(start);
   for (const FeatureContact* c : chosen) {
-    Candidate at;
-    at.n_W = X_WM0.R * c->normal_0(X_01);
-    at.p_W = X_WM0 * c->p[0];
-    at.distance_m = c->gap_m(X_01);
-    at.id = codeOf(*c, 0);
-    at.crossed = codeOf(*c, 1) + 1;
-    at.rest_m = rest_m;
-    at.plane_of = c->kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c->plane_of;
+    if (!isOnSheet(*c, start)) remember(*c, state.missed_features);
     MissedContact missed;
-    missed.point = state.writer->put(at, start.wrapper, state.motion);
+    missed.point = state.writer->put(place(*c), start.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
     missed.end_gap_m = c->gap_m(X_01_end);
-    missed.kept_m = std::min(rest_m, c->start_m);
-    missed.rest_m = rest_m;
+    missed.kept_m = std::min(place.rest_m, c->start_m);
+    missed.rest_m = place.rest_m;
     missed.is_sharp = !isOnSheet(*c, start);
     out.push_back(missed);
   }
+}
+
+void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
+                       std::vector<Candidate>& contacts) {
+  if (state.missed_features.empty()) return;
+  if (!hasFeatures(pair, settings)) return state.missed_features.clear();
+  const FeaturePlacer place(pair);
+  // assumed: farther apart, the line between the nearest points is not the direction in which they will
+  // touch.
+  const double most_m = 4 * place.rest_m;
+  std::erase_if(state.missed_features, [&](FeatureContact& c) {
+    return !measureAgain(pair.shape[0]->features(), pair.shape[1]->features(), place.X_01, most_m, c);
+  });
+  const std::size_t had = contacts.size();
+  for (const FeatureContact& c : state.missed_features) {
+    if (contacts.size() >= static_cast<std::size_t>(settings.contact_limit)) break;
+    Candidate at = place(c);
+    if (!isAmong(contacts, at) && state.motion.canTouch(at)) contacts.push_back(at);
+  }
+  const auto middle = contacts.begin() + static_cast<std::ptrdiff_t>(had);
+  const auto byKey = [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); };
+  std::sort(middle, contacts.end(), byKey);
+  std::inplace_merge(contacts.begin(), middle, contacts.end(), byKey);
 }
 
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state) {

@@ -17,6 +17,12 @@ constexpr double kToleratedShare = 0.05;
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
 
+/// Adds the contacts of features that earlier steps lacked and that are still as near, in key order. Parts
+/// that rest on features that are no points of a shell and no crossings would otherwise be solved twice in
+/// each step: once without these contacts.
+void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
+                       std::vector<Candidate>& contacts);
+
 /// Marks the contacts at sharp features, which bullet::Solver keeps at their rest gap.
 void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts);
 

@@ -42,16 +42,17 @@ struct PairState {
   std::vector<Candidate> contacts;  ///< of the coming step
   RelativeMotion motion;
   bool is_prepared = false;
-  bool was_queried = false;                  ///< in an earlier step
-  bool is_incomplete = false;                ///< the solved step needed more contacts than the selection has
-  std::unique_ptr<StepCheck> check;          ///< with rigid contact
-  FeatureMotion features;                    ///< with rigid contact: of the models
-  CrossingMemory crossings;                  ///< with rigid contact: of the models' edges
-  PenaltyPair penalty;                       ///< with penalty contact
-  bool is_registered = false;                ///< penalty is in the context's PenaltyContacts
-  std::optional<QueryState> query_state[2];  ///< of side 0's points in side 1's map, and the reverse
-  std::vector<std::uint32_t> always[2];      ///< ids of the points last selected, for the query
-  std::uint64_t revision[2] = {0, 0};        ///< of the shapes that the ids in writer and selection belong to
+  bool was_queried = false;          ///< in an earlier step
+  bool is_incomplete = false;        ///< the solved step needed more contacts than the selection has
+  std::unique_ptr<StepCheck> check;  ///< with rigid contact
+  FeatureMotion features;            ///< with rigid contact: of the models
+  std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
+  CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
+  PenaltyPair penalty;                          ///< with penalty contact
+  bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts
+  std::optional<QueryState> query_state[2];     ///< of side 0's points in side 1's map, and the reverse
+  std::vector<std::uint32_t> always[2];         ///< ids of the points last selected, for the query
+  std::uint64_t revision[2] = {0, 0};  ///< of the shapes that the ids in writer and selection belong to
 };
 
 }  // namespace vps::bullet::inline v0

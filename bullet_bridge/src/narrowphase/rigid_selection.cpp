@@ -47,6 +47,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     context.candidates += state.contacts.size();
     selectContacts(pair, state.motion, context.settings, state.writer.get(), state.contacts,
                    &state.selection);
+    addMissedFeatures(pair, context.settings, state, state.contacts);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   markSharp(pair, context.settings, state.contacts);

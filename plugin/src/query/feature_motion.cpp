@@ -112,15 +112,42 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
+// The same with its plane, where the features touch along the line between their nearest points. False: other
+// features are met there first, or points stand for these.
+bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
+                 const std::uint32_t (&feature)[2], const Features& f, const Reach& reach, const Mat3& R_10,
+                 FeatureContact& contact) {
+  const Nearest& nearest = reach.nearest;
+  if (kind == Kind::EdgeOnEdge && nearest.is_end) return false;  // a corner and a facet
+  const Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
+  contact = contactAt(kind, feature, f, reach);
+  contact.plane_of = kind == Kind::FacetOnCorner ? 0 : 1;
+  contact.n = contact.plane_of == 0 ? n_0 : n_1;
+  return isMetFromOutside(part0, kind, 0, feature[0], contact.p[0], n_0) &&
+         isMetFromOutside(part1, kind, 1, feature[1], contact.p[1], n_1) &&
+         !isLeftToPoints(part0, part1, contact, R_10, n_1);
+}
+
+// Two features at rest, part 0 at X_10.
+Features featuresAt(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
+                    const std::uint32_t (&feature)[2], const Pose& X_10) {
+  Features f;
+  f.a_count = pointsOf(part0, kind, 0, feature[0], f.own);
+  f.b_count = pointsOf(part1, kind, 1, feature[1], f.b);
+  f.moveFrom(X_10, X_10);
+  return f;
+}
+
+constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
+
+double lengthOf(const Nearest& nearest) {
+  return (nearest.p - nearest.q).norm();
+}
+
 double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                   const Pose& X_01) {
-  Vec3 a[3], b[3];
-  const int count = pointsOf(part0, contact.kind, 0, contact.feature[0], a);
-  pointsOf(part1, contact.kind, 1, contact.feature[1], b);
-  const Pose X_10 = X_01.inverse();
-  for (int k = 0; k < count; ++k) a[k] = X_10 * a[k];
-  const Nearest nearest = nearestOf(contact.kind, a, b);
-  return (nearest.p - nearest.q).norm();
+  const Features f = featuresAt(part0, part1, contact.kind, contact.feature, X_01.inverse());
+  return lengthOf(nearestOf(contact.kind, f.a, f.b));
 }
 
 /// The piece of the way in which features reach a distance first.
@@ -140,7 +167,7 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
     placeAt(f, way_10, k);
     if (k > 0) {
       met.reach.nearest = nearestOf(kind, f.a, f.b);
-      distance_m = (met.reach.nearest.p - met.reach.nearest.q).norm();
+      distance_m = lengthOf(met.reach.nearest);
     }
     met.piece = k;
     met.reach.share = 0;
@@ -150,6 +177,19 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
 }
 
 }  // namespace
+
+bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01, double most_m,
+                  FeatureContact& contact) {
+  const Pose X_10 = X_01.inverse();
+  const FeatureContact last = contact;
+  const Features f = featuresAt(part0, part1, last.kind, last.feature, X_10);
+  const Reach reach = {0, nearestOf(last.kind, f.a, f.b)};
+  const double distance_m = lengthOf(reach.nearest);
+  if (!(distance_m > kTouching_m && distance_m < most_m)) return false;
+  if (!findContact(part0, part1, last.kind, last.feature, f, reach, X_10.R, contact)) return false;
+  contact.start_m = distance_m;
+  return true;
+}
 
 FeatureMotion::FeatureMotion() : tube_(std::make_unique<MotionTube>()) {}
 FeatureMotion::~FeatureMotion() = default;
@@ -185,7 +225,6 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
                                  std::vector<FeatureContact>& out) {
   constexpr double kRounding_m = 1e-9;  // assumed: far below the rest gap
   constexpr double kHeldShare = 0.2;    // assumed: half of what is looked at on the way
-  constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
@@ -206,7 +245,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * f.own[k];
     Nearest& nearest = met.reach.nearest;
     nearest = nearestOf(near.kind, f.a, f.b);
-    near.distance_m = (nearest.p - nearest.q).norm();
+    near.distance_m = lengthOf(nearest);
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
     if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
@@ -219,20 +258,13 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
       met.piece = 0;
       met.reach = {0, at_start};
     }
-    if (near.kind == Kind::EdgeOnEdge && nearest.is_end) continue;  // a corner and a facet
     // Within a piece the rotation changes little; the plane is that of its start.
-    const Mat3& R_10 = way_10_[met.piece].R;
-    const Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
-    FeatureContact contact = contactAt(near.kind, near.feature, f, met.reach);
-    if (!isMetFromOutside(part0, near.kind, 0, near.feature[0], contact.p[0], n_0) ||
-        !isMetFromOutside(part1, near.kind, 1, near.feature[1], contact.p[1], n_1))
+    FeatureContact contact;
+    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, way_10_[met.piece].R, contact))
       continue;
-    if (isLeftToPoints(part0, part1, contact, R_10, n_1)) continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = near.distance_m;
-    contact.plane_of = near.kind == Kind::FacetOnCorner ? 0 : 1;
-    contact.n = contact.plane_of == 0 ? n_0 : n_1;
     if (is_held || contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m)
       out.push_back(contact);
   }
