@@ -57,8 +57,8 @@ TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPlaced) {
   EXPECT_LE(rest.spin_rad_s, kRest_m_s / 0.01);
 }
 
-// Edges of 15 degrees are no crossings and need not have points of the shell: only the check of the solved step
-// knows them. What it found is kept, or each step would be solved twice and its pairs searched again.
+// Edges of 15 degrees are no crossings and need not have points of the shell: only the check of the solved
+// step knows them. What it found is kept, or each step would be solved twice and its pairs searched again.
 TEST(Rest, APrismAcrossTwoOthersRestsOnItsEdgesWithoutBeingSearchedAgain) {
   World world(SolverKind::Constraint);
   const Built rail = test::build(makeCylinder(0.005, 0.03, 24), 7850, 0.5e-3, 1e-3);
