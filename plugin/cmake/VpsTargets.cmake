@@ -132,7 +132,7 @@ function(vps_add_test name)
     set(ARG_TIMEOUT 600)
   endif()
   if(VPS_SANITIZE)
-    math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")  # they take five to thirty times as long
+    math(EXPR ARG_TIMEOUT "4 * ${ARG_TIMEOUT}")  # tests take many times as long there
   endif()
   include(GoogleTest)
   gtest_discover_tests(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS ${name} DISCOVERY_TIMEOUT 60)

@@ -125,13 +125,18 @@ TEST(FeatureSet, ALoneKinkIsASharpEdge) {
   EXPECT_EQ(curvedFacets(body.features), 6u);
 }
 
-// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its way.
-TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
-  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
+// A tetrahedron that stands on a corner at the origin.
+Mesh tetrahedron() {
   Mesh mesh;
   mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
   mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
-  const Body tip(mesh);
+  return mesh;
+}
+
+// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its way.
+TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
+  const Body tip(tetrahedron());
   const double height_m = 10e-6, fall_m = 100e-6, slide_m = 300e-6;
   const Pose start = Pose::translation(Vec3(0, 0, 5e-3 + height_m));
   const Pose end = Pose::translation(Vec3(slide_m, 0, 5e-3 + height_m - fall_m));
@@ -152,10 +157,7 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
 // The same corner elsewhere above the face: height and place by the formula, while it is near and outside.
 TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
-  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
-  const Body tip(mesh);
+  const Body tip(tetrahedron());
   const auto at = [](double x_m, double height_m) {
     return Pose::translation(Vec3(x_m, 2e-3, 5e-3 + height_m)).inverse();
   };
@@ -168,8 +170,8 @@ TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
   EXPECT_NEAR(c.start_m, 1.7e-6, 1e-12);
   EXPECT_NEAR(c.gap_m(at(1.5e-3, 1.7e-6)), 1.7e-6, 1e-12);
   EXPECT_LE((c.p[1] - Vec3(1.5e-3, 2e-3, 5e-3)).norm(), 1e-12);
-  for (const double height_m :
-       {2.3e-6, 0.5e-9, -1e-6}) {  // too far, of no known direction, and behind the face
+  // Too far, of no known direction, and behind the face.
+  for (const double height_m : {2.3e-6, 0.5e-9, -1e-6}) {
     FeatureContact away = found[0];
     EXPECT_FALSE(measureAgain(tip.features, floor.features, at(1e-3, height_m), 2e-6, away)) << height_m;
   }
@@ -178,10 +180,7 @@ TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
 // A tip that is far away when the step begins: a long way is looked at in stretches.
 TEST(FeatureMotion, AFastCornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
-  Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {3e-3, -2e-3, 5e-3}, {3e-3, 2e-3, 5e-3}, {-3e-3, 0, 5e-3}};
-  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
-  const Body tip(mesh);
+  const Body tip(tetrahedron());
   const double height_m = 7.123e-3, fall_m = 50e-3, slide_m = 5e-3;
   const Pose start = Pose::translation(Vec3(0, 0, 5e-3 + height_m));
   const Pose end = Pose::translation(Vec3(slide_m, 0, 5e-3 + height_m - fall_m));

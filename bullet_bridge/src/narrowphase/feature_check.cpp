@@ -119,7 +119,6 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
   const Pose X_01_end = poseBetween(start, end.X_WS);
   const FeaturePlacer place(start);
   for (const FeatureContact* c : chosen) {
-    if (!isOnSheet(*c, start)) remember(*c, state.missed_features);
     MissedContact missed;
     missed.point = state.writer->put(place(*c), start.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
@@ -127,6 +126,7 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
     missed.kept_m = std::min(place.rest_m, c->start_m);
     missed.rest_m = place.rest_m;
     missed.is_sharp = !isOnSheet(*c, start);
+    if (missed.is_sharp) remember(*c, state.missed_features);
     out.push_back(missed);
   }
 }

@@ -190,7 +190,7 @@ class EdgePairSearch {
     f.moveFrom(from_01_, to_01_);
     Reach reach;
     reach.nearest = nearestOf(FeatureContact::Kind::EdgeOnEdge, f.a, f.b);
-    const double distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    const double distance_m = reach.nearest.distance_m();
     return distance_m <= reach_m_ ||
            findReach(FeatureContact::Kind::EdgeOnEdge, f, reach_m_, distance_m, reach);
   }
@@ -262,8 +262,7 @@ class CrossingTest {
   // True for edges that overlap then, or are near: not for those that have passed each other's ends.
   [[nodiscard]] bool meetsInStep(const EdgeSegment& s0, const EdgeSegment& s1, const Vec3& n) const {
     const Nearest then = nearestOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
-    return (!then.is_end && n.dot(then.p - then.q) < 0) ||
-           (then.p - then.q).norm() <= reachOfCrossing_m(cutoff_m_);
+    return (!then.is_end && n.dot(then.p - then.q) < 0) || then.distance_m() <= reachOfCrossing_m(cutoff_m_);
   }
 
   const std::vector<EdgeSegment>&segments0_, &segments1_;

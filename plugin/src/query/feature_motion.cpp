@@ -132,22 +132,17 @@ bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
 Features featuresAt(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
                     const std::uint32_t (&feature)[2], const Pose& X_10) {
   Features f;
-  f.a_count = pointsOf(part0, kind, 0, feature[0], f.own);
-  f.b_count = pointsOf(part1, kind, 1, feature[1], f.b);
+  f.load(part0, part1, kind, feature);
   f.moveFrom(X_10, X_10);
   return f;
 }
 
 constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
 
-double lengthOf(const Nearest& nearest) {
-  return (nearest.p - nearest.q).norm();
-}
-
 double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                   const Pose& X_01) {
   const Features f = featuresAt(part0, part1, contact.kind, contact.feature, X_01.inverse());
-  return lengthOf(nearestOf(contact.kind, f.a, f.b));
+  return nearestOf(contact.kind, f.a, f.b).distance_m();
 }
 
 /// The piece of the way in which features reach a distance first.
@@ -167,7 +162,7 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
     placeAt(f, way_10, k);
     if (k > 0) {
       met.reach.nearest = nearestOf(kind, f.a, f.b);
-      distance_m = lengthOf(met.reach.nearest);
+      distance_m = met.reach.nearest.distance_m();
     }
     met.piece = k;
     met.reach.share = 0;
@@ -184,7 +179,7 @@ bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& 
   const FeatureContact last = contact;
   const Features f = featuresAt(part0, part1, last.kind, last.feature, X_10);
   const Reach reach = {0, nearestOf(last.kind, f.a, f.b)};
-  const double distance_m = lengthOf(reach.nearest);
+  const double distance_m = reach.nearest.distance_m();
   if (!(distance_m > kTouching_m && distance_m < most_m)) return false;
   if (!findContact(part0, part1, last.kind, last.feature, f, reach, X_10.R, contact)) return false;
   contact.start_m = distance_m;
@@ -240,12 +235,11 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     if (near.distance_m - (path_m_ - near.path_m) > step_m + looked_at_m) continue;
     Met met;
     Features& f = met.features;
-    f.a_count = pointsOf(part0, near.kind, 0, near.feature[0], f.own);
-    f.b_count = pointsOf(part1, near.kind, 1, near.feature[1], f.b);
+    f.load(part0, part1, near.kind, near.feature);
     for (int k = 0; k < f.a_count; ++k) f.a[k] = start_10 * f.own[k];
     Nearest& nearest = met.reach.nearest;
     nearest = nearestOf(near.kind, f.a, f.b);
-    near.distance_m = lengthOf(nearest);
+    near.distance_m = nearest.distance_m();
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
     if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);

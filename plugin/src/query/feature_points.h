@@ -10,6 +10,8 @@ namespace vps::inline v0 {
 struct Nearest {
   Vec3 p = Vec3::Zero(), q = Vec3::Zero();  ///< on part 0, on part 1
   bool is_end = false;                      ///< of two edges: at an end of one of them
+
+  [[nodiscard]] double distance_m() const { return (p - q).norm(); }
 };
 
 /// Of the segments from p1 to q1 and from p2 to q2. Source: Ericson 2005, section 5.1.9.

@@ -16,12 +16,11 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1) {
   const Sweep X_01{tube_->from(), tube_->to()}, X_10{X_01.from.inverse(), X_01.to.inverse()};
   const auto addIfNear = [&](Kind kind, std::uint32_t i, std::uint32_t j) {
     Features f;
-    f.a_count = pointsOf(part0, kind, 0, i, f.own);
-    f.b_count = pointsOf(part1, kind, 1, j, f.b);
+    f.load(part0, part1, kind, {i, j});
     f.moveFrom(X_10.from, X_10.to);
     Reach reach;
     reach.nearest = nearestOf(kind, f.a, f.b);
-    const double distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    const double distance_m = reach.nearest.distance_m();
     if (distance_m <= margin_m || findReach(kind, f, margin_m, distance_m, reach))
       near_.push_back({kind, {i, j}, distance_m, 0});
   };

@@ -90,7 +90,7 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, Rea
     Vec3 at[3];
     f.moveTo(reach.share, at);
     reach.nearest = nearestOf(kind, at, f.b);
-    distance_m = (reach.nearest.p - reach.nearest.q).norm();
+    distance_m = reach.nearest.distance_m();
     if (distance_m <= near_m) return true;
   }
   return true;

@@ -12,6 +12,11 @@ struct Features {
   Vec3 a[3], way[3], b[3];
   int a_count = 0, b_count = 0;
 
+  void load(const FeatureSet& part0, const FeatureSet& part1, FeatureContact::Kind kind,
+            const std::uint32_t (&feature)[2]) {
+    a_count = pointsOf(part0, kind, 0, feature[0], own);
+    b_count = pointsOf(part1, kind, 1, feature[1], b);
+  }
   /// The way of part 0's points between two poses of it in part 1.
   void moveFrom(const Pose& from_10, const Pose& to_10) {
     for (int i = 0; i < a_count; ++i) {
