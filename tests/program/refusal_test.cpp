@@ -11,7 +11,10 @@ TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("asemble scene.toml", "unknown command 'asemble'; see vps --help");
   expectRefused("--fast", "unknown option '--fast'; see vps --help");
   expectRefused("assemble", "see vps assemble --help");
-  expectRefused("assemble scene.toml --fast", "see vps assemble --help");
+  expectRefused("assemble scene.toml --fast", "unknown option '--fast'; see vps assemble --help");
+  expectRefused("check a.step b.step c.step d.step",
+                "these arguments are too many: 'b.step' 'c.step' 'd.step'; see vps check --help");
+  expectRefused("check a.step b.step", "one argument is too many: 'b.step'; see vps check --help");
   expectRefused("simulate scene.toml --seconds soon", "--seconds");
   expectRefused("simulate scene.toml --seconds nan", "--seconds");
   expectRefused("simulate scene.toml --seconds -1", "--seconds");

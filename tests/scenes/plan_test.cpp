@@ -116,6 +116,44 @@ TEST(Plan, ANutComesAlongItsBolt) {
   expectFreeWays(parts, plan);
 }
 
+/// Along x, in the middle.
+Mesh alongX(const Mesh& alongZ) {
+  return transformed(alongZ, Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero()));
+}
+
+// A pin through a wall, and through two: in one it leans by its play, as its middle is beside the wall.
+TEST(Plan, APinThatLeansInALevelHoleIsHeld) {
+  const Mesh wall = alongX(makeTube(20e-3, 5.025e-3, 8e-3, 64));
+  const Mesh pin = alongX(makeCylinder(5e-3, 40e-3, 64));
+  const auto isCarried = [&](std::vector<DrawnPart> parts, const Vec3& p_W) {
+    PlanSettings settings;
+    for (const DrawnPart& part : parts) settings.fixed.push_back(part.name);
+    parts.push_back(at("pin", pin, p_W));
+    const PlanResult plan = planAssembly("test", parts, settings);
+    EXPECT_EQ(plan.blocked(), 0U);
+    return plan.assemblies[0].steps.at(0).is_carried;
+  };
+  const Vec3 lies = {0, 0, -0.025e-3};  // on the bottom of the hole
+  EXPECT_TRUE(isCarried({at("wall", wall, {0, 0, 0})}, lies));
+  EXPECT_FALSE(isCarried({at("wall", wall, {0, 0, 0})}, lies + Vec3(10e-3, 0, 0)));
+  EXPECT_TRUE(
+      isCarried({at("wall", wall, {0, 0, 0}), at("other", wall, {15e-3, 0, 0})}, lies + Vec3(10e-3, 0, 0)));
+}
+
+// At its speed a hand needs the usual time for the way of a long rod alone.
+TEST(Plan, AStepHasTimeForItsWayAndForTheUsualWork) {
+  const std::vector<DrawnPart> parts = {at("wall", makeTube(20e-3, 5.025e-3, 8e-3, 64), {0, 0, 0}),
+                                        at("rod", makeCylinder(5e-3, 0.3, 64), {0, 0, 0})};
+  const Scene scene = sceneOf(parts);
+  PlanSettings settings;
+  settings.fixed = {"wall"};
+  const Scene planned = plannedScenes(scene, planAssembly(scene, settings)).front();
+  const SceneStep& step = planned.steps.at(0);
+  const double way_s = (step.X_WP_target.p - step.X_WP_start.p).norm() / planned.hand.speed_m_s;
+  EXPECT_GT(way_s, 5);
+  EXPECT_GE(step.timeout_s, SceneStep().timeout_s + way_s);
+}
+
 TEST(Plan, APartDrawnTwiceIsNamed) {
   const Mesh brick = makeBox(Vec3::Constant(0.02));
   std::vector<DrawnPart> parts = {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),

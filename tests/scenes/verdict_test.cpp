@@ -209,6 +209,35 @@ TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
   EXPECT_EQ(told, (std::vector<std::size_t>{1, 2}));
 }
 
+/// A collar is laid on the cup by sight, with the same bore; then the peg goes through both.
+Scene pegThroughCollar() {
+  Scene scene = pegInCup();
+  scene.parts.insert(scene.parts.begin() + 1, scenePart("collar", makeTube(9 * kMm, kBore_m, 5 * kMm, kFlats),
+                                                        {0, 0, 2.5 * kMm}, false));
+  scene.steps[0].part = 2;
+  scene.steps[0].X_WP_start.p.z() = 6 * kMm;
+  scene.steps[0].timeout_s = 20;
+  SceneStep lay;
+  lay.part = 1;
+  lay.X_WP_target = scene.parts[1].X_WP;
+  lay.X_WP_start = Pose::translation({0, 0, 5 * kMm});
+  scene.steps.insert(scene.steps.begin(), lay);
+  scene.hand.aim_error_m = 0.3 * kMm;
+  return scene;
+}
+
+TEST(Verdict, APartLaidDownBySightIsAlignedByThePegThatGoesThroughIt) {
+  Scene scene = pegThroughCollar();
+  const AssembleResult result = assemble(scene);
+  const StepResult& laid = result.steps[0];
+  // More than the clearance of the peg, which could not pass both bores.
+  ASSERT_GT(laid.final_error_m, 0.1 * kMm);
+  EXPECT_EQ(laid.aligned_by, "peg");
+  ASSERT_EQ(result.steps.size(), 2U);
+  EXPECT_EQ(result.steps[1].verdict, Verdict::Fits) << result.steps[1].reason;
+  EXPECT_TRUE(result.steps[1].aligned_by.empty());
+}
+
 TEST(Verdict, APartThatNobodyHoldsIsRefusedByName) {
   Scene scene = pegInCup();
   scene.parts.push_back(scenePart("lid", makeBox({3 * kMm, 3 * kMm, 3 * kMm}), {0, 0, 40 * kMm}, false));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program `vps`: reads the command line, runs the chosen command, and turns exceptions into one line on
 // stderr and an exit status.
+#include <algorithm>
 #include <new>
 
 #include "command.h"
@@ -20,12 +21,19 @@ int couldNot(const std::string& reason) {
   return kCouldNot;
 }
 
-/// CLI11 reports an unknown command as a missing one.
+/// CLI11 reports an unknown command as a missing one, and arguments that are too many in reverse order.
 std::string reasonOf(const CLI::ParseError& error, const CLI::App& app) {
-  const auto left_over = app.remaining();
-  if (!app.get_subcommands().empty() || left_over.empty()) return error.what();
-  const std::string& first = left_over.front();
-  return (first.starts_with('-') ? "unknown option '" : "unknown command '") + first + "'";
+  const bool has_command = !app.get_subcommands().empty();
+  const auto left_over = app.remaining(true);
+  const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (left_over.empty() || (has_command && !is_extra)) return error.what();
+  const auto option = std::ranges::find_if(left_over, [](const auto& one) { return one.starts_with('-'); });
+  if (has_command && option != left_over.end()) return "unknown option '" + *option + "'";
+  if (!has_command)
+    return (option == left_over.begin() ? "unknown option '" : "unknown command '") + left_over.front() + "'";
+  std::string words = left_over.size() == 1 ? "one argument is too many:" : "these arguments are too many:";
+  for (const std::string& argument : left_over) words += " '" + argument + "'";
+  return words;
 }
 
 int run(int argc, char** argv) {

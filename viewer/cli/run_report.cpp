@@ -89,6 +89,11 @@ void printSteps(const scenes::AssembleResult& result) {
     if (!step.stands_on.empty())
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());
+    if (!step.aligned_by.empty())
+      std::printf(
+          "%s: it lies within its tolerance; from here on it is where it belongs, since '%s' takes it "
+          "there\n",
+          name, step.aligned_by.c_str());
     if (step.index_count > 0)
       std::printf(
           "%s: the device was recentred %s, since the path is longer, or turns farther, than it can\n", name,

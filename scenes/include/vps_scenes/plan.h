@@ -85,11 +85,12 @@ struct DrawnTwice {
 
 /// What an overlap of two parts as drawn is taken for.
 enum class OverlapKind {
-  Thread,    ///< a screw and its nut or hole, drawn as plain cylinders
-  PressFit,  ///< a shaft that is a little larger than its bore
-  Twice,     ///< one part drawn twice
-  Flexible,  ///< a spring, belt or seal that is drawn undeformed
-  Clash,     ///< nothing explains it
+  Thread,      ///< a screw and its nut or hole, drawn as plain cylinders
+  PressFit,    ///< a shaft that is a little larger than its bore
+  Twice,       ///< one part drawn twice
+  Flexible,    ///< a spring, belt or seal that is drawn undeformed
+  LineToLine,  ///< no overlap: a shaft that is drawn exactly as wide as its hole
+  Clash,       ///< nothing explains it
 };
 VPS_SCENES_API const char* toText(OverlapKind kind);
 
@@ -100,7 +101,7 @@ struct Resized {
   double from_radius_m = 0, to_radius_m = 0;
 };
 
-/// An overlap and what is done about it.
+/// An overlap, or a fit without clearance, and what is done about it.
 struct OverlapChoice {
   std::string a, b;
   OverlapKind kind = OverlapKind::Clash;
@@ -114,7 +115,8 @@ struct OverlapChoice {
 struct PlanResult {
   std::string assembly;
   std::vector<Fastener> fasteners;
-  std::vector<OverlapChoice> choices;       ///< one for each overlap that is not allowed
+  std::vector<OverlapChoice>
+      choices;  ///< one for each overlap that is not allowed, then shafts drawn line to line
   std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
   /// Overlaps as drawn. On their ways these parts may overlap as deep as they are drawn.
   std::vector<CheckedPair> overlaps;

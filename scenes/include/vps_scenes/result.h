@@ -38,7 +38,10 @@ struct StepResult {
   double blocked_depth_m = 0, blocked_error_m = 0;
   std::string stuck_against;  ///< the part that it touched when the hand gave up; empty: none, or it did not
   Vec3 stuck_at_W = Vec3::Zero();
-  std::string stands_on;    ///< an earlier part that is not where it belongs and was put there; empty: none
+  std::string stands_on;  ///< an earlier part that is not where it belongs and was put there; empty: none
+  /// A later part that fits into it and takes it from where the hand left it to where it belongs; empty:
+  /// none, or it cannot be moved there.
+  std::string aligned_by;
   bool completed = false;   ///< the part reached its target, whatever else is wrong
   bool by_contact = false;  ///< completed, and other parts guided it there: isGuided()
   /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides

@@ -47,6 +47,10 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
+    field("aligned_by", &StepResult::aligned_by,
+          "a later part that fits into it and takes it from where the hand left it to where it belongs; "
+          "empty if "
+          "none"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("by_contact", &StepResult::by_contact,
           "completed, and other parts guided it across its path; false: by sight alone"),

@@ -19,6 +19,8 @@ const char* toText(OverlapKind kind) {
       return "twice";
     case OverlapKind::Flexible:
       return "flexible";
+    case OverlapKind::LineToLine:
+      return "line to line";
     case OverlapKind::Clash:
       return "clash";
   }
@@ -165,7 +167,6 @@ class Explained {
   [[nodiscard]] bool isPressFit() const { return interference_m() < 1e-3 * fit_->shaft_m + 40e-6; }
 
   [[nodiscard]] OverlapChoice thread(OverlapChoice out) const {
-    constexpr double kRoom_m = 25e-6;  // for the parts to pass each other
     out.kind = OverlapKind::Thread;
     out.words = "'" + fit_->shaft + "' (" + millimetres(fit_->shaft_m) + ") is in a smaller hole of '" +
                 fit_->bore + "' (" + millimetres(fit_->bore_m) +
@@ -175,9 +176,13 @@ class Explained {
     const auto& shape = shapeOf(name);
     if (!shape) return out;
     out.changed = name;
-    out.resized = Resized{
-        shape->axis, shape->p,        shape->from_m,
-        shape->to_m, shape->radius_m, is_hole ? 0.5 * fit_->shaft_m + kRoom_m : 0.5 * fit_->bore_m - kRoom_m};
+    out.resized =
+        Resized{shape->axis,
+                shape->p,
+                shape->from_m,
+                shape->to_m,
+                shape->radius_m,
+                is_hole ? 0.5 * fit_->shaft_m + kPassingRoom_m : 0.5 * fit_->bore_m - kPassingRoom_m};
     out.words += "; it follows its axis, and " + std::string(is_hole ? "the hole of '" : "the shank of '") +
                  name + "' is made " + millimetres(2 * out.resized->to_radius_m) + " wide for that";
     return out;

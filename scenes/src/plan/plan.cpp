@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -13,6 +14,8 @@
 #include "plan/bench.h"
 #include "plan/drawn_overlaps.h"
 #include "plan/fasteners_in.h"
+#include "plan/leaning.h"
+#include "plan/line_to_line.h"
 #include "plan/precedence.h"
 #include "plan/way_clearance.h"
 #include "vps/load_error.h"
@@ -131,7 +134,8 @@ class Planner {
     for (const std::size_t part : removal.parts) step.parts.push_back(nameOf(part));
     step.kind = way.kind;
     step.lead_m = way.lead_m;
-    step.is_carried = removal.is_carried;
+    step.is_carried = removal.is_carried &&
+                      (removal.parts.size() > 1 || !leansInHole(motions_, removal.parts.front(), held));
     for (const std::size_t part : removal.falling) step.falling.push_back(nameOf(part));
     const Vec3& out_W = way.legs.back().motion.direction;
     const double out_m = leavingDistance(motions_, removal, held);
@@ -207,6 +211,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   const std::vector<std::optional<FastenerShape>> shapes = fastenerShapes(placed, progress);
   result.fasteners = fastenersIn(placed, checked, shapes);
   result.choices = overlapChoices(placed, checked, shapes, fixed);
+  std::ranges::move(lineToLineChoices(placed, checked, result.choices), std::back_inserter(result.choices));
   for (const OverlapChoice& choice : result.choices)
     if (choice.kind == OverlapKind::Twice) result.twice.push_back({choice.a, choice.b});
   const PairMotions motions(placed, checked, settings.up_W, progress);

@@ -93,7 +93,8 @@ class SceneMaker {
 
   [[nodiscard]] SceneStep stepOf(const PlannedStep& planned, std::size_t part, const Pose& X_WP) const {
     SceneStep step;
-    if (const auto given = given_.find(planned.name); given != given_.end()) step = *given->second;
+    const auto given = given_.find(planned.name);
+    if (given != given_.end()) step = *given->second;
     step.part = part;
     step.X_WP_target = X_WP;
     step.X_WP_start = planned.before_W.front() * X_WP;
@@ -101,7 +102,8 @@ class SceneMaker {
     for (std::size_t i = 1; i < planned.before_W.size(); ++i)
       step.way_points.push_back(planned.before_W[i] * X_WP);
     if (!planned.is_carried) step.is_held = true;
-    if (planned.is_on_bench) step.timeout_s = std::max(step.timeout_s, timeFor(step));
+    if (given == given_.end() || planned.is_on_bench)
+      step.timeout_s = std::max(step.timeout_s, timeFor(step));
     step.motion = planned.kind == WayKind::Screw ? StepMotion::Screw : StepMotion::Push;
     step.pitch_m = planned.kind == WayKind::Screw ? planned.lead_m : 0;
     if (step.motion == StepMotion::Push) step.torque_Nm = 0;

@@ -78,6 +78,22 @@ void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vec
   }
 }
 
+/// A part that no fit with parts in place holds lies where sight has put it. What fits into it later takes it
+/// along: a bolt through a bracket that lies on a plate finds the plate's hole, and the bracket with it.
+std::string alignedBy(const CheckResult& checked, const Scene& scene, std::size_t step,
+                      const std::vector<InPlace>& in_place, const std::string& part) {
+  const auto fits = [&](const std::string& other) {
+    return std::ranges::any_of(checked.fits, [&](const CheckedFit& fit) {
+      return (fit.shaft == part && fit.bore == other) || (fit.bore == part && fit.shaft == other);
+    });
+  };
+  if (std::ranges::any_of(in_place, [&](const InPlace& other) { return fits(other.part->part.name); }))
+    return {};
+  for (std::size_t i = step + 1; i < scene.steps.size(); ++i)
+    if (const std::string& later = scene.parts[scene.steps[i].part].part.name; fits(later)) return later;
+  return {};
+}
+
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
                    const std::string& part) {
   if (planned.tolerance_m > 0) return planned.tolerance_m;
@@ -105,6 +121,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     steps[i].part = scene.parts[planned.part].part.name;
     steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
     findOverlap(checked, in_place, steps[i]);
+    steps[i].aligned_by = alignedBy(checked, scene, i, in_place, steps[i].part);
     findPressFit(checked, in_place, steps[i]);
     if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
   }

@@ -78,7 +78,8 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   if (driver.isByClock()) advanceUntil(world, [&] { return shedder.isReady(); });
   shedder.finish(world.state().time_s);  // what is under way is for the part that is now fixed
   std::future<OverlapVerdict> verdict = judgeAsync(world, std::move(samples));
-  const Pose X_WP = result.completed ? world.movingPose() : world.state().moving.X_WP_target;
+  const bool stays = result.completed && result.aligned_by.empty();
+  const Pose X_WP = stays ? world.movingPose() : world.state().moving.X_WP_target;
   world.placed().add(world.state().moving.part, X_WP);
   std::future<CookedField> field = cookAsync(world);
   const std::uint64_t missed_before = driver.missed();

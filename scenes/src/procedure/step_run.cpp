@@ -15,6 +15,7 @@
 #include "procedure/screw_motion.h"
 #include "procedure/settling.h"
 #include "procedure/step_verdict.h"
+#include "procedure/way_check.h"
 #include "vps_scenes/contact_episodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -237,6 +238,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
   const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();
   judgeCompletion(world, step, X_WP_end, brought ? brought->X_WP : X_WP_end, result);
+  if (!result.completed || !isFreeToTarget(world, step, X_WP_end, result.penetration_limit_m))
+    result.aligned_by.clear();
   settleStep(world, trace.takeSamples(), result);
   judgeStep(result, world.scene().hand.force_limit_N);
   return result;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "procedure/way_check.h"
 
+#include <algorithm>
+
 #include "core/length_words.h"
 
 namespace vps::scenes::inline v0 {
@@ -19,26 +21,43 @@ Pose between(const Pose& a, const Pose& b, const Vec3& center_P, double share) {
   return X;
 }
 
+/// Of the poses from the first on, without the last.
+Penetration deepestBetween(AssemblyWorld& world, const SceneStep& step, const Pose& from, const Pose& to) {
+  const OverlapJudge& judge = world.placed().judge();
+  const JudgedBody& body = world.placed().judgedBody(step.part);
+  Penetration deepest;
+  for (int i = 0; i < kPosesPerLeg; ++i) {
+    const double share = i / static_cast<double>(kPosesPerLeg);
+    const Penetration here = judge.deepest(body, between(from, to, world.state().moving.X_PG.p, share));
+    if (here.depth_m > deepest.depth_m) deepest = here;
+  }
+  return deepest;
+}
+
 }  // namespace
 
 std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
   const OverlapJudge& judge = world.placed().judge();
-  const JudgedBody& body = world.placed().judgedBody(step.part);
   std::vector<Pose> stops{step.X_WP_start};
   stops.insert(stops.end(), step.way_points.begin(), step.way_points.end());
   stops.push_back(step.X_WP_target);
   Penetration deepest;
-  for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg)
-    for (int i = 0; i < kPosesPerLeg; ++i) {
-      const double share = i / static_cast<double>(kPosesPerLeg);
-      const Pose X_WP = between(stops[leg], stops[leg + 1], world.state().moving.X_PG.p, share);
-      const Penetration here = judge.deepest(body, X_WP);
-      if (here.depth_m > deepest.depth_m) deepest = here;
-    }
+  for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg) {
+    const Penetration here = deepestBetween(world, step, stops[leg], stops[leg + 1]);
+    if (here.depth_m > deepest.depth_m) deepest = here;
+  }
   if (deepest.depth_m < kShallow_m) return {};
   return "; the way that it was given leads through '" + judge.name(deepest.against) + "', up to " +
          lengthInWords(deepest.depth_m) + " deep at " + placeInWords(deepest.p_W) +
          ": give start or way_points that lead around it";
+}
+
+bool isFreeToTarget(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m) {
+  const OverlapJudge& judge = world.placed().judge();
+  const JudgedBody& body = world.placed().judgedBody(step.part);
+  for (const Pose& end : {X_WP, step.X_WP_target})
+    limit_m = std::max(limit_m, judge.deepest(body, end).depth_m);
+  return deepestBetween(world, step, X_WP, step.X_WP_target).depth_m <= limit_m;
 }
 
 }  // namespace vps::scenes::inline v0

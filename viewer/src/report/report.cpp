@@ -283,6 +283,9 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     if (step.completed && !step.by_contact) note(name + "by contact: " + contactWords(step) + ".");
     if (!step.stands_on.empty())
       note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
+    if (!step.aligned_by.empty())
+      note(name + "it lies within its tolerance; from here on it is where it belongs, since '" +
+           step.aligned_by + "' takes it there.");
   }
   for (const std::string& text : notes) note(text);
   return out + tryTable(result);
