@@ -24,7 +24,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 3;
+inline constexpr std::uint16_t kMessageVersion = 4;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
