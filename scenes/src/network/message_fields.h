@@ -236,4 +236,11 @@ void fields(BeatMessage& m, V& visit) {
   visit(m.received_ns);
 }
 
+template <typename V>
+void fields(PointerMessage& m, V& visit) {
+  visit(m.person);
+  visit(m.is_shown);
+  visit(m.p_W);
+}
+
 }  // namespace vps::scenes::inline v0::wire
