@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kKeptNews = 50;
 constexpr int kMostRefused = 10;
 // Triangles of all parts together, and of a coarse part, which a browser shows until the fine one has come.
-constexpr std::size_t kFineTriangles = 400000, kCoarseTriangles = 2000;
+constexpr std::size_t kFineTriangles = 400000, kCoarseTriangles = 10000;
 
 std::string jsonText(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
