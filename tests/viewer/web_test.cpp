@@ -87,6 +87,17 @@ TEST(WebAccess, OtherPagesAndOtherNamesOfTheServerAreRefused) {
   EXPECT_EQ(access.judge(r), WebAnswer::BadMethod);
 }
 
+TEST(WebAccess, AnEncryptedPageIsOfHttpsAndSoIsItsCookie) {
+  const WebAccess access(kHost, kToken, true);
+  EXPECT_TRUE(access.address().starts_with("https://")) << access.address();
+  EXPECT_NE(access.setCookie().find("; Secure"), std::string::npos);
+  EXPECT_EQ(WebAccess(kHost, kToken).setCookie().find("Secure"), std::string::npos);
+  const std::string plain = std::string("http://") + kHost, encrypted = std::string("https://") + kHost;
+  const WebAccess open(kHost, "", true);
+  EXPECT_EQ(open.judge({"GET", "/run", kHost, encrypted, "", true}), WebAnswer::Good);
+  EXPECT_EQ(open.judge({"GET", "/run", kHost, plain, "", true}), WebAnswer::BadOrigin);
+}
+
 TEST(WebAccess, NewTokensDifferAndShortOnesAreNotTaken) {
   EXPECT_EQ(newToken().size(), 32u);
   EXPECT_NE(newToken(), newToken());

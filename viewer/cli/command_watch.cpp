@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "command.h"
 #include "run_report.h"
@@ -33,6 +34,7 @@ struct WatchArguments {
   SceneArguments scene;
   int port = -1;  ///< of the web page; negative: none
   WebOptions web;
+  std::vector<std::string> tls;  ///< certificate and key; empty: none
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
@@ -136,6 +138,11 @@ int serveWeb(const WatchArguments& given) {
   web.session = given.session;
   web.network = given.network;
   web.stop = &stopRequested();
+  if (!given.tls.empty()) {
+    web.tls_certificate = given.tls.front();
+    web.tls_key = given.tls.back();
+  }
+  web.say = [](const std::string& words) { say(words); };
   if (given.scene.scene.empty()) {
     serveSession(web);
     return kGood;
@@ -221,6 +228,13 @@ void addWatch(CommandLine& line) {
                   "token of at least 16 letters, digits, - and _; without it a new one is made where one is "
                   "needed. Others on this machine can see it on the command line")
       ->envname("VPS_WEB_TOKEN")
+      ->needs(web);
+  command
+      .add_option("--tls", given->tls,
+                  "serve the page by https, with this certificate and its key (PEM files, the key without a "
+                  "passphrase)")
+      ->expected(2)
+      ->type_name("CERT KEY")
       ->needs(web);
   command
       .add_flag("--allow-hand", given->web.allows_hand,

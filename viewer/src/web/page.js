@@ -429,7 +429,7 @@
     watchers: function (count) { seen.watchers = count; }
   };
   function connect() {
-    socket = new WebSocket("ws://" + window.location.host + "/run");
+    socket = new WebSocket((window.location.protocol === "https:" ? "wss://" : "ws://") + window.location.host + "/run");
     socket.binaryType = "arraybuffer";
     socket.onmessage = function (event) {
       if (typeof event.data !== "string") {
