@@ -43,6 +43,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   read<LogMessage>(bytes);
   read<SnapshotMessage>(bytes);
   read<NewsMessage>(bytes);
+  read<PointerMessage>(bytes);
   read<BeatMessage>(bytes);
   return 0;
 }
@@ -63,5 +64,6 @@ std::vector<std::string> vps::fuzz::seeds() {
           std::string(writer.write(LogMessage{2, device::DeviceSample{}})),
           std::string(writer.write(snapshot)),
           std::string(writer.write(NewsMessage{})),
+          std::string(writer.write(PointerMessage{})),
           std::string(writer.write(BeatMessage{}))};
 }

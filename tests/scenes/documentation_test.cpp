@@ -13,6 +13,8 @@
 
 #include "scene/read_fields.h"
 #include "vps_scenes/check_fields.h"
+#include "vps_scenes/compare_fields.h"
+#include "vps_scenes/ergonomics_fields.h"
 #include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
 #include "vps_scenes/settings_fields.h"
@@ -219,6 +221,8 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));
   checkSection(readme, "margin", head + resultLines("steps[].", kStepMarginFields));
+  checkSection(readme, "compare", head + resultLines("", kComparisonFields));
+  checkSection(readme, "ergonomics", head + resultLines("steps[].", kStepErgonomicsFields));
   checkSection(readme, "study", head + resultLines("", kStudyFields));
   checkSection(readme, "choice", head + resultLines("", kChoiceFields));
 }

@@ -156,18 +156,22 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   scene.steps[0].is_held = true;
   scene.steps[0].motion = StepMotion::Screw;
   scene.parts[1].youngs_modulus_Pa = 3e9;
-  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-5\n";
+  scene.steps[0].takes_off = true;
+  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-6\n";
   ASSERT_TRUE(bytes.starts_with(magic));
   // Version 2 brought the contact method, a byte, version 3 indexing, a byte, and version 4 `holds`, a byte,
   // a number of the operator, and for each of the two parts two bytes and two numbers. Version 5 brought the
-  // motion, a byte, with two numbers, and for each part two numbers. Each stands at the end.
+  // motion, a byte, with two numbers, and for each part two numbers, and version 6 whether the step takes its
+  // part off, a byte. Each stands at the end.
   const auto before = [&](const std::string& later, int version, std::size_t added) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);
   };
-  const std::string fourth = before(bytes, 4, 1 + 2 * 8 + 2 * 2 * 8),
+  const std::string fifth = before(bytes, 5, 1), fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
                     third = before(fourth, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
                     first = before(second, 1, 1);
+  EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].takes_off);
+  EXPECT_FALSE(sceneFromBytes(fifth, "x").steps[0].takes_off);
   EXPECT_EQ(sceneFromBytes(bytes, "x").steps[0].motion, StepMotion::Screw);
   EXPECT_EQ(sceneFromBytes(bytes, "x").parts[1].youngs_modulus_Pa, 3e9);
   EXPECT_EQ(sceneFromBytes(fourth, "x").steps[0].motion, StepMotion::Push);

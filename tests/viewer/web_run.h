@@ -2,7 +2,9 @@
 // A run for the web page that a test moves.
 #pragma once
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "viewer/small_run.h"
 #include "web/watched_run.h"
@@ -23,6 +25,8 @@ class FakeRun final : public WatchedRun {
   std::optional<WatchedShot> takeShot() override { return std::exchange(next, std::nullopt); }
   std::vector<WatchedNews> takeNews() override { return std::exchange(news, {}); }
   [[nodiscard]] HandDrag* drag() override { return drag_ ? &*drag_ : nullptr; }
+  void point(int person, const std::optional<Vec3>& p_W) override { pointed.push_back({person, p_W}); }
+  std::vector<scenes::SessionPointer> takePointers() override { return std::exchange(elsewhere, {}); }
 
   /// A snapshot with the peg at a height, in hand; with a contact below it.
   void show(double z_m, bool has_contact = false) {
@@ -44,6 +48,7 @@ class FakeRun final : public WatchedRun {
   std::string doing_now;
   std::optional<WatchedShot> next;
   std::vector<WatchedNews> news;
+  std::vector<scenes::SessionPointer> pointed, elsewhere;  ///< by browsers, and by others
 
  private:
   scenes::Scene scene_;

@@ -310,12 +310,27 @@ TEST_F(WebInBrowser, ARunIsDrawnAndTwoBrowsersSeeEachOthersPointer) {
               a.evaluate("vps.ages_ms.slice().sort((x, y) => x - y)[vps.ages_ms.length >> 1]").get<double>());
 }
 
+// Snapshots go on, and are acknowledged, since the server sends no more than four that are not.
+TEST_F(WebInBrowser, ARunInWhichNothingMovesIsNotDrawnAgain) {
+  begin();
+  run_->is_still = true;
+  Chromium browser(test::freshFolder("web_still") + "/a", 800, 600, page());
+  ASSERT_TRUE(browser.waitFor("vps.snapshots > 5 && vps.bodies[1]")) << joined(browser.console());
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // until parts and level have come
+  const auto count = [&](const char* what) { return browser.evaluate(what).get<int>(); };
+  const int drawn = count("vps.drawn"), snapshots = count("vps.snapshots");
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ(count("vps.drawn"), drawn);
+  EXPECT_GE(count("vps.snapshots"), snapshots + 10);
+}
+
 TEST_F(WebInBrowser, ThePartIsTakenByMouseAndByFinger) {
   begin({}, true);
   run_->is_still = true;
   const std::string folder = test::freshFolder("web_hand");
   Chromium browser(folder, 1000, 700, page());
-  ASSERT_TRUE(browser.waitFor("vps.drawn > 5 && vps.hand && vps.hand.may_take")) << joined(browser.console());
+  ASSERT_TRUE(browser.waitFor("vps.snapshots > 5 && vps.hand && vps.hand.may_take"))
+      << joined(browser.console());
   browser.evaluate("document.getElementById('take').click()");
   ASSERT_TRUE(browser.waitFor("vps.hand.holder === vps.you"));
   browser.evaluate(

@@ -87,6 +87,17 @@ TEST(WebAccess, OtherPagesAndOtherNamesOfTheServerAreRefused) {
   EXPECT_EQ(access.judge(r), WebAnswer::BadMethod);
 }
 
+TEST(WebAccess, AnEncryptedPageIsOfHttpsAndSoIsItsCookie) {
+  const WebAccess access(kHost, kToken, true);
+  EXPECT_TRUE(access.address().starts_with("https://")) << access.address();
+  EXPECT_NE(access.setCookie().find("; Secure"), std::string::npos);
+  EXPECT_EQ(WebAccess(kHost, kToken).setCookie().find("Secure"), std::string::npos);
+  const std::string plain = std::string("http://") + kHost, encrypted = std::string("https://") + kHost;
+  const WebAccess open(kHost, "", true);
+  EXPECT_EQ(open.judge({"GET", "/run", kHost, encrypted, "", true}), WebAnswer::Good);
+  EXPECT_EQ(open.judge({"GET", "/run", kHost, plain, "", true}), WebAnswer::BadOrigin);
+}
+
 TEST(WebAccess, NewTokensDifferAndShortOnesAreNotTaken) {
   EXPECT_EQ(newToken().size(), 32u);
   EXPECT_NE(newToken(), newToken());
@@ -359,6 +370,27 @@ TEST_F(WebHubTest, APointerIsSeenByAllAndGoesWithItsBrowser) {
   hub_.leave(b);
   EXPECT_EQ(a_.last("pointer"), json::parse(R"({"who":2,"p":null})"));
   EXPECT_EQ(a_.last("watchers"), 2);
+}
+
+TEST_F(WebHubTest, PointersGoToThoseWhoWatchElsewhereAndComeFromThem) {
+  hub_.join(a_);
+  const int b = hub_.join(b_);
+  turn(0.05);
+  say(b, R"({"point":[0.01,0.02,0.03]})");
+  hub_.leave(b);
+  ASSERT_EQ(run_.pointed.size(), 2u);
+  EXPECT_EQ(run_.pointed[0].who, b);
+  EXPECT_EQ(run_.pointed[0].p_W, Vec3(0.01, 0.02, 0.03));
+  EXPECT_FALSE(run_.pointed[1].p_W);
+  run_.elsewhere = {{2001, Vec3(0.5, 0, 0)}};
+  turn(0.05);
+  EXPECT_EQ(a_.last("pointer"), json::parse(R"({"who":2001,"p":[0.5,0.0,0.0]})"));
+  FakeBrowser late;
+  hub_.join(late);
+  EXPECT_EQ(late.last("pointer")["who"], 2001);
+  run_.elsewhere = {{2001, {}}};
+  turn(0.05);
+  EXPECT_EQ(a_.last("pointer"), json::parse(R"({"who":2001,"p":null})"));
 }
 
 TEST_F(WebHubTest, OneBrowserAtATimeHasTheHand) {

@@ -21,6 +21,7 @@
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_scenes/assemble.h"
+#include "vps_scenes/disassembly.h"
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
 #include "vps_viewer/sound.h"
@@ -43,6 +44,7 @@ struct AssembleArguments {
   bool is_real_time = false;
   bool has_local_contact = false;
   bool sheds_load = true;  ///< in real time
+  bool takes_apart = false;
 };
 
 /// Hears every physics step of a run.
@@ -84,6 +86,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   ProgressBar bar;
   requireNotRead(given.record, {file});
   scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record});
+  if (given.takes_apart) scene = scenes::disassemblyOf(std::move(scene));
 
   scenes::AssembleOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
@@ -120,11 +123,11 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   }
 
   bar.progress()("writing the report", 1);
-  const std::vector<std::string> notes =
-      fillFolder(out, scene, result,
-                 {"vps assemble " + file + " --out " + given.out +
-                      (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
-                  given.has_pictures});
+  const std::vector<std::string> notes = fillFolder(
+      out, scene, result,
+      {"vps assemble " + file + " --out " + given.out + (given.takes_apart ? " --disassemble" : "") +
+           (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
+       given.has_pictures});
   out.commit();
   std::filesystem::remove(unfinished);
   json.write(toJson(result));
@@ -144,8 +147,8 @@ scenes::Verdict worseOf(scenes::Verdict a, scenes::Verdict b) {
 }
 
 /// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
-/// product, which mounts each of them as one part.
-scenes::Verdict runPlanned(AssembleArguments given, const std::vector<std::string>& scene_files) {
+/// product, which mounts each of them as one part. Takes apart in the reverse order.
+scenes::Verdict runPlanned(const AssembleArguments& given, const std::vector<std::string>& scene_files) {
   namespace fs = std::filesystem;
   Table table({"<assembly", "<verdict", "<report"});
   scenes::Verdict whole = scenes::Verdict::Fits;
@@ -155,16 +158,23 @@ scenes::Verdict runPlanned(AssembleArguments given, const std::vector<std::strin
     whole = worseOf(whole, verdict);
     table.add({name, words(verdict), of.out + "/report.html"});
   };
-  for (std::size_t i = scene_files.size(); i-- > 1;) {
+  const auto runPart = [&](std::size_t i) {
     AssembleArguments part = given;
     part.scene.scene = scene_files[i];
     const std::string name = fs::path(scene_files[i]).stem().string();
     part.out = (fs::path(given.out) / name).string();
     part.json = part.record = part.sound = "";
     run(part, name);
-  }
-  given.scene.scene = scene_files.front();
-  run(given, "product");
+  };
+  const auto runProduct = [&] {
+    AssembleArguments product = given;
+    product.scene.scene = scene_files.front();
+    run(product, "product");
+  };
+  const std::size_t count = scene_files.size();
+  if (given.takes_apart) runProduct();
+  for (std::size_t i = 1; i < count; ++i) runPart(given.takes_apart ? i : count - i);
+  if (!given.takes_apart) runProduct();
   if (scene_files.size() > 1) std::printf("\n%s", table.text().c_str());
   return whole;
 }
@@ -204,6 +214,9 @@ void addAssemble(CommandLine& line) {
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");
+  command.add_flag(
+      "--disassemble", given->takes_apart,
+      "maintenance: all parts are in place, and each is taken off along its way, the last first");
   command.add_flag("--local-contact", given->has_local_contact,
                    "let the haptic loop compute contact between physics steps; for slow physics");
   command.add_flag("--real-time", given->is_real_time,

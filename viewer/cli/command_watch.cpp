@@ -4,7 +4,11 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "command.h"
 #include "run_report.h"
@@ -15,6 +19,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/ros_topics.h"
+#include "vps_scenes/network/session_pointers.h"
 #include "vps_viewer/web.h"
 
 namespace vps::viewer::inline v0 {
@@ -29,6 +34,7 @@ struct WatchArguments {
   SceneArguments scene;
   int port = -1;  ///< of the web page; negative: none
   WebOptions web;
+  std::vector<std::string> tls;  ///< certificate and key; empty: none
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
@@ -39,6 +45,7 @@ class Watching {
   Watching(scenes::SessionWatcher& watcher, const WatchArguments& given)
       : watcher_(watcher), rate_hz_(given.rate_hz) {
     const std::string interface = given.network.empty() ? "lo" : given.network.interface;
+    if (given.network.empty()) pointers_.emplace(given.session);
     if (given.ros_domain >= 0)
       ros_ = std::make_unique<scenes::RosTopics>(given.ros_domain, interface, given.session, watcher.scene());
   }
@@ -59,6 +66,8 @@ class Watching {
  private:
   void readAll() {
     while (const auto news = watcher_.takeNews()) tell(*news);
+    if (pointers_)
+      for (const scenes::SessionPointer& pointer : pointers_->take()) tell(pointer);
     if (const auto force = watcher_.takeForce()) {
       force_ = *force;
       if (ros_) ros_->publish(force_.F_hand_W, systemTime_ns());
@@ -74,6 +83,15 @@ class Watching {
     const char* what = news.kind == scenes::SessionNews::Kind::StepDone ? "step " : "";
     std::printf("%8.2f s  %s%s\n", news.time_s, what, news.text.c_str());
     std::fflush(stdout);
+  }
+  /// Where a pointer appears; its way from there would be too many lines.
+  void tell(const scenes::SessionPointer& pointer) {
+    if (!pointer.p_W) {
+      pointing_.erase(pointer.who);
+    } else if (pointing_.insert(pointer.who).second) {
+      std::printf("            somebody points at %s mm\n", millimetres(*pointer.p_W).c_str());
+      std::fflush(stdout);
+    }
   }
   void follow(const scenes::Snapshot& now) {
     const scenes::Scene& scene = watcher_.scene();
@@ -103,7 +121,9 @@ class Watching {
   }
 
   scenes::SessionWatcher& watcher_;
-  std::unique_ptr<scenes::RosTopics> ros_;  ///< null: none
+  std::unique_ptr<scenes::RosTopics> ros_;           ///< null: none
+  std::optional<scenes::SessionPointers> pointers_;  ///< of this machine; none over a network
+  std::set<int> pointing_;
   double rate_hz_;
   std::optional<scenes::Verdict> verdict_;
   scenes::SessionForce force_;
@@ -118,6 +138,10 @@ int serveWeb(const WatchArguments& given) {
   web.session = given.session;
   web.network = given.network;
   web.stop = &stopRequested();
+  if (!given.tls.empty()) {
+    web.tls_certificate = given.tls.front();
+    web.tls_key = given.tls.back();
+  }
   web.say = [](const std::string& words) { say(words); };
   if (given.scene.scene.empty()) {
     serveSession(web);
@@ -204,6 +228,13 @@ void addWatch(CommandLine& line) {
                   "token of at least 16 letters, digits, - and _; without it a new one is made where one is "
                   "needed. Others on this machine can see it on the command line")
       ->envname("VPS_WEB_TOKEN")
+      ->needs(web);
+  command
+      .add_option("--tls", given->tls,
+                  "serve the page by https, with this certificate and its key (PEM files, the key without a "
+                  "passphrase)")
+      ->expected(2)
+      ->type_name("CERT KEY")
       ->needs(web);
   command
       .add_flag("--allow-hand", given->web.allows_hand,

@@ -5,6 +5,8 @@
 #include "json_fields.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/check_fields.h"
+#include "vps_scenes/compare_fields.h"
+#include "vps_scenes/ergonomics_fields.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/margin_fields.h"
 #include "vps_scenes/plan_fields.h"
@@ -301,6 +303,19 @@ std::string toJson(const scenes::MarginResult& result) {
                {"resolution_m", result.resolution_m},
                {"by_contact", result.has_contact},
                {"steps", steps}});
+}
+
+std::string toJson(const scenes::Ergonomics& result) {
+  Json steps = Json::array();
+  for (const scenes::StepErgonomics& step : result.steps)
+    steps.push_back(toObject(step, scenes::kStepErgonomicsFields));
+  return text({{"steps", steps}});
+}
+
+std::string toJson(const scenes::RunComparison& result) {
+  Json json = Json::object();
+  addFields(json, result, scenes::kComparisonFields);
+  return text(json);
 }
 
 std::string toJson(const scenes::StudyResult& result) {

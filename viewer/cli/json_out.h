@@ -20,6 +20,8 @@ namespace vps::scenes::inline v0 {
 struct CheckResult;
 struct FidelityChoice;
 struct MarginResult;
+struct Ergonomics;
+struct RunComparison;
 struct StudyResult;
 struct TradeResult;
 }  // namespace vps::scenes::inline v0
@@ -107,6 +109,8 @@ std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);
 std::string toJson(const scenes::CheckResult& result);
 std::string toJson(const scenes::MarginResult& result);
+std::string toJson(const scenes::RunComparison& result);
+std::string toJson(const scenes::Ergonomics& result);
 std::string toJson(const scenes::StudyResult& result);
 std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults);
 std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>& faults);

@@ -7,6 +7,7 @@
 #include "json_out.h"
 #include "table.h"
 #include "terminal.h"
+#include "vps_scenes/ergonomics.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/result_fields.h"
 #include "vps_viewer/csv.h"
@@ -76,6 +77,7 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
   throwIfStopped();
   out.write("steps.csv", toCsv(result.steps, scenes::kStepFields));
   out.write("assemble.json", toJson(result));
+  out.write("ergonomics.json", toJson(measureErgonomics(scene, result.trace)));
   return std::move(outcome.notes);
 }
 
@@ -84,7 +86,7 @@ void printSteps(const scenes::AssembleResult& result) {
   for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
     if (!step.reason.empty()) std::printf("%s: %s\n", name, step.reason.c_str());
-    if (step.completed && !step.by_contact)
+    if (step.completed && !step.by_contact && !step.is_taken_off)
       std::printf("%s: by contact: %s\n", name, contactWords(step).c_str());
     if (!step.stands_on.empty())
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,

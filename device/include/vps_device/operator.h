@@ -104,6 +104,9 @@ struct OperatorTask {
   /// The end that goes in first is not round, so that it may have to be turned about the axis to find its
   /// hole.
   bool has_corners = false;
+  /// The part is in its place at the start and is taken off: every leg is followed alike, without a search, a
+  /// press or an error of the aim, since there is no hole to find at its end.
+  bool is_taking_off = false;
   ScrewTask screw;
 };
 

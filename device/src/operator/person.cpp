@@ -33,6 +33,7 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   tip_m_ = knows_tip ? axis_W_.dot(task.X_WP_target * task.tip_P - path_.back().p) : 0;
   aim_m_ = across(habits_.aim_error_m * random_.normal3());
   aim_rad_ = habits_.aim_error_rad * random_.normal3();
+  if (task.is_taking_off) aim_m_ = aim_rad_ = Vec3::Zero();
   misread_rad_ = habits_.aim_turn_rad > 0 ? habits_.aim_turn_rad * (2 * random_.uniform() - 1) * axis_W_
                                           : Vec3(Vec3::Zero());
   belief_ = {};
@@ -73,8 +74,9 @@ HandForce VirtualOperator::Person::step(const OperatorView& view, double dt_s) n
   if (is_busy && view.time_s - begin_s_ > task_.timeout_s) {
     finish(OperatorPhase::Failed, view);
   } else if (phase_ == OperatorPhase::Reach) {
-    reach(view.time_s);
-    if (phase_ == OperatorPhase::Reach && next_ + 1 == path_.size()) startInsertion(view);
+    reach(view);
+    const bool is_last_leg = phase_ == OperatorPhase::Reach && next_ + 1 == path_.size();
+    if (is_last_leg && !task_.is_taking_off) startInsertion(view);
   } else if (isInserting()) {
     insert(view, dt_s);
   }
@@ -123,11 +125,16 @@ void VirtualOperator::Person::finish(OperatorPhase phase, const OperatorView& vi
   enter(phase, view.time_s);
 }
 
-void VirtualOperator::Person::reach(double now_s) noexcept {
-  const double end_s = segment_.start_s + segment_.duration_s;
-  if (next_ + 1 == path_.size() || now_s < end_s) return;
-  const bool has_arrived = sight_.hasSeen() && (seenGrasp().p - segment_.X_to.p).norm() < kArrived_m;
-  if (!has_arrived && now_s < end_s + kArrivalWait_s) return;
+void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
+  const double now_s = view.time_s, end_s = segment_.start_s + segment_.duration_s;
+  const bool is_last_leg = next_ + 1 == path_.size();
+  if ((is_last_leg && !task_.is_taking_off) || now_s < end_s) return;
+  const double off_m = sight_.hasSeen() ? (seenGrasp().p - segment_.X_to.p).norm() : kArrived_m;
+  if (is_last_leg) {
+    if (off_m < std::min(kArrived_m, task_.tolerance_m)) finish(OperatorPhase::Done, view);
+    return;
+  }
+  if (off_m >= kArrived_m && now_s < end_s + kArrivalWait_s) return;
   const auto& index_points = task_.index_points;
   if (std::find(index_points.begin(), index_points.end(), next_ - 1) != index_points.end()) {
     X_rest_ = wanted(now_s);

@@ -44,7 +44,7 @@ class VirtualOperator::Person {
 
   // Plan.
   void startSegment(const Pose& X_from, const Pose& X_to, double now_s) noexcept;
-  void reach(double now_s) noexcept;
+  void reach(const OperatorView& view) noexcept;
   void startInsertion(const OperatorView& view) noexcept;
   void insert(const OperatorView& view, double dt_s) noexcept;
   void enter(OperatorPhase phase, double now_s) noexcept;

@@ -42,6 +42,7 @@ struct StepResult {
   /// A later part that fits into it and takes it from where the hand left it to where it belongs; empty:
   /// none, or it cannot be moved there.
   std::string aligned_by;
+  bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
   bool completed = false;   ///< the part reached its target, whatever else is wrong
   bool by_contact = false;  ///< completed, and other parts guided it there: isGuided()
   /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
@@ -53,7 +54,7 @@ struct StepResult {
   std::string deepest_against;
   Vec3 deepest_at_W = Vec3::Zero();
   double deepest_time_s = 0;
-  double penetration_limit_m = 0;               ///< min(10 um, clearance / 4)
+  double penetration_limit_m = 0;               ///< min(10 um, clearance / 4), see result_fields.h
   double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;

@@ -51,6 +51,8 @@ inline constexpr auto kStepFields = std::make_tuple(
           "a later part that fits into it and takes it from where the hand left it to where it belongs; "
           "empty if "
           "none"),
+    field("taken_off", &StepResult::is_taken_off,
+          "the step took the part off (`--disassemble`); its target is where it was put away"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("by_contact", &StepResult::by_contact,
           "completed, and other parts guided it across its path; false: by sight alone"),
@@ -61,7 +63,8 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("duration_s", &StepResult::duration_s, "simulated time that it took"),
     field("max_penetration_m", &StepResult::max_penetration_m,
           "deepest penetration, by exact distance between triangles, over the step and the rest after it"),
-    field("penetration_limit_m", &StepResult::penetration_limit_m, "min(10 um, clearance / 4)"),
+    field("penetration_limit_m", &StepResult::penetration_limit_m,
+          "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),
     field("deepest_at_m", &StepResult::deepest_at_W, "place of the deepest penetration, in the world"),
     field("deepest_time_s", &StepResult::deepest_time_s, "simulated time of the deepest penetration"),

@@ -99,7 +99,14 @@ struct SceneStep {
   StepMotion motion = StepMotion::Push;
   double pitch_m = 0;    ///< of a screw, for one turn; negative: a left-hand thread
   double torque_Nm = 0;  ///< at which a screw is tight; 0: it is turned to the height of its target
+  /// The part is in place at its start until this step takes it off and puts it away at its target, see
+  /// disassemblyOf(). Not a key of a scene file.
+  bool takes_off = false;
 };
+/// Where the part is while it is in place: after a step that mounts it, or before one that takes it off.
+inline const Pose& placeOf(const SceneStep& step) {
+  return step.takes_off ? step.X_WP_start : step.X_WP_target;
+}
 
 /// The virtual operator. Values and sources: vps_device/operator.h.
 struct OperatorSettings {

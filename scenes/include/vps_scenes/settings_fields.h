@@ -158,7 +158,7 @@ inline constexpr auto kStepKeys = std::make_tuple(
           {.quantity = Quantity::Length, .since = 5, .default_text = "found in the mesh"}),
     field("torque_Nm", &SceneStep::torque_Nm, "of a screw: it is turned until it resists with this torque",
           {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
-static_assert(coversAllMembers<SceneStep, 4>(kStepKeys));
+static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
 
 /// `[device]`
 inline constexpr auto kDeviceKeys = std::make_tuple(

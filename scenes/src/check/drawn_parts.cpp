@@ -17,7 +17,7 @@ std::vector<DrawnPart> drawnParts(const Scene& scene) {
     parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
                      part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
                      part.part.material.friction});
-  for (const SceneStep& step : scene.steps) parts[step.part].X_WP = step.X_WP_target;
+  for (const SceneStep& step : scene.steps) parts[step.part].X_WP = placeOf(step);
   return parts;
 }
 

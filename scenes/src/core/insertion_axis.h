@@ -6,11 +6,14 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Of the last leg of the path of G, unit, in W. Zero where the part only turns there.
+/// Of the last leg of the path of G, unit, in W; of a step that takes its part off, of the first, along which
+/// it comes free. Zero where the part only turns there.
 inline Vec3 insertionAxis(const SceneStep& step, const Pose& X_PG) {
   constexpr double kLeast_m = 1e-9;
-  const Vec3 last_W = step.way_points.empty() ? step.X_WP_start * X_PG.p : step.way_points.back() * X_PG.p;
-  const Vec3 leg_W = step.X_WP_target * X_PG.p - last_W;
+  const auto& way = step.way_points;
+  const Pose& X_from = step.takes_off || way.empty() ? step.X_WP_start : way.back();
+  const Pose& X_to = !step.takes_off || way.empty() ? step.X_WP_target : way.front();
+  const Vec3 leg_W = X_to * X_PG.p - X_from * X_PG.p;
   return leg_W.norm() < kLeast_m ? Vec3(Vec3::Zero()) : Vec3(leg_W.normalized());
 }
 

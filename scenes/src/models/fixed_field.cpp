@@ -80,6 +80,7 @@ CookedField cookField(const FieldOrder& order) {
   const double begun_s = wallSeconds();
   CookedField field;
   field.region_W = order.region_W;
+  if (order.parts.empty()) return field;
   bullet::ShapeModels models;
   models.map = mapOf(order);
   if (isStopped(order)) return field;

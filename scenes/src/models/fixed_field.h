@@ -52,7 +52,7 @@ struct CookedField {
 
 /// Cooks a field from the parts' own meshes and, where given, from `below`, to which the other parts are
 /// added. O(surface of the added parts) and O(points in the region). Same input, same bits. Throws LoadError
-/// as cookVoxMap(). When stopped, the result may have no shape.
+/// as cookVoxMap(). When stopped, the result may have no shape; an order without parts has none.
 CookedField cookField(const FieldOrder& order);
 
 }  // namespace vps::scenes::inline v0

@@ -8,6 +8,7 @@
 
 #include "core/equal_meshes.h"
 #include "core/insertion_axis.h"
+#include "core/parts_in_place.h"
 #include "models/scene_models.h"
 #include "vps/box.h"
 
@@ -100,27 +101,19 @@ class Planner {
 
   void planSteps(bool is_reduced) {
     if (!isAssembly()) return planSimulation();
-    std::vector<std::size_t> placed;
-    std::vector<Pose> X_WP(scene_.parts.size());
-    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
-      if (scene_.parts[i].is_fixed) {
-        placed.push_back(i);
-        X_WP[i] = scene_.parts[i].X_WP;
-      }
-    for (const SceneStep& step : scene_.steps) {
+    for (std::size_t s = 0; s < scene_.steps.size(); ++s) {
+      const SceneStep& step = scene_.steps[s];
       FieldPlan& planned = plan_.steps.emplace_back();
       planned.part = step.part;
       if (is_reduced)
         planned.region_W = grown(pathOf(step, boxes_[step.part]), margin_m(scene_, boxes_[step.part]));
-      for (const std::size_t i : placed) {
-        const bool is_near = !planned.region_W || overlap(moved(boxes_[i], X_WP[i]), *planned.region_W);
+      for (const auto& [i, X_WP] : partsInPlace(scene_, s)) {
+        const bool is_near = !planned.region_W || overlap(moved(boxes_[i], X_WP), *planned.region_W);
         (is_near ? planned.cooked : planned.left_out).push_back(i);
       }
       planned.has_shell = !is_reduced || needsFieldShell(step.part, planned.cooked);
       planned.why =
           planned.has_shell ? "" : "one-sided: the moving part is the smaller body, so its points are used";
-      placed.push_back(step.part);
-      X_WP[step.part] = step.X_WP_target;
     }
   }
 
@@ -152,7 +145,8 @@ class Planner {
     for (std::size_t s = 0; s < scene_.steps.size(); ++s) {
       if (scene_.steps[s].part != i) continue;
       part.has_map = part.has_shell = true;
-      part.why = "moves in step " + std::to_string(s + 1) + servesLater(i, s);
+      part.why = scene_.steps[s].takes_off ? "in place until step " + std::to_string(s + 1) + " takes it off"
+                                           : "moves in step " + std::to_string(s + 1) + servesLater(i, s);
       return;
     }
     part.why = "no step moves it and it is not fixed: nobody can touch it, so it is only drawn";

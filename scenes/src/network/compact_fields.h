@@ -8,6 +8,7 @@
 // writing and reading.
 #pragma once
 
+#include "network/message_fields.h"
 #include "network/messages.h"
 
 namespace vps::scenes::inline v0::wire {
@@ -38,14 +39,7 @@ void compactFields(HapticMessage& m, V& visit) {
   visit.exact(m.state.safety.faults);
   visit.exact(m.state.safety.limited);
   visit.exact(m.state.safety.slewed);
-  device::PassivityObserver& energy = m.state.passivity;
-  visit(energy.to_hand_J);
-  visit(energy.from_hand_J);
-  visit(energy.dissipated_J);
-  visit(energy.balance_J);
-  visit(energy.least_J);
-  visit(energy.injected_J);
-  visit(energy.quantisation_error_bound_J);
+  fields(m.state.passivity, visit);
 }
 
 template <typename V>
@@ -78,12 +72,7 @@ void compactFields(SnapshotMessage& m, V& visit) {
     visit(body.X_WP);
     visit.choice(body.role, 4);
   });
-  visit.list(s.contacts, [&visit](ContactMark& mark) {
-    visit(mark.p_W);
-    visit(mark.n_W);
-    visit(mark.depth_m);
-    visit(mark.force_N);
-  });
+  visit.list(s.contacts, [&visit](ContactMark& mark) { fields(mark, visit); });
 }
 
 }  // namespace vps::scenes::inline v0::wire

@@ -16,6 +16,25 @@ void fields(Envelope& m, V& visit) {
   visit(m.time_ns);
 }
 
+// Of these two the compact messages have the same fields.
+template <typename V>
+void fields(device::PassivityObserver& energy, V& visit) {
+  visit(energy.to_hand_J);
+  visit(energy.from_hand_J);
+  visit(energy.dissipated_J);
+  visit(energy.balance_J);
+  visit(energy.least_J);
+  visit(energy.injected_J);
+  visit(energy.quantisation_error_bound_J);
+}
+template <typename V>
+void fields(ContactMark& mark, V& visit) {
+  visit(mark.p_W);
+  visit(mark.n_W);
+  visit(mark.depth_m);
+  visit(mark.force_N);
+}
+
 template <typename V>
 void fields(HapticMessage& m, V& visit) {
   device::TickReport& report = m.state.report;
@@ -32,14 +51,7 @@ void fields(HapticMessage& m, V& visit) {
   visit(m.state.safety.faults);
   visit(m.state.safety.limited);
   visit(m.state.safety.slewed);
-  device::PassivityObserver& energy = m.state.passivity;
-  visit(energy.to_hand_J);
-  visit(energy.from_hand_J);
-  visit(energy.dissipated_J);
-  visit(energy.balance_J);
-  visit(energy.least_J);
-  visit(energy.injected_J);
-  visit(energy.quantisation_error_bound_J);
+  fields(m.state.passivity, visit);
   visit(m.hand);
 }
 
@@ -83,6 +95,7 @@ void fields(device::OperatorTask& task, V& visit) {
   visit(task.tip_P);
   visit(task.give_m_per_N);
   visit(task.has_corners);
+  visit(task.is_taking_off);
   visit(task.screw.pitch_m);
   visit(task.screw.torque_Nm);
   visit(task.screw.handle_rad);
@@ -201,12 +214,7 @@ void fields(SnapshotMessage& m, V& visit) {
     visit(body.X_WP);
     visit.choice(body.role, 4);
   });
-  visit.list(s.contacts, [&visit](ContactMark& mark) {
-    visit(mark.p_W);
-    visit(mark.n_W);
-    visit(mark.depth_m);
-    visit(mark.force_N);
-  });
+  visit.list(s.contacts, [&visit](ContactMark& mark) { fields(mark, visit); });
 }
 
 template <typename V>
@@ -226,6 +234,13 @@ void fields(BeatMessage& m, V& visit) {
   visit(m.peer);
   visit(m.peer_sent_ns);
   visit(m.received_ns);
+}
+
+template <typename V>
+void fields(PointerMessage& m, V& visit) {
+  visit(m.person);
+  visit(m.is_shown);
+  visit(m.p_W);
 }
 
 }  // namespace vps::scenes::inline v0::wire

@@ -49,6 +49,8 @@ template <>
 constexpr MessageKind kKindOf<NewsMessage> = MessageKind::News;
 template <>
 constexpr MessageKind kKindOf<BeatMessage> = MessageKind::Beat;
+template <>
+constexpr MessageKind kKindOf<PointerMessage> = MessageKind::Pointer;
 
 /// What both directions share: how a field is made of numbers.
 template <typename Self>
@@ -444,6 +446,7 @@ MESSAGE(LogMessage)
 MESSAGE(SnapshotMessage)
 MESSAGE(NewsMessage)
 MESSAGE(BeatMessage)
+MESSAGE(PointerMessage)
 #undef MESSAGE
 
 }  // namespace vps::scenes::inline v0

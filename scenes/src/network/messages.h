@@ -24,7 +24,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 3;
+inline constexpr std::uint16_t kMessageVersion = 4;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -37,6 +37,7 @@ enum class MessageKind : std::uint16_t {
   Snapshot,
   News,
   Beat,
+  Pointer,
 };
 
 /// At the start of each message.
@@ -132,6 +133,13 @@ struct BeatMessage {
   std::uint64_t peer = 0;         ///< whose beat is sent back; 0: none
   std::int64_t peer_sent_ns = 0;  ///< by the peer's clock
   std::int64_t received_ns = 0;   ///< by the sender's
+};
+
+/// Where a person who watches points, to the others who watch.
+struct PointerMessage {
+  std::uint32_t person = 0;  ///< counted by the sender
+  bool is_shown = false;     ///< false: no longer
+  Vec3 p_W = Vec3::Zero();
 };
 
 /// What became of the bytes of a message.

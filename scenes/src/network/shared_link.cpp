@@ -95,6 +95,7 @@ class SharedLink final : public Link {
 }  // namespace
 
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes) {
+  requireSessionName(session);
   removeDeadRegions();
   auto link = std::make_unique<SharedLink>(SharedRegion::create(session, kSceneOffset + scene_bytes.size()),
                                            NodeRole::Render);
@@ -103,6 +104,7 @@ std::unique_ptr<Link> makeSession(const std::string& session, std::string_view s
 }
 
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
+  requireSessionName(session);
   SharedRegion region = SharedRegion::open(session, role == NodeRole::Device);
   if (!region.isOpen() || region.memory().size() < kSceneOffset) return nullptr;
   if (!region.isTaken(NodeRole::Render)) {  // left behind by a crash

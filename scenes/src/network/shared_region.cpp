@@ -29,8 +29,9 @@ constexpr std::chrono::milliseconds kPause{10};
 std::string prefix() {
   return "/bullet-vps." + std::to_string(getuid()) + ".";
 }
+/// What belongs to a session besides its own region follows its name and a dot.
 std::string nameOf(const std::string& session) {
-  requireSessionName(session);
+  requireSessionName(session.substr(0, session.find('.')));
   return prefix() + session;
 }
 

@@ -30,6 +30,7 @@ class SharedRegion {
   /// A new region of zeros, which belongs to this process in the role of Render; readable and writable by
   /// this user only. A region of that name whose owner is dead is replaced. Throws LoadError where its owner
   /// is alive, or the system refuses.
+  /// @param session  its name, for its own region; or that, a dot and another name
   static SharedRegion create(const std::string& session, std::size_t bytes);
   /// The region of a session; not open where there is none, or it is still being made. Throws LoadError for
   /// one that others could have written to.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/parts_in_place.h"
 #include "procedure/loop_settings.h"
 #include "procedure/run_trace.h"
 #include "vps/load_error.h"
@@ -51,6 +52,11 @@ AssemblyWorld::AssemblyWorld(Scene& scene, const ModelPlan& plan, Hand& hand, de
       physics_clock_(dt_s_) {
   for (const ScenePart& part : scene.parts) state_.X_WP.push_back(part.X_WP);
   state_.roles.assign(scene.parts.size(), BodyRole::Waiting);
+  for (const SceneStep& step : scene.steps)
+    if (step.takes_off) {
+      state_.X_WP[step.part] = step.X_WP_start;
+      state_.roles[step.part] = BodyRole::Mounted;
+    }
   driver_ = makeDriver(hand, settings, on_fault);
   shedder_.emplace(
       scene_, plan_, simulation_, *driver_, loadLimits(options),
@@ -76,12 +82,11 @@ std::unique_ptr<HapticDriver> AssemblyWorld::makeDriver(Hand& hand, device::Loop
 }
 
 void AssemblyWorld::mountFixed() {
-  for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
-    if (!scene_.parts[i].is_fixed) continue;
-    placed_.add(i, state_.X_WP[i]);
-    placed_.addToJudge(i);
-    state_.roles[i] = BodyRole::Mounted;
+  for (const auto& [part, X_WP] : partsInPlace(scene_, 0)) {
+    placed_.add(part, X_WP);
+    state_.roles[part] = BodyRole::Mounted;
   }
+  placed_.renewJudge();
   if (const auto order = placed_.orderFor(0)) placed_.setField(cookField(*order));
 }
 
@@ -107,7 +112,8 @@ void AssemblyWorld::take(std::size_t index) {
 
 void AssemblyWorld::requireFreeStart(const SceneStep& step) {
   const ScenePart& part = scene_.parts[step.part];
-  if (part.allow_overlap) return;
+  // Of a part in place the drawing says whether it overlaps another (checkDrawnTargets()).
+  if (part.allow_overlap || step.takes_off) return;
   const Penetration overlap = placed_.judge().deepest(placed_.judgedBody(step.part), step.X_WP_start);
   if (overlap.depth_m > kStartOverlap_m)
     throw LoadError(scene_.file, part.part.name,
@@ -149,10 +155,13 @@ void AssemblyWorld::release(bool is_held) {
 
 void AssemblyWorld::mount(const Pose& X_WP) {
   const std::size_t part = state_.moving.part;
+  const auto next = static_cast<std::size_t>(state_.step) + 1;
   simulation_.removeBody(part);
   state_.X_WP[part] = X_WP;
-  placed_.addToJudge(part);
-  state_.roles[part] = BodyRole::Mounted;
+  const bool is_away = scene_.steps[static_cast<std::size_t>(state_.step)].takes_off;
+  state_.roles[part] = is_away ? BodyRole::Waiting : BodyRole::Mounted;
+  if (!is_away) placed_.addToJudge(part);
+  if (next < scene_.steps.size() && scene_.steps[next].takes_off) placed_.renewJudge();
 }
 
 void AssemblyWorld::setGrip(double share) {

@@ -53,7 +53,8 @@ class AssemblyWorld {
   /// Uncouples the part, which stays a dynamic body.
   /// @param is_held  something else holds it from here on
   void release(bool is_held);
-  /// Fixes the part at a pose: it is no dynamic body any more, and the judge measures against it.
+  /// Fixes the part at a pose: it is no dynamic body any more. The judge measures against it, unless the step
+  /// took it off, and no more against a part that the next step takes off.
   void mount(const Pose& X_WP);
   /// Sets the share of the coupling gains that holds the part in hand.
   void setGrip(double share);

@@ -11,12 +11,13 @@
 
 namespace vps::scenes::inline v0 {
 
-/// The poses at which the parts are cooked: fixed parts as designed, others at their targets.
+/// The poses at which the parts are cooked: fixed parts as designed, others where their steps have them in
+/// place.
 class CookedPoses {
  public:
   explicit CookedPoses(const Scene& scene) {
     for (const ScenePart& part : scene.parts) X_WP_.push_back(part.X_WP);
-    for (const SceneStep& step : scene.steps) X_WP_[step.part] = step.X_WP_target;
+    for (const SceneStep& step : scene.steps) X_WP_[step.part] = placeOf(step);
   }
   /// The parts of the field in place, followed by those that the step adds.
   [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const FieldPlan& step) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/length_words.h"
+#include "core/parts_in_place.h"
 #include "procedure/closed_room.h"
 #include "vps_scenes/check.h"
 
@@ -18,13 +19,9 @@ struct InPlace {
   Pose X_WP;
 };
 
-/// Fixed parts, and those that earlier steps mounted.
 std::vector<InPlace> inPlaceBefore(const Scene& scene, std::size_t step) {
   std::vector<InPlace> parts;
-  for (const ScenePart& part : scene.parts)
-    if (part.is_fixed) parts.push_back({&part, part.X_WP});
-  for (std::size_t i = 0; i < step; ++i)
-    parts.push_back({&scene.parts[scene.steps[i].part], scene.steps[i].X_WP_target});
+  for (const auto& [part, X_WP] : partsInPlace(scene, step)) parts.push_back({&scene.parts[part], X_WP});
   return parts;
 }
 
@@ -43,7 +40,11 @@ const std::string* otherOf(const std::string& part, const std::string& a, const 
 void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
   for (const CheckedPair& pair : checked.pairs) {
     const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
-    if (other == nullptr || !pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
+    if (other == nullptr) continue;
+    // A part that is in place already overlaps as drawn, within the error of the meshes.
+    if (step.is_taken_off && !pair.isClash())
+      step.penetration_limit_m = std::max(step.penetration_limit_m, pair.interference_depth_m);
+    if (!pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
     step.blocked_by = *other;
     step.blocked_at_W = pair.at_W;
     step.blocked_depth_m = pair.interference_depth_m;
@@ -119,6 +120,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     const SceneStep& planned = scene.steps[i];
     const std::vector<InPlace> in_place = inPlaceBefore(scene, i);
     steps[i].part = scene.parts[planned.part].part.name;
+    steps[i].is_taken_off = planned.takes_off;
     steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
     findOverlap(checked, in_place, steps[i]);
     steps[i].aligned_by = alignedBy(checked, scene, i, in_place, steps[i].part);

@@ -22,6 +22,15 @@ void PlacedParts::addToJudge(std::size_t part) {
     judge_.mount(judgedBody(part), placed->X_WP);
 }
 
+void PlacedParts::leaveOut(std::size_t part) {
+  std::erase_if(placed_, [part](const FixedPart& placed) { return placed.part == part; });
+}
+
+void PlacedParts::renewJudge() {
+  judge_ = OverlapJudge();
+  for (const FixedPart& placed : placed_) addToJudge(placed.part);
+}
+
 const JudgedBody& PlacedParts::judgedBody(std::size_t part) {
   std::optional<JudgedBody>& body = judged_[part];
   if (!body) body = makeJudgedBody(scene_.parts[part].model);
@@ -33,16 +42,21 @@ std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step) {
   if (is_past_last && !plan_.models_everything) return {};
   const FieldPlan& planned = plan_.steps[std::min(step, plan_.steps.size() - 1)];
   std::vector<FixedPart> parts = simulation_.field().parts;
+  const auto has_left = [this](const FixedPart& part) {
+    return std::ranges::find(placed_, part.part, &FixedPart::part) == placed_.end();
+  };
+  const bool shrinks = std::erase_if(parts, has_left) > 0;
   for (const FixedPart& placed : placed_) {
     if (std::ranges::find(parts, placed.part, &FixedPart::part) != parts.end()) continue;
     const Box box_W = moved(bounds(scene_.parts[placed.part].part.mesh), placed.X_WP);
     if (!planned.region_W || overlap(box_W, *planned.region_W)) parts.push_back(placed);
   }
   if (!simulation_.needsField(parts, planned)) return {};
-  return simulation_.orderField(parts, planned);
+  return simulation_.orderField(parts, planned, shrinks);
 }
 
 void PlacedParts::setField(CookedField field) {
+  if (!field.shape) return simulation_.clearField();
   simulation_.setField(std::move(field), placed_.front().part);
   ModelledCost cost = modelledCost(scene_);
   simulation_.addField(cost);
@@ -66,11 +80,9 @@ void PlacedParts::widen(std::size_t step) {
   ModelOptions options;
   options.cache = options_.cache;  // no progress and no warnings: both were given at loading
   buildWhole(scene_, plan_, options);
-  judge_ = OverlapJudge();
-  for (const FixedPart& placed : placed_) {
+  for (const FixedPart& placed : placed_)
     if (scene_.parts[placed.part].is_fixed) judged_[placed.part].reset();
-    addToJudge(placed.part);
-  }
+  renewJudge();
   setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
 }
 

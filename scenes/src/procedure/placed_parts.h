@@ -12,7 +12,8 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Not thread-safe, except that another thread may read judge() and a judgedBody() while add() is called.
+/// Not thread-safe, except that another thread may read judge() and a judgedBody() while add() or leaveOut()
+/// is called.
 class PlacedParts {
  public:
   /// All arguments outlive it. widen() removes the regions from the plan.
@@ -20,6 +21,10 @@ class PlacedParts {
 
   /// Adds a part to the fields of later steps.
   void add(std::size_t part, const Pose& X_WP) { placed_.push_back({part, X_WP}); }
+  /// Leaves a part out of the fields of later steps.
+  void leaveOut(std::size_t part);
+  /// From now on the judge measures against the parts that add() and leaveOut() have left, and no others.
+  void renewJudge();
   /// From now on the judge measures against this part, if it is modelled. It was added before.
   void addToJudge(std::size_t part);
   [[nodiscard]] const OverlapJudge& judge() const { return judge_; }
@@ -28,6 +33,7 @@ class PlacedParts {
 
   /// What to cook for a step's region; nothing if the field in place serves it, or after the last step.
   [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step);
+  /// @param field  without a shape: nothing is in place
   void setField(CookedField field);
 
   /// False when a moving part, with all that it may reach within the coming physics step, is not inside the

@@ -71,7 +71,7 @@ void RunTrace::add(const AssemblyWorld& world, TracePhase phase, StepResult& res
   result.peak_force_N = std::max(result.peak_force_N, row.F_hand_W.f.norm());
   result.peak_torque_Nm = std::max(result.peak_torque_Nm, row.F_hand_W.tau.norm());
   guide_N_ += std::min(1.0, world.dt_s() / kGuide_s) * (world.simulation().forceAcross_N(axis_W_) - guide_N_);
-  if (phase == TracePhase::Insert || phase == TracePhase::Press)
+  if (phase == TracePhase::Insert || phase == TracePhase::Press || result.is_taken_off)
     result.guide_force_N = std::max(result.guide_force_N, guide_N_);
   const bool is_on_the_way = phase == TracePhase::Reach || phase == TracePhase::Insert;
   if (touch.force_N > peak_contact_N_ && is_on_the_way) {

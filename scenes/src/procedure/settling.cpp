@@ -63,6 +63,14 @@ void reportVerdict(const OverlapVerdict& verdict, const OverlapJudge& judge, Ste
   if (verdict.worst.depth_m > 0) result.deepest_against = judge.name(verdict.worst.against);
 }
 
+/// What is in place for the next step.
+void changePlaced(AssemblyWorld& world, const Pose& X_WP) {
+  const auto& steps = world.scene().steps;
+  const auto step = static_cast<std::size_t>(world.state().step);
+  if (!steps[step].takes_off) world.placed().add(world.state().moving.part, X_WP);
+  if (step + 1 < steps.size() && steps[step + 1].takes_off) world.placed().leaveOut(steps[step + 1].part);
+}
+
 void swapIn(PlacedParts& placed, CookedField field, StepResult& result) {
   result.cook_wall_s = field.wall_s;
   const double begun_s = wallSeconds();
@@ -80,7 +88,7 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   std::future<OverlapVerdict> verdict = judgeAsync(world, std::move(samples));
   const bool stays = result.completed && result.aligned_by.empty();
   const Pose X_WP = stays ? world.movingPose() : world.state().moving.X_WP_target;
-  world.placed().add(world.state().moving.part, X_WP);
+  changePlaced(world, X_WP);
   std::future<CookedField> field = cookAsync(world);
   const std::uint64_t missed_before = driver.missed();
   if (driver.isByClock())
@@ -94,7 +102,7 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   world.mount(X_WP);
   if (!field.valid()) return;
   CookedField cooked = field.get();
-  if (cooked.shape) swapIn(world.placed(), std::move(cooked), result);
+  if (cooked.shape || !world.isStopped()) swapIn(world.placed(), std::move(cooked), result);
 }
 
 }  // namespace vps::scenes::inline v0

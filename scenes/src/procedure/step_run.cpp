@@ -74,6 +74,7 @@ device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, d
   task.weight_W = moving.weight_W;
   task.tip_P = tipOf(world.scene(), step, moving.X_PG);
   task.has_corners = hasCorners(world.scene(), step, moving.X_PG, task.tip_P);
+  task.is_taking_off = step.takes_off;
   if (step.motion == StepMotion::Screw) {
     task.screw.pitch_m = step.pitch_m;
     task.screw.torque_Nm = step.torque_Nm;
@@ -101,10 +102,20 @@ void startHaptics(AssemblyWorld& world) {
   world.driver().resume();
 }
 
+/// What guides a part that is taken off touches it as well; what holds it back has the greatest force along
+/// its way.
+void keepWhatHoldsBack(const Vec3& axis_W, std::vector<ContactMark>& marks) {
+  const auto along_N = [&](const ContactMark& mark) { return mark.force_N * std::abs(mark.n_W.dot(axis_W)); };
+  const auto most = std::max_element(marks.begin(), marks.end(),
+                                     [&](const auto& a, const auto& b) { return along_N(a) < along_N(b); });
+  if (most != marks.end() && along_N(*most) > 0) marks = {ContactMark(*most)};
+}
+
 /// The part in place that the moving part touches, at the contact that is nearest to a part's surface.
-void noteContact(AssemblyWorld& world, StepResult& result) {
+void noteContact(AssemblyWorld& world, const SceneStep& step, StepResult& result) {
   std::vector<ContactMark> marks;
   world.simulation().contactMarks(marks);
+  if (step.takes_off) keepWhatHoldsBack(insertionAxis(step, world.state().moving.X_PG), marks);
   double nearest_m = std::numeric_limits<double>::infinity();
   const Scene& scene = world.scene();
   for (const ContactMark& mark : marks)
@@ -164,7 +175,7 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
     trace.logPhase(world);
   }
   const Brought brought{world.movingPose(), driver.phase() == device::OperatorPhase::Failed};
-  if (brought.is_given_up) noteContact(world, result);
+  if (brought.is_given_up) noteContact(world, step, result);
   if (!clutch.comeFree(press)) return brought;
   if (isHeldAfter(step, result)) return brought;  // what holds it has it before the hand lets go
   clutch.setDown([&](double share) {
@@ -214,11 +225,12 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   const SceneStep& step = world.scene().steps[index];
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
-  result.penetration_limit_m = penetrationLimit_m(step);
+  result.penetration_limit_m += penetrationLimit_m(step);  // beyond what is drawn
 
   world.take(index);
   trace.beginStep(world);
-  trace.logEvent(world, device::RunEventKind::Take, "takes '" + result.part + "'");
+  trace.logEvent(world, device::RunEventKind::Take,
+                 (step.takes_off ? "takes off '" : "takes '") + result.part + "'");
   const std::optional<Brought> brought = work(world, trace, step, result);
   world.pauseLocalContact();
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))

@@ -20,12 +20,12 @@ constexpr double kPenetrationLimit_m = 10e-6;
 constexpr const char* kHoldsRemedy =
     "nothing holds it there; if a fixture or the next part will, say holds = true in its [[step]]";
 
-std::string pressReason(double needed_N, double hand_N) {
+std::string pressReason(const StepResult& step, double hand_N) {
   char words[240];
   std::snprintf(words, sizeof words,
-                "the way is free, but pressing it in takes about %.0f N (by the formula for its declared "
+                "the way is free, but pressing it %s takes about %.0f N (by the formula for its declared "
                 "interference), and the hand has %.0f N ([operator] force_limit_N): it needs a press",
-                needed_N, hand_N);
+                step.is_taken_off ? "out" : "in", step.press_needed_N, hand_N);
   return words;
 }
 
@@ -52,11 +52,12 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
     return words;
   }
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
-  if (is_late && result.final_error_m <= result.tolerance_m)
+  if (!step.takes_off && is_late && result.final_error_m <= result.tolerance_m)
     return "its time (timeout_s) was over before the hand had pressed it home, so it is not shown to be in "
            "place: " +
            where + "; give it more time";
-  std::string reason = std::string("the hand gave up") + (is_late ? " after its time was over: " : ": ");
+  std::string reason = std::string("the hand gave up") + (step.takes_off ? " taking it off" : "") +
+                       (is_late ? " after its time was over: " : ": ");
   reason.append(where);
   if (!result.stuck_against.empty())
     reason.append("; it then touched '")
@@ -125,7 +126,7 @@ void judgeStep(StepResult& result, double hand_N) {
     result.reason =
         "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
   } else if (result.press_needed_N > hand_N) {
-    result.reason = pressReason(result.press_needed_N, hand_N);
+    result.reason = pressReason(result, hand_N);
   } else {
     result.verdict = Verdict::Fits;
   }

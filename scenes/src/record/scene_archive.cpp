@@ -28,9 +28,9 @@ std::string magicOf(int version) {
   return "vps-scene-" + std::to_string(version) + "\n";
 }
 
-/// The greatest `since` of all settings.
+/// The greatest `since` of all settings, and of what has no table (laterFields()).
 constexpr int latestVersion() {
-  int latest = 1;
+  int latest = 6;
   const auto look = [&](const auto& row) {
     if constexpr (requires { row.traits.since; }) latest = std::max(latest, row.traits.since);
   };
@@ -217,6 +217,12 @@ void partFields5(Archive& archive, T& part) {
   archive(part.youngs_modulus_Pa, part.poissons_ratio);
 }
 
+/// What a step got with version 6, and what has no table.
+template <typename Archive, Either<SceneStep> T>
+void stepFields6(Archive& archive, T& step) {
+  archive(step.takes_off);
+}
+
 /// What came with a version after the first.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
@@ -226,6 +232,8 @@ void laterFields(Archive& archive, T& x, int version) {
   if (version == 5)
     for (auto& part : x.parts) partFields5(archive, part);
   for (auto& step : x.steps) settings(archive, step, kStepKeys, version);
+  if (version == 6)
+    for (auto& step : x.steps) stepFields6(archive, step);
   settings(archive, x.fidelity, kFidelityFields, version);
   settings(archive, x.coupling, kCouplingFields, version);
   settings(archive, x.device, kDeviceKeys, version);

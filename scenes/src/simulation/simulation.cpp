@@ -116,7 +116,7 @@ Simulation::~Simulation() = default;
 
 bool Simulation::needsField(const std::vector<FixedPart>& parts, const FieldPlan& step) const {
   const CookedField& now = world_->field;
-  if (parts.size() != now.parts.size()) return true;
+  if (!std::ranges::equal(parts, now.parts, {}, &FixedPart::part, &FixedPart::part)) return true;
   if (parts.empty() || !now.region_W) return false;
   return !step.region_W || !isWithin(*step.region_W, *now.region_W);
 }
@@ -137,11 +137,17 @@ FieldOrder Simulation::orderField(const std::vector<FixedPart>& parts, const Fie
   return order;
 }
 
+void Simulation::clearField() {
+  World& w = *world_;
+  if (w.fixed_body) w.world.removeRigidBody(w.fixed_body.get());
+  w.fixed_body.reset();
+  w.field = {};
+}
+
 void Simulation::setField(CookedField field, std::size_t material) {
   World& w = *world_;
   for (const FixedPart& placed : field.parts) w.remove(placed.part);
-  if (w.fixed_body) w.world.removeRigidBody(w.fixed_body.get());
-  w.fixed_body.reset();
+  clearField();
   w.field = std::move(field);
   w.fixed_body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));

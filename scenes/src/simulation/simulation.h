@@ -31,15 +31,18 @@ class Simulation {
   Simulation(const Scene& scene, const ModelPlan& plan);
   ~Simulation();
 
-  /// False if the field in place serves a step with these parts. The parts in place come first among them.
+  /// False if the field in place serves a step with these parts. Of the parts in place, those that are among
+  /// them come first.
   [[nodiscard]] bool needsField(const std::vector<FixedPart>& parts, const FieldPlan& step) const;
   /// What cookField() reads to make a field of these parts, on any thread. If the field in place holds the
-  /// first of them, in this order, the new map is built on its map, unless `rebuilds`.
+  /// first of them, in this order, and nothing else, the new map is built on its map, unless `rebuilds`.
   FieldOrder orderField(const std::vector<FixedPart>& parts, const FieldPlan& step, bool rebuilds = false);
   /// Replaces the field between two steps. The field's parts are no longer bodies of their own. O(1) except
   /// for freeing. The field is one Bullet body with one friction: that of part `material`, usually the
   /// housing.
   void setField(CookedField field, std::size_t material);
+  /// Removes the field between two steps.
+  void clearField();
   /// The field in place; it has no parts if nothing is fixed.
   [[nodiscard]] const CookedField& field() const;
   [[nodiscard]] bool hasFixed() const;

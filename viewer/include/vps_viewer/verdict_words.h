@@ -18,6 +18,9 @@ VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
 /// "Ease of assembly: 7 of 10 tries succeeded"; empty for a single run.
 VPS_VIEWER_API std::string easeWords(const scenes::AssembleResult& result);
 
+/// The run took parts off (vps assemble --disassemble).
+VPS_VIEWER_API bool isDisassembly(const scenes::AssembleResult& result);
+
 /// One sentence: "Yes, the parts go together: all 3 steps fit."
 VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 

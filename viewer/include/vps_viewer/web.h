@@ -18,9 +18,11 @@ struct WebOptions {
   std::uint16_t port = 8080;  ///< 0: one that is free
   /// Of this machine, to listen at. Other than loopback needs a token.
   std::string address = "127.0.0.1";
-  std::string token;         ///< that a browser has to know; empty: none on loopback, a new one elsewhere
-  bool allows_hand = false;  ///< a browser may take the part in hand
-  double rate_hz = 60;       ///< most snapshots a second for each browser
+  std::string token;  ///< that a browser has to know; empty: none on loopback, a new one elsewhere
+  /// PEM files of a certificate and its key: the page then comes by https alone. Empty: by http.
+  std::string tls_certificate, tls_key;
+  bool allows_hand = false;        ///< a browser may take the part in hand
+  double rate_hz = 60;             ///< most snapshots a second for each browser
   std::size_t most_browsers = 32;  ///< at one time
   // Of the run.
   std::string session;  ///< as in scenes::SessionWatcher::join()
@@ -36,7 +38,7 @@ VPS_VIEWER_API std::string missingForWeb();
 
 /// Serve the page until `stop` is set: a session of vps render, or a run of the scene in this process.
 /// Several browsers may watch; one that is slow gets fewer pictures and disturbs nobody. Throw LoadError
-/// where the address cannot be listened at, or the token is too short.
+/// where the address cannot be listened at, the token is too short, or the certificate cannot be used.
 VPS_VIEWER_API void serveSession(const WebOptions& options);
 VPS_VIEWER_API void serveScene(const scenes::Scene& scene, const WebOptions& options);
 

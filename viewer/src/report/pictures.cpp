@@ -73,8 +73,8 @@ class PictureSet {
     // Contact and end share a close-up of the part and its target, cut open along the direction of insertion.
     Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     if (step != nullptr) {
-      const Box target_W = bounds(transformed(scene_.parts[step->part].part.mesh, step->X_WP_target));
-      Box close_W = target_W;
+      const Box place_W = bounds(transformed(scene_.parts[step->part].part.mesh, placeOf(*step)));
+      Box close_W = place_W;
       if (i < result_.contact.size())
         for (const scenes::BodySnapshot& body : result_.contact[i].bodies)
           if (body.part == step->part && body.X_WP.isFinite()) {
@@ -90,7 +90,11 @@ class PictureSet {
       const Vec3 room_W = Vec3::Constant(0.2 * close_W.size().norm());
       camera = frame({close_W.min - room_W, close_W.max + room_W});
       const Pose& X_before = step->way_points.empty() ? step->X_WP_start : step->way_points.back();
-      options.cut = sectionAlong(target_W.center(), step->X_WP_target.p - X_before.p, kToViewer);
+      const Pose& X_first = step->way_points.empty() ? step->X_WP_target : step->way_points.front();
+      options.cut = sectionAlong(
+          place_W.center(),
+          step->takes_off ? Vec3(step->X_WP_start.p - X_first.p) : Vec3(step->X_WP_target.p - X_before.p),
+          kToViewer);
     }
     if (i < result_.contact.size()) {
       const scenes::Snapshot& s = result_.contact[i];
@@ -101,7 +105,9 @@ class PictureSet {
       pictures.contact = save(prefix + "contact.png", s, camera, options);
     }
     if (i < result_.end.size()) {
-      options.caption = result_.steps[i].reason.empty() ? "end: in place" : "end: " + result_.steps[i].reason;
+      options.caption = result_.steps[i].reason.empty()
+                            ? (result_.steps[i].is_taken_off ? "end: taken off" : "end: in place")
+                            : "end: " + result_.steps[i].reason;
       pictures.end = save(prefix + "end.png", result_.end[i], camera, options);
     }
     return pictures;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "report/ergonomics_section.h"
 #include "report/html.h"
 #include "report/length_text.h"
 #include "report/pictures.h"
@@ -81,7 +82,8 @@ std::string stepFacts(const scenes::StepResult& s) {
   facts = {{"Verdict", scenes::isGood(s) ? "fits"
                                          : "<b class=\"bad\">" + std::string(words(s.verdict)) +
                                                "</b>: " + escapeHtml(s.reason)},
-           {"Brought to its target by contact", contactWords(s)},
+           {s.is_taken_off ? "Guided by contact on its way out" : "Brought to its target by contact",
+            contactWords(s)},
            {"Time", format(s.duration_s, "%.3f") + " s, from " + format(s.start_s, "%.3f") + " s"},
            {"Greatest overlap, by exact distance", deepest},
            {"Greatest overlap, by the voxmap", micrometres(s.field_penetration_m) + " µm"},
@@ -149,7 +151,9 @@ std::string stepSection(std::size_t i, const scenes::StepResult& step, const Ste
   std::string out = "<h3 id=\"step-" + number + "\">" + number + ". " + escapeHtml(step.part) + "</h3>\n";
   if (!pictures.start.empty() || !pictures.contact.empty() || !pictures.end.empty()) {
     out += "<div class=\"pictures\">\n";
-    if (!pictures.start.empty()) out += html::figure(pictures.start, "Start; the target is transparent.");
+    if (!pictures.start.empty())
+      out += html::figure(pictures.start, step.is_taken_off ? "In place; where it is put away is transparent."
+                                                            : "Start; the target is transparent.");
     if (!pictures.contact.empty()) out += html::figure(pictures.contact, "In contact, in section.");
     if (!pictures.end.empty()) out += html::figure(pictures.end, "End, in section.");
     out += "</div>\n";
@@ -280,7 +284,8 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     const scenes::StepResult& step = result.steps[i];
     const std::string name = "Step " + std::to_string(i + 1) + ", " + step.part + ": ";
     if (!step.reason.empty()) note(name + step.reason + ".");
-    if (step.completed && !step.by_contact) note(name + "by contact: " + contactWords(step) + ".");
+    if (step.completed && !step.by_contact && !step.is_taken_off)
+      note(name + "by contact: " + contactWords(step) + ".");
     if (!step.stands_on.empty())
       note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
     if (!step.aligned_by.empty())
@@ -322,9 +327,12 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   if (options.progress) options.progress("report", 1);
 
   const std::string name = !result.scene.empty() ? result.scene : scene.name;
-  std::string body = "<h1>" + escapeHtml(name) + "</h1>\n<p class=\"quiet\">Report of an assembly run: " +
-                     std::string(isHandSimulated(scene) ? "a simulated hand" : "a person") +
-                     " moves each part to its target by contact.</p>\n" + summary(result, outcome.notes);
+  const std::string hand = isHandSimulated(scene) ? "a simulated hand" : "a person";
+  const std::string what = isDisassembly(result)
+                               ? "a disassembly run: " + hand + " takes each part off, the last one first"
+                               : "an assembly run: " + hand + " moves each part to its target by contact";
+  std::string body = "<h1>" + escapeHtml(name) + "</h1>\n<p class=\"quiet\">Report of " + what + ".</p>\n" +
+                     summary(result, outcome.notes);
   body += view.html;
   if (!pictures.overview.empty())
     body += "<div class=\"pictures two\">\n" + html::figure(pictures.overview, "The assembly.") +
@@ -337,7 +345,8 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     body += stepSection(i, result.steps[i], i < pictures.steps.size() ? pictures.steps[i] : StepPictures(),
                         plots);
-  body += method(scene, result) + performance(result) + howToRepeat(options.command);
+  body += ergonomicsSection(scene, result) + method(scene, result) + performance(result) +
+          howToRepeat(options.command);
   writeWholeFile(outcome.file, html::page(name + ": assembly report", body, dir));
   return outcome;
 }

@@ -30,8 +30,10 @@ const char* words(scenes::Verdict verdict) {
 }
 
 std::string contactWords(const scenes::StepResult& step) {
-  if (!step.completed) return "no: it did not reach its target";
+  if (!step.completed)
+    return step.is_taken_off ? "no: it did not come off" : "no: it did not reach its target";
   if (step.by_contact) return "yes";
+  if (step.is_taken_off) return "no: nothing beside its path guided it";
   return "no: nothing beside its path guided it; the hand placed it by sight alone, so that nothing but the "
          "tolerance says where it is";
 }
@@ -46,25 +48,36 @@ std::string easeWords(const scenes::AssembleResult& result) {
       .append(" of ")
       .append(std::to_string(result.tries.size()))
       .append(result.tries.size() == 1 ? " try" : " tries")
-      .append(" brought every part home.");
+      .append(isDisassembly(result) ? " took every part off." : " brought every part home.");
+}
+
+bool isDisassembly(const scenes::AssembleResult& result) {
+  return std::any_of(result.steps.begin(), result.steps.end(),
+                     [](const scenes::StepResult& step) { return step.is_taken_off; });
 }
 
 std::string verdictLine(const scenes::AssembleResult& result) {
+  const bool is_apart = isDisassembly(result);
   const auto fit = std::count_if(result.steps.begin(), result.steps.end(),
                                  [](const scenes::StepResult& s) { return scenes::isGood(s); });
-  const std::string count = std::to_string(fit).append(" of ").append(std::to_string(result.steps.size()));
+  const std::string count = std::to_string(fit)
+                                .append(" of ")
+                                .append(std::to_string(result.steps.size()))
+                                .append(is_apart ? " parts come off." : " steps fit.");
   switch (result.verdict) {
     case scenes::Verdict::Fits:
-      return "Yes, the parts go together: " + count + " steps fit.";
+      return (is_apart ? "Yes, the parts come apart: " : "Yes, the parts go together: ") + count;
     case scenes::Verdict::Blocked:
-      return "No, the parts do not go together: blocked at " + partsWith(result, scenes::Verdict::Blocked) +
-             "; " + count + " steps fit.";
+      return (is_apart ? "No, the parts do not come apart: blocked at "
+                       : "No, the parts do not go together: blocked at ") +
+             partsWith(result, scenes::Verdict::Blocked) + "; " + count;
     case scenes::Verdict::NotShown:
       break;
   }
   const std::string parts = partsWith(result, scenes::Verdict::NotShown);
   return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
-         " was not brought home, and nothing proves that it cannot be; " + count + " steps fit.";
+         (is_apart ? " was not taken off" : " was not brought home") +
+         ", and nothing proves that it cannot be; " + count;
 }
 
 }  // namespace vps::viewer::inline v0

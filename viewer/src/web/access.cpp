@@ -34,7 +34,8 @@ std::string_view valueOf(std::string_view cookies, std::string_view name) {
 
 }  // namespace
 
-WebAccess::WebAccess(std::string host, std::string token) : host_(std::move(host)), token_(std::move(token)) {
+WebAccess::WebAccess(std::string host, std::string token, bool is_encrypted)
+    : host_(std::move(host)), token_(std::move(token)), is_encrypted_(is_encrypted) {
   port_ = host_.substr(host_.rfind(':') + 1);
 }
 
@@ -55,7 +56,7 @@ WebAnswer WebAccess::judge(const WebRequest& request) const {
   // A browser always names the page that opens a WebSocket. Programs that are no browser may leave it out,
   // but then they are in nobody's name.
   const bool names_origin = !request.origin.empty();
-  if (names_origin ? request.origin != "http://" + std::string(request.host) : request.is_upgrade)
+  if (names_origin ? request.origin != scheme() + std::string(request.host) : request.is_upgrade)
     return WebAnswer::BadOrigin;
   if (token_.empty() || isEqual(valueOf(request.cookie, cookieName()), token_)) return WebAnswer::Good;
   if (!request.is_upgrade && request.target.starts_with(kQuery) &&
@@ -65,11 +66,12 @@ WebAnswer WebAccess::judge(const WebRequest& request) const {
 }
 
 std::string WebAccess::setCookie() const {
-  return cookieName() + "=" + token_ + "; Path=/; HttpOnly; SameSite=Strict";
+  return cookieName() + "=" + token_ + "; Path=/; HttpOnly; SameSite=Strict" +
+         (is_encrypted_ ? "; Secure" : "");
 }
 
 std::string WebAccess::address() const {
-  return "http://" + host_ + (token_.empty() ? "/" : std::string(kQuery) + token_);
+  return scheme() + host_ + (token_.empty() ? "/" : std::string(kQuery) + token_);
 }
 
 std::string newToken() {

@@ -30,19 +30,24 @@ class VPS_VIEWER_API WebAccess {
  public:
   /// @param host   "127.0.0.1:8080", as a browser writes it
   /// @param token  empty: none is needed
-  WebAccess(std::string host, std::string token);
+  WebAccess(std::string host, std::string token, bool is_encrypted = false);
 
   [[nodiscard]] WebAnswer judge(const WebRequest& request) const;
   /// Of the header Set-Cookie, after SetCookie.
   [[nodiscard]] std::string setCookie() const;
   /// What a user opens.
   [[nodiscard]] std::string address() const;
+  /// The page comes by https.
+  [[nodiscard]] bool isEncrypted() const { return is_encrypted_; }
 
  private:
   [[nodiscard]] bool isOwnHost(std::string_view host) const;
   [[nodiscard]] std::string cookieName() const;
 
+  [[nodiscard]] const char* scheme() const { return is_encrypted_ ? "https://" : "http://"; }
+
   std::string host_, port_, token_;
+  bool is_encrypted_;
 };
 
 /// A number that nobody guesses: 128 bits as 32 hexadecimal digits.

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kKeptNews = 50;
 constexpr int kMostRefused = 10;
 // Triangles of all parts together, and of a coarse part, which a browser shows until the fine one has come.
-constexpr std::size_t kFineTriangles = 400000, kCoarseTriangles = 2000;
+constexpr std::size_t kFineTriangles = 400000, kCoarseTriangles = 10000;
 
 std::string jsonText(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -105,7 +105,10 @@ int WebHub::join(BrowserEnd& end) {
 
 void WebHub::leave(int browser) {
   if (browsers_.erase(browser) == 0) return;
-  if (pointers_.erase(browser) > 0) tellAll(jsonText({{"pointer", {{"who", browser}, {"p", nullptr}}}}));
+  if (pointers_.contains(browser)) {
+    showPointer(browser, {});
+    run_.point(browser, {});
+  }
   if (holder_ == browser) {
     if (HandDrag* drag = run_.drag(); drag != nullptr && shot_) drag->letGo(shot_->snapshot);
     holder_ = 0;
@@ -137,6 +140,17 @@ void WebHub::tellAll(const std::string& text) {
 }
 void WebHub::tellHand() {
   tellAll(handText());
+}
+
+void WebHub::showPointer(int who, const std::optional<Vec3>& p_W) {
+  Json place = nullptr;
+  if (p_W) place = vectorJson(*p_W);
+  const std::string text = jsonText({{"pointer", {{"who", who}, {"p", place}}}});
+  if (p_W)
+    pointers_[who] = text;
+  else
+    pointers_.erase(who);
+  tellAll(text);
 }
 
 void WebHub::beginScene() {
@@ -181,6 +195,7 @@ void WebHub::poll(double now_s) {
     if (news_.size() > kKeptNews) news_.pop_front();
     tellAll(news_.back());
   }
+  for (const scenes::SessionPointer& pointer : run_.takePointers()) showPointer(pointer.who, pointer.p_W);
   if (std::string doing = run_.doing(); doing != doing_) {
     doing_ = std::move(doing);
     tellAll(jsonText({{"doing", doing_}}));
@@ -240,16 +255,9 @@ void WebHub::obey(int number, Browser& browser, const BrowserMessage& message) {
     case BrowserWord::Sound:
       browser.has_sound = message.number > 0;
       return;
-    case BrowserWord::Point: {
-      Json place = nullptr;
-      if (message.vector) place = vectorJson(*message.vector);
-      const std::string text = jsonText({{"pointer", {{"who", number}, {"p", place}}}});
-      if (message.vector)
-        pointers_[number] = text;
-      else
-        pointers_.erase(number);
-      return tellAll(text);
-    }
+    case BrowserWord::Point:
+      showPointer(number, message.vector);
+      return run_.point(number, message.vector);
     default:
       return obeyHand(number, message);
   }

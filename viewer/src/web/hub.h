@@ -68,6 +68,7 @@ class WebHub {
   void beginScene();
   void tellAll(const std::string& text);
   void tellHand();
+  void showPointer(int who, const std::optional<Vec3>& p_W);
   void sendShots(double now_s);
   void sendSounds();
   void obey(int number, Browser& browser, const BrowserMessage& message);

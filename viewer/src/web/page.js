@@ -11,16 +11,29 @@
 
   // ---- drawing
 
+  // Where a processor draws in place of a graphics card, smooth edges cost two thirds of a picture, and most of the rest
+  // is triangles and light for each pixel: such a browser gets neither, and coarse parts while anything moves.
+  function isDrawnByProcessor() {
+    const probe = document.createElement("canvas").getContext("webgl");
+    if (!probe) return false;
+    const info = probe.getExtension("WEBGL_debug_renderer_info");
+    const name = String(probe.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : probe.RENDERER));
+    const end = probe.getExtension("WEBGL_lose_context");
+    if (end) end.loseContext();
+    return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  }
+  const isSlow = seen.isSlow = isDrawnByProcessor();
+
   let renderer;
   try {
-    const context = canvas.getContext("webgl", { antialias: true, xrCompatible: true });
-    renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, antialias: true });
+    const context = canvas.getContext("webgl", { antialias: !isSlow, xrCompatible: true });
+    renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, antialias: !isSlow });
   } catch (error) {
     $("doing").textContent = "This browser shows no three-dimensional view (it has no WebGL).";
     return;
   }
   renderer.setClearColor(0xffffff);
-  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, isSlow ? 1 : 2));
   renderer.localClippingEnabled = true;
 
   const world = new THREE.Scene();
@@ -35,7 +48,11 @@
   world.add(root);
   const controls = new THREE.OrbitControls(camera, canvas);
   let isDue = true;
-  function redraw() { isDue = true; }
+  let moved_ms = 0;  // when something in the picture changed last
+  function redraw() {
+    isDue = true;
+    moved_ms = performance.now();
+  }
   controls.addEventListener("change", redraw);
 
   const kLooks = {
@@ -97,12 +114,11 @@
       group.visible = part.fixed;
       if (part.fixed) place(group, centered(part.pose));
       root.add(group);
+      const offset = { side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
       const entry = {
-        group: group, name: part.name, color: new THREE.Color(part.color), surface: null,
-        paint: new THREE.MeshPhongMaterial({
-          specular: 0x222222, shininess: 25, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1,
-          polygonOffsetUnits: 1
-        }),
+        group: group, name: part.name, color: new THREE.Color(part.color), surface: null, coarse: null, fine: null,
+        paint: isSlow ? new THREE.MeshLambertMaterial(offset)
+          : new THREE.MeshPhongMaterial(Object.assign({ specular: 0x222222, shininess: 25 }, offset)),
         inside: new THREE.MeshBasicMaterial({ side: THREE.BackSide })
       };
       entry.paint.color.copy(entry.color);
@@ -119,30 +135,47 @@
   function fetchPart(entry, run, index, triangles) {
     const loader = new THREE.GLTFLoader();
     const path = "/part/" + run + "/" + index + "/";
-    function show(file) {
+    function add(file, level) {
       if (!scene || parts[index] !== entry) return;
-      while (entry.group.children.length) entry.group.remove(entry.group.children[0]);
-      entry.surface = null;
+      const shape = entry[level] = { all: new THREE.Group(), surface: null, back: null };
       file.scene.updateMatrixWorld(true);
       file.scene.traverse(function (object) {
         if (!object.isMesh && !object.isLineSegments) return;
         const geometry = object.geometry.clone().applyMatrix(object.matrixWorld);
         if (object.isLineSegments) {
-          entry.group.add(new THREE.LineSegments(geometry, lines));
+          shape.all.add(new THREE.LineSegments(geometry, lines));
           return;
         }
-        entry.surface = new THREE.Mesh(geometry, entry.paint);
-        entry.back = new THREE.Mesh(geometry, entry.inside);
-        entry.group.add(entry.surface, entry.back);
+        shape.surface = new THREE.Mesh(geometry, entry.paint);
+        shape.back = new THREE.Mesh(geometry, entry.inside);
+        shape.all.add(shape.surface, shape.back);
       });
+      entry.group.add(shape.all);
+      useLevel(entry);
       if (target && target.part === index) showTarget();
       applyCut();
       redraw();
     }
-    function fine() { loader.load(path + "fine.glb", show); }
-    const kWorthCoarse = 6000;
+    function fine() { loader.load(path + "fine.glb", function (file) { add(file, "fine"); }); }
+    const kWorthCoarse = 20000;
     if (triangles < kWorthCoarse) return fine();
-    loader.load(path + "coarse.glb", function (file) { show(file); fine(); });
+    loader.load(path + "coarse.glb", function (file) { add(file, "coarse"); fine(); });
+  }
+
+  // The fine shape, unless a slow browser shows something that moves.
+  let isCoarse = isSlow;
+  function useLevel(part) {
+    const used = (isCoarse && part.coarse) || part.fine || part.coarse;
+    for (const shape of [part.coarse, part.fine]) if (shape) shape.all.visible = shape === used;
+    part.surface = used ? used.surface : null;
+  }
+  const kStill_ms = 400;
+  function chooseLevel() {
+    const isMoving = isSlow && performance.now() - moved_ms < kStill_ms;
+    if (isMoving === isCoarse) return;
+    isCoarse = isMoving;
+    parts.forEach(useLevel);
+    isDue = true;
   }
 
   function showTarget() {
@@ -172,7 +205,7 @@
       part.inside.clippingPlanes = isCut ? [cutPlane] : null;
       part.paint.side = isCut ? THREE.FrontSide : THREE.DoubleSide;
       part.paint.needsUpdate = part.inside.needsUpdate = true;
-      if (part.back) part.back.visible = isCut;
+      for (const shape of [part.coarse, part.fine]) if (shape && shape.back) shape.back.visible = isCut;
     });
     redraw();
   }
@@ -277,18 +310,21 @@
       part.group.visible = body.role !== 255 && (body.role !== 0 || scene.parts[body.part].fixed);
       place(part.group, body.pose);
     }
+    let isChanged = shot.isWhole || shot.bodies.length > 0 || hasNewMarks(shot);
     let held = -1;
     for (const index in seen.bodies) if (seen.bodies[index].role === "in hand") held = Number(index);
     if (held !== inHand) {
       if (parts[inHand]) parts[inHand].paint.color.copy(parts[inHand].color);
       if (parts[held]) parts[held].paint.color.set(kInHand);
       inHand = held;
+      isChanged = true;
       applyCut();
     }
     const isNewTarget = Boolean(shot.target) !== Boolean(target) ||
       (shot.target && (shot.target.part !== target.part || shot.target.pose.join() !== target.pose.join()));
     if (isNewTarget) {
       target = shot.target || null;
+      isChanged = true;
       showTarget();
     }
     const hasForce = Boolean(shot.hand) && $("forces").getAttribute("aria-pressed") === "true";
@@ -301,7 +337,15 @@
       (step ? " · step " + (shot.step + 1) + " of " + scene.steps.length + ": " + step.name : "");
     const force = shot.hand ? new THREE.Vector3().fromArray(shot.hand.force).length() : 0;
     $("force").textContent = shot.hand ? force.toFixed(1) + " N on the hand · " + shot.contacts.length + " contacts" : "";
-    redraw();
+    if (isChanged) redraw();
+  }
+  // The arrow of the force and the contacts.
+  let lastMarks = "";
+  function hasNewMarks(shot) {
+    const marks = JSON.stringify([shot.hand, shot.contacts, isPressed("forces")]);
+    const isNew = marks !== lastMarks;
+    lastMarks = marks;
+    return isNew;
   }
 
   // ---- what others do
@@ -385,7 +429,7 @@
     watchers: function (count) { seen.watchers = count; }
   };
   function connect() {
-    socket = new WebSocket("ws://" + window.location.host + "/run");
+    socket = new WebSocket((window.location.protocol === "https:" ? "wss://" : "ws://") + window.location.host + "/run");
     socket.binaryType = "arraybuffer";
     socket.onmessage = function (event) {
       if (typeof event.data !== "string") {
@@ -419,13 +463,17 @@
   let acked = 0;
   function draw() {
     updateGrabInHeadset();
-    if (!isDue && !renderer.vr.isPresenting()) return;
-    isDue = false;
-    lamp.position.copy(camera.position);
-    renderer.render(world, camera);
-    if (!last || last.number === acked) return;
+    chooseLevel();
+    const isNew = last && last.number !== acked, isDrawn = isDue || renderer.vr.isPresenting();
+    if (isDrawn) {
+      isDue = false;
+      lamp.position.copy(camera.position);
+      renderer.render(world, camera);
+    }
+    if (!isNew) return;
     acked = last.number;
     send({ ack: acked });
+    if (!isDrawn) return;  // nothing in the picture changed
     ++seen.drawn;
     if (clockOffset_ms === null) return;
     seen.ages_ms.push(performance.now() + clockOffset_ms - last.taken_ms);

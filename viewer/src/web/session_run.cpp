@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -76,6 +77,7 @@ class SessionRun final : public WatchedRun {
     if (!is_over) return;
     news_.push_back({0, watcher_->hasEnded() ? "the session has ended" : "the render node is lost", {}});
     device_.reset();
+    pointers_.reset();
     watcher_.reset();
   }
   [[nodiscard]] const scenes::Scene* scene() const override {
@@ -99,6 +101,13 @@ class SessionRun final : public WatchedRun {
   std::vector<WatchedNews> takeNews() override { return std::exchange(news_, {}); }
   [[nodiscard]] HandDrag* drag() override { return device_ ? device_->drag() : nullptr; }
 
+  void point(int person, const std::optional<Vec3>& p_W) override {
+    if (pointers_) pointers_->point((person - 1) % scenes::SessionPointers::kMostPersons + 1, p_W);
+  }
+  std::vector<scenes::SessionPointer> takePointers() override {
+    return pointers_ ? pointers_->take() : std::vector<scenes::SessionPointer>();
+  }
+
  private:
   /// For the session, on another thread, since that may take a second.
   void look() {
@@ -120,6 +129,7 @@ class SessionRun final : public WatchedRun {
     if (watcher_ == nullptr) return;
     ++number_;
     refusal_.clear();
+    if (options_.network.empty()) pointers_.emplace(options_.session);
     if (options_.allows_hand)
       device_ = std::make_unique<PageDevice>(options_, watcher_->scene().device.scale);
   }
@@ -132,6 +142,7 @@ class SessionRun final : public WatchedRun {
   std::future<std::unique_ptr<SessionWatcher>> joining_;
   std::unique_ptr<SessionWatcher> watcher_;
   std::unique_ptr<PageDevice> device_;
+  std::optional<scenes::SessionPointers> pointers_;  ///< of this machine; none over a network
   std::vector<WatchedNews> news_;
   std::string refusal_;
   int number_ = 0;

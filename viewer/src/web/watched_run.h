@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_scenes/network/session_pointers.h"
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 #include "vps_scenes/verdict.h"
@@ -46,6 +47,11 @@ class WatchedRun {
   virtual std::vector<WatchedNews> takeNews() = 0;
   /// By which the page moves the part in hand; null: it may not. It stays while number() does.
   [[nodiscard]] virtual HandDrag* drag() = 0;
+
+  /// A person of the page points at a place in W, or no longer: for those who watch elsewhere.
+  virtual void point(int, const std::optional<Vec3>&) {}
+  /// What those elsewhere point at, each change once.
+  virtual std::vector<scenes::SessionPointer> takePointers() { return {}; }
 };
 
 /// Follows the session, and the next one when it has ended. With the right to the hand this process is the

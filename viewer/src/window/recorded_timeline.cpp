@@ -27,6 +27,8 @@ scenes::Snapshot snapshotAt(const scenes::Scene& scene, const std::vector<RunTra
   for (std::size_t i = 0; i < scene.parts.size(); ++i)
     shot.bodies.push_back({i, scene.parts[i].X_WP,
                            scene.parts[i].is_fixed ? scenes::BodyRole::Mounted : scenes::BodyRole::Waiting});
+  for (const scenes::SceneStep& step : scene.steps)
+    if (step.takes_off) shot.bodies[step.part] = {step.part, step.X_WP_start, scenes::BodyRole::Mounted};
   const auto after = std::upper_bound(rows.begin(), rows.end(), time_s,
                                       [](double t_s, const RunTrace& row) { return t_s < row.time_s; });
   if (after == rows.begin()) return shot;
@@ -34,8 +36,9 @@ scenes::Snapshot snapshotAt(const scenes::Scene& scene, const std::vector<RunTra
   for (auto row = rows.begin(); row != after; ++row) {
     const bool is_last_of_step = std::next(row) == after || std::next(row)->step != row->step;
     if (!is_last_of_step) continue;
-    const std::size_t part = scene.steps[static_cast<std::size_t>(row->step)].part;
-    shot.bodies[part] = {part, row->X_WP, scenes::BodyRole::Mounted};
+    const scenes::SceneStep& done = scene.steps[static_cast<std::size_t>(row->step)];
+    shot.bodies[done.part] = {done.part, row->X_WP,
+                              done.takes_off ? scenes::BodyRole::Waiting : scenes::BodyRole::Mounted};
   }
   const scenes::SceneStep& step = scene.steps[static_cast<std::size_t>(now.step)];
   constexpr std::uint8_t kRest = 3;  // RunTrace::phase

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "web/beast/connection.h"
 
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <chrono>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "vps_device/metronome.h"
@@ -33,10 +37,14 @@ constexpr std::size_t kMostWaiting = 512, kMostWaitingBytes = 4U << 20U;
 // Beyond this the system keeps nothing for a browser that is slow, so that what it gets is new.
 constexpr int kSendBuffer = 64 * 1024;
 
+using PlainStream = beast::tcp_stream;
+using TlsStream = beast::ssl_stream<beast::tcp_stream>;
+
 /// The WebSocket of one browser.
-class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_this<WebSocketEnd> {
+template <typename Stream>
+class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_this<WebSocketEnd<Stream>> {
  public:
-  WebSocketEnd(beast::tcp_stream stream, WebShared& shared) : socket_(std::move(stream)), shared_(shared) {
+  WebSocketEnd(Stream stream, WebShared& shared) : socket_(std::move(stream)), shared_(shared) {
     ++shared_.connections;
   }
   ~WebSocketEnd() override {
@@ -48,7 +56,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
     websocket::stream_base::timeout limits{kRequestLimit, kSilenceLimit, true};
     socket_.set_option(limits);
     socket_.read_message_max(kLongestBrowserMessage);
-    socket_.async_accept(request, [self = shared_from_this()](ErrorCode failed) {
+    socket_.async_accept(request, [self = this->shared_from_this()](ErrorCode failed) {
       if (failed || self->shared_.is_over) return;
       self->number_ = self->shared_.hub.join(*self);
       self->read();
@@ -66,7 +74,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
   };
 
   void read() {
-    socket_.async_read(buffer_, [self = shared_from_this()](ErrorCode failed, std::size_t) {
+    socket_.async_read(buffer_, [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
       if (failed || self->is_closing_) return self->close();
       const std::string text = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.clear();
@@ -87,7 +95,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
     const Waiting& next = waiting_.front();
     socket_.text(next.is_text);
     socket_.async_write(boost::asio::buffer(next.bytes),
-                        [self = shared_from_this()](ErrorCode failed, std::size_t) {
+                        [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
                           if (failed || self->is_closing_) return self->close();
                           self->waiting_bytes_ -= self->waiting_.front().bytes.size();
                           self->waiting_.pop_front();
@@ -101,7 +109,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
     beast::get_lowest_layer(socket_).close();
   }
 
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<Stream> socket_;
   WebShared& shared_;
   beast::flat_buffer buffer_;
   std::deque<Waiting> waiting_;  ///< the first is being written
@@ -115,22 +123,36 @@ std::string_view viewOf(beast::string_view text) {
 }
 
 /// Requests for files, one after another.
-class HttpEnd : public std::enable_shared_from_this<HttpEnd> {
+template <typename Stream>
+class HttpEnd : public std::enable_shared_from_this<HttpEnd<Stream>> {
  public:
-  HttpEnd(tcp::socket socket, WebShared& shared) : stream_(std::move(socket)), shared_(shared) {
+  HttpEnd(Stream stream, WebShared& shared) : stream_(std::move(stream)), shared_(shared) {
     ++shared_.connections;
   }
   ~HttpEnd() { --shared_.connections; }
+
+  void begin() {
+    if constexpr (std::is_same_v<Stream, TlsStream>) {
+      lowest().expires_after(kRequestLimit);
+      stream_.async_handshake(boost::asio::ssl::stream_base::server,
+                              [self = this->shared_from_this()](ErrorCode failed) {
+                                if (!failed && !self->shared_.is_over) self->read();
+                              });
+    } else {
+      read();
+    }
+  }
 
   void read() {
     parser_.emplace();
     parser_->header_limit(kLongestHeader);
     parser_->body_limit(0);
-    stream_.expires_after(kRequestLimit);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](ErrorCode failed, std::size_t) {
-      if (failed || self->shared_.is_over) return self->end();
-      self->answer(self->parser_->get());
-    });
+    lowest().expires_after(kRequestLimit);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
+                       if (failed || self->shared_.is_over) return self->end();
+                       self->answer(self->parser_->get());
+                     });
   }
 
  private:
@@ -172,8 +194,8 @@ class HttpEnd : public std::enable_shared_from_this<HttpEnd> {
     if (viewOf(request.target()) != "/run") return refuse(http::status::not_found, "there is nothing here");
     if (shared_.hub.browsers() >= shared_.most_browsers)
       return refuse(http::status::service_unavailable, "too many browsers");
-    stream_.expires_never();  // the WebSocket has limits of its own
-    std::make_shared<WebSocketEnd>(std::move(stream_), shared_)->accept(request);
+    lowest().expires_never();  // the WebSocket has limits of its own
+    std::make_shared<WebSocketEnd<Stream>>(std::move(stream_), shared_)->accept(request);
   }
   void refuse(http::status status, const char* words) {
     response_ = make(status, "text/plain; charset=utf-8", std::string(words) + "\n");
@@ -188,25 +210,32 @@ class HttpEnd : public std::enable_shared_from_this<HttpEnd> {
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
     response.set("Cross-Origin-Resource-Policy", "same-origin");
+    const std::string socket = (shared_.access.isEncrypted() ? "wss://" : "ws://") + host;
     response.set("Content-Security-Policy",
-                 "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self' ws://" + host +
+                 "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self' " + socket +
                      "; img-src 'self' data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
     response.keep_alive(parser_->get().keep_alive());
     response.prepare_payload();
     return response;
   }
   void write() {
-    http::async_write(stream_, response_, [self = shared_from_this()](ErrorCode failed, std::size_t) {
+    http::async_write(stream_, response_, [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
       if (failed || self->response_.need_eof()) return self->end();
       self->read();
     });
   }
   void end() {
-    ErrorCode ignored;
-    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    if constexpr (std::is_same_v<Stream, TlsStream>) {
+      lowest().expires_after(kRequestLimit);
+      stream_.async_shutdown([self = this->shared_from_this()](ErrorCode) {});
+    } else {
+      ErrorCode ignored;
+      stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    }
   }
+  beast::tcp_stream& lowest() { return beast::get_lowest_layer(stream_); }
 
-  beast::tcp_stream stream_;
+  Stream stream_;
   WebShared& shared_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -223,7 +252,10 @@ void serveConnection(tcp::socket socket, WebShared& shared) {
   ErrorCode ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer), ignored);
-  std::make_shared<HttpEnd>(std::move(socket), shared)->read();
+  if (shared.tls == nullptr)
+    std::make_shared<HttpEnd<PlainStream>>(PlainStream(std::move(socket)), shared)->begin();
+  else
+    std::make_shared<HttpEnd<TlsStream>>(TlsStream(std::move(socket), *shared.tls), shared)->begin();
 }
 
 }  // namespace vps::viewer::inline v0

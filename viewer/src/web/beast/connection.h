@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <cstddef>
 
 #include "web/access.h"
@@ -17,6 +18,7 @@ struct WebShared {
   const WebPage& page;
   const WebAccess& access;
   std::size_t most_browsers;
+  boost::asio::ssl::context* tls = nullptr;  ///< null: without encryption
   std::size_t connections = 0;
   bool is_over = false;  ///< the server is being destroyed, and nobody is told anything any more
 };

@@ -11,6 +11,7 @@
 
 #include "vps/load_error.h"
 #include "web/beast/connection.h"
+#include "web/beast/tls.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -54,6 +55,7 @@ struct WebServer::Impl {
       : options(given), hub(run, given.rate_hz), acceptor(io), timer(io) {
     if (!page.missing().empty()) throw LoadError("", "", page.missing());
     const asio::ip::address address = addressOf(options.address);
+    if (!given.tls_certificate.empty()) tls = tlsContext(given.tls_certificate, given.tls_key);
     const std::string token = tokenOf(options, address.is_loopback());
     ErrorCode failed;
     const tcp::endpoint end(address, options.port);
@@ -64,8 +66,8 @@ struct WebServer::Impl {
     if (failed)
       throw LoadError(
           "", "", "cannot listen at " + hostText(end) + ": " + failed.message() + "; choose another port");
-    access.emplace(hostText(acceptor.local_endpoint()), token);
-    shared.emplace(WebShared{hub, page, *access, options.most_browsers});
+    access.emplace(hostText(acceptor.local_endpoint()), token, tls != nullptr);
+    shared.emplace(WebShared{hub, page, *access, options.most_browsers, tls.get()});
     hub.poll(webClock_s());  // so that the parts are there for the first request
     accept();
     wait();
@@ -94,6 +96,7 @@ struct WebServer::Impl {
   WebOptions options;
   WebPage page;
   WebHub hub;
+  std::unique_ptr<asio::ssl::context> tls;  ///< null: without encryption
   std::optional<WebAccess> access;
   std::optional<WebShared> shared;
   asio::io_context io{1};  // destroyed before what its handlers use

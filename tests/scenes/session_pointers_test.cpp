@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pointers of several processes at one session.
+#include "vps_scenes/network/session_pointers.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vps/load_error.h"
+
+namespace vps::scenes {
+namespace {
+
+std::string sessionName() {
+  return "pointers-" + std::to_string(getpid());
+}
+
+/// Until something changes, at most two seconds.
+std::vector<SessionPointer> wait(SessionPointers& of) {
+  for (int i = 0; i < 200; ++i) {
+    std::vector<SessionPointer> changes = of.take();
+    if (!changes.empty()) return changes;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return {};
+}
+
+TEST(SessionPointers, APointerIsSeenByTheOthersUntilItIsTakenBack) {
+  SessionPointers a(sessionName()), b(sessionName());
+  a.point(3, Vec3(0.1, 0.2, 0.3));
+  const std::vector<SessionPointer> seen = wait(b);
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].p_W, Vec3(0.1, 0.2, 0.3));
+  EXPECT_GE(seen[0].who, 1000);
+  EXPECT_TRUE(a.take().empty());  // one's own is not news
+  a.point(3, {});
+  const std::vector<SessionPointer> gone = wait(b);
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_EQ(gone[0].who, seen[0].who);
+  EXPECT_FALSE(gone[0].p_W);
+}
+
+TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
+  SessionPointers a(sessionName()), b(sessionName());
+  a.point(1, Vec3(1, 0, 0));
+  b.point(1, Vec3(2, 0, 0));
+  for (int i = 0; i < 200; ++i) {  // more than a ring holds
+    a.point(2, Vec3(0, i, 0));
+    b.take();
+  }
+  a.point(2, {});
+  SessionPointers late(sessionName());
+  std::vector<int> who;
+  for (int i = 0; i < 100 && who.size() < 2; ++i) {
+    a.take();  // repeats what it points at
+    b.take();
+    for (const SessionPointer& pointer : late.take())
+      if (pointer.p_W && pointer.p_W->y() == 0) who.push_back(pointer.who);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_EQ(who.size(), 2U);
+  EXPECT_NE(who[0], who[1]);
+}
+
+TEST(SessionPointers, APointerGoesWithAProcessThatIsKilled) {
+  const std::string session = sessionName();
+  const pid_t pointing = fork();
+  if (pointing == 0) {
+    SessionPointers mine(session);
+    mine.point(1, Vec3(1, 2, 3));
+    for (;;) {
+      mine.take();
+      usleep(10000);
+    }
+  }
+  SessionPointers watcher(session);
+  const std::vector<SessionPointer> seen = wait(watcher);
+  kill(pointing, SIGKILL);
+  waitpid(pointing, nullptr, 0);
+  ASSERT_EQ(seen.size(), 1U);
+  const std::vector<SessionPointer> gone = wait(watcher);
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_FALSE(gone[0].p_W);
+  // Its slot is free again.
+  SessionPointers next(session);
+  next.point(1, Vec3(4, 5, 6));
+  EXPECT_EQ(wait(watcher).at(0).who, seen[0].who);
+}
+
+TEST(SessionPointers, MoreThanTheSlotsAreNotSeenAndHarmNobody) {
+  std::vector<std::unique_ptr<SessionPointers>> many;
+  for (int i = 0; i <= SessionPointers::kMostPointing; ++i) {
+    many.push_back(std::make_unique<SessionPointers>(sessionName()));
+    many.back()->point(1, Vec3(i, 0, 0));
+  }
+  SessionPointers watcher(sessionName());
+  EXPECT_EQ(wait(watcher).size(), static_cast<std::size_t>(SessionPointers::kMostPointing));
+}
+
+TEST(SessionPointers, WhatIsNoPersonOrNoPlaceIsNotPassedOn) {
+  SessionPointers a(sessionName()), b(sessionName());
+  a.point(0, Vec3(1, 1, 1));
+  a.point(SessionPointers::kMostPersons + 1, Vec3(1, 1, 1));
+  a.point(1, Vec3(0, 0, std::numeric_limits<double>::quiet_NaN()));
+  a.point(7, Vec3(1, 1, 1));
+  const std::vector<SessionPointer> seen = wait(b);
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].who % 1000, 7);
+  EXPECT_THROW(SessionPointers("../etc"), LoadError);
+  EXPECT_THROW(SessionPointers("demo.pointer1"), LoadError);
+}
+
+}  // namespace
+}  // namespace vps::scenes
