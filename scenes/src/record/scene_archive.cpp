@@ -39,7 +39,8 @@ constexpr int latestVersion() {
              look);
   return latest;
 }
-constexpr int kLatestVersion = latestVersion();
+constexpr int kPlacementVersion = 6;  ///< with which DeviceSettings::placement came, which has no row
+constexpr int kLatestVersion = std::max(latestVersion(), kPlacementVersion);
 
 class Writer {
  public:
@@ -185,9 +186,9 @@ void fields(Archive& archive, T& x) {
 template <typename Archive, Either<DeviceSettings> T>
 void fields(Archive& archive, T& x) {
   forEachRow(kDeviceKeys, [&](const auto& row) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row)>, Key>)
-      archive(x.data);
-    else if (row.traits.since == 1)
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row)>, Key>) {
+      if (row.key == "parameters") archive(x.data);
+    } else if (row.traits.since == 1)
       archive(std::invoke(row.get, x));
   });
 }
@@ -217,6 +218,15 @@ void partFields5(Archive& archive, T& part) {
   archive(part.youngs_modulus_Pa, part.poissons_ratio);
 }
 
+template <typename Archive, Either<DeviceSettings> T>
+void devicePlacement(Archive& archive, T& device) {
+  bool has_placement = device.placement.has_value();
+  Pose placement = device.placement.value_or(Pose{});
+  archive(has_placement, placement);
+  if constexpr (!std::is_const_v<T>)
+    if (has_placement) device.placement = placement;
+}
+
 /// What came with a version after the first.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
@@ -229,6 +239,7 @@ void laterFields(Archive& archive, T& x, int version) {
   settings(archive, x.fidelity, kFidelityFields, version);
   settings(archive, x.coupling, kCouplingFields, version);
   settings(archive, x.device, kDeviceKeys, version);
+  if (version == kPlacementVersion) devicePlacement(archive, x.device);
   settings(archive, x.hand, kOperatorFields, version);
   settings(archive, x.record, kRecordFields, version);
 }
@@ -265,6 +276,7 @@ std::string impossible(const Scene& scene) {
         if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner does not exist";
     if (!part.X_WP.isFinite()) return "a pose that is not finite";
   }
+  if (scene.device.placement && !scene.device.placement->isFinite()) return "a pose that is not finite";
   std::string key;
   for (const ScenePart& part : scene.parts)
     if (key.empty()) key = outOfRange(part.part.material, kMaterialFields);
