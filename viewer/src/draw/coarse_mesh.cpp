@@ -33,12 +33,21 @@ std::vector<std::uint32_t> coarseIndices(const ShadingMesh& mesh, std::size_t wa
 
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;
   std::vector<std::uint32_t> stand_in(mesh.vertices.size());
-  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+  const auto standIn = [&](std::uint32_t i) {
     std::uint64_t key = side(mesh.vertices[i].n);
     for (int k = 0; k < 3; ++k)
       key = key << 12 | static_cast<std::uint64_t>((mesh.vertices[i].p[k] - low[k]) / cell);
     stand_in[i] = first_in_cell.try_emplace(key, i).first->second;
-  }
+  };
+  // Vertices on creases come first, so that sharp edges stay where they are.
+  std::uint32_t last = 0;
+  for (const std::uint32_t source : mesh.sources) last = std::max(last, source);
+  std::vector<std::uint8_t> uses(std::size_t(last) + 1, 0);
+  for (const std::uint32_t source : mesh.sources)
+    uses[source] = static_cast<std::uint8_t>(std::min(2, uses[source] + 1));
+  for (const bool is_creased : {true, false})
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
+      if ((uses[mesh.sources[i]] > 1) == is_creased) standIn(i);
   std::vector<std::uint32_t> coarse;
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const std::uint32_t a = stand_in[mesh.indices[i]], b = stand_in[mesh.indices[i + 1]],
