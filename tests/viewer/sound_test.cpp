@@ -213,7 +213,8 @@ const std::string& heardFile() {
   static const std::string file = [] {
     const std::string settings = folder.path() / "alsoft.conf";
     std::string heard = folder.path() / "heard.wav";
-    std::ofstream(settings) << "drivers = wave\n[wave]\nfile = " << heard << "\n";
+    std::ofstream(settings) << "drivers = wave\nchannels = stereo\nsample-type = int16\n[wave]\nfile = "
+                            << heard << "\n";
     setenv("ALSOFT_CONF", settings.c_str(), 1);
     return heard;
   }();
@@ -240,7 +241,7 @@ std::array<double, 2> earsOf(const Vec3& to_L) {
   const std::string wav = bytes.str();
   const std::size_t data = wav.find("data");
   std::array<double, 2> energies{};
-  if (data == std::string::npos || numberAt(wav, 22, 2) != 2) return energies;
+  if (data == std::string::npos || numberAt(wav, 22, 2) != 2 || numberAt(wav, 34, 2) != 16) return energies;
   for (std::size_t at = data + 8; at + 4 <= wav.size(); at += 4)
     for (std::size_t ear = 0; ear < 2; ++ear) {
       const double x = static_cast<std::int16_t>(numberAt(wav, at + 2 * ear, 2));
