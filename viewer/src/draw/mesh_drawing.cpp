@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "draw/passes.h"
 
+#include <algorithm>
+
 namespace vps::viewer::inline v0 {
 
 namespace {
@@ -9,6 +11,11 @@ namespace {
 bool showsFrontOnly(const DrawnBody& body, const View& view) {
   const double reach_m = 0.5 * body.mesh->bounds_P.size().norm() + view.near_m;
   return body.mesh->shading.is_closed && !body.is_cut && body.X_CP.p.norm() > reach_m;
+}
+
+/// Least distance of the part from the eye along the line of sight.
+double nearest_m(const DrawnBody& body, const View& view) {
+  return std::max<double>(view.near_m, -body.X_CP.p.z() - 0.5 * body.mesh->bounds_P.size().norm());
 }
 
 }  // namespace
@@ -24,7 +31,10 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
     program.set("X_CP", toMatrix(body.X_CP));
     program.set("cut_C", body.is_cut ? view.cut_C : kNoCut);
     if (is_shaded) program.set("color", body.color);
-    body.mesh->draw(is_shadow ? Detail::Shadow : body.detail);
+    if (is_shadow || body.detail != Detail::Full || body.is_cut)
+      body.mesh->draw(is_shadow ? Detail::Shadow : body.detail);
+    else
+      body.mesh->drawAt(view.px_m / nearest_m(body, view));
     glDisable(GL_CULL_FACE);
     glDisable(GL_CLIP_DISTANCE0);
   }

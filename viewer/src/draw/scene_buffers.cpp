@@ -42,6 +42,31 @@ GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vert
         coarseIndices(shading, static_cast<std::size_t>(share * static_cast<double>(triangles))));
   };
   details_ = {indicesOf(shading.indices), coarser(kShadowTriangles), coarser(kDraftTriangles)};
+  addLevels();
+}
+
+void GpuMesh::addLevels() {
+  constexpr std::size_t kFewest = 5000;                   // triangles. assumed: fewer cost little
+  constexpr std::array<double, 3> kCells = {24, 48, 96};  // along the diagonal
+  constexpr double kWorthwhile = 0.7;                     // of the triangles of the level before
+  std::size_t before = shading.indices.size();
+  if (before / 3 < kFewest) return;
+  for (auto cells = kCells.rbegin(); cells != kCells.rend(); ++cells) {
+    const double cell_m = bounds_P.size().norm() / *cells;
+    const std::vector<std::uint32_t> fewer = smoothedIndices(shading, cell_m);
+    if (static_cast<double>(fewer.size()) > kWorthwhile * static_cast<double>(before)) continue;
+    before = fewer.size();
+    levels_.insert(levels_.begin(), {cell_m, indicesOf(fewer)});
+  }
+}
+
+void GpuMesh::drawAt(double px_per_m) const {
+  constexpr double kCell_px = 5;  // a surface then stays within a pixel or so, see smoothedIndices()
+  const auto level =
+      std::ranges::find_if(levels_, [&](const Level& each) { return each.cell_m * px_per_m < kCell_px; });
+  const Indices& drawn = level == levels_.end() ? of(Detail::Full) : level->indices;
+  glBindVertexArray(drawn.array.id());
+  glDrawElements(GL_TRIANGLES, drawn.count, GL_UNSIGNED_INT, nullptr);
 }
 
 GpuMesh::Indices GpuMesh::indicesOf(const std::vector<std::uint32_t>& indices) const {

@@ -38,6 +38,9 @@ struct GpuMesh {
   GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
           std::size_t scene_triangles);
   void draw(Detail detail) const;
+  /// With as few triangles as a picture shows where the part is at least that far away.
+  /// @param px_per_m  of the picture, there
+  void drawAt(double px_per_m) const;
   /// Whether that detail has fewer triangles than the mesh.
   [[nodiscard]] bool isCoarser(Detail detail) const { return of(detail).count < of(Detail::Full).count; }
 
@@ -47,10 +50,16 @@ struct GpuMesh {
     gl::VertexArray array;
     GLsizei count = 0;
   };
+  void addLevels();
   [[nodiscard]] Indices indicesOf(const std::vector<std::uint32_t>& indices) const;
   [[nodiscard]] const Indices& of(Detail detail) const { return details_[static_cast<std::size_t>(detail)]; }
 
+  struct Level {
+    double cell_m = 0;
+    Indices indices;
+  };
   std::array<Indices, 3> details_;  ///< by Detail
+  std::vector<Level> levels_;       ///< smoothed, the coarsest first
 };
 
 /// A part at its pose in one picture.
