@@ -2,12 +2,16 @@
 // The window of `vps view` as its users see it, on a display in memory (Xvfb) with keys from xdotool.
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "program.h"
+#include "vps_scenes/display.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/renderer.h"
+#include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
 #include "window/camera_motion.h"
 #include "window/timeline.h"
@@ -107,8 +111,9 @@ class Window : public Program {
     view_ = 0;
     return std::stoi(slurp(folder_ / "status.txt"));
   }
-  /// What the finished assembly looks like from a standard view.
-  Image expected(std::size_t view) const {
+  /// What the finished assembly looks like from a standard view, or on a screen of a display file.
+  Image expected(std::size_t view, viewer::StereoMode mode = viewer::StereoMode::Mono,
+                 const std::string& display_file = "") const {
     const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
     const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
     const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
@@ -117,10 +122,43 @@ class Window : public Program {
     options.height = kPicture.height;
     options.supersampling = 1;
     options.show_legend = false;
-    return viewer::Renderer(drawn).render(
-        snapshot,
-        viewer::cameraFor(viewer::standardViews()[view], viewer::snapshotBounds(drawn, snapshot), kPicture),
-        options);
+    viewer::Renderer renderer(drawn);
+    const viewer::Camera camera =
+        viewer::cameraFor(viewer::standardViews()[view], viewer::snapshotBounds(drawn, snapshot), kPicture);
+    if (!display_file.empty()) {
+      const scenes::Display display = scenes::loadDisplay((folder_ / display_file).string());
+      const auto eye = [&](int side) {
+        return viewer::cameraFor(display, display.screens[0], display.viewers[0].eye_S(side));
+      };
+      return viewer::renderStereo(renderer, snapshot, {eye(-1), eye(1)}, options, mode)[0];
+    }
+    if (mode == viewer::StereoMode::Mono) return renderer.render(snapshot, camera, options);
+    const double distance_m = (camera.eye_W - camera.target_W).norm();
+    const viewer::EyePair eyes =
+        viewer::eyesOf(camera, viewer::kEyeShare * distance_m, double(kPicture.width) / kPicture.height);
+    return viewer::renderStereo(renderer, snapshot, eyes, options, mode)[0];
+  }
+  /// The part of the window that shows the scene.
+  Image scenePicture() {
+    const Image whole = picture();
+    Image crop(kPicture.width, kPicture.height);
+    if (whole.width < crop.width || whole.height < crop.height) return crop;
+    for (int y = 0; y < crop.height; ++y)
+      std::copy_n(whole.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
+    return crop;
+  }
+  /// The same once it is drawn in full, and rests.
+  Image restingPicture() {
+    Image last = scenePicture();
+    int same = 0;  // a picture in full may take longer than the time between two looks
+    soon([&] {
+      std::this_thread::sleep_for(1s);
+      Image now = scenePicture();
+      same = now.rgb == last.rgb ? same + 1 : 0;
+      last = std::move(now);
+      return same >= 4;
+    });
+    return last;
   }
 
   std::string display_, window_;
@@ -222,6 +260,122 @@ TEST_F(Window, APegThatIsDraggedIntoItsHoleByTheMouseIsMountedRecordedAndReplaye
   EXPECT_NE(replayed.out.find("fits"), std::string::npos) << replayed.out;
   EXPECT_EQ(replayed.out.find("by contact: no"), std::string::npos) << replayed.out;
   EXPECT_NE(replayed.out.find("the same bits"), std::string::npos) << replayed.out;
+}
+
+TEST_F(Window, AStepThatIsTakenBackAndDoneAgainGivesTheSameBits) {
+  write("two.toml",
+        "unit = 'mm'\nrelease_s = 0.2\n[[part]]\nfile = 'plate.stl'\nfixed = true\n"
+        "[[part]]\nname = 'left'\nfile = 'pin.stl'\npose = {position = [-5, 0, 9]}\n"
+        "[[part]]\nname = 'right'\nfile = 'pin.stl'\npose = {position = [5, 0, 9]}\n"
+        "[[step]]\npart = 'left'\nstart = {position = [-5, 0, 9.5]}\ntolerance = '0.5mm'\n"
+        "[[step]]\npart = 'right'\nstart = {position = [5, 0, 9.5]}\ntolerance = '0.5mm'\n");
+  open("two.toml --run --speed 0 --silent --record run.mcap");
+  const auto isRecorded = [&](const std::string& name) {
+    return soon([&] { return fs::exists(folder_ / name); });
+  };
+  ASSERT_TRUE(isRecorded("run.mcap")) << slurp(folder_ / "err.txt");
+  xdotool("key z");
+  ASSERT_TRUE(isRecorded("run_2.mcap")) << "only the second step";
+  xdotool("key z");
+  ASSERT_TRUE(isRecorded("run_3.mcap"));
+  EXPECT_EQ(slurp(folder_ / "run_2.mcap"), slurp(folder_ / "run_3.mcap"));
+  // The second step is taken back, and put in place again where it was without a run.
+  xdotool("key 2");
+  const Image done = restingPicture();
+  xdotool("key z");
+  xdotool("key y");
+  EXPECT_TRUE(shows(done));
+  EXPECT_EQ(close(), 0);
+  const Ran replayed = run("replay run_2.mcap --out replayed");
+  EXPECT_NE(replayed.out.find("right"), std::string::npos) << replayed.out;
+  EXPECT_EQ(replayed.out.find("left"), std::string::npos) << replayed.out;
+  EXPECT_NE(replayed.out.find("the same bits"), std::string::npos) << replayed.out;
+}
+
+TEST_F(Window, APartIsTakenFreelyMovedPutDownAndBroughtBack) {
+  write("free.toml",
+        "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n"
+        "[[part]]\nname = 'pin'\nfile = 'pin.stl'\npose = {position = [0, 0, 9]}\n"
+        "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 30]}\n");
+  open("free.toml --silent");
+  xdotool("key u");
+  xdotool("key 2");
+  std::this_thread::sleep_for(1s);
+  xdotool("key f");
+  const Image before = restingPicture();
+  // Where the pin is drawn.
+  const scenes::Scene loaded = scenes::loadScene((folder_ / "free.toml").string());
+  const viewer::RenderScene drawn = viewer::drawnMeshes(loaded);
+  scenes::Snapshot lying;
+  lying.bodies = {{0, loaded.parts[0].X_WP, scenes::BodyRole::Mounted},
+                  {1, loaded.steps[0].X_WP_start, scenes::BodyRole::Mounted}};
+  const viewer::Camera camera =
+      viewer::cameraFor(viewer::standardViews()[1], viewer::snapshotBounds(drawn, lying), kPicture);
+  const auto at = camera.project(loaded.steps[0].X_WP_start.p, kPicture.width, kPicture.height);
+  const auto place = [&](int aside_px) {
+    return std::to_string(std::lround(at[0]) + aside_px) + " " + std::to_string(std::lround(at[1]));
+  };
+  xdotool("mousemove " + place(0) + " click 1");
+  xdotool("key Return");
+  EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), before, 20).share_beyond > 1e-4; }))
+      << "the pin in hand is blue";
+  std::this_thread::sleep_for(2s);  // until the clutch has closed
+  xdotool("mousemove " + place(0) + " mousedown 1");
+  std::this_thread::sleep_for(300ms);
+  for (int i = 1; i <= 20; ++i) {
+    xdotool("mousemove " + place(5 * i));
+    std::this_thread::sleep_for(30ms);
+  }
+  std::this_thread::sleep_for(1s);
+  xdotool("mouseup 1");
+  std::this_thread::sleep_for(300ms);
+  xdotool("key Return");
+  xdotool("mousemove 5 5");
+  const Image after = restingPicture();
+  EXPECT_GT(viewer::compare(after, before, 20).share_beyond, 5e-3) << "the pin lies elsewhere";
+  xdotool("key z");
+  EXPECT_TRUE(shows(before));
+  xdotool("key y");
+  EXPECT_TRUE(shows(after));
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ThePlannedPathIsShownAndHidden) {
+  write("scene.toml", std::string(kScene) + "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 40]}\n");
+  open("scene.toml");
+  xdotool("key Down");
+  xdotool("key 2");
+  std::this_thread::sleep_for(1s);
+  xdotool("key f");
+  const Image without = restingPicture();
+  xdotool("key w");
+  const Image with = restingPicture();
+  // A line of 6 pixels over at least a tenth of the picture's height.
+  EXPECT_GT(viewer::compare(with, without, 20).share_beyond, 4 * 0.1 * 656 / (950.0 * 656));
+  xdotool("key w");
+  EXPECT_TRUE(shows(without));
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ShowsStereoAndSwitchesItsModeByAKey) {
+  using enum viewer::StereoMode;
+  open("scene.toml --stereo anaglyph");
+  EXPECT_TRUE(shows(expected(0, Anaglyph)));
+  for (const viewer::StereoMode mode : {Interleaved, Mono, SideBySide, TopBottom}) {
+    xdotool("key s");
+    EXPECT_TRUE(shows(expected(0, mode))) << viewer::toText(mode);
+  }
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, IsAScreenOfADisplayFile) {
+  write("wall.toml",
+        "[scene]\npose = {position = [0, 0.3, 0.6]}\nscale = 12\n[[screen]]\nlower_left = [-0.8, 0, 0]\n"
+        "lower_right = [0.8, 0, 0]\nupper_left = [-0.8, 0, 1.1]\n"
+        "[[viewer]]\nhead = {position = [0.3, -1, 0.8], rpy_deg = [90, 0, 0]}\n");
+  open("scene.toml --display wall.toml --stereo top_bottom");
+  EXPECT_TRUE(shows(expected(0, viewer::StereoMode::TopBottom, "wall.toml")));
+  EXPECT_EQ(close(), 0);
 }
 
 TEST_F(Window, ClosingAWindowWithARunStopsTheRun) {

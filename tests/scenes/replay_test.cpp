@@ -153,6 +153,7 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   Scene scene = pinOnPlate();
   scene.fidelity.contact_method = ContactMethod::Penalty;
   scene.device.has_indexing = false;
+  scene.device.placement = Pose::translation({1, 2, 3});
   scene.steps[0].is_held = true;
   scene.steps[0].motion = StepMotion::Screw;
   scene.parts[1].youngs_modulus_Pa = 3e9;
@@ -162,17 +163,19 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   // Version 2 brought the contact method, a byte, version 3 indexing, a byte, and version 4 `holds`, a byte,
   // a number of the operator, and for each of the two parts two bytes and two numbers. Version 5 brought the
   // motion, a byte, with two numbers, and for each part two numbers, and version 6 whether the step takes its
-  // part off, a byte. Each stands at the end.
+  // part off, a byte, and the device's placement, a byte and twelve numbers. Each stands at the end.
   const auto before = [&](const std::string& later, int version, std::size_t added) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);
   };
-  const std::string fifth = before(bytes, 5, 1), fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
+  const std::string fifth = before(bytes, 5, 1 + 1 + 12 * 8), fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
                     third = before(fourth, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
                     first = before(second, 1, 1);
   EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].takes_off);
   EXPECT_FALSE(sceneFromBytes(fifth, "x").steps[0].takes_off);
-  EXPECT_EQ(sceneFromBytes(bytes, "x").steps[0].motion, StepMotion::Screw);
+  EXPECT_EQ(sceneFromBytes(bytes, "x").device.placement.value().p, Vec3(1, 2, 3));
+  EXPECT_FALSE(sceneFromBytes(fifth, "x").device.placement);
+  EXPECT_EQ(sceneFromBytes(fifth, "x").steps[0].motion, StepMotion::Screw);
   EXPECT_EQ(sceneFromBytes(bytes, "x").parts[1].youngs_modulus_Pa, 3e9);
   EXPECT_EQ(sceneFromBytes(fourth, "x").steps[0].motion, StepMotion::Push);
   EXPECT_EQ(sceneFromBytes(fourth, "x").parts[1].youngs_modulus_Pa, 210e9);

@@ -3,17 +3,22 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 #include <thread>
 
 #include "sound/beeper.h"
 #include "sound/live_sound.h"
 #include "sound/part_voice.h"
+#include "support/temporary_folder.h"
 
 namespace vps::viewer {
 namespace {
@@ -156,9 +161,12 @@ TEST(RunSound, AContactThatSlipsIsHeardAsLongAsItSlips) {
 class KeptOutput final : public SoundOutput {
  public:
   explicit KeptOutput(std::atomic<std::size_t>& count) : count_(count) {}
-  void write(std::span<const float> samples) override {
-    for (const float x : samples) EXPECT_LE(std::abs(x), 1);
-    count_ += samples.size();
+  void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
+    EXPECT_EQ(parts.size(), beeps.size());
+    for (const float x : parts) EXPECT_LE(std::abs(x), 1);
+    for (const float x : beeps) EXPECT_LE(std::abs(x), 1);
+    EXPECT_TRUE(to_L.allFinite());
+    count_ += parts.size();
   }
   [[nodiscard]] bool isThere() const override { return count_ < 4800; }
 
@@ -190,6 +198,68 @@ std::uint32_t numberAt(const std::string& bytes, std::size_t at, int count) {
   std::uint32_t value = 0;
   for (int i = count - 1; i >= 0; --i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
   return value;
+}
+
+TEST(LiveSound, SoundsComeFromTheMiddleOfTheContactsByTheirForces) {
+  scenes::Snapshot shot;
+  EXPECT_FALSE(soundPlace(shot));
+  shot.contacts = {{Vec3(0, 0, 0), Vec3::UnitZ(), 0, 1}, {Vec3(3, 0, 0), Vec3::UnitZ(), 0, 2}};
+  EXPECT_LT((soundPlace(shot).value() - Vec3(2, 0, 0)).norm(), 1e-12);
+}
+
+/// OpenAL reads its settings once in a process: it writes a file in place of a sound card.
+const std::string& heardFile() {
+  static const test::TemporaryFolder folder;
+  static const std::string file = [] {
+    const std::string settings = folder.path() / "alsoft.conf";
+    std::string heard = folder.path() / "heard.wav";
+    std::ofstream(settings) << "drivers = wave\nchannels = stereo\nsample-type = int16\n[wave]\nfile = "
+                            << heard << "\n";
+    setenv("ALSOFT_CONF", settings.c_str(), 1);
+    return heard;
+  }();
+  return file;
+}
+
+/// What a noise from that direction is at the ears: the energies of left and right.
+std::array<double, 2> earsOf(const Vec3& to_L) {
+  const std::string& file = heardFile();
+  std::string why;
+  std::unique_ptr<SoundOutput> output = openSoundOutput(kRate_hz, why);
+  if (!output) return {0, 0};
+  unsigned state = 1;
+  for (int i = 0; i < 60; ++i) {  // 0.6 s in real time, as the writer takes it
+    std::vector<float> noise(480), silence(480, 0.0f);
+    for (float& x : noise)
+      x = 0.5f * (static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1);
+    output->write(noise, silence, to_L);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  output.reset();
+  std::ostringstream bytes;
+  bytes << std::ifstream(file, std::ios::binary).rdbuf();
+  const std::string wav = bytes.str();
+  const std::size_t data = wav.find("data");
+  std::array<double, 2> energies{};
+  if (data == std::string::npos || numberAt(wav, 22, 2) != 2 || numberAt(wav, 34, 2) != 16) return energies;
+  for (std::size_t at = data + 8; at + 4 <= wav.size(); at += 4)
+    for (std::size_t ear = 0; ear < 2; ++ear) {
+      const double x = static_cast<std::int16_t>(numberAt(wav, at + 2 * ear, 2));
+      energies[ear] += x * x;
+    }
+  return energies;
+}
+
+TEST(LiveSound, ASoundFromTheRightIsLouderAtTheRightEar) {
+  heardFile();
+  std::string why;
+  if (openSoundOutput(kRate_hz, why) == nullptr) GTEST_SKIP() << why;
+  const std::array<double, 2> right = earsOf({1, 0, 0}), left = earsOf({-1, 0, 0}),
+                              ahead = earsOf({0, 0, -1});
+  EXPECT_GT(right[1], 2 * right[0]) << "a head's shadow is 3 dB at least, over all frequencies";
+  EXPECT_GT(left[0], 2 * left[1]);
+  EXPECT_GT(ahead[0], 0);
+  EXPECT_LT(std::abs(std::log(ahead[0] / ahead[1])), std::log(1.5));
 }
 
 TEST(Wav, HoldsTheSamplesScaledToThreeDecibelsBelowFull) {

@@ -13,13 +13,14 @@
 #include "vps_device/dual_arm/calibration.h"
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_device/placement.h"
+#include "vps_scenes/display.h"
 
 namespace vps::viewer::inline v0 {
 
 namespace {
 
 struct CalibrateArguments {
-  std::string points, bases, parameters, out;
+  std::string points, bases, parameters, display, out;
 };
 
 /// Rows of that many numbers, apart by commas or blanks; '#' begins a comment, and a first row of words is a
@@ -53,7 +54,22 @@ std::string listOf(const Vec3& v) {
   return text;
 }
 
-std::string placementOf(const std::string& file) {
+/// With their unit, since a scene's may be another.
+std::string metres(const Vec3& v) {
+  char text[128];
+  std::snprintf(text, sizeof text, "[\"%.9gm\", \"%.9gm\", \"%.9gm\"]", v.x(), v.y(), v.z());
+  return text;
+}
+
+std::string placementLine(const Pose& X) {
+  const Quat q = X.quaternion();
+  char rotation[160];
+  std::snprintf(rotation, sizeof rotation, "[%.12g, %.12g, %.12g, %.12g]", q.x(), q.y(), q.z(), q.w());
+  return "placement = {position = " + metres(X.p) + ", rotation_xyzw = " + rotation + "}\n";
+}
+
+/// For the display file, or, with one, for the scene that it shows.
+std::string placementOf(const std::string& file, const std::string& display_file) {
   std::vector<device::TouchedPoint> points;
   for (const std::vector<double>& row :
        rowsOf(file, 6, "x, y, z read by the device and x, y, z in the room [m]"))
@@ -64,11 +80,17 @@ std::string placementOf(const std::string& file) {
     throw LoadError(file, "", "has points on one line, which leave a turn about it open; touch others");
   std::printf("%zu points: residual %.3g mm rms, greatest %.3g mm at point %zu\n", points.size(),
               1e3 * found.rms_m, 1e3 * found.greatest_m, found.worst + 1);
-  const Quat q = found.X_SD.quaternion();
-  char rotation[160];
-  std::snprintf(rotation, sizeof rotation, "[%.12g, %.12g, %.12g, %.12g]", q.x(), q.y(), q.z(), q.w());
-  return "# Where the device stands in the room.\n[device]\nplacement = {position = " + listOf(found.X_SD.p) +
-         ", rotation_xyzw = " + rotation + "}\n";
+  if (display_file.empty())
+    return "# Where the device stands in the room, for the display file.\n[device]\n" +
+           placementLine(found.X_SD);
+  scenes::Display display = scenes::loadDisplay(display_file);
+  display.X_SD = found.X_SD;
+  scenes::DeviceSettings device;
+  display.placeDevice(device);
+  char scale[40];
+  std::snprintf(scale, sizeof scale, "scale = %.12g\n", device.scale);
+  return "# Where the device stands in the scene, for the scene file.\n[device]\n" + std::string(scale) +
+         placementLine(*device.placement);
 }
 
 std::string basesOf(const std::string& file, const std::string& parameters) {
@@ -101,9 +123,9 @@ std::string basesOf(const std::string& file, const std::string& parameters) {
 int runCalibrate(const CalibrateArguments& given) {
   if (given.points.empty() == given.bases.empty())
     throw LoadError("", "", "give --points TABLE (where the device stands) or --bases TABLE (its two arms)");
-  OutputFile out(given.out, {given.points, given.bases, given.parameters});
-  const std::string toml =
-      given.points.empty() ? basesOf(given.bases, given.parameters) : placementOf(given.points);
+  OutputFile out(given.out, {given.points, given.bases, given.parameters, given.display});
+  const std::string toml = given.points.empty() ? basesOf(given.bases, given.parameters)
+                                                : placementOf(given.points, given.display);
   std::fputs(toml.c_str(), stdout);
   out.write(toml);
   return kGood;
@@ -127,6 +149,10 @@ void addCalibrate(CommandLine& line) {
           "[rad, m]")
       ->type_name("TABLE.csv");
   command.add_option("--parameters", given->parameters, "parameters of the dual arm to start from")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--display", given->display,
+                  "with --points: display file whose room it is; the result is then for the scene's own file")
       ->type_name("FILE.toml");
   command.add_option("-o,--out", given->out, "TOML file to write")->type_name("FILE.toml");
 }

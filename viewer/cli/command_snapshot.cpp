@@ -103,20 +103,10 @@ struct NamedPicture {
   Image image;
 };
 
-StereoMode stereoMode(const std::string& name) {
-  for (const StereoMode mode : stereoModes())
-    if (name == toText(mode)) return mode;
-  return StereoMode::Mono;
-}
-
-/// A thirtieth of the distance to what is looked at: a common rule of stereo photographers, with which most
-/// people have no trouble.
-constexpr double kEyeShare = 1.0 / 30;
-
 std::vector<NamedPicture> renderFor(const SnapshotArguments& given, Renderer& renderer,
                                     const scenes::Snapshot& snapshot, const Camera& camera,
                                     const DrawOptions& options) {
-  const StereoMode mode = stereoMode(given.stereo);
+  const StereoMode mode = stereoModeOf(given.stereo);
   std::vector<NamedPicture> pictures;
   if (!given.display.empty()) {
     const scenes::Display display = scenes::loadDisplay(given.display);
@@ -186,7 +176,7 @@ int runSnapshot(const SnapshotArguments& given) {
     throw LoadError("", "", "give -o FILE.png, --compare IMAGE, or both");
   if (!given.difference.empty() && given.compare.empty())
     throw LoadError("", "", "--difference needs --compare IMAGE");
-  const bool is_one = given.display.empty() && stereoMode(given.stereo) != StereoMode::Spectral;
+  const bool is_one = given.display.empty() && stereoModeOf(given.stereo) != StereoMode::Spectral;
   if (!given.compare.empty() && !is_one)
     throw LoadError("", "", "--compare needs one picture, and --display and --stereo spectral make several");
   DrawOptions options;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps view: a window on a scene or a recording.
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "file_kind.h"
@@ -9,6 +11,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
+#include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
 
 namespace vps::viewer::inline v0 {
@@ -18,6 +21,7 @@ namespace {
 struct ViewArguments {
   SceneArguments scene;
   WindowOptions window;
+  std::string stereo = "mono", display;
 };
 
 int runView(const ViewArguments& given) {
@@ -25,6 +29,8 @@ int runView(const ViewArguments& given) {
   const std::string& file = given.scene.scene;
   WindowOptions window = given.window;
   window.stop = &stopRequested();
+  window.stereo = stereoModeOf(given.stereo);
+  if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
   if (lowerExtension(file) == ".mcap") {
     if (window.runs || !window.record.empty() || !window.hand.empty())
       throw LoadError(file, "", "is a recording; --run, --hand and --record are for scenes");
@@ -32,7 +38,8 @@ int runView(const ViewArguments& given) {
     return kGood;
   }
   requireNotRead(window.record, {file});
-  const scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record});
+  if (window.display) window.display->placeDevice(scene.device);
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   if (!window.hand.empty()) {
     if (device::findDeviceKind(window.hand) == nullptr)
@@ -77,6 +84,19 @@ void addView(CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
   command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
+      ->type_name("FILE");
+  std::vector<std::string> modes;
+  for (const StereoMode mode : stereoModes())
+    if (mode != StereoMode::Spectral) modes.emplace_back(toText(mode));
+  command
+      .add_option("--stereo", given->stereo, "how the pictures of both eyes are shown at first; S switches")
+      ->capture_default_str()
+      ->check(CLI::IsMember(modes));
+  command
+      .add_option(
+          "--display", given->display,
+          "display file (TOML): the window is its first screen, seen by its first viewer, and a device "
+          "whose place it has moves the part where the hand is")
       ->type_name("FILE");
   command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
       ->capture_default_str()

@@ -21,6 +21,9 @@ namespace vps::device::inline v0 {
 struct LoopSettings {
   CouplingGains gains;
   WorkspaceMap map;
+  /// The map says where the device stands (calibrated), so the grasp frame's origin is at the handle from the
+  /// moment of grasping on, and the part is seen where the hand is. Hand over a part there.
+  bool is_collocated = false;
   SafetyLimits safety;
   double period_s = 1e-3;
   /// Extrapolate the part by its velocity from its time stamp, for up to hold_limit_s.

@@ -64,6 +64,8 @@ enum class SyncEventKind : std::uint8_t {
   CloseClutch,
   LetGo,
   Rearm,
+  SnapOn,  ///< axis snap acts from this physics step on
+  SnapOff,
 };
 
 struct SyncEvent {

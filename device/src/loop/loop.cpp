@@ -29,14 +29,20 @@ void HapticLoop::setGains(const CouplingGains& gains) noexcept {
 void HapticLoop::grasp(const Pose& X_WG) noexcept {
   const DeviceSample sample = device_->read();
   if (sample.status != Status::Ok || !X_WG.isFinite()) return;
-  grasp_ = Grasp::between(settings_.map.toScene(sample.X_DH), X_WG);
+  const Pose X_WH = settings_.map.toScene(sample.X_DH);
+  grasp_ = Grasp::between(X_WH, X_WG);
   report_.X_WG = X_WG;
+  if (settings_.is_collocated) {
+    grasp_.offset_W = Vec3::Zero();
+    report_.X_WG = grasp_.toGrasp(X_WH);
+  }
   is_holding_ = true;
   clutch_.closeAtOnce();
 }
 
 void HapticLoop::handOver(const Pose& X_WG) noexcept {
   grasp(X_WG);
+  if (settings_.is_collocated) return;  // a clutch that closes slowly would leave the hand's way meanwhile
   clutch_.openAtOnce();
   clutch_.close();
 }

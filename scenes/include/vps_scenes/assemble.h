@@ -47,8 +47,12 @@ struct AssembleOptions : ModelOptions {
   /// Of a run by hand with [device] kind = "mouse": where the window's cursor wants the handle. Null: a run
   /// with that kind is refused.
   std::shared_ptr<device::HandleWish> wish;
-  /// Called after each step of the procedure with the result so far, whose sums are not filled in yet. May be
-  /// empty.
+  /// Axis snap: while set, a spring pulls the part in hand to the axis along which its step brings it home
+  /// (src/procedure/axis_snap.h). It may change at any time. Null: none. A recorded run in simulated time has
+  /// none, since its recording would not hold the moment of the change.
+  const std::atomic<bool>* snaps = nullptr;
+  /// Called after each step of the procedure with the result so far, whose sums are not filled in yet; its
+  /// `finished` shows where the parts are. May be empty.
   std::function<void(const AssembleResult&)> on_step;
   /// The haptic loop computes the part's motion itself between physics steps (vps_device/local_contact.h),
   /// for physics slower than the loop. Such a run cannot be recorded. In real time the loop is paused where a

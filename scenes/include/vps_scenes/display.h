@@ -2,11 +2,13 @@
 // Where pictures are shown and who looks at them: screens by their corners, viewers by their heads.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -35,7 +37,12 @@ struct Display {
   std::vector<DisplayViewer> viewers;
   Pose X_SW;         ///< where the scene stands in the room
   double scale = 1;  ///< metres in the room for a metre of the scene
+  /// Where the device stands in the room, by `vps calibrate`; none: it is not known.
+  std::optional<Pose> X_SD;
 
+  /// What a scene's `[device]` has to say, so that a part in hand is seen where the hand is. Without X_SD
+  /// nothing changes.
+  VPS_SCENES_API void placeDevice(DeviceSettings& device) const;
   [[nodiscard]] Vec3 toScene(const Vec3& p_S) const { return X_SW.inverse() * p_S / scale; }
 };
 

@@ -126,6 +126,9 @@ struct DeviceSettings {
   bool has_quantised_encoders = true;
   /// A path longer than the workspace is split; the device is clutched and recentred between the segments.
   bool has_indexing = true;
+  /// Where the device stands in the scene, by `vps calibrate`: p_W = placement (scale p_D). Then a part that
+  /// a person takes is where the hand is. None: the device's axes are the scene's.
+  std::optional<Pose> placement;
 };
 
 /// Coupling gains that a scene prescribes; the others follow from the device's numbers and rates

@@ -172,8 +172,13 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
     field("indexing", &DeviceSettings::has_indexing,
           "a path that is longer, or turns farther, than the device can is split, see below; false: such a "
           "path is an error",
-          {.since = 3}));
-static_assert(coversAllMembers<DeviceSettings, 1>(kDeviceKeys));
+          {.since = 3}),
+    // Read by hand, since it is a pose.
+    Key{"placement", "pose", "none",
+        "where the device stands in the scene, by `vps calibrate`: a part that a person takes is then where "
+        "the "
+        "hand is. None: the device's axes are the scene's"});
+static_assert(coversAllMembers<DeviceSettings, 2>(kDeviceKeys));
 
 /// `[operator]`
 inline constexpr auto kOperatorFields = std::make_tuple(

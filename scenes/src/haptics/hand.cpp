@@ -138,9 +138,11 @@ class SimulatedHand final : public Hand {
     goTo(next < segments_.size() ? segments_[next].X_DH_start.front() : Pose{});
   }
   void recentre() override {
-    // The device's axes are the scene's.
-    if (const Vec3 turn_rad = operator_.regraspTurn_rad(); !turn_rad.isZero())
-      return goTo({rotationFromVector(turn_rad), plant_->truePose().p});
+    if (const Vec3 turn_rad = operator_.regraspTurn_rad(); !turn_rad.isZero()) {
+      const std::optional<Pose>& X_WD = scene_.device.placement;
+      const Vec3 turn_D = X_WD ? Vec3(X_WD->R.transpose() * turn_rad) : turn_rad;
+      return goTo({rotationFromVector(turn_D), plant_->truePose().p});
+    }
     const std::vector<Pose>& starts = segments_[step_].X_DH_start;
     if (segment_ + 1 < starts.size()) ++segment_;
     goTo(starts[segment_]);

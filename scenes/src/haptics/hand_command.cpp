@@ -31,6 +31,8 @@ void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) 
     case device::SyncEventKind::Step:
     case device::SyncEventKind::Settled:
     case device::SyncEventKind::Paused:
+    case device::SyncEventKind::SnapOn:
+    case device::SyncEventKind::SnapOff:
       return;
   }
 }

@@ -51,6 +51,8 @@ class HapticDriver {
   virtual void publish(const device::PhysicsState& state) = 0;
   /// Whether background work is ready: as the caller says, or as recorded in a run that is replayed.
   virtual bool hasSettled(bool is_ready) { return is_ready; }
+  /// Whether axis snap acts in the coming physics step, after advance(): as the caller says, or as recorded.
+  virtual bool snaps(bool is_wanted) { return is_wanted; }
   /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
   [[nodiscard]] virtual double busy_s() const { return 0; }
   /// In real time, from the next advance() on: steps of step_s of simulated time, one each period_s of the

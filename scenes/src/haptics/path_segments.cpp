@@ -193,13 +193,8 @@ PathSegments withHandle(const GraspPath& path, const Pose& X_GP, double scale) {
   return segments;
 }
 
-}  // namespace
-
-double turnRange_rad(double handle_rad) {
-  return handle_rad - std::min(kMargin_rad, handle_rad / 5);
-}
-
-PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
+/// The device's axes are those of the step's poses.
+PathSegments splitAlongAxes(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   const double scale = scene.device.scale;
   const Pose X_PG = Pose::translation(massProperties(scene.parts[step.part].part.mesh).com);
   std::vector<Pose> X_WG = {step.X_WP_start * X_PG};
@@ -223,6 +218,24 @@ PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspac
   PathSegments one = withHandle({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
   one.way_points = step.way_points;  // the same bits
   return one;
+}
+
+}  // namespace
+
+double turnRange_rad(double handle_rad) {
+  return handle_rad - std::min(kMargin_rad, handle_rad / 5);
+}
+
+PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
+  if (!scene.device.placement) return splitAlongAxes(scene, step, workspace);
+  // In the device's axes, where its workspace is a box.
+  const Pose X_DW(Mat3(scene.device.placement->R.transpose()), Vec3(Vec3::Zero()));
+  SceneStep turned = step;
+  for (Pose* X : {&turned.X_WP_start, &turned.X_WP_target}) *X = X_DW * *X;
+  for (Pose& X : turned.way_points) X = X_DW * X;
+  PathSegments segments = splitAlongAxes(scene, turned, workspace);
+  for (Pose& X : segments.way_points) X = X_DW.inverse() * X;
+  return segments;
 }
 
 PathSegments withoutPassed(const PathSegments& segments, std::size_t passed) {

@@ -51,6 +51,13 @@ class RealTimeDriver final : public ClockedDriver {
       haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
     return is_ready;
   }
+  bool snaps(bool is_wanted) override {
+    if (is_wanted != snaps_)
+      haptic_log_.addFromPhysics(
+          {view_.report.time_s, view_.tick, 1, 0,
+           is_wanted ? device::SyncEventKind::SnapOn : device::SyncEventKind::SnapOff});
+    return snaps_ = is_wanted;
+  }
   device::OperatorState state() override { return known_state_; }
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
   void setLoadLevel(double step_s, double period_s, const CouplingGains& gains) override {
@@ -82,7 +89,7 @@ class RealTimeDriver final : public ClockedDriver {
   HapticLog haptic_log_;
   /// As of the last advance() or command, so that it stays the same within a physics step.
   device::OperatorState known_state_;
-  bool has_priority_ = false;
+  bool has_priority_ = false, snaps_ = false;
   HapticSide side_;
   PhysicsClock clock_;
 };

@@ -57,6 +57,14 @@ class ReplayedDriver final : public ClockedDriver {
     logEvent(device::SyncEventKind::Settled);
     return true;
   }
+  bool snaps(bool) override {
+    using enum device::SyncEventKind;
+    if (isAt(SnapOn) || isAt(SnapOff)) {
+      snaps_ = isAt(SnapOn);
+      logEvent(sync_events_[next_].kind);
+    }
+    return snaps_;
+  }
   device::OperatorState state() override { return hand_.state(); }
   std::uint64_t missed() override { return 0; }
   TickTimes times() override { return clock_.summary(); }
@@ -116,7 +124,7 @@ class ReplayedDriver final : public ClockedDriver {
   device::RunLog& log_;
   std::deque<device::PhysicsState> states_;  ///< published, not yet used by a tick
   TickClock clock_;
-  bool is_running_ = false;
+  bool is_running_ = false, snaps_ = false;
 };
 
 }  // namespace

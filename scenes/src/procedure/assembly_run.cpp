@@ -12,6 +12,7 @@
 #include "procedure/step_run.h"
 #include "procedure/step_verdict.h"
 #include "vps/load_error.h"
+#include "vps_scenes/put_down.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -30,7 +31,10 @@ void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResul
     if (!step.completed && not_in_place.empty()) not_in_place = step.part;
     result.completed = result.completed && step.completed;
     result.verdict = verdictOf(result.steps, count);
-    if (world.options().on_step) world.options().on_step(result);
+    if (world.options().on_step) {
+      result.finished = snapshotOf(world);
+      world.options().on_step(result);
+    }
     if (!step.completed && !world.options().keep_going) break;
   }
   if (result.steps.size() < count) result.completed = false;

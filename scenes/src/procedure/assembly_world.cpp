@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "procedure/assembly_world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
+constexpr double kSnapFade_s = 0.2;        ///< assumed: a force that comes, not a blow
 constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper than this is refused
 
 /// A grip of this share, with the same limits.
@@ -93,9 +95,10 @@ void AssemblyWorld::mountFixed() {
 void AssemblyWorld::take(std::size_t index) {
   const SceneStep& step = scene_.steps[index];
   state_.step = static_cast<int>(index);
-  state_.X_WP[step.part] = step.X_WP_start;
+  const Pose X_WP_start = startOf(step);
+  state_.X_WP[step.part] = X_WP_start;
   requireFreeStart(step);
-  simulation_.addBody(step.part, step.X_WP_start);
+  simulation_.addBody(step.part, X_WP_start);
   state_.roles[step.part] = BodyRole::InHand;
   state_.moving = {step.part,
                    Pose::translation(simulation_.centreOfMass(step.part)),
@@ -105,16 +108,45 @@ void AssemblyWorld::take(std::size_t index) {
                    simulation_.mechanicalEnergy()};
   simulation_.grasp(step.part, state_.moving.X_PG, shedder_->gains());
   grip_ = 1;
-  driver_->handOver(step.X_WP_start * state_.moving.X_PG);
+  const Mat3 inertia = simulation_.inertia(step.part);
+  snap_ = axisSnap(step, state_.moving.X_PG.p, tapped_.limits(), simulation_.mass(step.part),
+                   inertia.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), dt_s_);
+  snap_share_ = 0;
+  driver_->handOver(X_WP_start * state_.moving.X_PG);
   state_.is_holding = true;
   if (options_.has_local_contact) startLocalContact();
+}
+
+Penetration AssemblyWorld::overlapAt(const SceneStep& step, const Pose& X_WP) {
+  return placed_.judge().deepest(placed_.judgedBody(step.part), X_WP);
+}
+
+Pose AssemblyWorld::startOf(const SceneStep& step) {
+  if (!driver_->settings().is_collocated || !driver_->isByClock()) return step.X_WP_start;
+  const Vec3 p_PG = massProperties(scene_.parts[step.part].part.mesh).com;
+  Pose X_WP = step.X_WP_start;
+  bool is_told = false;
+  driver_->resume();
+  while (!isStopped()) {
+    if (!driver_->advance()) {
+      has_ended_ = true;
+      break;
+    }
+    if (driver_->last().status != Status::Ok) continue;
+    X_WP.p = driver_->last().X_WG.p - X_WP.R * p_PG;  // nothing is held, so this is the handle
+    if (scene_.parts[step.part].allow_overlap || overlapAt(step, X_WP).depth_m <= kStartOverlap_m) break;
+    if (!std::exchange(is_told, true) && options_.warn)
+      options_.warn("the hand is inside a part; move it to where '" + scene_.parts[step.part].part.name +
+                    "' has room");
+  }
+  return X_WP;
 }
 
 void AssemblyWorld::requireFreeStart(const SceneStep& step) {
   const ScenePart& part = scene_.parts[step.part];
   // Of a part in place the drawing says whether it overlaps another (checkDrawnTargets()).
-  if (part.allow_overlap || step.takes_off) return;
-  const Penetration overlap = placed_.judge().deepest(placed_.judgedBody(step.part), step.X_WP_start);
+  if (part.allow_overlap || step.takes_off || isStopped()) return;
+  const Penetration overlap = overlapAt(step, state_.X_WP[step.part]);
   if (overlap.depth_m > kStartOverlap_m)
     throw LoadError(scene_.file, part.part.name,
                     "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
@@ -183,6 +215,7 @@ bool AssemblyWorld::advance(bool is_settling) {
     keepCovered();
     shedLoad();
   }
+  snap();
   step();
   passEvents();
   if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false))
@@ -195,6 +228,18 @@ void AssemblyWorld::passEvents() {
   driver_->passEvents(options_.on_device_event);
   if (device::DeviceEventQueue* own = tapped_.ownEvents())
     for (device::DeviceEvent event; own->pop(event);) options_.on_device_event(event);
+}
+
+void AssemblyWorld::snap() {
+  const bool may_snap = log_ == nullptr || driver_->isByClock();
+  const bool snaps = driver_->snaps(may_snap && options_.snaps != nullptr && options_.snaps->load());
+  if (!state_.is_holding || !snap_) return;
+  const double share = std::clamp(snap_share_ + (snaps ? dt_s_ : -dt_s_) / kSnapFade_s, 0.0, 1.0);
+  if (share == 0 && snap_share_ == 0) return;
+  // Fading stretches the spring without the hand's work.
+  stored_before_J_ -= (share - snap_share_) * snap_->energy_J(movingPose());
+  snap_share_ = share;
+  simulation_.push(snap_->wrench(movingPose()) * share);
 }
 
 void AssemblyWorld::step() {
@@ -219,6 +264,7 @@ void AssemblyWorld::step() {
     const bool is_coupled = proxy.is_coupled && part.is_coupled;
     stored_J = stored_before_J_ + simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J +
                (is_coupled ? couplingEnergy_J(scaled(shedder_->gains(), grip_), proxy, part) : 0);
+    if (snap_share_ > 0) *stored_J += snap_share_ * snap_->energy_J(movingPose());
   }
   driver_->publish({part, 0, stored_J, heldPart()});
 }

@@ -9,6 +9,7 @@
 #include "core/tick_times.h"
 #include "haptics/haptic_driver.h"
 #include "load/load_shedder.h"
+#include "procedure/axis_snap.h"
 #include "procedure/placed_parts.h"
 #include "simulation/simulation.h"
 #include "vps_device/local_contact.h"
@@ -47,8 +48,9 @@ class AssemblyWorld {
                 const device::LoopSettings& settings, const AssembleOptions& options,
                 const ReportFault& on_fault);
 
-  /// Puts the step's part at its start and couples it to the hand. Throws LoadError where it starts inside
-  /// another part.
+  /// Puts the step's part at its start and couples it to the hand; where the device's place is known and a
+  /// person moves it, the part starts where the hand is. Throws LoadError where it starts inside another
+  /// part.
   void take(std::size_t step);
   /// Uncouples the part, which stays a dynamic body.
   /// @param is_held  something else holds it from here on
@@ -101,12 +103,17 @@ class AssemblyWorld {
   std::unique_ptr<HapticDriver> makeDriver(Hand& hand, device::LoopSettings settings,
                                            const ReportFault& on_fault);
   void mountFixed();
+  /// Where the part starts.
+  Pose startOf(const SceneStep& step);
+  [[nodiscard]] Penetration overlapAt(const SceneStep& step, const Pose& X_WP);
   void requireFreeStart(const SceneStep& step);
   void startLocalContact();
   /// Models the other fixed parts if the moving part comes near the border of its region.
   void keepCovered();
   void passEvents();
   void shedLoad();
+  /// Axis snap on the part in hand, for the coming step.
+  void snap();
   void step();
 
   Scene& scene_;
@@ -124,7 +131,9 @@ class AssemblyWorld {
   AssemblyState state_;
   double dt_s_;
   double grip_ = 1;
-  double stored_before_J_ = 0;  ///< energy stored in parts that were released before
+  std::optional<AxisSnap> snap_;  ///< of the step
+  double snap_share_ = 0;         ///< of its springs; changes over kSnapFade_s
+  double stored_before_J_ = 0;    ///< energy stored in parts that were released before
   bool has_ended_ = false;
   TickClock physics_clock_;
 };

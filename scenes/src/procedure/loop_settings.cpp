@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vps/load_error.h"
+#include "vps_device/device_kinds.h"
 #include "vps_device/gains.h"
 
 namespace vps::scenes::inline v0 {
@@ -20,6 +21,11 @@ device::LoopSettings loopSettings(const Scene& scene, const device::Device& devi
   settings.gains.max_force_N = wishes.max_force_N.value_or(settings.gains.max_force_N);
   settings.gains.max_torque_Nm = wishes.max_torque_Nm.value_or(settings.gains.max_torque_Nm);
   settings.map.scale = scene.device.scale;
+  const device::DeviceKind* kind = device::findDeviceKind(scene.device.kind);
+  if (scene.device.placement) {
+    settings.map.X_WD = *scene.device.placement;
+    settings.is_collocated = kind != nullptr && !kind->isSimulated();
+  }
   settings.safety.force_N = limits.peak_force_N;
   settings.safety.torque_Nm = limits.peak_torque_Nm;
   settings.period_s = 1 / scene.fidelity.haptic_rate_hz;

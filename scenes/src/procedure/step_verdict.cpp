@@ -10,6 +10,7 @@
 #include "judge/surface_error.h"
 #include "procedure/screw_motion.h"
 #include "procedure/way_check.h"
+#include "vps_scenes/put_down.h"
 
 namespace vps::scenes::inline v0 {
 

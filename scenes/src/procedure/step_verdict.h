@@ -22,7 +22,4 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
 /// @param hand_N  greatest force of the hand
 void judgeStep(StepResult& result, double hand_N);
 
-/// Of a run with so many planned steps.
-Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned);
-
 }  // namespace vps::scenes::inline v0

@@ -185,9 +185,9 @@ void fields(Archive& archive, T& x) {
 template <typename Archive, Either<DeviceSettings> T>
 void fields(Archive& archive, T& x) {
   forEachRow(kDeviceKeys, [&](const auto& row) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row)>, Key>)
-      archive(x.data);
-    else if (row.traits.since == 1)
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(row)>, Key>) {
+      if (row.key == "parameters") archive(x.data);
+    } else if (row.traits.since == 1)
       archive(std::invoke(row.get, x));
   });
 }
@@ -223,6 +223,16 @@ void stepFields6(Archive& archive, T& step) {
   archive(step.takes_off);
 }
 
+/// What the device got with version 6, and what has no row.
+template <typename Archive, Either<DeviceSettings> T>
+void devicePlacement(Archive& archive, T& device) {
+  bool has_placement = device.placement.has_value();
+  Pose placement = device.placement.value_or(Pose{});
+  archive(has_placement, placement);
+  if constexpr (!std::is_const_v<T>)
+    if (has_placement) device.placement = placement;
+}
+
 /// What came with a version after the first.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
@@ -237,6 +247,7 @@ void laterFields(Archive& archive, T& x, int version) {
   settings(archive, x.fidelity, kFidelityFields, version);
   settings(archive, x.coupling, kCouplingFields, version);
   settings(archive, x.device, kDeviceKeys, version);
+  if (version == 6) devicePlacement(archive, x.device);
   settings(archive, x.hand, kOperatorFields, version);
   settings(archive, x.record, kRecordFields, version);
 }
@@ -273,6 +284,7 @@ std::string impossible(const Scene& scene) {
         if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner does not exist";
     if (!part.X_WP.isFinite()) return "a pose that is not finite";
   }
+  if (scene.device.placement && !scene.device.placement->isFinite()) return "a pose that is not finite";
   std::string key;
   for (const ScenePart& part : scene.parts)
     if (key.empty()) key = outOfRange(part.part.material, kMaterialFields);

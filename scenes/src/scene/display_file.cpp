@@ -78,10 +78,18 @@ Mat3 DisplayScreen::axes() const {
   return R;
 }
 
+void Display::placeDevice(DeviceSettings& device) const {
+  if (!X_SD) return;
+  // p_S = X_SD p_D and p_S = X_SW (scale p_W), and the scene's map is p_W = placement (device.scale p_D).
+  const Pose X_AD = X_SW.inverse() * *X_SD;  // A: the scene's axes and origin, in metres of the room
+  device.scale = 1 / scale;
+  device.placement = Pose(X_AD.R, Vec3(X_AD.p / scale));
+}
+
 Display loadDisplay(const std::string& file) {
   const toml::table root = parseToml(readTomlText(file, "display file", "wall.toml"), file);
   SceneFileContext context{file, {}};
-  const SceneKeys top(root, context, "", {"unit", "screen", "viewer", "scene"});
+  const SceneKeys top(root, context, "", {"unit", "screen", "viewer", "scene", "device"});
   context.unit_m = 1;
   if (std::string unit; top.text("unit", unit)) {
     context.unit_m = unitFromText(unit);
@@ -93,6 +101,10 @@ Display loadDisplay(const std::string& file) {
     const SceneKeys keys(*table, context, "[scene]", {"pose", "scale"});
     keys.pose("pose", display.X_SW);
     keys.number("scale", display.scale, kPositive);
+  }
+  if (const toml::table* table = top.table("device")) {
+    const SceneKeys keys(*table, context, "[device]", {"placement"});
+    if (keys.has("placement")) keys.pose("placement", display.X_SD.emplace());
   }
   for (const toml::table* table : top.tables("screen"))
     display.screens.push_back(

@@ -338,6 +338,7 @@ class SceneReader {
     if (keys.has("kind") && device::findDeviceKind(scene_.device.kind) == nullptr)
       keys.fail("kind", "is '" + scene_.device.kind + "'; known are " + device::deviceKindNames());
     if (std::string file; keys.text("parameters", file)) readDeviceFile(keys, file);
+    if (keys.has("placement")) keys.pose("placement", scene_.device.placement.emplace());
   }
 
   /// The run reads the file; it is checked here, so that its errors are stated with line and key.

@@ -112,6 +112,7 @@ std::string deviceText(const DeviceSettings& device) {
   std::string lines = linesOf(device, kDeviceKeys);
   if (!device.data.empty())
     lines += "parameters = " + tomlText(std::filesystem::absolute(device.data).string()) + "\n";
+  if (device.placement) lines += "placement = " + tomlPose(*device.placement) + "\n";
   return tableOf("device", lines);
 }
 

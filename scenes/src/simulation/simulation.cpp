@@ -263,6 +263,15 @@ void Simulation::setGains(const CouplingGains& gains) {
   if (world_->coupling) world_->coupling->setGains(gains);
 }
 
+void Simulation::push(const Wrench& F_G_W) {
+  if (!world_->coupling) return;
+  const DynamicBody& held = world_->bodies.at(world_->grasped);
+  const Pose X_WP = pose(world_->grasped);
+  const Vec3 p_BG_W = X_WP * world_->X_PG.p - X_WP * held.frame.X_PB.p;
+  held.body->applyCentralForce(bullet::toBt(F_G_W.f));
+  held.body->applyTorque(bullet::toBt(Vec3(F_G_W.tau + p_BG_W.cross(F_G_W.f))));
+}
+
 void Simulation::setProxy(const CouplingState& proxy) {
   if (world_->coupling) world_->coupling->setTarget(proxy);
 }

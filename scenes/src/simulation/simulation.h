@@ -68,6 +68,8 @@ class Simulation {
   /// Gains of the coupling from the next step on.
   void setGains(const CouplingGains& gains);
   void release();
+  /// A wrench on the part in hand at its grasp frame, in W, for the coming step only.
+  void push(const Wrench& F_G_W);
   /// Pose of the proxy at the end of the coming step.
   void setProxy(const CouplingState& proxy);
   /// The part's grasp frame now, to which the haptic loop couples.

@@ -26,6 +26,12 @@ enum class StereoMode {
 /// "mono", "side_by_side", "top_bottom", "interleaved", "anaglyph", "spectral".
 VPS_VIEWER_API const char* toText(StereoMode mode);
 VPS_VIEWER_API const std::vector<StereoMode>& stereoModes();
+/// The mode of that name; Mono where there is none.
+VPS_VIEWER_API StereoMode stereoModeOf(const std::string& name);
+
+/// Distance of the eyes for the distance to what is looked at: a common rule of stereo photographers, with
+/// which most people have no trouble.
+inline constexpr double kEyeShare = 1.0 / 30;
 
 struct EyePair {
   Camera left, right;
@@ -39,6 +45,9 @@ VPS_VIEWER_API EyePair eyesOf(const Camera& camera, double eye_distance_m, doubl
 /// The camera of an eye in front of a screen, in the scene. Throws LoadError for an eye that is not in front.
 VPS_VIEWER_API Camera cameraFor(const scenes::Display& display, const scenes::DisplayScreen& screen,
                                 const Vec3& eye_S);
+
+/// The eye between both, whose frustum ends at the same screen.
+VPS_VIEWER_API Camera middleEye(const EyePair& eyes);
 
 /// One picture of options' size, or two for Spectral: left, right. Without legend and title, which would have
 /// no place in depth.

@@ -3,19 +3,23 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
 
 #include "vps_device/recording.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
+#include "vps_viewer/stereo.h"
 
 namespace vps::viewer::inline v0 {
 
 struct WindowOptions {
   int width = 1280, height = 720;
   bool is_dark = false;
-  bool runs = false;              ///< begins with a run of the procedure instead of the tour
+  StereoMode stereo = StereoMode::Mono;    ///< not Spectral, which needs two projectors
+  std::optional<scenes::Display> display;  ///< its first screen and viewer are the window's; none: a desktop
+  bool runs = false;                       ///< begins with a run of the procedure instead of the tour
   std::string hand;               ///< kind of device that moves the part in a run; empty: the scene's
   double speed = 1;               ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
   bool has_sound = true;          ///< of a run, where there is a sound card

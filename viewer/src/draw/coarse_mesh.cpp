@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 namespace vps::viewer::inline v0 {
@@ -14,6 +15,31 @@ std::uint64_t side(const std::array<float, 3>& n) {
   for (int k = 1; k < 3; ++k)
     if (std::abs(n[k]) > std::abs(n[axis])) axis = k;
   return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
+}
+
+/// Which vertices lie on a crease or an open border.
+std::vector<bool> creased(const ShadingMesh& mesh) {
+  std::uint32_t last = 0;
+  for (const std::uint32_t source : mesh.sources) last = std::max(last, source);
+  std::vector<std::uint8_t> uses(std::size_t(last) + 1, 0);
+  for (const std::uint32_t source : mesh.sources)
+    uses[source] = static_cast<std::uint8_t>(std::min(2, uses[source] + 1));
+  std::set<std::array<float, 3>> on_edge;
+  for (const ShadingEdge& edge : mesh.sharp_edges) on_edge.insert({edge.a, edge.b});
+  std::vector<bool> is_creased(mesh.vertices.size());
+  for (std::size_t i = 0; i < is_creased.size(); ++i)
+    is_creased[i] = uses[mesh.sources[i]] > 1 || (!on_edge.empty() && on_edge.contains(mesh.vertices[i].p));
+  return is_creased;
+}
+
+std::vector<std::uint32_t> withStandIns(const ShadingMesh& mesh, const std::vector<std::uint32_t>& stand_in) {
+  std::vector<std::uint32_t> coarse;
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const std::uint32_t a = stand_in[mesh.indices[i]], b = stand_in[mesh.indices[i + 1]],
+                        c = stand_in[mesh.indices[i + 2]];
+    if (a != b && b != c && c != a) coarse.insert(coarse.end(), {a, b, c});
+  }
+  return coarse;
 }
 
 }  // namespace
@@ -33,19 +59,45 @@ std::vector<std::uint32_t> coarseIndices(const ShadingMesh& mesh, std::size_t wa
 
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;
   std::vector<std::uint32_t> stand_in(mesh.vertices.size());
-  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+  const auto standIn = [&](std::uint32_t i) {
     std::uint64_t key = side(mesh.vertices[i].n);
     for (int k = 0; k < 3; ++k)
       key = key << 12 | static_cast<std::uint64_t>((mesh.vertices[i].p[k] - low[k]) / cell);
     stand_in[i] = first_in_cell.try_emplace(key, i).first->second;
+  };
+  // Vertices on creases come first, so that sharp edges stay where they are.
+  const std::vector<bool> is_creased = creased(mesh);
+  for (const bool wanted_now : {true, false})
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
+      if (is_creased[i] == wanted_now) standIn(i);
+  return withStandIns(mesh, stand_in);
+}
+
+std::vector<std::uint32_t> smoothedIndices(const ShadingMesh& mesh, double cell) {
+  constexpr float kNormalBins = 12;  // a unit of a normal's coordinate: 5 degrees
+  const std::vector<bool> is_creased = creased(mesh);
+  struct Key {
+    std::array<std::int32_t, 6> at;
+    bool operator==(const Key&) const = default;
+  };
+  const auto hash = [](const Key& key) {
+    std::size_t h = 0;
+    for (const std::int32_t x : key.at) h = (h ^ static_cast<std::uint32_t>(x)) * 0x9E3779B97F4A7C15ull;
+    return h ^ h >> 29;
+  };
+  std::unordered_map<Key, std::uint32_t, decltype(hash)> first(mesh.vertices.size(), hash);
+  std::vector<std::uint32_t> stand_in(mesh.vertices.size());
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    stand_in[i] = i;
+    if (is_creased[i]) continue;
+    Key key{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      key.at[k] = static_cast<std::int32_t>(std::floor(static_cast<double>(mesh.vertices[i].p[k]) / cell));
+      key.at[3 + k] = static_cast<std::int32_t>(std::floor(kNormalBins * mesh.vertices[i].n[k] + 0.5f));
+    }
+    stand_in[i] = first.try_emplace(key, i).first->second;
   }
-  std::vector<std::uint32_t> coarse;
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::uint32_t a = stand_in[mesh.indices[i]], b = stand_in[mesh.indices[i + 1]],
-                        c = stand_in[mesh.indices[i + 2]];
-    if (a != b && b != c && c != a) coarse.insert(coarse.end(), {a, b, c});
-  }
-  return coarse;
+  return withStandIns(mesh, stand_in);
 }
 
 }  // namespace vps::viewer::inline v0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A coarser version of a mesh, for drafts: pictures of a view that moves.
+// Coarser versions of a mesh: for drafts (pictures of a view that moves), shadows, and parts that are small
+// in a picture.
 #pragma once
 
 #include "draw/shading_mesh.h"
@@ -11,5 +12,11 @@ namespace vps::viewer::inline v0 {
 /// triangles that collapse are dropped; a surface stays within a cell's diagonal of where it was.
 /// O(triangles). Source: vertex clustering, Rossignac and Borrel 1993.
 std::vector<std::uint32_t> coarseIndices(const ShadingMesh& mesh, std::size_t wanted);
+
+/// The same surface with fewer triangles where it is smooth: vertices within a cell whose normals differ by
+/// less than about a twelfth of a right angle become one. Those on creases and borders stay, so nothing
+/// opens. A surface stays within a quarter of a cell of where it was. O(triangles).
+/// @param cell  edge of a cell [m], > 0
+std::vector<std::uint32_t> smoothedIndices(const ShadingMesh& mesh, double cell);
 
 }  // namespace vps::viewer::inline v0

@@ -52,8 +52,7 @@ void drawEdges(const Picture& picture) {
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_BLEND);
   for (const DrawnBody& body : picture.bodies) {
-    const bool is_coarser = body.mesh->coarse_count < body.mesh->index_count;
-    if (picture.options.is_draft && is_coarser) continue;  // its edges are not where its triangles are
+    if (body.mesh->isCoarser(body.detail)) continue;  // its edges are not where its triangles are
     const Vector3f ink = 0.10f * body.color + Vector3f::Constant(0.004f);
     const Vec3 p_eye = -(body.X_CP.R.transpose() * body.X_CP.p);
     std::vector<ShadingEdge> rim;

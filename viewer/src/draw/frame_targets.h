@@ -30,7 +30,7 @@ struct FrameTargets {
 
 /// The render targets whose size does not depend on the picture's.
 struct ShadowTargets {
-  static constexpr int kKeySize = 2048, kFloorSize = 512;
+  static constexpr int kKeySize = 2048, kFloorSize = 256;
   gl::Texture key;  ///< depth map of the key light, with comparison on lookup
   gl::Framebuffer key_target;
   gl::Texture floor_a, floor_b;

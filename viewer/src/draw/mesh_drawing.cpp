@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "draw/passes.h"
 
+#include <algorithm>
+
 namespace vps::viewer::inline v0 {
 
+namespace {
+
+/// A closed part shows its front faces only, unless it is cut, or the eye, at the origin, may be inside.
+bool showsFrontOnly(const DrawnBody& body, const View& view) {
+  const double reach_m = 0.5 * body.mesh->bounds_P.size().norm() + view.near_m;
+  return body.mesh->shading.is_closed && !body.is_cut && body.X_CP.p.norm() > reach_m;
+}
+
+/// Least distance of the part from the eye along the line of sight.
+double nearest_m(const DrawnBody& body, const View& view) {
+  return std::max<double>(view.near_m, -body.X_CP.p.z() - 0.5 * body.mesh->bounds_P.size().norm());
+}
+
+}  // namespace
+
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
-                const Eigen::Matrix4f& projection, bool is_shaded) {
+                const Eigen::Matrix4f& projection, bool is_shaded, bool is_shadow) {
   program.use();
   program.set("projection", projection);
-  glEnable(GL_CLIP_DISTANCE0);
   for (const DrawnBody& body : bodies) {
+    // Clipping and the faces behind cost as much as what is seen.
+    if (body.is_cut) glEnable(GL_CLIP_DISTANCE0);
+    if (showsFrontOnly(body, view)) glEnable(GL_CULL_FACE);
     program.set("X_CP", toMatrix(body.X_CP));
     program.set("cut_C", body.is_cut ? view.cut_C : kNoCut);
     if (is_shaded) program.set("color", body.color);
-    body.mesh->draw(body.is_coarse);
+    if (is_shadow || body.detail != Detail::Full || body.is_cut)
+      body.mesh->draw(is_shadow ? Detail::Shadow : body.detail);
+    else
+      body.mesh->drawAt(view.px_m / nearest_m(body, view));
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_CLIP_DISTANCE0);
   }
-  glDisable(GL_CLIP_DISTANCE0);
 }
 
 }  // namespace vps::viewer::inline v0

@@ -45,8 +45,9 @@ Image resolvePicture(const GpuResources& gl);
 // What several passes use.
 // mesh_drawing.cpp
 /// @param is_shaded whether the program takes a colour
+/// @param is_shadow large scenes have fewer triangles (Detail::Shadow)
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
-                const Eigen::Matrix4f& projection, bool is_shaded);
+                const Eigen::Matrix4f& projection, bool is_shaded, bool is_shadow = false);
 // section_caps.cpp
 /// The cut faces of all parts that the section passes through.
 void drawCaps(const gl::Program& program, const Picture& picture);

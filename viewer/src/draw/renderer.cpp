@@ -31,11 +31,9 @@ struct Renderer::Impl {
     gl = std::make_unique<GpuResources>();
     std::size_t triangles = 0;
     for (const DrawnMesh& part : scene) triangles += part.mesh->triangles.size();
-    const double coarse_share =
-        triangles > kDraftTriangles ? double(kDraftTriangles) / static_cast<double>(triangles) : 1;
     for (const DrawnMesh& part : scene) {
       std::unique_ptr<GpuMesh>& mesh = gl->meshes[part.mesh];
-      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors, coarse_share);
+      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors, triangles);
       part_meshes.push_back(mesh.get());
       part_colors.emplace_back(Eigen::Map<const Vector3f>(part.color.data()));
     }
@@ -63,7 +61,7 @@ struct Renderer::Impl {
                          const bool is_in_hand = role == scenes::BodyRole::InHand;
                          DrawnBody body = bodyAt(part, X_WP, view);
                          body.color = is_in_hand && options.highlight_hand ? kHandColor : part_colors[part];
-                         body.is_coarse = options.is_draft;
+                         body.detail = options.is_draft ? Detail::Draft : Detail::Full;
                          body.is_cut = options.cut && (!is_in_hand || options.cut->cuts_hand);
                          bodies.push_back(body);
                        });
@@ -77,7 +75,7 @@ struct Renderer::Impl {
       return std::nullopt;
     DrawnBody target = bodyAt(snapshot.target_part, snapshot.X_WP_target, view);
     target.color = kHandColor;
-    target.is_coarse = options.is_draft;
+    target.detail = options.is_draft ? Detail::Draft : Detail::Full;
     target.is_cut = options.cut && options.cut->cuts_hand;
     return target;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "draw/scene_buffers.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "draw/coarse_mesh.h"
@@ -28,32 +29,59 @@ std::vector<std::array<float, 3>> colorsOf(const ShadingMesh& shading,
 }  // namespace
 
 GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
-                 double coarse_share)
+                 std::size_t scene_triangles)
     : bounds_P(bounds(mesh)),
       shading(buildShadingMesh(mesh)),
       vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
       colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, vertex_colors)))),
-      indices(gl::makeBuffer(std::span<const std::uint32_t>(shading.indices))),
-      array(gl::makeVertexArray()),
-      coarse_array(gl::makeVertexArray()),
-      sharp_edges(shading.sharp_edges),
-      index_count(static_cast<GLsizei>(shading.indices.size())) {
-  const std::vector<std::uint32_t> coarse =
-      coarseIndices(shading, static_cast<std::size_t>(coarse_share * index_count / 3));
-  coarse_indices = gl::makeBuffer(std::span<const std::uint32_t>(coarse));
-  coarse_count = static_cast<GLsizei>(coarse.size());
-  for (const gl::VertexArray* each : {&array, &coarse_array}) {
-    gl::addAttribute(*each, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
-    gl::addAttribute(*each, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
-    gl::addAttribute(*each, colors, 2, 3, 0, sizeof(std::array<float, 3>));
-  }
-  glVertexArrayElementBuffer(array.id(), indices.id());
-  glVertexArrayElementBuffer(coarse_array.id(), coarse_indices.id());
+      sharp_edges(shading.sharp_edges) {
+  const std::size_t triangles = shading.indices.size() / 3;
+  const auto coarser = [&](std::size_t most) {
+    const double share = double(most) / static_cast<double>(std::max(most, scene_triangles));
+    return indicesOf(
+        coarseIndices(shading, static_cast<std::size_t>(share * static_cast<double>(triangles))));
+  };
+  details_ = {indicesOf(shading.indices), coarser(kShadowTriangles), coarser(kDraftTriangles)};
+  addLevels();
 }
 
-void GpuMesh::draw(bool is_coarse) const {
-  glBindVertexArray(is_coarse ? coarse_array.id() : array.id());
-  glDrawElements(GL_TRIANGLES, is_coarse ? coarse_count : index_count, GL_UNSIGNED_INT, nullptr);
+void GpuMesh::addLevels() {
+  constexpr std::size_t kFewest = 5000;                   // triangles. assumed: fewer cost little
+  constexpr std::array<double, 3> kCells = {24, 48, 96};  // along the diagonal
+  constexpr double kWorthwhile = 0.7;                     // of the triangles of the level before
+  std::size_t before = shading.indices.size();
+  if (before / 3 < kFewest) return;
+  for (auto cells = kCells.rbegin(); cells != kCells.rend(); ++cells) {
+    const double cell_m = bounds_P.size().norm() / *cells;
+    const std::vector<std::uint32_t> fewer = smoothedIndices(shading, cell_m);
+    if (static_cast<double>(fewer.size()) > kWorthwhile * static_cast<double>(before)) continue;
+    before = fewer.size();
+    levels_.insert(levels_.begin(), {cell_m, indicesOf(fewer)});
+  }
+}
+
+void GpuMesh::drawAt(double px_per_m) const {
+  constexpr double kCell_px = 5;  // a surface then stays within a pixel or so, see smoothedIndices()
+  const auto level =
+      std::ranges::find_if(levels_, [&](const Level& each) { return each.cell_m * px_per_m < kCell_px; });
+  const Indices& drawn = level == levels_.end() ? of(Detail::Full) : level->indices;
+  glBindVertexArray(drawn.array.id());
+  glDrawElements(GL_TRIANGLES, drawn.count, GL_UNSIGNED_INT, nullptr);
+}
+
+GpuMesh::Indices GpuMesh::indicesOf(const std::vector<std::uint32_t>& indices) const {
+  Indices made = {gl::makeBuffer(std::span<const std::uint32_t>(indices)), gl::makeVertexArray(),
+                  static_cast<GLsizei>(indices.size())};
+  gl::addAttribute(made.array, vertices, 0, 3, offsetof(ShadingVertex, p), sizeof(ShadingVertex));
+  gl::addAttribute(made.array, vertices, 1, 3, offsetof(ShadingVertex, n), sizeof(ShadingVertex));
+  gl::addAttribute(made.array, colors, 2, 3, 0, sizeof(std::array<float, 3>));
+  glVertexArrayElementBuffer(made.array.id(), made.buffer.id());
+  return made;
+}
+
+void GpuMesh::draw(Detail detail) const {
+  glBindVertexArray(of(detail).array.id());
+  glDrawElements(GL_TRIANGLES, of(detail).count, GL_UNSIGNED_INT, nullptr);
 }
 
 Eigen::Matrix4f toMatrix(const Pose& X) {

@@ -2,6 +2,7 @@
 // The meshes of a scene in graphics memory, and the bodies of one picture.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -19,16 +20,46 @@ struct GpuLines {
   explicit GpuLines(std::span<const ShadingEdge> segments);
 };
 
+/// How many of a mesh's triangles are drawn.
+enum class Detail {
+  Full,
+  Shadow,  ///< at most about kShadowTriangles of the whole scene
+  Draft,   ///< at most about kDraftTriangles
+};
+/// Shadows are blurred over more than the error of so many triangles.
+inline constexpr std::size_t kShadowTriangles = 120000;
+
 struct GpuMesh {
   Box bounds_P;         ///< in the part's frame
   ShadingMesh shading;  ///< kept, because outlines and sections are computed on the CPU for each picture
-  gl::Buffer vertices, colors, indices, coarse_indices;
-  gl::VertexArray array, coarse_array;
+  gl::Buffer vertices, colors;
   GpuLines sharp_edges;
-  GLsizei index_count = 0, coarse_count = 0;
-  /// @param coarse_share  share of the triangles that a draft draws, 1: all
-  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors, double coarse_share);
-  void draw(bool is_coarse) const;
+  /// @param scene_triangles  of all meshes, of which the details are shares
+  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
+          std::size_t scene_triangles);
+  void draw(Detail detail) const;
+  /// With as few triangles as a picture shows where the part is at least that far away.
+  /// @param px_per_m  of the picture, there
+  void drawAt(double px_per_m) const;
+  /// Whether that detail has fewer triangles than the mesh.
+  [[nodiscard]] bool isCoarser(Detail detail) const { return of(detail).count < of(Detail::Full).count; }
+
+ private:
+  struct Indices {
+    gl::Buffer buffer;
+    gl::VertexArray array;
+    GLsizei count = 0;
+  };
+  void addLevels();
+  [[nodiscard]] Indices indicesOf(const std::vector<std::uint32_t>& indices) const;
+  [[nodiscard]] const Indices& of(Detail detail) const { return details_[static_cast<std::size_t>(detail)]; }
+
+  struct Level {
+    double cell_m = 0;
+    Indices indices;
+  };
+  std::array<Indices, 3> details_;  ///< by Detail
+  std::vector<Level> levels_;       ///< smoothed, the coarsest first
 };
 
 /// A part at its pose in one picture.
@@ -38,7 +69,7 @@ struct DrawnBody {
   Pose X_CP;  ///< mesh centre in the camera frame
   Eigen::Vector3f color = Eigen::Vector3f::Zero();
   bool is_cut = false;
-  bool is_coarse = false;
+  Detail detail = Detail::Full;
 };
 
 Eigen::Matrix4f toMatrix(const Pose& X);

@@ -82,6 +82,7 @@ void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, double crea
 void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_cos, ShadingMesh& out) {
   struct HalfEdge {
     std::uint32_t low, high, face;
+    bool is_upwards;  // from low to high, as its face goes around
     bool operator<(const HalfEdge& o) const {
       return low != o.low ? low < o.low : high != o.high ? high < o.high : face < o.face;
     }
@@ -90,10 +91,11 @@ void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_
   edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f)
     for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(mesh.triangles[f][k], mesh.triangles[f][(k + 1) % 3]);
-      edges.push_back({low, high, f});
+      const std::uint32_t from = mesh.triangles[f][k], to = mesh.triangles[f][(k + 1) % 3];
+      edges.push_back({std::min(from, to), std::max(from, to), f, from < to});
     }
   std::sort(edges.begin(), edges.end());
+  out.is_closed = massProperties(mesh).volume_m3 > 0;
   for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
     while (next < edges.size() && edges[next].low == edges[i].low && edges[next].high == edges[i].high)
       ++next;
@@ -101,6 +103,7 @@ void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_
                               toFloat(mesh.vertices[edges[i].high] - out.center)};
     const Vec3& n0 = normals[edges[i].face];
     const bool is_between_two = next - i == 2;
+    out.is_closed = out.is_closed && is_between_two && edges[i].is_upwards != edges[i + 1].is_upwards;
     const Vec3 n1 = is_between_two ? normals[edges[i + 1].face] : Vec3::Zero();
     if (is_between_two && (n0.isZero() || n1.isZero())) continue;  // a triangle without area has no normal
     const double cos_angle = n0.dot(n1);

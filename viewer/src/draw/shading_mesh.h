@@ -34,6 +34,9 @@ struct ShadingMesh {
   std::vector<std::uint32_t> indices;
   std::vector<ShadingEdge> sharp_edges;  ///< dihedral angle beyond the crease angle, and open borders
   std::vector<SmoothEdge> smooth_edges;
+  /// Each edge is between two triangles that agree on what is outside: seen from there, only front faces
+  /// show.
+  bool is_closed = false;
 };
 
 /// 28 degrees: less than a chamfer of 30 degrees, more than between the facets of tessellated cylinders (up

@@ -29,7 +29,7 @@ void renderKeyShadow(const Picture& picture) {
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2, 4);
-  drawMeshes(gl.programs.depth, picture.bodies, picture.view, picture.view.shadow_projection, false);
+  drawMeshes(gl.programs.depth, picture.bodies, picture.view, picture.view.shadow_projection, false, true);
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -47,8 +47,8 @@ void renderFloorShadow(const Picture& picture) {
   floor.set("floor_C", Vector3f(view.floor_C.cast<float>()));
   floor.set("up_C", view.up_C);
   floor.set("size_m", static_cast<float>(2 * view.radius_m));
-  drawMeshes(floor, picture.bodies, view, parallelProjection(view.floor_C, half_m, -up, floorAxis(up)),
-             false);
+  drawMeshes(floor, picture.bodies, view, parallelProjection(view.floor_C, half_m, -up, floorAxis(up)), false,
+             true);
 
   glDisable(GL_DEPTH_TEST);
   const gl::Program& blur = picture.gl.programs.floor_blur;

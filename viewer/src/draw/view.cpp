@@ -42,6 +42,7 @@ void setLens(View& view, const Camera& camera, const DrawOptions& options) {
   const double tan_y = std::tan(0.5 * camera.fov_rad);
   view.detail_m = std::min(view.radius_m, 1.5 * tan_y * (camera.eye_W - camera.target_W).norm());
   const auto [half_x, half_y] = camera.halfView(options.width, options.height);
+  view.px_m = 0.5 * options.height * std::max(1, options.supersampling) / half_y;
   view.half_view = Vector2f(static_cast<float>(half_x), static_cast<float>(half_y));
   view.shift = Vector2f(static_cast<float>(camera.shift_x), static_cast<float>(camera.shift_y));
   // The floor extends beyond the box, so the far plane lies further out than the box requires.

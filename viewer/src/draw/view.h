@@ -16,6 +16,7 @@ struct View {
   Eigen::Vector2f half_view;                        ///< tan of half the angles of view
   Eigen::Vector2f shift = Eigen::Vector2f::Zero();  ///< of the picture's middle, likewise
   float near_m = 0;
+  double px_m = 1;  ///< pixels of a metre across at a distance of a metre, with supersampling
   Eigen::Vector3f up_C;
   Vec3 center_C;
   double radius_m = 1;  ///< of a sphere around all that is drawn

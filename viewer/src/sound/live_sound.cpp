@@ -30,6 +30,7 @@ struct LiveSound::Impl {
   std::vector<scenes::Snapshot> waiting;
   std::vector<device::Beep> beeps;
   std::string news;  ///< empty: none so far
+  Pose X_WL;         ///< of the listener
   bool is_ending = false, was_told = false;
   std::thread thread;
 
@@ -45,6 +46,8 @@ struct LiveSound::Impl {
     std::vector<device::Beep> new_beeps;
     RunSound sound(scene);
     bool is_ready = false;
+    std::optional<Vec3> p_W;  // of the last contact, where parts go on ringing
+    Pose X_WL;
     for (;;) {
       {
         std::unique_lock lock(mutex);
@@ -52,26 +55,40 @@ struct LiveSound::Impl {
         if (is_ending) return;
         shots = std::exchange(waiting, {});
         new_beeps = std::exchange(beeps, {});
+        X_WL = this->X_WL;
       }
       if (!std::exchange(is_ready, true))  // before anything touches
         for (std::size_t i = 0; i < scene.parts.size() && !isEnding(); ++i)
           if (scene.parts[i].model) sound.prepare(i);
       for (const device::Beep beep : new_beeps) sound.beep(beep);
-      for (const scenes::Snapshot& shot : shots) sound.hear(shot);
-      play(sound.take());
+      for (const scenes::Snapshot& shot : shots) {
+        sound.hear(shot);
+        if (const std::optional<Vec3> place_W = soundPlace(shot)) p_W = place_W;
+      }
+      play(sound.take(), p_W ? X_WL.inverse() * *p_W : -Vec3::UnitZ());
     }
   }
 
-  void play(const RunSound::Samples& heard) {
-    std::vector<float> mixed(heard.pressure_Pa.size());
-    for (std::size_t i = 0; i < mixed.size(); ++i)
-      mixed[i] = std::clamp(loudness(heard.pressure_Pa[i]) + kLiveBeepLevel * heard.beeps[i], -1.0f, 1.0f);
-    output->write(mixed);
+  void play(RunSound::Samples heard, const Vec3& to_L) {
+    for (float& x : heard.pressure_Pa) x = loudness(x);
+    for (float& x : heard.beeps) x = std::clamp(kLiveBeepLevel * x, -1.0f, 1.0f);
+    output->write(heard.pressure_Pa, heard.beeps, to_L);
     if (output->isThere()) return;
     const std::lock_guard lock(mutex);
     if (!std::exchange(was_told, true)) news = "the sound card is gone; the run goes on in silence";
   }
 };
+
+std::optional<Vec3> soundPlace(const scenes::Snapshot& shot) {
+  Vec3 sum_W = Vec3::Zero();
+  double force_N = 0;
+  for (const scenes::ContactMark& mark : shot.contacts) {
+    sum_W += mark.force_N * mark.p_W;
+    force_N += mark.force_N;
+  }
+  if (!(force_N > 0)) return {};
+  return Vec3(sum_W / force_N);
+}
 
 LiveSound::LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output)
     : impl_(std::make_unique<Impl>(scene, std::move(output))) {}
@@ -92,6 +109,11 @@ void LiveSound::hear(const scenes::Snapshot& shot) {
     impl_->waiting.push_back(shot);
   }
   impl_->wake.notify_one();
+}
+
+void LiveSound::listenAt(const Pose& X_WL) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->X_WL = X_WL;
 }
 
 void LiveSound::beep(device::Beep beep) {

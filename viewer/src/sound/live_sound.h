@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -15,14 +16,19 @@ namespace vps::viewer::inline v0 {
 class SoundOutput {
  public:
   virtual ~SoundOutput() = default;
-  /// Samples between -1 and 1, to be heard after what was written before. Never waits; what does not fit is
-  /// dropped.
-  virtual void write(std::span<const float> samples) = 0;
+  /// Samples between -1 and 1, to be heard after what was written before: of the parts, from a direction, and
+  /// of the device, from everywhere. Equally many. Never waits; what does not fit is dropped.
+  /// @param to_L  the place of the sound from the listener: x right, y up, z back; only its direction counts
+  virtual void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) = 0;
   /// False once the sound card is gone.
   [[nodiscard]] virtual bool isThere() const = 0;
 };
 
-/// The system's default output. Null where there is none, and `why` says so in a line.
+/// The middle of the snapshot's contacts, by their forces; none where nothing touches.
+VPS_VIEWER_API std::optional<Vec3> soundPlace(const scenes::Snapshot& shot);
+
+/// The system's default output, for headphones (HRTF) where OpenAL has that. Null where there is none, and
+/// `why` says so in a line.
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
 
 /// Synthesises on a thread of its own. hear() and beep() only hand over, so that physics does not wait for
@@ -36,6 +42,8 @@ class VPS_VIEWER_API LiveSound {
   LiveSound& operator=(const LiveSound&) = delete;
 
   void hear(const scenes::Snapshot& shot);
+  /// From now on: the listener's pose in W, x right, y up, z back; as of a camera.
+  void listenAt(const Pose& X_WL);
   void beep(device::Beep beep);
   /// Once, if the sound card is gone: a line that says so.
   [[nodiscard]] std::string takeNews();

@@ -76,6 +76,12 @@ const std::vector<StereoMode>& stereoModes() {
   return modes;
 }
 
+StereoMode stereoModeOf(const std::string& name) {
+  for (const StereoMode mode : stereoModes())
+    if (name == toText(mode)) return mode;
+  return StereoMode::Mono;
+}
+
 EyePair eyesOf(const Camera& camera, double eye_distance_m, double picture_aspect) {
   const Mat3 R = camera.pose().R;
   const double height_m = 2 * std::tan(0.5 * camera.fov_rad) * (camera.eye_W - camera.target_W).norm();
@@ -96,6 +102,15 @@ Camera cameraFor(const scenes::Display& display, const scenes::DisplayScreen& sc
                          (screen.upper_left_S - screen.lower_left_S).norm() / display.scale, R_WS * R_S);
 }
 
+Camera middleEye(const EyePair& eyes) {
+  Camera middle = eyes.left;  // both frusta end at one screen, so the one between them is their mean
+  middle.eye_W = 0.5 * (eyes.left.eye_W + eyes.right.eye_W);
+  middle.target_W = 0.5 * (eyes.left.target_W + eyes.right.target_W);
+  middle.shift_x = 0.5 * (eyes.left.shift_x + eyes.right.shift_x);
+  middle.shift_y = 0.5 * (eyes.left.shift_y + eyes.right.shift_y);
+  return middle;
+}
+
 std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snapshot, const EyePair& eyes,
                                 const DrawOptions& options, StereoMode mode) {
   DrawOptions half = options;
@@ -104,15 +119,8 @@ std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snap
   half.caption.clear();
   if (mode == StereoMode::SideBySide) half.width = options.width / 2;
   if (mode == StereoMode::TopBottom) half.height = options.height / 2;
-  Camera left_eye = eyes.left;
-  if (mode == StereoMode::Mono) {  // both frusta end at one screen, so the one between them is their mean
-    left_eye.eye_W = 0.5 * (eyes.left.eye_W + eyes.right.eye_W);
-    left_eye.target_W = 0.5 * (eyes.left.target_W + eyes.right.target_W);
-    left_eye.shift_x = 0.5 * (eyes.left.shift_x + eyes.right.shift_x);
-    left_eye.shift_y = 0.5 * (eyes.left.shift_y + eyes.right.shift_y);
-    return {renderer.render(snapshot, left_eye, half)};
-  }
-  const Image left = renderer.render(snapshot, left_eye, half);
+  if (mode == StereoMode::Mono) return {renderer.render(snapshot, middleEye(eyes), half)};
+  const Image left = renderer.render(snapshot, eyes.left, half);
   const Image right = renderer.render(snapshot, eyes.right, half);
   switch (mode) {
     case StereoMode::Mono:

@@ -29,6 +29,8 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
       is_paused_(settings.is_paused) {
   if (!settings.hand.empty()) scene_.device.kind = settings.hand;
   is_by_clock_ = isByPerson(scene_.device.kind);
+  if (scene_.device.kind == "mouse") scene_.device.placement.reset();  // it stands nowhere in the room
+  snaps_ = settings.snaps;
   if (is_by_clock_) {
     is_paused_ = false;
     for (scenes::SceneStep& step : scene_.steps)
@@ -162,6 +164,7 @@ void LiveRun::run(const LiveSettings& settings) {
     on_news_();
   };
   options.stop = &stop_;
+  options.snaps = &snaps_;
   options.tap = &tap_;
   options.on_device_event = [this](const device::DeviceEvent& event) { report(event); };
   options.is_real_time = is_by_clock_;
@@ -171,6 +174,7 @@ void LiveRun::run(const LiveSettings& settings) {
     const std::lock_guard lock(mutex_);
     status_.result.steps = so_far.steps;
     status_.result.verdict = so_far.verdict;
+    status_.result.finished = so_far.finished;
   };
   scenes::AssembleResult result;
   std::string error;

@@ -26,6 +26,7 @@ struct LiveSettings {
   std::string hand;             ///< kind of device that moves the part; empty: the scene's. See isByPerson()
   std::shared_ptr<device::HandleWish> wish;  ///< of the mouse
   bool has_sound = true;                     ///< where there is a sound card
+  bool snaps = false;                        ///< begins with axis snap
 };
 
 /// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
@@ -40,7 +41,7 @@ struct LiveStatus {
   std::size_t steps = 0;  ///< physics steps so far
   bool is_over = false;
   std::string error;  ///< why it could not go on; empty: nothing
-  /// So far; complete when is_over.
+  /// So far; complete when is_over. `finished` shows the parts as the last step left them.
   scenes::AssembleResult result;
 };
 
@@ -61,6 +62,12 @@ class VPS_VIEWER_API LiveRun {
   [[nodiscard]] bool isByClock() const { return is_by_clock_; }
   /// Of a paused run: one physics step.
   void oneStep();
+  /// Axis snap on or off (scenes::AssembleOptions::snaps).
+  void snap(bool snaps) { snaps_ = snaps; }
+  /// The listener, as of a camera: see LiveSound.
+  void listenAt(const Pose& X_WL) {
+    if (sound_) sound_->listenAt(X_WL);
+  }
   /// Asks for a snapshot at the end of the next physics step.
   void ask();
   /// What the device and the sound card reported since the last call, in words.
@@ -77,7 +84,7 @@ class VPS_VIEWER_API LiveRun {
 
   scenes::Scene scene_;
   std::function<void()> on_news_;
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, snaps_{false};
   scenes::SnapshotTap tap_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;

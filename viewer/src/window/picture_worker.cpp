@@ -27,10 +27,22 @@ bool isSameSnapshot(const scenes::Snapshot& a, const scenes::Snapshot& b) {
          a.F_hand_W.tau == b.F_hand_W.tau;
 }
 
+bool isSameEyes(const std::optional<EyePair>& a, const std::optional<EyePair>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->left == b->left && a->right == b->right;
+}
+
+Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera,
+           const DrawOptions& options) {
+  if (!asked.eyes) return renderer.render(asked.snapshot, camera, options);
+  return std::move(renderStereo(renderer, asked.snapshot, *asked.eyes, options, asked.stereo).front());
+}
+
 }  // namespace
 
 bool isSame(const PictureRequest& a, const PictureRequest& b) {
-  return a.camera == b.camera && a.options == b.options && isSameSnapshot(a.snapshot, b.snapshot);
+  return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
+         isSameEyes(a.eyes, b.eyes) && isSameSnapshot(a.snapshot, b.snapshot);
 }
 
 PictureWorker::PictureWorker(RenderScene scene, std::function<void()> on_done)
@@ -119,7 +131,7 @@ void PictureWorker::drawAll(Renderer& renderer) {
       options.height = std::max(16, options.height / shrink);
     }
     const Clock::time_point begun = Clock::now();
-    Image image = renderer.render(asked.snapshot, camera, options);
+    Image image = draw(renderer, asked, camera, options);
     const double wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
     if (is_draft && wall_s > kSlowDraft_s && shrink < kMostShrink) ++shrink;
     if (is_draft && wall_s < kFastDraft_s && shrink > 1) --shrink;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "vps_viewer/renderer.h"
+#include "vps_viewer/stereo.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -18,6 +19,9 @@ struct PictureRequest {
   scenes::Snapshot snapshot;
   Camera camera;
   DrawOptions options;
+  StereoMode stereo = StereoMode::Mono;
+  std::optional<EyePair>
+      eyes;  ///< of a picture for two eyes, or for the middle between them; none: `camera`'s
 };
 /// Whether both give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);

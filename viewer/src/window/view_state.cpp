@@ -41,6 +41,23 @@ void playOrPause(ViewState& state, const Timeline& line) {
 
 }  // namespace
 
+StereoMode nextStereo(StereoMode mode) {
+  switch (mode) {
+    case StereoMode::Mono:
+      return StereoMode::SideBySide;
+    case StereoMode::SideBySide:
+      return StereoMode::TopBottom;
+    case StereoMode::TopBottom:
+      return StereoMode::Anaglyph;
+    case StereoMode::Anaglyph:
+      return StereoMode::Interleaved;
+    case StereoMode::Interleaved:
+    case StereoMode::Spectral:
+      break;
+  }
+  return StereoMode::Mono;
+}
+
 std::span<const KeyBinding> keyBindings() {
   static constexpr std::array kKeys = {
       KeyBinding{Action::Help, "?", "shows or hides this list"},
@@ -70,6 +87,14 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{Action::RunLive, "R", "runs the procedure, or goes back to the tour"},
       KeyBinding{Action::TakeByMouse, "H", "takes the parts in hand by the mouse, or goes back to the tour"},
       KeyBinding{Action::OneStep, "N", "of a paused run: one physics step"},
+      KeyBinding{Action::Undo, "Z", "takes back the last step that was done, and goes on from there"},
+      KeyBinding{Action::Redo, "Y", "does again, as it was, what Z took back"},
+      KeyBinding{Action::Free, "U", "free assembly without a procedure, or back to the tour"},
+      KeyBinding{Action::TakeOrPutDown, "Enter",
+                 "in free assembly: takes the picked part in hand, or puts it down"},
+      KeyBinding{Action::Snap, "A", "axis snap: a spring guides the part in hand to its axis, or not"},
+      KeyBinding{Action::Path, "W", "shows or hides the planned path"},
+      KeyBinding{Action::Stereo, "S", "stereo: none, side by side, top and bottom, anaglyph, interleaved"},
       KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
       KeyBinding{Action::Deselect, "Escape", "deselects the part"},
       KeyBinding{Action::Close, "Q", "closes the window"}};
@@ -165,6 +190,27 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::OneStep:
       state.wants_one_step = true;
+      break;
+    case Action::Undo:
+      state.wants_undo = true;
+      break;
+    case Action::Redo:
+      state.wants_redo = true;
+      break;
+    case Action::Free:
+      state.wants_free = true;
+      break;
+    case Action::TakeOrPutDown:
+      state.wants_take = true;
+      break;
+    case Action::Snap:
+      state.snaps = !state.snaps;
+      break;
+    case Action::Path:
+      state.shows_path = !state.shows_path;
+      break;
+    case Action::Stereo:
+      state.stereo = nextStereo(state.stereo);
       break;
     case Action::SavePicture:
       state.wants_picture_file = true;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "vps_viewer/stereo.h"
 #include "window/camera_motion.h"
 #include "window/picking.h"
 #include "window/timeline.h"
@@ -39,6 +40,13 @@ enum class Action {
   RunLive,
   TakeByMouse,
   OneStep,
+  Undo,
+  Redo,
+  Free,
+  TakeOrPutDown,
+  Snap,
+  Path,
+  Stereo,
   SavePicture,
   Deselect,
   Close,
@@ -64,10 +72,16 @@ struct ViewState {
   bool is_playing = false;
   double speed = 1;  ///< of playing, 1: real time
   bool shows_help = false, is_dark = false;
+  bool snaps = false;       ///< axis snap on the part in hand
+  bool shows_path = false;  ///< the planned path of the part in hand
+  StereoMode stereo = StereoMode::Mono;
   // What the window carries out and clears.
   bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
-       wants_mouse = false;
+       wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false;
 };
+
+/// The mode that the key switches to from that one: those that one picture of a window can show.
+VPS_VIEWER_API StereoMode nextStereo(StereoMode mode);
 
 /// @param box_W  around what is shown
 VPS_VIEWER_API void apply(Action action, ViewState& state, const Timeline& line, const Box& box_W);

@@ -28,14 +28,16 @@ std::string lastError() {
 }
 
 const char* nameOf(int key) {
-  static constexpr std::array<std::pair<int, const char*>, 8> kNames = {{{GLFW_KEY_SPACE, "Space"},
-                                                                         {GLFW_KEY_LEFT, "Left"},
-                                                                         {GLFW_KEY_RIGHT, "Right"},
-                                                                         {GLFW_KEY_UP, "Up"},
-                                                                         {GLFW_KEY_DOWN, "Down"},
-                                                                         {GLFW_KEY_HOME, "Home"},
-                                                                         {GLFW_KEY_END, "End"},
-                                                                         {GLFW_KEY_ESCAPE, "Escape"}}};
+  static constexpr std::array<std::pair<int, const char*>, 10> kNames = {{{GLFW_KEY_SPACE, "Space"},
+                                                                          {GLFW_KEY_ENTER, "Enter"},
+                                                                          {GLFW_KEY_KP_ENTER, "Enter"},
+                                                                          {GLFW_KEY_LEFT, "Left"},
+                                                                          {GLFW_KEY_RIGHT, "Right"},
+                                                                          {GLFW_KEY_UP, "Up"},
+                                                                          {GLFW_KEY_DOWN, "Down"},
+                                                                          {GLFW_KEY_HOME, "Home"},
+                                                                          {GLFW_KEY_END, "End"},
+                                                                          {GLFW_KEY_ESCAPE, "Escape"}}};
   for (const auto& [code, name] : kNames)
     if (code == key) return name;
   return nullptr;

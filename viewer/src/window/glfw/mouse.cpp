@@ -13,6 +13,10 @@ void dragOnPicture(Session& session, const ImGuiIO& io) {
   ViewState& view = session.view;
   const PixelPlace drag = {io.MouseDelta.x, io.MouseDelta.y};
   if (drag[0] == 0 && drag[1] == 0) return;
+  // What the mouse moved before the press may come in one frame with it.
+  for (const ImGuiMouseButton button :
+       {ImGuiMouseButton_Left, ImGuiMouseButton_Right, ImGuiMouseButton_Middle})
+    if (ImGui::IsMouseClicked(button)) return;
   const bool is_left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
   const bool is_other =
       ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
@@ -34,6 +38,14 @@ void zoomAt(Session& session, const PixelPlace& at, float clicks) {
 std::optional<PickedPlace> pickAt(const Session& session, const PixelPlace& at) {
   return pick(session.drawn, session.placed, session.view.draw,
               rayThrough(session.view.camera, at, session.area.size));
+}
+
+/// The place in the picture of one eye.
+PixelPlace inOneEye(StereoMode mode, PixelPlace at, PictureSize size) {
+  const auto half = [](double x, int whole) { return 2 * std::fmod(x, 0.5 * std::max(1, whole)); };
+  if (mode == StereoMode::SideBySide) at[0] = half(at[0], size.width);
+  if (mode == StereoMode::TopBottom) at[1] = half(at[1], size.height);
+  return at;
 }
 
 /// A press on the part in hand grabs it, and it stays grabbed until all buttons are up.
@@ -72,7 +84,9 @@ bool isClick(const ImGuiIO& io) {
 
 void useMouse(Session& session) {
   const ImGuiIO& io = ImGui::GetIO();
-  const PixelPlace at = {io.MousePos.x - session.area.x, io.MousePos.y - session.area.y};
+  const PixelPlace at =
+      inOneEye(session.view.stereo, {io.MousePos.x - session.area.x, io.MousePos.y - session.area.y},
+               session.area.size);
   if (session.drag.isGrabbed()) {  // also over the panels
     dragPart(session, io);
     return grabOrLetGo(session, io, at);

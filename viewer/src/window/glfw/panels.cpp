@@ -74,6 +74,11 @@ void drawView(Session& session) {
   ImGui::Checkbox("floor", &view.draw.show_ground);
   ImGui::SameLine();
   ImGui::Checkbox("dark", &view.is_dark);
+  if (!ImGui::BeginCombo("stereo", toText(view.stereo))) return;
+  for (const StereoMode mode : stereoModes())
+    if (mode != StereoMode::Spectral && ImGui::Selectable(toText(mode), view.stereo == mode))
+      view.stereo = mode;
+  ImGui::EndCombo();
 }
 
 void drawSteps(Session& session) {
@@ -84,7 +89,8 @@ void drawSteps(Session& session) {
     const Chapter& chapter = line.chapters[i];
     const std::string label = chapter.name + (chapter.verdict.empty() ? "" : "  -  " + chapter.verdict) +
                               "##step" + std::to_string(i);
-    if (ImGui::Selectable(label.c_str(), i == now) && !session.run) session.view.time_s = chapter.start_s;
+    if (ImGui::Selectable(label.c_str(), i == now) && !session.is_at_work)
+      session.view.time_s = chapter.start_s;
   }
 }
 
@@ -111,15 +117,37 @@ void drawHands(Session& session) {
   ImGui::EndCombo();
 }
 
+/// Undo, redo, and what is taken freely.
+void drawWork(Session& session) {
+  ViewState& view = session.view;
+  if (session.is_at_work) {
+    view.wants_undo |= ImGui::Button("undo");
+    ImGui::SameLine();
+    view.wants_redo |= ImGui::Button("redo");
+    ImGui::SameLine();
+  }
+  view.wants_free |= ImGui::Button(session.work.isFree() ? "end free assembly" : "free assembly");
+  if (!session.work.isFree()) return;
+  view.wants_take |= ImGui::Button(session.run ? "put the part down" : "take the picked part");
+}
+
+void drawGuidance(ViewState& view) {
+  ImGui::Checkbox("axis snap", &view.snaps);
+  ImGui::SameLine();
+  ImGui::Checkbox("planned path", &view.shows_path);
+}
+
 void drawRun(Session& session) {
   if (!ImGui::CollapsingHeader("Run", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (session.is_recording) {
+    ImGui::TextDisabled("a recording");
+    return;
+  }
+  drawGuidance(session.view);
+  drawWork(session);
   if (!session.run) {
-    if (session.is_recording) {
-      ImGui::TextDisabled("a recording");
-      return;
-    }
     drawHands(session);
-    session.view.wants_run |= ImGui::Button("run the procedure");
+    session.view.wants_run |= ImGui::Button(session.is_at_work ? "back to the tour" : "run the procedure");
     return;
   }
   const LiveStatus& status = session.status;
@@ -170,8 +198,8 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ImGui::Begin("time", nullptr, kFixed | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoScrollbar);
   ViewState& view = session.view;
   const Timeline& line = session.shownLine();
-  if (session.run) {
-    ImGui::Text("running live: %.3f s", session.status.time_s);
+  if (session.is_at_work) {
+    ImGui::Text("%s %.3f s", session.run ? "running live:" : "at rest after", view.time_s);
   } else {
     if (ImGui::Button(view.is_playing ? "pause" : "play"))
       apply(Action::PlayPause, view, line, session.box_W());
@@ -227,7 +255,7 @@ void drawPanels(Session& session, const GlfwWindow& window) {
   drawRun(session);
   const Timeline& line = session.shownLine();
   if (!line.curves.empty() && ImGui::CollapsingHeader("Plots", ImGuiTreeNodeFlags_DefaultOpen))
-    drawPlots(line, &session.view.time_s, scale, !session.run);
+    drawPlots(line, &session.view.time_s, scale, !session.is_at_work);
   drawMessages(session);
   ImGui::End();
   drawTimeAxis(session, size, side_px, axis_px);

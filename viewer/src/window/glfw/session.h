@@ -9,6 +9,7 @@
 #include "vps_viewer/window.h"
 #include "window/glfw/glfw_window.h"
 #include "window/hand_drag.h"
+#include "window/hand_work.h"
 #include "window/live_run.h"
 #include "window/neighbours.h"
 #include "window/picture_worker.h"
@@ -33,11 +34,16 @@ struct Session {
   scenes::Snapshot shown;   ///< before it is exploded
   scenes::Snapshot placed;  ///< what is drawn: `shown`, or its exploded view
   std::unique_ptr<LiveRun> run;
-  LiveStatus status;     ///< of the run
-  std::string run_hand;  ///< kind of device in the run
-  Timeline run_line;     ///< its curves so far
-  std::string hand;      ///< kind of device that moves the part in the next run
-  HandDrag drag;         ///< of the mouse as a device
+  LiveStatus status;                            ///< of the run, with the steps that were done before it
+  HandWork work;                                ///< what has been put down
+  bool is_at_work = false;                      ///< shows that, or a run of it; else the tour
+  std::size_t first_step = 0, steps_known = 0;  ///< of the run, and of its steps
+  std::vector<scenes::StepResult> before;       ///< steps that were done before the run
+  int recordings = 0;                           ///< begun
+  std::string run_hand;                         ///< kind of device in the run
+  Timeline run_line;                            ///< its curves so far
+  std::string hand;                             ///< kind of device that moves the part in the next run
+  HandDrag drag;                                ///< of the mouse as a device
   Neighbours neighbours;
   std::deque<std::string> messages;  ///< of the window itself, the newest first
   std::string drawn_by;
@@ -50,6 +56,7 @@ struct Session {
       : scene(scene),
         options(options),
         drawn(drawnMeshes(scene)),
+        work(scene),
         hand(options.hand.empty() ? scene.device.kind : options.hand),
         drag(scene.device.scale),
         neighbours(scene) {}
@@ -62,8 +69,14 @@ struct Session {
   [[nodiscard]] Box box_W() const { return snapshotBounds(drawn, placed); }
   /// Whether the mouse moves the part in hand.
   [[nodiscard]] bool isByMouse() const { return run && !status.is_over && run_hand == "mouse"; }
-  [[nodiscard]] const Timeline& shownLine() const { return run ? run_line : line; }
+  [[nodiscard]] const Timeline& shownLine() const { return is_at_work ? run_line : line; }
 };
+
+// runs.cpp
+/// Carries out what the view wants of runs and of what has been put down: start, stop, undo, redo, take.
+void carryOutWork(Session& session, GlfwWindow& window);
+/// Takes over what is new from the run, or shows what has been put down.
+void followWork(Session& session);
 
 // panels.cpp
 /// The panel at the right, the time axis below, and the list of keys. Sets session.area to what they leave.
@@ -74,6 +87,9 @@ void drawPlots(const Timeline& line, double* now_s, float scale, bool may_seek);
 // mouse.cpp
 /// Orbit, pan, zoom, section, picking, and the part in hand, over the picture.
 void useMouse(Session& session);
+// path_marks.cpp
+/// Over the picture: the planned path of the part in hand, and with axis snap the axis.
+void drawPathMarks(const Session& session);
 // hand_marks.cpp
 /// Over the picture: the spring from the grabbed point to the cursor, with the force's size as colour and
 /// number.

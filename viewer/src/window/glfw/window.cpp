@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "vps_scenes/replay.h"
-#include "vps_viewer/verdict_words.h"
 #include "window/exploded.h"
 #include "window/glfw/session.h"
 
@@ -34,64 +33,6 @@ void typed(Session& session, const std::string& key) {
     if (key == binding.key) apply(binding.action, session.view, session.shownLine(), session.box_W());
 }
 
-void startOrStopRun(Session& session, GlfwWindow& window) {
-  if (session.run) {
-    session.run.reset();
-    session.run_line = {};
-    session.status = {};
-    session.view.time_s = 0;
-    return;
-  }
-  session.drag = HandDrag(session.scene.device.scale);
-  LiveSettings settings;
-  settings.record = session.options.record;
-  settings.speed = session.options.speed;
-  settings.models = session.options.models;
-  settings.hand = session.run_hand = session.hand;
-  settings.wish = session.drag.wish();
-  settings.has_sound = session.options.has_sound;
-  session.view.is_playing = false;
-  session.run_line = {};
-  session.run_line.chapters = {{"before the first step", 0, ""}};
-  session.run_line.curves = {
-      {"force", "N", {}}, {"torque", "N m", {}}, {"depth", "um", {}}, {"contacts", "", {}}};
-  session.run = std::make_unique<LiveRun>(session.scene, settings, [&window] { window.wake(); });
-  session.run->ask();
-}
-
-void addToCurves(Session& session, const scenes::Snapshot& shot) {
-  Timeline& line = session.run_line;
-  double depth_m = 0;
-  for (const scenes::ContactMark& mark : shot.contacts) depth_m = std::max(depth_m, mark.depth_m);
-  line.time_s.push_back(shot.time_s);
-  line.end_s = session.view.time_s = shot.time_s;
-  const double values[] = {shot.has_hand ? shot.F_hand_W.f.norm() : 0,
-                           shot.has_hand ? shot.F_hand_W.tau.norm() : 0, depth_m * 1e6,
-                           static_cast<double>(shot.contacts.size())};
-  for (std::size_t i = 0; i < line.curves.size(); ++i)
-    line.curves[i].values.push_back(static_cast<float>(values[i]));
-  const bool is_new_step = shot.step >= 0 && static_cast<std::size_t>(shot.step) + 1 >= line.chapters.size();
-  if (is_new_step)
-    line.chapters.push_back(
-        {std::to_string(shot.step + 1) + " " +
-             session.scene.parts[session.scene.steps[static_cast<std::size_t>(shot.step)].part].part.name,
-         shot.time_s, ""});
-}
-
-void followRun(Session& session) {
-  session.status = session.run->status();
-  for (const std::string& words : session.run->takeMessages()) session.say(words);
-  for (std::size_t i = 0; i < session.status.result.steps.size(); ++i)
-    if (i + 1 < session.run_line.chapters.size())
-      session.run_line.chapters[i + 1].verdict = words(session.status.result.steps[i].verdict);
-  if (std::optional<scenes::Snapshot> shot = session.run->take()) {
-    if (!session.status.is_over) addToCurves(session, *shot);
-    session.drag.watch(*shot);
-    session.shown = std::move(*shot);
-    session.run->ask();
-  }
-}
-
 void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
   std::optional<DrawnPicture> picture = worker.take();
   if (!picture) return;
@@ -101,12 +42,28 @@ void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
   session.drawn_by = worker.description().substr(0, worker.description().find(' '));
 }
 
+/// The head and screen of the display file, else two eyes about the camera, or none.
+std::optional<EyePair> eyesOf(const Session& session, PictureSize size) {
+  if (const std::optional<scenes::Display>& display = session.options.display) {
+    const scenes::DisplayScreen& screen = display->screens.front();
+    const scenes::DisplayViewer& viewer = display->viewers.front();
+    return EyePair{cameraFor(*display, screen, viewer.eye_S(-1)),
+                   cameraFor(*display, screen, viewer.eye_S(1))};
+  }
+  if (session.view.stereo == StereoMode::Mono) return {};
+  const Camera& camera = session.view.camera;
+  return viewer::eyesOf(camera, kEyeShare * (camera.eye_W - camera.target_W).norm(),
+                        double(size.width) / size.height);
+}
+
 void askForPicture(Session& session, PictureWorker& worker) {
   const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
-  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw};
+  const std::optional<EyePair> eyes = eyesOf(session, size);
+  if (session.options.display) session.view.camera = middleEye(*eyes);
+  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, session.view.stereo, eyes};
   wanted.options.width = size.width;
   wanted.options.height = size.height;
   worker.request(wanted);
@@ -136,26 +93,13 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
                                               session.area.y + static_cast<float>(session.area.size.height)});
-  drawHandMarks(session);
+  if (session.view.stereo == StereoMode::Mono) {  // marks over the picture have no depth
+    drawPathMarks(session);
+    drawHandMarks(session);
+  }
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
   window.present();
-}
-
-void carryOut(Session& session, GlfwWindow& window) {
-  ViewState& view = session.view;
-  if (std::exchange(view.wants_run, false)) {
-    if (session.is_recording)
-      session.say("a recording is not run; vps replay does");
-    else
-      startOrStopRun(session, window);
-  }
-  if (std::exchange(view.wants_mouse, false)) {
-    session.hand = "mouse";
-    view.wants_run = true;
-    return carryOut(session, window);
-  }
-  if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
 }
 
 void loop(Session& session, GlfwWindow& window) {
@@ -168,6 +112,7 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.is_dark = session.options.is_dark;
   session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
   session.view.wants_run = session.options.runs;
+  session.view.stereo = session.options.stereo;
   PictureWorker worker(session.drawn, [&window] { window.wake(); });
   Clock::time_point last = Clock::now();
   bool is_fitted = false;
@@ -178,9 +123,9 @@ void loop(Session& session, GlfwWindow& window) {
     const Clock::time_point now = Clock::now();
     advance(session.view, session.line, std::chrono::duration<double>(now - last).count());
     last = now;
-    carryOut(session, window);
-    if (session.run)
-      followRun(session);
+    carryOutWork(session, window);
+    if (session.is_at_work)
+      followWork(session);
     else
       session.shown = session.line.at(session.view.time_s);
     takePicture(session, worker, window);

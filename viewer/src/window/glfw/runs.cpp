@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the window does with runs: start and stop them, take back and do again, and parts that are taken
+// freely.
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "vps_viewer/verdict_words.h"
+#include "window/glfw/session.h"
+
+namespace vps::viewer::inline v0 {
+namespace {
+
+/// "run.mcap", "run_2.mcap", ...: what was undone stays in the file before.
+std::string nextRecording(Session& session) {
+  const std::string& first = session.options.record;
+  if (first.empty() || ++session.recordings == 1) return first;
+  const std::filesystem::path path = first;
+  std::filesystem::path numbered = path;
+  numbered.replace_filename(path.stem().string() + "_" + std::to_string(session.recordings) +
+                            path.extension().string());
+  return numbered.string();
+}
+
+std::string chapterName(const Session& session, std::size_t step) {
+  return std::to_string(step + 1) + " " + session.scene.parts[session.scene.steps[step].part].part.name;
+}
+
+/// The time axis of what begins now.
+void beginLine(Session& session) {
+  Timeline& line = session.run_line;
+  line = {};
+  line.chapters = {{session.work.isFree() ? "free assembly" : "before the first step", 0, ""}};
+  for (std::size_t i = 0; i < session.before.size(); ++i)
+    line.chapters.push_back({chapterName(session, i), 0, words(session.before[i].verdict)});
+  line.curves = {{"force", "N", {}}, {"torque", "N m", {}}, {"depth", "um", {}}, {"contacts", "", {}}};
+  session.view.time_s = 0;
+  session.view.is_playing = false;
+}
+
+/// @param part  taken freely; none: the procedure goes on
+void startRun(Session& session, GlfwWindow& window, std::optional<std::size_t> part = {}) {
+  session.drag = HandDrag(session.scene.device.scale);
+  LiveSettings settings;
+  settings.record = nextRecording(session);
+  settings.speed = session.options.speed;
+  settings.models = session.options.models;
+  settings.hand = session.run_hand = part && !isByPerson(session.hand) ? "mouse" : session.hand;
+  settings.wish = session.drag.wish();
+  settings.has_sound = session.options.has_sound;
+  settings.snaps = session.view.snaps;
+  session.is_at_work = true;
+  session.first_step = part ? 0 : session.work.nextStep();
+  session.steps_known = 0;
+  session.before = session.work.results();
+  beginLine(session);
+  session.run =
+      std::make_unique<LiveRun>(session.work.sceneToRun(part), settings, [&window] { window.wake(); });
+  session.run->ask();
+}
+
+void stopRun(Session& session) {
+  session.run.reset();
+  session.status = {};
+}
+
+void backToTour(Session& session) {
+  stopRun(session);
+  session.work.begin(false);
+  session.is_at_work = false;
+  session.run_line = {};
+  session.view.time_s = 0;
+}
+
+/// What has been put down, with nothing in hand.
+void rest(Session& session) {
+  session.before = session.work.results();
+  beginLine(session);
+}
+
+void goOn(Session& session, GlfwWindow& window) {
+  if (session.work.isFree()) return rest(session);
+  if (!session.work.isOver()) return startRun(session, window);
+  rest(session);
+  session.say("all steps are done; Z takes the last one back");
+}
+
+void undo(Session& session, GlfwWindow& window) {
+  if (!session.is_at_work) return session.say("there is nothing to take back; R runs the procedure");
+  const bool was_in_hand = session.work.isFree() && session.run;
+  stopRun(session);
+  // Freely: a part in hand goes back to where it was taken. In the procedure the step under way begins anew
+  // where none is done.
+  if (!was_in_hand && !session.work.undo() && session.work.isFree())
+    session.say("there is nothing to take back");
+  goOn(session, window);
+}
+
+void redo(Session& session, GlfwWindow& window) {
+  if (!session.is_at_work || !session.work.redo()) return session.say("there is nothing to do again");
+  stopRun(session);
+  goOn(session, window);
+}
+
+void switchFree(Session& session) {
+  if (session.work.isFree()) return backToTour(session);
+  stopRun(session);
+  session.work.begin(true);
+  session.is_at_work = true;
+  rest(session);
+  session.say("free assembly: click on a part, Enter takes it in hand and puts it down");
+}
+
+void takeOrPutDown(Session& session, GlfwWindow& window) {
+  if (!session.work.isFree()) return session.say("U begins free assembly, where any part can be taken");
+  std::optional<std::size_t> held;
+  if (session.run) {
+    if (const scenes::BodySnapshot* body = partInHand(session.shown)) {
+      held = body->part;
+      session.work.putDown({body->part, body->X_WP});
+    }
+    stopRun(session);
+  }
+  const std::optional<PickedPlace>& picked = session.view.picked;
+  if (picked && picked->part != held) return startRun(session, window, picked->part);
+  if (!held) session.say("click on a part first");
+  rest(session);
+}
+
+void addToCurves(Session& session, const scenes::Snapshot& shot) {
+  Timeline& line = session.run_line;
+  double depth_m = 0;
+  for (const scenes::ContactMark& mark : shot.contacts) depth_m = std::max(depth_m, mark.depth_m);
+  line.time_s.push_back(shot.time_s);
+  line.end_s = session.view.time_s = shot.time_s;
+  const double values[] = {shot.has_hand ? shot.F_hand_W.f.norm() : 0,
+                           shot.has_hand ? shot.F_hand_W.tau.norm() : 0, depth_m * 1e6,
+                           static_cast<double>(shot.contacts.size())};
+  for (std::size_t i = 0; i < line.curves.size(); ++i)
+    line.curves[i].values.push_back(static_cast<float>(values[i]));
+  const bool is_new_step = shot.step >= 0 && static_cast<std::size_t>(shot.step) + 1 >= line.chapters.size();
+  if (!is_new_step) return;
+  const std::string name = session.work.isFree() ? session.scene.parts[shot.target_part].part.name
+                                                 : chapterName(session, static_cast<std::size_t>(shot.step));
+  line.chapters.push_back({name, shot.time_s, ""});
+}
+
+/// Notes the steps that the run has done since the last time.
+void noteSteps(Session& session) {
+  scenes::AssembleResult& result = session.status.result;
+  if (session.work.isFree()) return;
+  for (; session.steps_known < result.steps.size(); ++session.steps_known) {
+    if (result.finished.bodies.empty()) break;
+    const std::size_t part = session.scene.steps[session.first_step + session.steps_known].part;
+    session.work.putDown({part, result.finished.bodies[part].X_WP}, result.steps[session.steps_known]);
+  }
+  addEarlierSteps(session.before, session.scene.steps.size(), result);
+  for (std::size_t i = 0; i < result.steps.size() && i + 1 < session.run_line.chapters.size(); ++i)
+    session.run_line.chapters[i + 1].verdict = words(result.steps[i].verdict);
+}
+
+}  // namespace
+
+void followWork(Session& session) {
+  if (!session.run) {
+    session.shown = session.work.snapshot();
+    return;
+  }
+  session.run->snap(session.view.snaps);
+  session.run->listenAt(session.view.camera.pose());
+  session.status = session.run->status();
+  for (const std::string& words : session.run->takeMessages()) session.say(words);
+  noteSteps(session);
+  if (std::optional<scenes::Snapshot> shot = session.run->take()) {
+    if (shot->step >= 0) shot->step += static_cast<int>(session.first_step);
+    if (!session.status.is_over) addToCurves(session, *shot);
+    session.drag.watch(*shot);
+    session.shown = std::move(*shot);
+    session.run->ask();
+  }
+}
+
+void carryOutWork(Session& session, GlfwWindow& window) {
+  ViewState& view = session.view;
+  if (std::exchange(view.wants_mouse, false)) {
+    session.hand = "mouse";
+    view.wants_run = true;
+  }
+  const bool wants[] = {std::exchange(view.wants_run, false), std::exchange(view.wants_undo, false),
+                        std::exchange(view.wants_redo, false), std::exchange(view.wants_free, false),
+                        std::exchange(view.wants_take, false)};
+  if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
+  if (std::ranges::none_of(wants, [](bool wanted) { return wanted; })) return;
+  if (session.is_recording) return session.say("a recording is not run; vps replay does");
+  if (wants[0] && session.is_at_work)
+    backToTour(session);
+  else if (wants[0])
+    startRun(session, window);
+  if (wants[1]) undo(session, window);
+  if (wants[2]) redo(session, window);
+  if (wants[3]) switchFree(session);
+  if (wants[4]) takeOrPutDown(session, window);
+}
+
+}  // namespace vps::viewer::inline v0
