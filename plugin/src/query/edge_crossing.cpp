@@ -140,13 +140,17 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-/// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that come within reach_m
-/// while those of set 1 move on straight lines between two poses.
+/// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that can cross and come
+/// within reach_m while those of set 1 move in a tube.
 class EdgePairSearch {
  public:
-  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& from_01, const Pose& to_01,
-                 double reach_m)
-      : edges0_(edges0), edges1_(edges1), from_01_(from_01), to_01_(to_01), reach_m_(reach_m) {}
+  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const MotionTube& tube, double reach_m)
+      : edges0_(edges0),
+        edges1_(edges1),
+        from_01_(tube.from()),
+        to_01_(tube.to()),
+        turn_rad_(tube.turn_rad()),
+        reach_m_(reach_m + tube.margin_m()) {}
 
   template <typename Visit>
   void run(const Visit& found) const {
@@ -172,12 +176,30 @@ class EdgePairSearch {
       if ((nearest.p - nearest.q).squaredNorm() > own_m * own_m) return;
     }
     if (a.is_leaf != 0 && b.is_leaf != 0) {
-      if (comeNear(edges0_.segments_[a.first], edges1_.segments_[b.first])) found(a.first, b.first);
+      const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
+      if (mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
       for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b, found);
     } else {
       for (std::uint32_t i = 0; i < 2; ++i) visit(a, edges1_.nodes_[b.first + i], found);
     }
+  }
+
+  // False if no pose of the tube turns the segments so that CrossingTest takes them for a crossing. A turn by
+  // t moves unit vectors and their product by up to t.
+  [[nodiscard]] bool mayCross(const EdgeSegment& s0, const EdgeSegment& s1) const {
+    const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = from_01_.R * (s1.to - s1.from).normalized();
+    const Vec3 n = d0.cross(d1);
+    const double sine = n.norm();
+    if (sine + turn_rad_ <= kMinSine) return false;
+    const double lean = kLean * (sine + turn_rad_) + 2 * turn_rad_;  // times the sine
+    const Vec3 into1[2] = {from_01_.R * s1.into[0], from_01_.R * s1.into[1]};
+    const auto isOutside = [&](double sign) {
+      for (int k = 0; k < 2; ++k)
+        if (-sign * n.dot(s0.into[k]) > lean || sign * n.dot(into1[k]) > lean) return false;
+      return true;
+    };
+    return isOutside(1) || isOutside(-1);
   }
 
   [[nodiscard]] bool comeNear(const EdgeSegment& s0, const EdgeSegment& s1) const {
@@ -197,7 +219,7 @@ class EdgePairSearch {
 
   const EdgeSet &edges0_, &edges1_;
   const Pose &from_01_, &to_01_;
-  double reach_m_;
+  double turn_rad_, reach_m_;
 };
 
 namespace {
@@ -233,7 +255,7 @@ class CrossingTest {
     c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
     const Vec3 r = s0.from - from1;
     c.gap_m = c.n.dot(r);
-    if (!(c.gap_m >= -depth_m_ && c.gap_m <= cutoff_m_ + nearer_m(c.n, s1))) return;
+    if (!(c.gap_m >= -depth_m_) || (c.gap_m > cutoff_m_ && c.gap_m > cutoff_m_ + nearer_m(c.n, s1))) return;
     // The nearest points of two lines [Ericson 2005, section 5.1.8].
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
@@ -280,10 +302,9 @@ CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
 
 void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m) {
   near_.clear();
-  EdgePairSearch(edges0, edges1, tube_->from(), tube_->to(), reach_m + tube_->margin_m())
-      .run([&](std::uint32_t i0, std::uint32_t i1) {
-        near_.push_back({{i0, i1}});
-      });
+  EdgePairSearch(edges0, edges1, *tube_, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
+    near_.push_back({{i0, i1}});
+  });
   reach_m_ = reach_m;
   is_valid_ = true;
 }
@@ -295,23 +316,22 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   // Near now, or at the end of the step.
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
-  MotionTube once;
-  const auto isKept = [&] {
-    return memory->is_valid_ && reach_m <= memory->reach_m_ && memory->tube_->holds(X_01) &&
-           memory->tube_->holds(range.X_01_end);
-  };
-  if (memory == nullptr || !isKept()) {
+  const auto tube = [&] {
     const Ball ball0{edges0.nodes_[0].center, edges0.nodes_[0].radius_m};
     const Ball ball1{edges1.nodes_[0].center, edges1.nodes_[0].radius_m};
-    once = MotionTube(ball0, ball1, X_01, range.X_01_end);
-  }
+    return MotionTube(ball0, ball1, X_01, range.X_01_end);
+  };
   if (memory == nullptr) {
-    EdgePairSearch(edges0, edges1, once.from(), once.to(), reach_m + once.margin_m())
-        .run([&](std::uint32_t i0, std::uint32_t i1) { test.cross(i0, i1); });
+    const MotionTube once = tube();
+    EdgePairSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
+      test.cross(i0, i1);
+    });
   } else {
     constexpr double kMore = 1.5;  // assumed: the cutoff follows the speed
-    if (!isKept()) {
-      *memory->tube_ = once;
+    const bool is_kept = memory->is_valid_ && reach_m <= memory->reach_m_ && memory->tube_->holds(X_01) &&
+                         memory->tube_->holds(range.X_01_end);
+    if (!is_kept) {
+      *memory->tube_ = tube();
       memory->search(edges0, edges1, kMore * reach_m);
     }
     for (const CrossingMemory::Pair& pair : memory->near_) test.cross(pair.edge[0], pair.edge[1]);
