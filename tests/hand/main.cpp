@@ -9,6 +9,7 @@
 
 #include "edge_table.h"
 #include "peg_scenes.h"
+#include "rod_scenes.h"
 #include "thread_scenes.h"
 #include "vps_scenes/assemble.h"
 
@@ -18,8 +19,8 @@ using vps::hand::PegScene;
 
 std::vector<PegScene> allScenes() {
   std::vector<PegScene> scenes = vps::hand::pegScenes();
-  const std::vector<PegScene>& threads = vps::hand::threadScenes();
-  scenes.insert(scenes.end(), threads.begin(), threads.end());
+  for (const auto* more : {&vps::hand::rodScenes(), &vps::hand::threadScenes()})
+    scenes.insert(scenes.end(), more->begin(), more->end());
   return scenes;
 }
 
