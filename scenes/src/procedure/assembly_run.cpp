@@ -18,6 +18,19 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
+/// A part that did not go to its place takes no other one along. What it was to align was put at its target
+/// for it, and is there for later steps too.
+void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
+  StepResult& last = steps.back();
+  if (last.verdict == Verdict::Fits) return;
+  for (StepResult& step : steps) {
+    if (step.aligned_by != last.part) continue;
+    step.aligned_by.clear();
+    if (last.stands_on.empty()) last.stands_on = step.part;
+    if (not_in_place.empty()) not_in_place = step.part;
+  }
+}
+
 void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& drawn,
               AssembleResult& result) {
   result.completed = true;
@@ -27,6 +40,7 @@ void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResul
     StepResult known = drawn[i];
     known.stands_on = not_in_place;
     result.steps.push_back(runStep(world, trace, i, std::move(known)));
+    refuseAlignment(result.steps, not_in_place);
     const StepResult& step = result.steps.back();
     if (!step.completed && not_in_place.empty()) not_in_place = step.part;
     result.completed = result.completed && step.completed;
