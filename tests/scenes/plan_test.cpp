@@ -153,7 +153,7 @@ TEST(Plan, APlateThatIsCarriedBesideItsMiddleIsHeld) {
   };
   EXPECT_TRUE(isCarried(0));
   EXPECT_TRUE(isCarried(0.009));   // the block ends a millimetre beyond the plate's middle
-  EXPECT_FALSE(isCarried(0.011));  // and a millimetre before it
+  EXPECT_FALSE(isCarried(0.014));  // and four before it: 6 % of the plate's size, where 3 % count as balanced
   EXPECT_FALSE(isCarried(-0.025));
 }
 
