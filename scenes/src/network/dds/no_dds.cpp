@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // In place of dds_link.cpp where Cyclone DDS is missing.
 #include "network/link.h"
+#include "network/pointer_topic.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/ros_topics.h"
 
@@ -20,6 +21,10 @@ std::unique_ptr<Link> makeNetworkSession(const std::string&, std::string_view, c
   refuseNetwork();
 }
 std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const SessionNetwork&) {
   refuseNetwork();
 }
 
