@@ -63,6 +63,7 @@ struct Other {
 pid_t startOther(const std::string& session, Other& other) {
   const pid_t first = fork();
   if (first != 0) return first;
+  setpgid(0, 0);  // its child is of that group, too
   bool is_made = unshare(CLONE_NEWTIME) == 0;
   if (is_made) {
     std::ofstream offsets("/proc/self/timens_offsets");
@@ -83,16 +84,18 @@ bool clockRow(double seconds) {
   auto* other = static_cast<Other*>(
       mmap(nullptr, sizeof(Other), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   new (other) Other;
+  // Before this process has threads of DDS. Its own process group ends with it.
+  const pid_t group = startOther(session, *other);
+  setpgid(group, group);
   std::unique_ptr<scenes::Link> render;
   try {
     render = scenes::makeSession(session, "no scene", "lo");
   } catch (const LoadError& error) {
+    kill(-group, SIGKILL);
+    waitpid(group, nullptr, 0);
     printRow(what, bar, error.what(), false);
     return false;
   }
-  // Its own process group ends with it.
-  const pid_t group = startOther(session, *other);
-  setpgid(group, group);
   double worst_s = 0, worst_bound_s = 0, drift = 0;
   int count = 0, outside = 0;
   const std::int64_t begun_ns = systemNow_ns();

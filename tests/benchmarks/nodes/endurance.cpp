@@ -133,9 +133,10 @@ bool enduranceRow(double seconds) {
     std::fprintf(stderr, "\n");
   }
   for (test::ChildProcess* process : {&long_render, &page, &watch, &device, &other_page, &short_render})
-    process->interrupt();
-  for (test::ChildProcess* process : {&long_render, &page, &watch, &device, &other_page, &short_render})
-    process->wait();
+    while (process->isRunning()) {  // again, for one that had just begun
+      process->interrupt();
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
   const long left = segmentsOf(endless) + segmentsOf(brief);
   bool is_good = !has_ended && left == 0 && runs > 0;
   std::string words = has_ended ? "a process ended; " : "";
