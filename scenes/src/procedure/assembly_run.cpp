@@ -11,6 +11,7 @@
 #include "procedure/run_trace.h"
 #include "procedure/step_run.h"
 #include "procedure/step_verdict.h"
+#include "vps/assert.h"
 #include "vps/load_error.h"
 #include "vps_scenes/put_down.h"
 
@@ -70,6 +71,12 @@ void requireSteps(const Scene& scene) {
                     "could be wrong; give it a [[step]], fixed = true, or scenery = true if it is only to be "
                     "left out");
   }
+}
+
+std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options) {
+  if (options.device == nullptr) return makeHand(scene, options.is_real_time, options.wish);
+  VPS_ASSERT(options.is_real_time);
+  return personHand(options.device());
 }
 
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,

@@ -3,6 +3,7 @@
 #include "network/link.h"
 #include "network/pointer_topic.h"
 #include "vps/load_error.h"
+#include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 
 namespace vps::scenes::inline v0 {
@@ -35,5 +36,17 @@ RosTopics::RosTopics(int, const std::string&, const std::string&, const Scene&) 
 RosTopics::~RosTopics() = default;
 void RosTopics::publish(const Snapshot&, std::int64_t) {}
 void RosTopics::publish(const Wrench&, std::int64_t) {}
+
+struct HeadTopic::Work {};
+HeadTopic::HeadTopic(const std::string& topic, int, const std::string&) {
+  throw LoadError("", "",
+                  "this build has no network, so no head comes on '" + topic +
+                      "'; give 'head' or 'recorded' in its place, or build with Cyclone DDS (Debian: "
+                      "cyclonedds-dev)");
+}
+HeadTopic::~HeadTopic() = default;
+std::optional<Pose> HeadTopic::take() {
+  return {};
+}
 
 }  // namespace vps::scenes::inline v0
