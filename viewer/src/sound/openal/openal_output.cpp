@@ -24,7 +24,8 @@ namespace {
 
 constexpr int kBuffers = 16;
 constexpr double kBuffer_s = 2.5e-3;  // so that at most 40 ms wait, and usually what was queued at the start
-constexpr std::size_t kAtStart = 4;   // buffers: a card's period of 5 ms, and as much for late threads. assumed
+constexpr std::size_t kAtStart =
+    4;  // buffers: a card's period of 5 ms, and as much for late threads. assumed
 
 /// A source that plays a queue of short buffers. The context is current in all its functions.
 class Queue {
