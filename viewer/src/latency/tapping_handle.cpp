@@ -10,10 +10,10 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr double kRest_s = 1;        // until the part is in hand. assumed
-constexpr double kAside_s = 0.5;     // assumed: no jump for the safety guard
-constexpr double kMean_s = 0.05;     // over which the force without contact is averaged
-constexpr double kLongest_s = 0.02;  // a longer pause of the thread is no motion
+constexpr double kRest_s = 1;             // until the part is in hand. assumed
+constexpr double kAside_s = 0.5;          // assumed: no jump for the safety guard
+constexpr double kMean_s = 0.05;          // over which the force without contact is averaged
+constexpr double kLongestPause_s = 0.02;  // a longer pause of the thread is no motion
 
 }  // namespace
 
@@ -30,7 +30,7 @@ double TappingHandle::now_s() noexcept {
 }
 
 device::DeviceSample TappingHandle::readAt(double time_s) noexcept {
-  const double dt_s = has_time_ ? std::clamp(time_s - sample_.time_s, 0.0, kLongest_s) : 0;
+  const double dt_s = has_time_ ? std::clamp(time_s - sample_.time_s, 0.0, kLongestPause_s) : 0;
   has_time_ = true;
   sample_.time_s = time_s;
   const Vec3 before_D = sample_.X_DH.p;
