@@ -141,7 +141,9 @@ TEST(SoundLoopback, WhatIsWrittenIsHeardLaterAndOnce) {
   card.reset();
   double first_s = 0, last_s = 0;
   for (std::size_t i = 0; i < heard.size(); ++i) {
-    if (i > 0) EXPECT_GE(heard[i].time_s - heard[i - 1].time_s, kCard_s - 1e-9);
+    if (i > 0) {
+      EXPECT_GE(heard[i].time_s - heard[i - 1].time_s, kCard_s - 1e-9);
+    }
     for (std::size_t k = 0; k < heard[i].samples.size(); ++k) {
       if (std::abs(heard[i].samples[k]) < 0.05F) continue;
       last_s = heard[i].time_s + static_cast<double>(k) / 48000;

@@ -113,7 +113,7 @@ std::vector<NamedPicture> renderFor(const SnapshotArguments& given, Renderer& re
   std::vector<NamedPicture> pictures;
   if (!given.display.empty()) {
     scenes::TrackedHeads heads(scenes::loadDisplay(given.display));
-    heads.waitForAll(kHeadWait_s);
+    heads.waitForAll(scenes::kHeadWait_s);
     const scenes::Display& display = heads.at(given.head_time_s);
     for (const std::string& news : heads.takeNews()) warn(news);
     for (ScreenPicture& picture : renderDisplay(renderer, snapshot, display, options, mode))

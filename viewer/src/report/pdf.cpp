@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kMissing = "needs Chromium (Debian: apt install chromium)";
+constexpr const char* kNoChromium = "needs Chromium (Debian: apt install chromium)";
 
 /// Of Debian, of other distributions, and Google's.
 std::string browser() {
@@ -52,14 +52,14 @@ bool isPdf(const std::string& file) {
 }  // namespace
 
 std::string missingForPdf() {
-  return browser().empty() ? kMissing : "";
+  return browser().empty() ? kNoChromium : "";
 }
 
 namespace {
 
 std::string print(const ProfileFolder& profile, const std::string& page, const std::string& pdf) {
   const std::string program = browser();
-  if (program.empty()) return kMissing;
+  if (program.empty()) return kNoChromium;
   const std::string printed = profile.path() + "/page.pdf";
   std::vector<std::string> words = {program,
                                     "--headless=new",
@@ -70,7 +70,7 @@ std::string print(const ProfileFolder& profile, const std::string& page, const s
                                     "--print-to-pdf=" + printed};
   if (geteuid() == 0) words.emplace_back("--no-sandbox");  // as root it refuses to run with one
   words.push_back("file://" + fs::absolute(page).string());
-  if (std::string failure = runProgram(words, "", kMissing); !failure.empty()) return failure;
+  if (std::string failure = runProgram(words, "", kNoChromium); !failure.empty()) return failure;
   if (!isPdf(printed)) return program + " printed nothing";  // it ends in good order where it could not
   std::error_code error;
   fs::copy_file(printed, pdf, fs::copy_options::overwrite_existing, error);
