@@ -43,8 +43,8 @@ struct StepResult {
   /// none, or it cannot be moved there.
   std::string aligned_by;
   bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
-  bool completed = false;   ///< the part reached its target, whatever else is wrong
-  bool by_contact = false;  ///< completed, and other parts guided it there: isGuided()
+  bool completed = false;     ///< the part reached its target, whatever else is wrong
+  bool by_contact = false;    ///< completed, and other parts guided it there: isGuided()
   /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
   /// it.
   double guide_force_N = 0;
