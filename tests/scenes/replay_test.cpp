@@ -168,7 +168,8 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);
   };
-  const std::string fifth = before(bytes, 5, 1 + 1 + 12 * 8), fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
+  const std::string fifth = before(bytes, 5, 1 + 1 + 12 * 8),
+                    fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
                     third = before(fourth, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
                     first = before(second, 1, 1);
   EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].takes_off);
