@@ -17,7 +17,7 @@ constexpr double kSpiralSearchDropped_m = 0.15e-3;
 constexpr double kLead_per_s = 15;
 constexpr double kMostLead_m = 3e-3, kMostLeadInHole_m = 6e-3;
 constexpr double kMostLag_m = 0.2e-3;  // then the spiral waits for the part
-constexpr double kSpiralSearchLongest_s = 5;
+constexpr double kSpiralSearchLongest_s = 8;
 }  // namespace
 
 void SpiralSearch::start(const Situation& situation, const Feel& feel) noexcept {
