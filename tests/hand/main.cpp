@@ -9,7 +9,6 @@
 
 #include "edge_table.h"
 #include "peg_scenes.h"
-#include "rod_scenes.h"
 #include "thread_scenes.h"
 #include "vps_scenes/assemble.h"
 
@@ -19,8 +18,8 @@ using vps::hand::PegScene;
 
 std::vector<PegScene> allScenes() {
   std::vector<PegScene> scenes = vps::hand::pegScenes();
-  for (const auto* more : {&vps::hand::rodScenes(), &vps::hand::threadScenes()})
-    scenes.insert(scenes.end(), more->begin(), more->end());
+  const std::vector<PegScene>& threads = vps::hand::threadScenes();
+  scenes.insert(scenes.end(), threads.begin(), threads.end());
   return scenes;
 }
 

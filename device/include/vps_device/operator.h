@@ -101,7 +101,6 @@ struct OperatorTask {
   Vec3 tip_P = Vec3::Zero();
   /// How far the part stays behind the handle under force, which a person feels as its stiffness [m/N].
   double give_m_per_N = 0;
-  double give_rad_per_Nm = 0;  ///< and turned against it under torque
   /// The end that goes in first is not round, so that it may have to be turned about the axis to find its
   /// hole.
   bool has_corners = false;

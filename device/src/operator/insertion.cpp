@@ -70,10 +70,7 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
 }
 
 // In turn: tilt in, spiral search, for a part with corners turn search, and straight ahead again.
-// In a hole already: only spiral search.
 OperatorStrategy Insertion::nextSearch() const noexcept {
-  if (situation_.pivot_m > 0)
-    return searches_ % 2 == 0 ? OperatorStrategy::Approach : OperatorStrategy::SpiralSearch;
   const int count = situation_.has_corners ? 4 : 3;
   switch (searches_ % count) {
     case 0:

@@ -157,7 +157,6 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
   if (!task_.tip_P.isZero()) {
     const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
-    situation.width_m = 2 * corner_W.norm();
   }
   situation.has_corners = task_.has_corners;
   situation.screw = task_.screw;
@@ -228,10 +227,8 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
   feel_.speed_m_s += share * (axis_W_.dot(view.V_WG_hand.v) - feel_.speed_m_s);
   const Vec3 p_m = view.X_WG_hand.p - X_target.p + task_.give_m_per_N * F.f;
   feel_.along_m = axis_W_.dot(p_m);
-  feel_.R_part = rotationFromVector(task_.give_rad_per_Nm * F.tau) * view.X_WG_hand.R;
-  const Mat3 lean = feel_.R_part * (isInserting() ? pathTurn() : X_target.R).transpose();
-  // Without what the part always hangs below the hand, which sight corrects.
-  feel_.across_m = across(p_m - task_.give_m_per_N * task_.weight_W + tip_m_ * (lean * axis_W_));
+  feel_.across_m = across(p_m);
+  feel_.R_hand = view.X_WG_hand.R;
   const double turned_rad = axis_W_.dot(rotationVector(view.X_WG_hand.R * R_felt_.transpose()));
   R_felt_ = view.X_WG_hand.R;
   feel_.twist_Nm += share * (axis_W_.dot(F.tau) - feel_.twist_Nm);
@@ -280,22 +277,19 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   const Vec3 tip_m = (X_seen.p - X_to.p) + tip_m_ * (X_seen.R * X_to.R.transpose() * axis_W_ - axis_W_);
   belief_.across_m -= gain * across(tip_m);
   const Mat3 R_path = spun(feel_.spin_rad) * turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
-  // The place of a tip that a hole guides far behind it tells the lean better than the attitude does.
-  const Situation& situation = sequence().situation();
-  belief_.turn_rad += gain * (situation.pivot_m > 0 ? situation.turnFor(-across(tip_m))
-                                                    : tiltOf(rotationVector(R_path * X_seen.R.transpose())));
+  belief_.turn_rad += gain * tiltOf(rotationVector(R_path * X_seen.R.transpose()));
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
 
-// The belief moves to where the part is pushed, until side force and torque vanish. It is corrected at the
-// tip: of a long part, a lean alone moves the grasp far.
+// The belief moves to where the hand is pushed, until side force and torque vanish.
 void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   const double share = std::min(1.0, kGiveWay_per_s * dt_s);
-  const Move& move = sequence().move();
-  const Mat3 R_wanted = wantedAtTheHole().R;
-  belief_.across_m += share * across(feel_.across_m - belief_.across_m - move.across_m);
-  belief_.turn_rad += share * tiltOf(rotationVector(feel_.R_part * R_wanted.transpose()));
+  const Pose& X_to = path_.back();
+  const Pose X_wanted = wantedAtTheHole();
+  const Vec3 p_hand = X_to.p + feel_.across_m;
+  belief_.across_m += share * across(p_hand - X_wanted.p);
+  belief_.turn_rad += share * tiltOf(rotationVector(feel_.R_hand * X_wanted.R.transpose()));
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
   serve_m_ -= share * serve_m_;
@@ -333,21 +327,17 @@ Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
   const Vec3 tip = tip_m_ * axis_W_;
   Vec3 p = X_to.p + belief_.across_m + move.across_m + tip - turn * tip;
   p += axis_W_ * (reach_m_ - axis_W_.dot(p - X_to.p));
-  return {Mat3(turn * pathTurn()), p};
+  return {Mat3(turn * spun(spin_rad_) * turnAtTheHole(reach_m_)), p};
 }
 
-// Integral action on the part's tip and attitude as felt, against friction of the device and at the tip. The
-// turn of a screw is the hand's own.
+// Integral action of the hand on its own position, against friction of the device.
 void VirtualOperator::Person::serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept {
-  constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.05, kScrewLimit_rad = 0.02;
+  constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.02;
   if (!isInserting() || is_home_) return;
   if (sequence().move().gives_way) return;
-  const double share = kGain_per_s * dt_s;
-  const Vec3 tip_m = belief_.across_m + sequence().move().across_m - feel_.across_m;
-  const Mat3& R = isScrew() ? X_hand.R : feel_.R_part;
-  serve_m_ = shortened(serve_m_ + share * across(tip_m), kLimit_m);
-  serve_rad_ = shortened(serve_rad_ + share * rotationVector(X_wanted.R * R.transpose()),
-                         isScrew() ? kScrewLimit_rad : kLimit_rad);
+  serve_m_ = shortened(serve_m_ + kGain_per_s * dt_s * across(X_wanted.p - X_hand.p), kLimit_m);
+  serve_rad_ = shortened(serve_rad_ + kGain_per_s * dt_s * rotationVector(X_wanted.R * X_hand.R.transpose()),
+                         kLimit_rad);
 }
 
 Pose VirtualOperator::Person::limited(const Pose& X_wanted, const Pose& X_hand) const noexcept {

@@ -77,8 +77,6 @@ class VirtualOperator::Person {
   [[nodiscard]] Pose wanted(double now_s) const noexcept;
   [[nodiscard]] Pose wantedAtTheHole() const noexcept;
   [[nodiscard]] Mat3 turnAtTheHole(double along_m) const noexcept;
-  /// The attitude at the reach, without what the hand believes.
-  [[nodiscard]] Mat3 pathTurn() const noexcept { return spun(spin_rad_) * turnAtTheHole(reach_m_); }
   void serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept;
   [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
   void follow(const Pose& X_wanted, double dt_s) noexcept;

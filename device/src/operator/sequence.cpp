@@ -3,12 +3,6 @@
 
 namespace vps::device::inline v0 {
 
-namespace {
-
-constexpr double kThrough = 5;  // a part jams within a few of its widths. assumed
-
-}  // namespace
-
 void Sequence::begin(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
   retries_ = 0;
@@ -40,11 +34,7 @@ Outcome Sequence::step(const Feel& feel, double dt_s) noexcept {
 
 void Sequence::afterApproach(bool has_touched, const Feel& feel) noexcept {
   if (!has_touched) return start(OperatorStrategy::PlaceBySight, feel);
-  // A part that went on through its hole, by several widths and freely, has come to another one.
-  const bool is_farther =
-      situation_.width_m > 0 && feel.along_m > situation_.mouth_m + kThrough * situation_.width_m;
-  if (situation_.has_touched && is_farther) situation_.pivot_m += feel.along_m - situation_.mouth_m;
-  if (!situation_.has_touched || is_farther) situation_.mouth_m = feel.along_m;
+  if (!situation_.has_touched) situation_.mouth_m = feel.along_m;
   situation_.has_touched = true;
   start(OperatorStrategy::Touch, feel);
 }

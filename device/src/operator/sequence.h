@@ -15,7 +15,6 @@ class Sequence {
   Outcome step(const Feel& feel, double dt_s) noexcept;
 
   [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }
-  [[nodiscard]] const Situation& situation() const noexcept { return situation_; }
   [[nodiscard]] const Move& move() const noexcept {
     return const_cast<Sequence*>(this)->present().move();  // NOLINT
   }

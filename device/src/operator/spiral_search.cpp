@@ -15,9 +15,7 @@ constexpr double kSpiralSearchDropped_m = 0.15e-3;
 /// Friction holds a part that is pressed on the surface, and the hand, which is coupled to it by a spring,
 /// has to lead it. The hand feels where the part is, and leads it farther until it follows.
 constexpr double kLead_per_s = 15;
-constexpr double kMostLead_m = 3e-3, kMostLeadInHole_m = 6e-3;
-constexpr double kMostLag_m = 0.2e-3;  // then the spiral waits for the part
-constexpr double kSpiralSearchLongest_s = 8;
+constexpr double kMostLead_m = 1.5e-3;
 }  // namespace
 
 void SpiralSearch::start(const Situation& situation, const Feel& feel) noexcept {
@@ -43,17 +41,12 @@ Outcome SpiralSearch::step(const Feel& feel, double dt_s) noexcept {
   if (feel.along_m > level_m_ + kSpiralSearchDropped_m) return Outcome::Done;
   const double pitch_m = situation_.habits.search_m, radius_m = pitch_m * angle_rad_ / kTurn_rad;
   if (radius_m > situation_.habits.search_limit_m) return Outcome::Failed;
-  if (wait_s_ > kSpiralSearchLongest_s) return Outcome::Failed;
+  angle_rad_ += dt_s * std::min(kTurnMost_rad_s, kSpiralSearchSpeed_m_s / std::max(radius_m, 1e-9));
   const Vec3 x = situation_.axis_W.unitOrthogonal(), y = situation_.axis_W.cross(x);
   const Vec3 at_m = radius_m * (std::cos(angle_rad_) * x + std::sin(angle_rad_) * y);
-  const Vec3 lag_m = at_m - (feel.across_m - center_m_);
-  if (lag_m.norm() < kMostLag_m)
-    angle_rad_ += dt_s * std::min(kTurnMost_rad_s, kSpiralSearchSpeed_m_s / std::max(radius_m, 1e-9));
-  lead_m_ += kLead_per_s * dt_s * lag_m;
-  const double most_m = situation_.pivot_m > 0 ? kMostLeadInHole_m : kMostLead_m;
-  if (const double length_m = lead_m_.norm(); length_m > most_m) lead_m_ *= most_m / length_m;
+  lead_m_ += kLead_per_s * dt_s * (at_m - (feel.across_m - center_m_));
+  if (const double length_m = lead_m_.norm(); length_m > kMostLead_m) lead_m_ *= kMostLead_m / length_m;
   move_.across_m = at_m + lead_m_;
-  move_.turn_rad = situation_.turnFor(move_.across_m);
   return Outcome::GoingOn;
 }
 

@@ -41,7 +41,6 @@ class TiltIn final : public Strategy {
   Stage stage_ = Stage::Lean;
   double stage_s_ = 0;
   Vec3 corner_W_ = Vec3::Zero();
-  Vec3 from_m_ = Vec3::Zero();  ///< of the tip, where it touched
   double slide_m_ = 0;
   Held touch_;
 };

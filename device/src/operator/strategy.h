@@ -8,13 +8,13 @@
 
 namespace vps::device::inline v0 {
 
-/// Positions are those of the part as the hand feels them: its own, less what gives way under the wrench that
-/// it feels; along at G, across at the tip. a: axis of insertion.
+/// Positions are those of the part as the hand feels them, at G: its own position, less what gives way under
+/// the force that it feels. a: axis of insertion.
 struct Feel {
   double time_s = 0;
   double along_m = 0;              ///< beyond the target along a; negative before it
   Vec3 across_m = Vec3::Zero();    ///< from the line through the target
-  Mat3 R_part = Mat3::Identity();  ///< of the part, in W
+  Mat3 R_hand = Mat3::Identity();  ///< of the hand, in W
   double spin_rad = 0;             ///< turn of the hand about a since the insertion began; beyond a turn too
   Vec3 lean_rad = Vec3::Zero();    ///< of the hand's own axis from a
   double twist_Nm = 0;             ///< on the hand, about a
@@ -51,18 +51,11 @@ struct Situation {
   double push_limit_N = 0;       ///< of the present attempt
   double near_m = 0;             ///< seen this close to the target it may be there
   bool has_touched = false;      ///< the hole leads, and sight no longer corrects across
-  double width_m = 0;            ///< of the part's end that goes in first
-  double mouth_m = 0;        ///< `along` at the first touch; of the last hole, where it goes through several
-  double pivot_m = 0;        ///< from the tip back to the first hole, where the part is in several; else 0
-  bool has_corners = false;  ///< it may have to be turned about the axis
+  double mouth_m = 0;            ///< `along` at the first touch
+  bool has_corners = false;      ///< it may have to be turned about the axis
   int attempt = 0;
   ScrewTask screw;
   double back_rad = 0;  ///< how far it turns against the thread at most
-
-  /// With which the tip moves across about the hole that the part is in.
-  [[nodiscard]] Vec3 turnFor(const Vec3& across_m) const noexcept {
-    return pivot_m > 0 ? Vec3(axis_W.cross(across_m) / pivot_m) : Vec3(Vec3::Zero());
-  }
 };
 
 /// The turn that moves a part on: about a by the right-hand rule, or against it.

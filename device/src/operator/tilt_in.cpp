@@ -11,9 +11,8 @@ constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3, kTiltInLower_s 
 constexpr double kLower_m_s = 10e-3;
 constexpr double kTiltInTouch_s = 0.02;
 constexpr double kShift_m = 0.35e-3;  // of the corner into the hole: three errors of sight
-constexpr double kSlide_m = 1.35e-3;  // of the corner: farther than it can be from its wall
+constexpr double kSlide_m = 1e-3;     // farther than the corner can be from its wall
 constexpr double kSlide_m_s = 2.5e-3;
-constexpr double kMostSlide_m = 6e-3;        // of the hand, which leads a corner that friction holds
 constexpr double kCaught_N = 0.9;            // beyond friction of the push
 constexpr double kPreload_m = 0.3e-3;        // keeps the corner at its walls while the part is turned upright
 constexpr double kTiltInDropped_m = 0.3e-3;  // deeper than the rounding of an edge
@@ -47,7 +46,6 @@ Outcome TiltIn::step(const Feel& feel, double dt_s) noexcept {
     case Stage::Lower:
       move_.speed_m_s = kLower_m_s;
       move_.push_N = habits.search_N;
-      from_m_ = feel.across_m;
       if (touch_.step(feel.resist_N > 0.7 * habits.touch_N, dt_s) > kTiltInTouch_s)
         enter(Stage::Slide, feel.time_s);
       else if (t_s > kTiltInLower_s)
@@ -59,7 +57,7 @@ Outcome TiltIn::step(const Feel& feel, double dt_s) noexcept {
       if (-feel.side_N.dot(corner_W_) > kCaught_N) {
         move_.across_m = (slide_m_ + kPreload_m) * corner_W_;
         enter(Stage::Upright, feel.time_s);
-      } else if ((feel.across_m - from_m_).dot(corner_W_) > kSlide_m || slide_m_ > kMostSlide_m) {
+      } else if (slide_m_ > kSlide_m) {
         return Outcome::Failed;
       }
       break;

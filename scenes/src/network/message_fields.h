@@ -94,7 +94,6 @@ void fields(device::OperatorTask& task, V& visit) {
   visit(task.weight_W);
   visit(task.tip_P);
   visit(task.give_m_per_N);
-  visit(task.give_rad_per_Nm);
   visit(task.has_corners);
   visit(task.is_taking_off);
   visit(task.screw.pitch_m);

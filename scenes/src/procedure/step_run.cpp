@@ -79,9 +79,8 @@ device::OperatorTask taskOf(const AssemblyWorld& world, const SceneStep& step, d
     task.screw.pitch_m = step.pitch_m;
     task.screw.torque_Nm = step.torque_Nm;
   }
-  const CouplingGains& gains = world.driver().settings().gains;
-  task.give_m_per_N = gains.k_N_per_m > 0 ? 1 / gains.k_N_per_m : 0;
-  task.give_rad_per_Nm = gains.k_Nm_per_rad > 0 ? 1 / gains.k_Nm_per_rad : 0;
+  const double k_N_per_m = world.driver().settings().gains.k_N_per_m;
+  task.give_m_per_N = k_N_per_m > 0 ? 1 / k_N_per_m : 0;
   return task;
 }
 
