@@ -187,10 +187,11 @@
     frames = 0;
   }
   function chooseLevel() {
-    const isMoving = isSlow && !renderer.vr.isPresenting() && performance.now() - moved_ms < kStill_ms;
+    const isPresenting = renderer.vr.isPresenting();  // then the headset says how large its pictures are
+    const isMoving = isSlow && !isPresenting && performance.now() - moved_ms < kStill_ms;
     watchFrames(isMoving);
     const ratio = fullRatio * (isMoving ? kShares[share] : 1);
-    if (ratio !== renderer.getPixelRatio()) {
+    if (!isPresenting && ratio !== renderer.getPixelRatio()) {
       renderer.setPixelRatio(ratio);
       seen.ratio = ratio;
       isDue = true;
