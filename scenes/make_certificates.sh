@@ -58,12 +58,12 @@ XML
 
 topics() { for topic in "$@"; do printf '<topic>%s</topic>' "$topic"; done; }
 
-# Of each topic one role is the writer (scenes/src/network/link.h).
+# Of each topic one role is the writer (scenes/src/network/link.h). Who watches may point, for the others who watch.
 written_by() {
   case $1 in
     render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' ;;
-    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/reply' 'vps/*/log' ;;
-    watch*) topics 'vps/*/beat' ;;
+    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # also of a page with a hand
+    watch*) topics 'vps/*/beat' 'vps/*/pointer' ;;
     *) echo "make_certificates.sh: $1 must begin with render, device or watch" >&2; exit 2 ;;
   esac
 }

@@ -247,6 +247,35 @@ TEST(HapticLoop, EnergyAccountUsesTheActingForceNotTheOneJustWritten) {
   }
 }
 
+// A wall at the end of a connection that takes 20 ticks: its spring's energy is that of a hand 20 ticks ago.
+// The way that the hand has gone since would count as 20 steps times the force otherwise, 20 times the bound
+// here.
+TEST(HapticLoop, EnergyStoredWhenATickAgoWasAnsweredIsBalancedAgainstTheWorkUntilThatTick) {
+  Puppet device;
+  CouplingPort port;
+  HapticLoop loop(device, port, quick());
+  const double k = loop.settings().gains.k_N_per_m, travel_m = 5e-3;
+  const int n = 500, late = 20;
+  const auto at_m = [&](int i) {
+    return travel_m * (i <= n ? i : std::max(0, 2 * n - i)) / n;
+  };  // out and back
+  loop.grasp(Pose{});
+  for (int i = 0; i <= 2 * n + late; ++i) {
+    CouplingState part = partAt(Pose{});
+    if (i >= late) {
+      part.time_s = 1e-3 * (i - late);
+      port.physics.write({part, i - late + 1, 0.5 * k * at_m(i - late) * at_m(i - late), {}});
+    } else {
+      port.physics.write({part, 0, {}, {}});
+    }
+    device.sample.X_DH.p.x() = at_m(i);
+    device.sample.time_s = 1e-3 * i;
+    loop.tick();
+  }
+  const double hold_J = 0.5 * k * travel_m * travel_m / n;  // as without delay
+  EXPECT_NEAR(loop.passivity().injected_J, 2 * hold_J, 1e-9);
+}
+
 TEST(HapticLoop, PublishesItsStateAfterEachTickAndObservesStoredEnergyOncePerStep) {
   Puppet device;
   CouplingPort port;

@@ -140,6 +140,23 @@ TEST(Plan, APinThatLeansInALevelHoleIsHeld) {
       isCarried({at("wall", wall, {0, 0, 0}), at("other", wall, {15e-3, 0, 0})}, lies + Vec3(10e-3, 0, 0)));
 }
 
+// A plate that stands on a wide block stays; on a narrow one at its end it tips over.
+TEST(Plan, APlateThatIsCarriedBesideItsMiddleIsHeld) {
+  const auto isCarried = [](double at_m) {
+    const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3(0.02, 0.02, 0.04)), {at_m, 0, 0}),
+                                          at("plate", makeBox(Vec3(0.06, 0.01, 0.01)), {0, 0, 0.025})};
+    PlanSettings settings;
+    settings.fixed = {"block"};
+    const PlanResult plan = planAssembly("test", parts, settings);
+    EXPECT_EQ(plan.blocked(), 0U);
+    return plan.assemblies[0].steps.at(0).is_carried;
+  };
+  EXPECT_TRUE(isCarried(0));
+  EXPECT_TRUE(isCarried(0.009));   // the block ends a millimetre beyond the plate's middle
+  EXPECT_FALSE(isCarried(0.014));  // and four before it: 6 % of the plate's size, where 3 % count as balanced
+  EXPECT_FALSE(isCarried(-0.025));
+}
+
 // At its speed a hand needs the usual time for the way of a long rod alone.
 TEST(Plan, AStepHasTimeForItsWayAndForTheUsualWork) {
   const std::vector<DrawnPart> parts = {at("wall", makeTube(20e-3, 5.025e-3, 8e-3, 64), {0, 0, 0}),

@@ -118,5 +118,56 @@ TEST(SessionPointers, WhatIsNoPersonOrNoPlaceIsNotPassedOn) {
   EXPECT_THROW(SessionPointers("demo.pointer1"), LoadError);
 }
 
+/// Over UDP on this machine.
+class NetworkPointers : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      a_ = std::make_unique<SessionPointers>(sessionName(), "lo");
+      b_ = std::make_unique<SessionPointers>(sessionName(), "lo");
+    } catch (const LoadError& error) {
+      if (std::string(error.what()).find("this build has no network") == std::string::npos) throw;
+      GTEST_SKIP() << "this build has no network";
+    }
+  }
+  /// Until something changes, at most eight seconds, while the other one says what it points at.
+  static std::vector<SessionPointer> wait(SessionPointers& of, SessionPointers* other) {
+    for (int i = 0; i < 800; ++i) {
+      if (other != nullptr) other->take();
+      std::vector<SessionPointer> changes = of.take();
+      if (!changes.empty()) return changes;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return {};
+  }
+  std::unique_ptr<SessionPointers> a_, b_;
+};
+
+TEST_F(NetworkPointers, APointerIsSeenMovesAndIsTakenBack) {
+  a_->point(3, Vec3(0.1, 0.2, 0.3));
+  const std::vector<SessionPointer> seen = wait(*b_, a_.get());
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_EQ(seen[0].p_W, Vec3(0.1, 0.2, 0.3));
+  EXPECT_GE(seen[0].who, 1000);
+  a_->point(3, Vec3(0.1, 0.2, 0.4));
+  const std::vector<SessionPointer> moved = wait(*b_, a_.get());
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_EQ(moved[0].p_W, Vec3(0.1, 0.2, 0.4));
+  EXPECT_EQ(moved[0].who, seen[0].who);
+  a_->point(3, {});
+  const std::vector<SessionPointer> gone = wait(*b_, a_.get());
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_FALSE(gone[0].p_W);
+}
+
+TEST_F(NetworkPointers, WhoFallsSilentPointsNoLonger) {
+  a_->point(1, Vec3(1, 2, 3));
+  ASSERT_EQ(wait(*b_, a_.get()).size(), 1U);
+  a_.reset();
+  const std::vector<SessionPointer> gone = wait(*b_, nullptr);
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_FALSE(gone[0].p_W);
+}
+
 }  // namespace
 }  // namespace vps::scenes

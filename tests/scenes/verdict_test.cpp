@@ -4,7 +4,9 @@
 
 #include <numbers>
 
+#include "judge/overlap_judge.h"
 #include "judge/surface_error.h"
+#include "procedure/way_check.h"
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
 #include "vps/load_error.h"
@@ -236,6 +238,35 @@ TEST(Verdict, APartLaidDownBySightIsAlignedByThePegThatGoesThroughIt) {
   ASSERT_EQ(result.steps.size(), 2U);
   EXPECT_EQ(result.steps[1].verdict, Verdict::Fits) << result.steps[1].reason;
   EXPECT_TRUE(result.steps[1].aligned_by.empty());
+}
+
+TEST(Verdict, APartIsNotAlignedByOneThatDoesNotArrive) {
+  Scene scene = pegThroughCollar();
+  scene.steps[1].timeout_s = 0.1;  // too short to arrive
+  const AssembleResult result = assemble(scene);
+  ASSERT_EQ(result.steps.size(), 2U);
+  EXPECT_EQ(result.steps[1].verdict, Verdict::NotShown);
+  EXPECT_TRUE(result.steps[0].aligned_by.empty()) << result.steps[0].aligned_by;
+  EXPECT_EQ(result.steps[1].stands_on, "collar");
+}
+
+// A ring around a post lies within sight's error of its place, with the post on the wrong side of its wall.
+TEST(Verdict, APartIsNotAlignedThroughAWall) {
+  const auto bodyOf = [](const std::string& name, const Mesh& mesh) {
+    VoxMapSettings voxels;
+    voxels.voxel_m = 0.2 * kMm;
+    PointShellSettings points;
+    points.spacing_m = 0.5 * kMm;
+    return makeJudgedBody(buildPartModel(name, mesh, voxels, points));
+  };
+  OverlapJudge judge;
+  judge.mount(bodyOf("post", makeCylinder(0.2 * kMm, 10 * kMm, 24)), {});
+  const JudgedBody ring = bodyOf("ring", makeTube(3 * kMm, 2.9 * kMm, 2 * kMm, 48));
+  const auto at = [](double x_mm) { return Pose::translation({x_mm * kMm, 0, 0}); };
+  constexpr double kLimit_m = 10e-6;
+  EXPECT_TRUE(isFreeBetween(judge, ring, Vec3::Zero(), at(0.4), at(0), kLimit_m));
+  EXPECT_TRUE(isFreeBetween(judge, ring, Vec3::Zero(), at(3.3), at(3.7), kLimit_m));
+  EXPECT_FALSE(isFreeBetween(judge, ring, Vec3::Zero(), at(3.3), at(2.6), kLimit_m));
 }
 
 TEST(Verdict, APartThatNobodyHoldsIsRefusedByName) {

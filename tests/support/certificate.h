@@ -5,6 +5,7 @@
 #include <openssl/ec.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
+#include <openssl/rsa.h>
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
@@ -14,10 +15,11 @@
 namespace vps::test {
 
 /// Writes NAME.pem and NAME.key into a folder: signed by itself, for localhost and 127.0.0.1, valid between
-/// two times from now [s].
+/// two times from now [s]. `rsa_bits` 0: by an elliptic curve.
 inline void writeCertificate(const std::string& folder, const std::string& name, long from_s = -3600,
-                             long to_s = 3600) {
-  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(EVP_EC_gen("P-256"), EVP_PKEY_free);
+                             long to_s = 3600, unsigned rsa_bits = 0) {
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      rsa_bits > 0 ? EVP_RSA_gen(rsa_bits) : EVP_EC_gen("P-256"), EVP_PKEY_free);
   const std::unique_ptr<X509, decltype(&X509_free)> made(X509_new(), X509_free);
   X509_set_version(made.get(), X509_VERSION_3);
   ASN1_INTEGER_set(X509_get_serialNumber(made.get()), 1);

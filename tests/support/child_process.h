@@ -41,6 +41,19 @@ class ChildProcess {
   }
   ~ChildProcess() { killNow(); }
 
+  /// Of the process; 0: none.
+  [[nodiscard]] pid_t id() const { return id_; }
+  /// Asks it to end, as Ctrl-C does.
+  void interrupt() const {
+    if (id_ > 0) kill(id_, SIGINT);
+  }
+  /// Without waiting for it.
+  [[nodiscard]] bool isRunning() const {
+    siginfo_t info{};
+    const bool is_known =
+        id_ > 0 && waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
+    return is_known && info.si_pid == 0;
+  }
   /// Returns the time of the kill by the monotonic clock.
   std::int64_t killNow() {
     const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(

@@ -80,7 +80,7 @@ class NodeProcesses {
   [[nodiscard]] std::size_t segments() const {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
-      count += entry.path().filename().string().ends_with("." + session_);
+      count += entry.path().filename().string().find("." + session_) != std::string::npos;
     return count;
   }
 

@@ -28,6 +28,10 @@ class FakeRun final : public WatchedRun {
   void point(int person, const std::optional<Vec3>& p_W) override { pointed.push_back({person, p_W}); }
   std::vector<scenes::SessionPointer> takePointers() override { return std::exchange(elsewhere, {}); }
 
+  [[nodiscard]] std::optional<Playback> playback() const override { return playing; }
+  void play(bool on) override { playing->is_playing = on; }
+  void seek(double to_s) override { sought_s = to_s; }
+
   /// A snapshot with the peg at a height, in hand; with a contact below it.
   void show(double z_m, bool has_contact = false) {
     scenes::Snapshot shot;
@@ -48,6 +52,8 @@ class FakeRun final : public WatchedRun {
   std::string doing_now;
   std::optional<WatchedShot> next;
   std::vector<WatchedNews> news;
+  std::optional<Playback> playing;  ///< empty: no recording
+  double sought_s = 0;
   std::vector<scenes::SessionPointer> pointed, elsewhere;  ///< by browsers, and by others
 
  private:

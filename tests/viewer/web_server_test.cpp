@@ -199,7 +199,13 @@ TEST_F(WebServerTest, AddressesThatOthersReachNeedATokenAndGetOne) {
   options.token.clear();
   for (const char* address : {"0.0.0.0", "::", "nonsense", "203.0.113.7"}) {
     options.address = address;
-    EXPECT_THROW(WebServer(run, options), LoadError) << address;
+    try {
+      const WebServer server(run, options);
+      FAIL() << address;
+    } catch (const LoadError& refused) {
+      EXPECT_NE(std::string(refused.what()).find("`ip addr` lists them"), std::string::npos)
+          << refused.what();
+    }
   }
 }
 
@@ -296,10 +302,14 @@ TEST_F(WebInBrowser, ARunIsDrawnAndTwoBrowsersSeeEachOthersPointer) {
   EXPECT_EQ(a.evaluate("document.getElementById('name').textContent"), "peg & <hole>");
   EXPECT_EQ(a.evaluate("document.getElementById('take').hidden"), true);
   a.evaluate("document.getElementById('point').click()");
-  a.mouse("mousePressed", 500, 350);
-  a.mouse("mouseReleased", 500, 350);
   const std::string a_number = a.evaluate("String(vps.you)");
-  EXPECT_TRUE(b.waitFor("vps.pointers[" + a_number + "]", 20)) << joined(b.console());
+  bool is_seen = false;
+  for (int i = 0; i < 3 && !is_seen; ++i) {  // a slow browser may not have the shape there at first
+    a.mouse("mousePressed", 500, 350);
+    a.mouse("mouseReleased", 500, 350);
+    is_seen = b.waitFor("vps.pointers[" + a_number + "]", 20);
+  }
+  EXPECT_TRUE(is_seen) << joined(b.console());
   b.screenshot(folder + "/b.png");
   EXPECT_EQ(joined(a.console()) + joined(b.console()), "");
   const double before = a.evaluate("vps.drawn");

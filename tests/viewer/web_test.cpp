@@ -432,6 +432,24 @@ TEST(WebHub, WithoutTheRightNobodyTakesTheHand) {
   EXPECT_EQ(a.last("hand"), json::parse(R"({"may_take":false,"holder":0})"));
 }
 
+TEST(WebHub, ARecordingIsPlayedByAllWhoWatchAndLateOnesSeeItsState) {
+  FakeRun run(false);
+  run.playing = Playback{1, 9, true};
+  WebHub hub(run, 60);
+  FakeBrowser a, late;
+  const int number = hub.join(a);
+  run.show(0.05);
+  hub.poll(1);
+  EXPECT_EQ(a.last("playback"), json::parse(R"({"begin_s":1.0,"end_s":9.0,"is_playing":true})"));
+  EXPECT_TRUE(hub.hear(number, R"({"play":0})", 1));
+  EXPECT_TRUE(hub.hear(number, R"({"seek":4.5})", 1));
+  EXPECT_EQ(run.sought_s, 4.5);
+  hub.poll(1.1);
+  EXPECT_EQ(a.last("playback")["is_playing"], false);
+  hub.join(late);
+  EXPECT_EQ(late.last("playback"), a.last("playback"));
+}
+
 TEST_F(WebHubTest, AFloodAndGarbageEndTheConnection) {
   const int a = hub_.join(a_), b = hub_.join(b_);
   int heard = 0;

@@ -160,6 +160,8 @@ TEST_F(WebTls, FilesThatAreMissingOrWrongAreNamedInPlainWords) {
   expectWords("good.pem", "other.key", "other.key", "is not the key of");
   expectWords("old.pem", "old.key", "old.pem", "has expired");
   expectWords("early.pem", "early.key", "early.pem", "is not valid yet");
+  vps::test::writeCertificate(folder(), "weak", -3600, 3600, 1024);
+  expectWords("weak.pem", "weak.key", "weak.pem", "too weak");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
+#include "pdf_file.h"
 #include "planned_folder.h"
 #include "progress_bar.h"
 #include "run_report.h"
@@ -45,6 +46,7 @@ struct AssembleArguments {
   bool has_local_contact = false;
   bool sheds_load = true;  ///< in real time
   bool takes_apart = false;
+  bool has_pdf = false;
 };
 
 /// Hears every physics step of a run.
@@ -135,6 +137,8 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   if (heard) heard->write(wav);
 
   printOutcome(result, notes, given.record, given.out);
+  // Last, so that nothing is lost where it fails.
+  if (given.has_pdf) requirePrinted(given.out + "/report.html", given.out + "/report.pdf");
   return result.verdict;
 }
 
@@ -195,6 +199,7 @@ int runCad(AssembleArguments given) {
 }
 
 int runAssemble(const AssembleArguments& given) {
+  if (given.has_pdf) requirePdf();
   if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
   return statusOf(runScene(given));
 }
@@ -213,6 +218,7 @@ void addAssemble(CommandLine& line) {
   addCadOptions(command, given->cad);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
+  command.add_flag("--pdf", given->has_pdf, "report.pdf as well, printed by Chromium");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");
   command.add_flag(
       "--disassemble", given->takes_apart,

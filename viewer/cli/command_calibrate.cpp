@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps calibrate: where the device stands in a room, and where its two arms stand to each other.
-#include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <vector>
 
 #include "command.h"
@@ -14,6 +11,7 @@
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_device/placement.h"
 #include "vps_scenes/display.h"
+#include "vps_scenes/number_table.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -22,31 +20,6 @@ namespace {
 struct CalibrateArguments {
   std::string points, bases, parameters, display, out;
 };
-
-/// Rows of that many numbers, apart by commas or blanks; '#' begins a comment, and a first row of words is a
-/// heading.
-std::vector<std::vector<double>> rowsOf(const std::string& file, std::size_t columns,
-                                        const std::string& what) {
-  std::ifstream in(file);
-  if (!in) throw LoadError(file, "", "cannot be read; name a table of " + what);
-  std::vector<std::vector<double>> rows;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    line.resize(std::min(line.size(), line.find('#')));
-    for (char& c : line)
-      if (c == ',' || c == ';') c = ' ';
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    std::istringstream words(line);
-    std::vector<double> row;
-    for (double x = 0; words >> x;) row.push_back(x);
-    if (row.empty() && rows.empty()) continue;  // a heading
-    if (row.size() != columns || !words.eof())
-      throw LoadError(file + ":" + std::to_string(number), "",
-                      "expected " + std::to_string(columns) + " numbers: " + what);
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
 
 std::string listOf(const Vec3& v) {
   char text[128];
@@ -71,9 +44,11 @@ std::string placementLine(const Pose& X) {
 /// For the display file, or, with one, for the scene that it shows.
 std::string placementOf(const std::string& file, const std::string& display_file) {
   std::vector<device::TouchedPoint> points;
-  for (const std::vector<double>& row :
-       rowsOf(file, 6, "x, y, z read by the device and x, y, z in the room [m]"))
-    points.push_back({{row[0], row[1], row[2]}, {row[3], row[4], row[5]}});
+  for (const scenes::NumberRow& row :
+       scenes::readNumberTable(file, 6, "x, y, z read by the device and x, y, z in the room [m]")) {
+    const std::vector<double>& n = row.numbers;
+    points.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+  }
   const device::Placement found = device::fitPlacement(points);
   if (found.status == Status::Truncated) throw LoadError(file, "", "has fewer than three points; touch more");
   if (found.status != Status::Ok)
@@ -95,9 +70,9 @@ std::string placementOf(const std::string& file, const std::string& display_file
 
 std::string basesOf(const std::string& file, const std::string& parameters) {
   std::vector<device::DualArmJoints> readings;
-  for (const std::vector<double>& row :
-       rowsOf(file, 7, "left t1, t2 [rad], d3 [m], right t1, t2, d3, handle motor q3"))
-    readings.push_back(device::fromVector(Eigen::Map<const device::JointVector>(row.data())));
+  for (const scenes::NumberRow& row :
+       scenes::readNumberTable(file, 7, "left t1, t2 [rad], d3 [m], right t1, t2, d3, handle motor q3"))
+    readings.push_back(device::fromVector(Eigen::Map<const device::JointVector>(row.numbers.data())));
   const device::DualArmFile start =
       parameters.empty() ? device::builtInDualArm() : device::loadDualArm(parameters);
   const device::BaseCalibration found = device::calibrateBases(start.parameters, readings);

@@ -9,6 +9,7 @@
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
+#include "pdf_file.h"
 #include "progress_bar.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -20,7 +21,7 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 struct CheckArguments {
-  std::string assembly, near, json, csv, html;
+  std::string assembly, near, json, csv, html, pdf;
   CadArguments cad;
   bool has_no_play = false;
 };
@@ -51,24 +52,28 @@ Assembly readCad(const CheckArguments& given, const Progress& progress) {
 int runCheck(const CheckArguments& given) {
   const std::vector<std::string> inputs = {given.assembly};
   OutputFile json(given.json, inputs), csv(given.csv, inputs), html(given.html, inputs);
+  PdfFile pdf(given.pdf, inputs);
   scenes::CheckSettings settings;
   settings.has_play = !given.has_no_play;
-  settings.has_sections = settings.has_maps = !given.html.empty();
+  settings.has_sections = settings.has_maps = !given.html.empty() || !given.pdf.empty();
   if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
   ProgressBar bar;
   const bool is_cad = isCadExtension(lowerExtension(given.assembly));
   const Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given, bar.progress());
-  for (const std::string& output : {given.json, given.csv, given.html}) requireNotRead(output, assembly.read);
+  for (const std::string& output : {given.json, given.csv, given.html, given.pdf})
+    requireNotRead(output, assembly.read);
   const scenes::CheckResult result =
       scenes::checkAssembly(assembly.name, assembly.parts, settings, bar.progress());
   throwIfStopped();
   json.write(toJson(result));
   csv.write(checkCsv(result));
-  html.write(checkPage(result));
+  const std::string page = checkPage(result);
+  html.write(page);
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
+  pdf.write(page);  // last, so that nothing is lost where it fails
   if (result.clashes() > 0) return kBad;
   return result.uncertain() > 0 ? kNotShown : kGood;
 }
@@ -92,6 +97,7 @@ void addCheck(CommandLine& line) {
   command.add_flag("--no-play", given->has_no_play, "leave out play and ways out, which take longest");
   command.add_option("--csv", given->csv, "writes each number with its error on a line")->type_name("FILE");
   command.add_option("--html", given->html, "writes a page with tables")->type_name("FILE");
+  addPdfOption(command, given->pdf);
   addJsonOption(command, given->json);
 }
 

@@ -7,6 +7,7 @@
 #include "command.h"
 #include "json_out.h"
 #include "output.h"
+#include "pdf_file.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -21,6 +22,7 @@ struct CompareArguments {
   std::string expert, trainee;
   std::string out, json;  ///< empty: none
   std::optional<double> pass;
+  bool has_pdf = false;
 };
 
 std::string comparisonTable(const scenes::RunComparison& result) {
@@ -35,6 +37,7 @@ std::string comparisonTable(const scenes::RunComparison& result) {
 }
 
 int runCompare(const CompareArguments& given) {
+  if (given.has_pdf) requirePdf();
   std::optional<OutputFolder> out;
   if (!given.out.empty()) out.emplace(given.out);
   OutputFile json(given.json, {given.expert, given.trainee});
@@ -52,6 +55,7 @@ int runCompare(const CompareArguments& given) {
   std::printf("Score %s of 100%s.\n", fixed(result.score, 0).c_str(),
               given.pass ? (", " + fixed(*given.pass, 0) + " are needed").c_str() : "");
   if (out) std::printf("report: %s/compare.html\n", given.out.c_str());
+  if (given.has_pdf) requirePrinted(given.out + "/compare.html", given.out + "/compare.pdf");
   return given.pass && result.score < *given.pass ? kBad : kGood;
 }
 
@@ -68,6 +72,7 @@ void addCompare(CommandLine& line) {
       ->type_name("TRAINEE");
   command.add_option("-o,--out", given->out, "folder for compare.html with pictures, and compare.json")
       ->type_name("DIR");
+  command.add_flag("--pdf", given->has_pdf, "compare.pdf as well, printed by Chromium")->needs("--out");
   command.add_option("--pass", given->pass, "score that is needed: below it the exit status is 1")
       ->check(CLI::Range(0.0, 100.0))
       ->type_name("SCORE");

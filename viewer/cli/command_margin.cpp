@@ -7,6 +7,7 @@
 #include "command.h"
 #include "json_out.h"
 #include "output.h"
+#include "pdf_file.h"
 #include "progress_bar.h"
 #include "run_report.h"
 #include "scene_arguments.h"
@@ -25,7 +26,7 @@ struct MarginArguments {
   SceneArguments scene;
   std::string resolution = "1um";
   bool has_contact = true;
-  std::string json, html;  ///< empty: none
+  std::string json, html, pdf;  ///< empty: none
 };
 
 std::string marginTable(const scenes::MarginResult& result) {
@@ -56,12 +57,14 @@ int tell(const scenes::MarginResult& result) {
 
 int runMargin(const MarginArguments& given) {
   OutputFile json(given.json, {given.scene.scene}), html(given.html, {given.scene.scene});
+  PdfFile pdf(given.pdf, {given.scene.scene});
   scenes::MarginOptions options;
   options.resolution_m = scenes::lengthFromText(given.resolution, "--resolution");
   options.has_contact = given.has_contact;
   options.stop = &stopRequested();
   ProgressBar bar;
-  scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {given.json, given.html});
+  scenes::Scene scene =
+      sceneFrom(given.scene.scene, given.scene.fidelity, {given.json, given.html, given.pdf});
   // No cache: each model is of a size of its own, and would push out those that are used again.
   setModelOptions(options, bar, std::nullopt, given.scene.models_everything);
   const scenes::MarginResult result = scenes::measureMargins(scene, options);
@@ -69,7 +72,9 @@ int runMargin(const MarginArguments& given) {
   json.write(toJson(result));
   html.write(marginPage(result));
   bar.clear();
-  return tell(result);
+  const int status = tell(result);
+  pdf.write(marginPage(result));  // last, so that nothing is lost where it fails
+  return status;
 }
 
 }  // namespace
@@ -84,6 +89,7 @@ void addMargin(CommandLine& line) {
   command.add_flag("!--geometry", given->has_contact,
                    "by exact distances alone, without runs of the hand: quick, and an upper bound");
   command.add_option("--html", given->html, "writes a page with bars")->type_name("FILE");
+  addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->scene.fidelity);
   addJsonOption(command, given->json);
 }

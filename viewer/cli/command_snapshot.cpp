@@ -11,10 +11,12 @@
 #include "json_out.h"
 #include "output.h"
 #include "scene_arguments.h"
+#include "terminal.h"
 #include "vps/load_error.h"
 #include "vps/solid.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
+#include "vps_scenes/tracked_heads.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/model_meshes.h"
 #include "vps_viewer/renderer.h"
@@ -31,7 +33,8 @@ struct SnapshotArguments {
   std::string view = "iso";
   bool has_section = false;
   int tolerance = 2;
-  std::string display;  ///< display file; empty: one picture from `view`
+  std::string display;     ///< display file; empty: one picture from `view`
+  double head_time_s = 0;  ///< of a recorded head
   std::string stereo = "mono";
   std::string eye_distance;  ///< in the scene; empty: a thirtieth of the distance
   std::vector<std::string> show;
@@ -109,7 +112,10 @@ std::vector<NamedPicture> renderFor(const SnapshotArguments& given, Renderer& re
   const StereoMode mode = stereoModeOf(given.stereo);
   std::vector<NamedPicture> pictures;
   if (!given.display.empty()) {
-    const scenes::Display display = scenes::loadDisplay(given.display);
+    scenes::TrackedHeads heads(scenes::loadDisplay(given.display));
+    heads.waitForAll(scenes::kHeadWait_s);
+    const scenes::Display& display = heads.at(given.head_time_s);
+    for (const std::string& news : heads.takeNews()) warn(news);
     for (ScreenPicture& picture : renderDisplay(renderer, snapshot, display, options, mode))
       pictures.push_back({"_" + picture.name, std::move(picture.image)});
     return pictures;
@@ -253,6 +259,11 @@ void addSnapshot(CommandLine& line) {
                   "display file (TOML): one picture for each of its screens and viewers, NAME_SCREEN.png")
       ->type_name("FILE")
       ->excludes("--eye-distance");
+  command
+      .add_option("--head-time", given->head_time_s,
+                  "where a recorded head was at this time [s]; without it at the start")
+      ->needs("--display")
+      ->type_name("SECONDS");
   command
       .add_option(
           "--show", given->show,

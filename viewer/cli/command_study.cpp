@@ -12,6 +12,7 @@
 #include "command.h"
 #include "json_out.h"
 #include "output.h"
+#include "pdf_file.h"
 #include "progress_bar.h"
 #include "quoted.h"
 #include "scene_arguments.h"
@@ -37,10 +38,10 @@ struct StudyArguments {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   bool has_contact = true;
-  std::size_t tasks = 0;            ///< of --print-tasks; 0: not given
-  std::optional<std::size_t> only;  ///< of --repeat
-  std::string log, json, html;      ///< empty: none
-  std::string dask;                 ///< address of a scheduler; empty: on this machine
+  std::size_t tasks = 0;             ///< of --print-tasks; 0: not given
+  std::optional<std::size_t> only;   ///< of --repeat
+  std::string log, json, html, pdf;  ///< empty: none
+  std::string dask;                  ///< address of a scheduler; empty: on this machine
 };
 
 /// The command that makes runs of this study; which ones, is added to it.
@@ -136,9 +137,11 @@ int runStudyCommand(StudyArguments given, bool has_last) {
     return kGood;
   }
   OutputFile json(given.json, {given.scene, given.log}), html(given.html, {given.scene, given.log});
+  PdfFile pdf(given.pdf, {given.scene, given.log});
   requireNotRead(given.log, {given.scene});
   ProgressBar bar;
-  scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.html, given.log});
+  scenes::Scene scene =
+      sceneFrom(given.scene, given.fidelity, {given.json, given.html, given.pdf, given.log});
   const std::vector<scenes::StudyVariable> variables = scenes::studyVariables(scene);
   const scenes::StudySettings settings{given.seed, given.has_contact, given.threads};
   std::optional<StudyLog> log;
@@ -168,6 +171,7 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   html.write(studyPage(result));
   bar.clear();
   printResult(result);
+  pdf.write(studyPage(result));  // last, so that nothing is lost where it fails
   return kGood;
 }
 
@@ -206,6 +210,7 @@ void addStudy(CommandLine& line) {
           "same place")
       ->type_name("ADDRESS");
   command.add_option("--html", given->html, "writes a page with histograms")->type_name("FILE");
+  addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->fidelity);
   addJsonOption(command, given->json);
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "command.h"
 #include "output.h"
@@ -16,7 +17,7 @@ namespace {
 
 struct VideoArguments {
   std::string recording, out, frames, sound;
-  std::string camera = "fixed";
+  std::string camera = "fixed", display, stereo = "mono";
   VideoSettings settings;
 };
 
@@ -27,7 +28,7 @@ int runVideo(const VideoArguments& given) {
                                  ? (film.parent_path() / (film.stem().string() + "_frames")).string()
                                  : given.frames;
   const device::RecordedRun run = device::loadRecording(given.recording);
-  OutputFile out(given.out, {given.recording, given.sound});
+  OutputFile out(given.out, {given.recording, given.sound, given.display});
   OutputFolder frames(folder);
   ProgressBar bar;
   VideoSettings settings = given.settings;
@@ -35,6 +36,8 @@ int runVideo(const VideoArguments& given) {
   settings.path = given.camera == "orbit"    ? CameraPath::Orbit
                   : given.camera == "follow" ? CameraPath::Follow
                                              : CameraPath::Fixed;
+  settings.stereo = stereoModeOf(given.stereo);
+  if (!given.display.empty()) settings.display = scenes::loadDisplay(given.display);
   const std::size_t count = writeFrames(run, frames.partial(), settings);
   bar.progress()("encoding", 1);
   const std::string failure =
@@ -85,6 +88,19 @@ void addVideo(CommandLine& line) {
       .add_option("--camera", given->camera, "fixed, orbit (once around) or follow (with the part in hand)")
       ->capture_default_str()
       ->check(CLI::IsMember({"fixed", "orbit", "follow"}));
+  std::vector<std::string> modes;
+  for (const StereoMode mode : stereoModes())
+    if (mode != StereoMode::Spectral) modes.emplace_back(toText(mode));
+  command.add_option("--stereo", given->stereo, "how the pictures of both eyes are brought to a screen")
+      ->capture_default_str()
+      ->check(CLI::IsMember(modes));
+  CLI::Option* display =
+      command
+          .add_option("--display", given->display,
+                      "display file (TOML): the film is its first screen, seen by its first viewer, whose "
+                      "recorded head goes with the run's time")
+          ->type_name("FILE");
+  for (const char* name : {"--width", "--height", "--view", "--camera"}) display->excludes(name);
 }
 
 }  // namespace vps::viewer::inline v0

@@ -6,11 +6,13 @@
 
 #include "command.h"
 #include "file_kind.h"
+#include "latency_report.h"
 #include "output.h"
 #include "scene_arguments.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
+#include "vps_viewer/headset.h"
 #include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
 
@@ -22,13 +24,32 @@ struct ViewArguments {
   SceneArguments scene;
   WindowOptions window;
   std::string stereo = "mono", display;
+  bool seeks_headset = false, measures_latency = false;
+  LatencySettings latency;
+  std::string json;
 };
 
+int measure(const ViewArguments& given) {
+  if (lowerExtension(given.scene.scene) == ".mcap")
+    throw LoadError(given.scene.scene, "",
+                    "is a recording, which makes no contact; --measure-latency is for scenes");
+  LatencySettings settings = given.latency;
+  settings.width = given.window.width;
+  settings.height = given.window.height;
+  settings.stop = &stopRequested();
+  return reportLatency(given.scene, settings, given.json);
+}
+
 int runView(const ViewArguments& given) {
+  if (given.measures_latency) return measure(given);
   if (const std::string missing = missingForWindow(); !missing.empty()) throw LoadError("", "", missing);
   const std::string& file = given.scene.scene;
   WindowOptions window = given.window;
   window.stop = &stopRequested();
+  if (given.seeks_headset) {
+    window.notes.push_back(headsetWords());
+    say(window.notes.back());
+  }
   window.stereo = stereoModeOf(given.stereo);
   if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
   if (lowerExtension(file) == ".mcap") {
@@ -85,6 +106,8 @@ void addView(CommandLine& line) {
       ->check(CLI::Range(0.0, 1000.0));
   command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
       ->type_name("FILE");
+  command.add_flag("--headset", given->seeks_headset,
+                   "say whether OpenXR has a headset; a headset is shown by its browser (vps watch --web)");
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes())
     if (mode != StereoMode::Spectral) modes.emplace_back(toText(mode));
@@ -98,6 +121,16 @@ void addView(CommandLine& line) {
           "display file (TOML): the window is its first screen, seen by its first viewer, and a device "
           "whose place it has moves the part where the hand is")
       ->type_name("FILE");
+  CLI::Option* latency = command.add_flag(
+      "--measure-latency", given->measures_latency,
+      "without window, display and sound card: how far picture, sound and force of a contact are apart");
+  command.add_option("--taps", given->latency.taps, "contacts to measure, about 0.4 s each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000))
+      ->needs(latency);
+  addJsonOption(command, given->json);
+  command.get_option("--json")->needs(latency);
+  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display"}) latency->excludes(name);
   command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
       ->capture_default_str()
       ->type_name("NAME");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps watch: prints what happens in a session. A watcher reads only, so that it can disturb nobody.
-// vps watch --web: shows a session, or a run of a scene, in web browsers.
+// vps watch --web: shows a session, a run of a scene, or a recording in web browsers.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "command.h"
+#include "file_kind.h"
 #include "run_report.h"
 #include "scene_arguments.h"
 #include "session_option.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps_device/recording.h"
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/ros_topics.h"
 #include "vps_scenes/network/session_pointers.h"
@@ -44,8 +46,12 @@ class Watching {
  public:
   Watching(scenes::SessionWatcher& watcher, const WatchArguments& given)
       : watcher_(watcher), rate_hz_(given.rate_hz) {
+    try {
+      pointers_.emplace(given.session, given.network);
+    } catch (const LoadError& refused) {  // certificates of before there were pointers
+      say(std::string("pointers are not shown: ") + refused.what());
+    }
     const std::string interface = given.network.empty() ? "lo" : given.network.interface;
-    if (given.network.empty()) pointers_.emplace(given.session);
     if (given.ros_domain >= 0)
       ros_ = std::make_unique<scenes::RosTopics>(given.ros_domain, interface, given.session, watcher.scene());
   }
@@ -121,8 +127,8 @@ class Watching {
   }
 
   scenes::SessionWatcher& watcher_;
-  std::unique_ptr<scenes::RosTopics> ros_;           ///< null: none
-  std::optional<scenes::SessionPointers> pointers_;  ///< of this machine; none over a network
+  std::unique_ptr<scenes::RosTopics> ros_;  ///< null: none
+  std::optional<scenes::SessionPointers> pointers_;
   std::set<int> pointing_;
   double rate_hz_;
   std::optional<scenes::Verdict> verdict_;
@@ -145,6 +151,13 @@ int serveWeb(const WatchArguments& given) {
   web.say = [](const std::string& words) { say(words); };
   if (given.scene.scene.empty()) {
     serveSession(web);
+    return kGood;
+  }
+  if (lowerExtension(given.scene.scene) == ".mcap") {
+    if (web.allows_hand)
+      throw LoadError(given.scene.scene, "",
+                      "is a recording, whose parts nobody can take; leave out --allow-hand");
+    serveRecording(device::loadRecording(given.scene.scene), web);
     return kGood;
   }
   const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {});
@@ -195,7 +208,9 @@ void addWatch(CommandLine& line) {
       "vps watch --session demo --web 8080", [given] { return runWatch(*given); });
   addSceneOptions(command, given->scene);
   command.get_option("scene")->required(false)->description(
-      "scene file (TOML) that is run for the web page; without one, a session is followed");
+      "scene file (TOML) that is run for the web page, or a recording (MCAP) that it plays; without one, a "
+      "session is "
+      "followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
   command.add_option("--rate", given->rate_hz, "lines a second about the part in hand; 0: none")

@@ -2,6 +2,8 @@
 // Results as JSON. With study_log.cpp the only source of the program that includes nlohmann/json.
 #include "json_out.h"
 
+#include <algorithm>
+
 #include "json_fields.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/check_fields.h"
@@ -13,6 +15,7 @@
 #include "vps_scenes/result_fields.h"
 #include "vps_scenes/study_fields.h"
 #include "vps_scenes/trade_fields.h"
+#include "vps_viewer/latency.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -168,6 +171,39 @@ std::string toJson(const SnapshotAnswer& answer) {
                         {"greatest_difference", answer.greatest_difference},
                         {"mean_difference", answer.mean_difference}};
   return text(json);
+}
+
+namespace {
+
+Json percentiles(const std::vector<double>& values_s) {
+  return {{"seen", std::ranges::count_if(values_s, [](double value) { return value >= 0; })},
+          {"p50_s", percentile(values_s, 0.5)},
+          {"p99_s", percentile(values_s, 0.99)},
+          {"max_s", percentile(values_s, 1)}};
+}
+
+}  // namespace
+
+std::string toJson(const LatencyResult& result) {
+  Json stages = Json::object();
+  for (const LatencyStage& stage : latencyStages()) {
+    std::vector<double> values_s;
+    for (const ContactTimes& times : result.contacts) values_s.push_back(times.*stage.time_s);
+    stages[stage.key] = percentiles(values_s);
+  }
+  return text({{"scene", result.scene},
+               {"part", result.part},
+               {"width", result.width},
+               {"height", result.height},
+               {"has_sound", result.hasSound()},
+               {"bound_s", kApart_s},
+               {"wall",
+                {{"contacts", result.contacts.size()},
+                 {"is_good", result.isGood()},
+                 {"apart", percentiles(result.apart_s())},
+                 {"since_read", stages},
+                 {"picture_s", result.picture_wall_s},
+                 {"drawn_by", result.drawn_by}}}});
 }
 
 namespace {

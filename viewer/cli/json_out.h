@@ -33,6 +33,8 @@ struct DualArmFile;
 
 namespace vps::viewer::inline v0 {
 
+struct LatencyResult;
+
 /// What `vps query` found at one pose.
 struct PoseAnswer {
   Pose X_AB;
@@ -105,6 +107,7 @@ std::string toJson(const QueryAnswer& answer);
 std::string toJson(const ImportAnswer& answer);
 std::string toJson(const ExportAnswer& answer);
 std::string toJson(const SnapshotAnswer& answer);
+std::string toJson(const LatencyResult& result);
 std::string toJson(const ExplainAnswer& answer);
 std::string toJson(const scenes::TradeResult& result);
 std::string toJson(const scenes::CheckResult& result);

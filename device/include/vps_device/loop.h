@@ -74,7 +74,9 @@ class VPS_DEVICE_API HapticLoop {
   const TickReport& tick(double dt_s) noexcept;
 
   /// Takes the latest PhysicsState from the port; the next tick uses it. Observes its stored energy if it is
-  /// a new step. Separate from the tick so that a recording can note which state a tick used.
+  /// a new step, against the work on the hand until the tick whose proxy that step answers: over a network
+  /// that tick is a round trip ago, and the way gone since would count as energy. Separate from the tick so
+  /// that a recording can note which state a tick used.
   void receivePart() noexcept;
   /// The rest of tick(), with the state that receivePart() took.
   /// @return  Status of the device, or Fault while safety holds the force at zero
@@ -119,6 +121,9 @@ class VPS_DEVICE_API HapticLoop {
   [[nodiscard]] Twist stepSince(const DeviceSample& sample) const noexcept;
   void moveProxy(const Twist& step_D, const Pose& X_DH) noexcept;
   void accountEnergy(const DeviceSample& sample, const Twist& step_D) noexcept;
+  void keepWork(double time_s) noexcept;
+  [[nodiscard]] double workAt_J(double time_s) const noexcept;
+  void balance(double work_J, double stored_J, double actuator_J) noexcept;
   void accountQuantisation(const Wrench& F_acting_D) noexcept;
   [[nodiscard]] Wrench actingWrench() const noexcept;
   void watchPhysics(double dt_s) noexcept;
@@ -146,6 +151,12 @@ class VPS_DEVICE_API HapticLoop {
   Wrench F_accounted_D_;                                    ///< by the last accountEnergy()
   double force_variation_N_ = 0, torque_variation_Nm_ = 0;  ///< sums of its changes
   double net_scene_J_ = 0, balance_start_J_ = 0;            // scene joules
+  /// What passed the hand until a tick, less the device's own dissipation.
+  struct Work {
+    double time_s = 0;  ///< of the tick's sample
+    double scene_J = 0;
+  };
+  std::array<Work, 512> works_{};  ///< of the last ticks: tick number modulo the size
   bool has_stored_ = false;
   double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
   std::uint64_t reported_faults_ = 0;

@@ -19,6 +19,10 @@ class VPS_DEVICE_API RealTimeClock {
 
 /// The system's monotonic clock, by absolute waits.
 VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
+/// The same clock, in seconds.
+[[nodiscard]] inline double monotonicSeconds() noexcept {
+  return 1e-9 * static_cast<double>(monotonicClock().now_ns());
+}
 
 /// One period that was waited for.
 struct Beat {

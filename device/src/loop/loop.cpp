@@ -94,7 +94,8 @@ void HapticLoop::receivePart() noexcept {
     port_->remote->receive(received_);
   else
     received_ = port_->physics.read();
-  if (received_.step != step_before && received_.stored_J) observeStoredEnergy(*received_.stored_J, 0);
+  if (received_.step != step_before && received_.stored_J)
+    balance(workAt_J(received_.part.time_s), *received_.stored_J, 0);
 }
 
 const TickReport& HapticLoop::tick(double dt_s) noexcept {
@@ -133,6 +134,7 @@ const TickReport& HapticLoop::tickWithReceivedPart(double elapsed_s) noexcept {
     proxy.V_W = {};
   }
   report_.time_s = sample.time_s;
+  keepWork(sample.time_s);
   reportFault();
   report_.status = is_faulted ? Status::Fault : sample.status;
   report_.X_WG = proxy.X_W;
@@ -226,10 +228,29 @@ void HapticLoop::accountQuantisation(const Wrench& F_D) noexcept {
   passivity_.quantisation_error_bound_J = (settings_.map.scale * line_J + turn_J) / settings_.map.force_scale;
 }
 
-void HapticLoop::observeStoredEnergy(double stored_J, double actuator_J) noexcept {
-  // Device dissipation is converted to scene joules by the scale of the translation that it brakes.
+// Device dissipation is converted to scene joules by the scale of the translation that it brakes.
+void HapticLoop::keepWork(double time_s) noexcept {
   const double dissipated_J = passivity_.dissipated_J * settings_.map.scale / settings_.map.force_scale;
-  const double balance_J = net_scene_J_ - dissipated_J + stored_J - actuator_J;
+  works_[ticks_ % works_.size()] = {time_s, net_scene_J_ - dissipated_J};
+}
+
+// Until the tick with this sample; the last tick's, where none of those that are kept has it.
+double HapticLoop::workAt_J(double time_s) const noexcept {
+  const std::uint64_t kept = std::min<std::uint64_t>(ticks_, works_.size());
+  for (std::uint64_t age = 1; age <= kept; ++age) {
+    const Work& work = works_[(ticks_ - age) % works_.size()];
+    if (work.time_s == time_s) return work.scene_J;
+    if (work.time_s < time_s) break;
+  }
+  return kept == 0 ? 0 : works_[(ticks_ - 1) % works_.size()].scene_J;
+}
+
+void HapticLoop::observeStoredEnergy(double stored_J, double actuator_J) noexcept {
+  balance(workAt_J(report_.time_s), stored_J, actuator_J);
+}
+
+void HapticLoop::balance(double work_J, double stored_J, double actuator_J) noexcept {
+  const double balance_J = work_J + stored_J - actuator_J;
   if (!has_stored_) balance_start_J_ = balance_J;
   has_stored_ = true;
   passivity_.balance_J = balance_J - balance_start_J_;

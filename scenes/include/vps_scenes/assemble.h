@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 
+#include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/pulled_handle.h"
 #include "vps_scenes/export.h"
@@ -47,6 +48,9 @@ struct AssembleOptions : ModelOptions {
   /// Of a run by hand with [device] kind = "mouse": where the window's cursor wants the handle. Null: a run
   /// with that kind is refused.
   std::shared_ptr<device::HandleWish> wish;
+  /// A device of one's own in place of the one that the scene's [device] kind names, moved by a person or a
+  /// program. The run is in real time. Empty: there is none.
+  std::function<std::unique_ptr<device::Device>()> device;
   /// Axis snap: while set, a spring pulls the part in hand to the axis along which its step brings it home
   /// (src/procedure/axis_snap.h). It may change at any time. Null: none. A recorded run in simulated time has
   /// none, since its recording would not hold the moment of the change.

@@ -8,6 +8,7 @@
 
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/head_track.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
@@ -22,14 +23,23 @@ struct DisplayScreen {
   [[nodiscard]] Mat3 axes() const;
 };
 
-/// A head in the room. Its eyes are on a line through its middle, along x; it looks along -z.
+/// A head in the room. Its eyes are on a line through its middle, along x; it looks along -z. Where it is
+/// comes from a stream: constant, recorded, or a topic of the network (tracked_heads.h).
 struct DisplayViewer {
   std::string name;
-  Pose X_SE;
+  Pose X_SE;               ///< now
+  bool is_placed = false;  ///< the file says where the head is, or was at first
+  HeadTrack track;         ///< recorded; empty: not
+  std::string topic;       ///< of ROS 2; empty: none
+  int ros_domain = 0;
+  std::string network = "lo";     ///< interface
   double eye_distance_m = 0.063;  ///< mean of adults: Dodgson 2004
   /// Of one eye: -1 left, 1 right, 0 the middle of the head.
   [[nodiscard]] Vec3 eye_S(int side) const { return X_SE * Vec3(0.5 * side * eye_distance_m, 0, 0); }
 };
+
+/// Whether an eye of the viewer is behind the screen, or as near as 1 mm.
+[[nodiscard]] VPS_SCENES_API bool isBehind(const DisplayViewer& viewer, const DisplayScreen& screen);
 
 struct Display {
   std::string file;
@@ -47,7 +57,8 @@ struct Display {
 };
 
 /// Reads a display file (TOML, viewer/README.md). Throws LoadError with file, line, key and remedy: also for
-/// corners that are no rectangle, and for a screen behind a viewer's head or seen from behind.
+/// corners that are no rectangle, and for a screen behind a viewer's head or seen from behind, at any time of
+/// a recorded head.
 VPS_SCENES_API Display loadDisplay(const std::string& file);
 
 }  // namespace vps::scenes::inline v0

@@ -32,6 +32,13 @@ struct ContactMark {
   Vec3 slip_W = Vec3::Zero();  ///< [m/s] along the faces, of the part that n_W points to on the other
 };
 
+/// Of all contacts [N].
+[[nodiscard]] inline double totalForce_N(const std::vector<ContactMark>& contacts) {
+  double sum_N = 0;
+  for (const ContactMark& contact : contacts) sum_N += contact.force_N;
+  return sum_N;
+}
+
 struct Snapshot {
   double time_s = 0;
   int step = -1;  ///< index into Scene::steps, -1 outside of a step
@@ -43,6 +50,10 @@ struct Snapshot {
   Pose X_W_Proxy;   ///< the device's handle
   Wrench F_hand_W;  ///< force and torque on the hand
   std::vector<ContactMark> contacts;
+  /// Of a run by the clock that gives it to a SnapshotTap; else 0. The handle was read at sample_s, by the
+  /// device's clock, and the physics step that followed it was done at clock_s, by monotonicSeconds(): the
+  /// one time of its contacts, by which picture, sound and force are compared.
+  double sample_s = 0, clock_s = 0;
 };
 
 }  // namespace vps::scenes::inline v0

@@ -3,21 +3,7 @@
 
 #include <time.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
 namespace vps::scenes::inline v0 {
-
-namespace {
-
-/// Nearest-rank percentile of sorted values.
-double percentile(const std::vector<double>& sorted, double share) {
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-}
-
-}  // namespace
 
 double TickClock::threadTime_us() {
   timespec now{};
@@ -26,24 +12,19 @@ double TickClock::threadTime_us() {
 }
 
 TickTimes TickClock::summary() const {
+  const auto us = [](std::int64_t ns) { return 1e-3 * static_cast<double>(ns); };
   TickTimes times;
-  times.count = us_.size();
-  if (us_.empty()) return times;
-  std::vector<double> sorted = us_;
-  std::sort(sorted.begin(), sorted.end());
-  times.p50_us = percentile(sorted, 0.5);
-  times.p99_us = percentile(sorted, 0.99);
-  times.p999_us = percentile(sorted, 0.999);
-  times.max_us = sorted.back();
-  times.mean_us = std::accumulate(sorted.begin(), sorted.end(), 0.0) / static_cast<double>(sorted.size());
-  if (period_us_ > 0)
-    times.missed =
-        static_cast<std::uint64_t>(sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), period_us_));
-  if (cpu_us_.empty()) return times;
-  sorted = cpu_us_;
-  std::sort(sorted.begin(), sorted.end());
-  times.cpu_p50_us = percentile(sorted, 0.5);
-  times.cpu_p99_us = percentile(sorted, 0.99);
+  const device::TickHistogram::Summary all = all_.summary(), cpu = cpu_.summary();
+  times.count = all.count;
+  if (all.count == 0) return times;
+  times.p50_us = us(all.p50_ns);
+  times.p99_us = us(all.p99_ns);
+  times.p999_us = us(all.p999_ns);
+  times.max_us = us(all.max_ns);
+  times.mean_us = sum_us_ / static_cast<double>(all.count);
+  times.missed = missed_;
+  times.cpu_p50_us = us(cpu.p50_ns);
+  times.cpu_p99_us = us(cpu.p99_ns);
   return times;
 }
 

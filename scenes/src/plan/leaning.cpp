@@ -3,10 +3,108 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
 
 namespace vps::scenes::inline v0 {
+
+namespace {
+
+using Wrench6 = Eigen::Matrix<double, 6, 1>;
+
+/// A point at which a part is pushed, and the unit vector of the push; in the world.
+struct Support {
+  Vec3 p_W, n_W;
+};
+
+/// Where the surface of one part lies on another one, at the corners of its triangles and along their edges.
+/// @param side  of the push: 1 on the part whose surface it is, -1 on the other one
+void addSupports(const PlacedSurface& of, const PlacedSurface& other, double within_m, double side,
+                 std::vector<Support>& out) {
+  constexpr int kAlongEdge = 8;
+  constexpr double kClear = 0.95;  // length of a gradient at a face; at an edge it is shorter
+  const Box near_W = grown(other.box_W, within_m);
+  const Solid& solid = other.surface->solid();
+  const Pose X_OW = other.X_WP.inverse();
+  const double h_m = 4 * within_m;
+  const auto add = [&](const Vec3& p_W) {
+    if (!isWithin(p_W, near_W)) return;
+    const Vec3 p = X_OW * p_W;
+    if (std::abs(solid.signedDistance(p)) > within_m) return;
+    Vec3 n;
+    for (int k = 0; k < 3; ++k)
+      n[k] = (solid.signedDistance(p + h_m * Vec3::Unit(k)) - solid.signedDistance(p - h_m * Vec3::Unit(k))) /
+             (2 * h_m);
+    if (n.norm() > kClear) out.push_back({p_W, side * (other.X_WP.R * n.normalized())});
+  };
+  const auto count = static_cast<std::uint32_t>(of.surface->mesh().triangles.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Triangle t = of.surface->triangle(i);
+    Box box_W;
+    for (const Vec3& p : t) box_W.add(of.X_WP * p);
+    if (((box_W.max - near_W.min).array() < 0).any() || ((near_W.max - box_W.min).array() < 0).any())
+      continue;
+    for (int k = 0; k < 3; ++k)
+      for (int j = 0; j < kAlongEdge; ++j)
+        add(of.X_WP * Vec3(t[k] + j / static_cast<double>(kAlongEdge) * (t[(k + 1) % 3] - t[k])));
+  }
+}
+
+/// Whether pushes at the points can carry a weight at the centre: non-negative least squares by coordinates.
+bool canCarry(const std::vector<Support>& supports, const Vec3& center_W, const Vec3& up_W, double size_m) {
+  constexpr int kSweeps = 300;
+  constexpr double kBalanced = 0.03;  // of the weight, at a lever of the part's size
+  std::vector<Wrench6> pushes;
+  for (const Support& at : supports) {
+    Wrench6 push;
+    push << at.n_W, (at.p_W - center_W).cross(at.n_W) / size_m;
+    pushes.push_back(push);
+  }
+  Wrench6 left;
+  left << up_W, Vec3::Zero();
+  std::vector<double> shares(pushes.size(), 0);
+  for (int sweep = 0; sweep < kSweeps && left.norm() > kBalanced; ++sweep)
+    for (std::size_t i = 0; i < pushes.size(); ++i) {
+      const double share = std::max(0.0, shares[i] + pushes[i].dot(left) / pushes[i].squaredNorm());
+      left -= (share - shares[i]) * pushes[i];
+      shares[i] = share;
+    }
+  return left.norm() <= kBalanced;
+}
+
+}  // namespace
+
+bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
+  constexpr double kFall_m = 1e-3, kTouch_m = 10e-6;
+  constexpr std::uint64_t kMostWork = 2'000'000;
+  constexpr std::size_t kMostSupports = 2000;
+  const Vec3& up_W = motions.directions()[motions.up()];
+  const auto isHeld = [&](std::size_t one) { return std::ranges::find(held, one) != held.end(); };
+  std::vector<std::size_t> near;
+  for (const std::size_t one : held)
+    if (motions.areNear(one, part)) near.push_back(one);
+  if (std::ranges::none_of(motions.carriersOf(part), isHeld)) return false;
+  SearchWork work{kMostWork};
+  const PlacedSurface& drawn = motions.parts()[part];
+  const Reach sunk = motions.search(drawn, part, near).reach({-up_W, Vec3::Zero(), false}, kFall_m, &work);
+  const PlacedSurface placed = displaced(drawn, Pose::translation(-sunk.s * up_W));
+  std::vector<Support> supports;
+  for (const std::size_t one : near) {
+    const PlacedSurface& other = motions.parts()[one];
+    const double within_m = kTouch_m + drawn.surface->chordIn(drawn.surface->box()) +
+                            other.surface->chordIn(other.surface->box());
+    addSupports(placed, other, within_m, 1, supports);
+    addSupports(other, placed, within_m, -1, supports);
+  }
+  // Where nothing is found, or too much to tell, what carries it when it sinks is believed.
+  if (supports.empty() || supports.size() > kMostSupports) return false;
+  const Vec3 center_W = placed.X_WP * massProperties(placed.surface->mesh()).com;
+  return !canCarry(supports, center_W, up_W, placed.box_W.size().norm());
+}
 
 bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
   constexpr double kLevel = 0.5, kParallel = 0.999;  // of the axes: less than 30 degrees up, and the same one

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts that lean in their holes until something else holds them.
+// Parts that lean in their holes, or tip over, until something else holds them.
 #pragma once
 
 #include <vector>
@@ -13,5 +13,9 @@ namespace vps::scenes::inline v0 {
 /// does not tell that, as it does not turn.
 /// @param held  what is in place
 bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
+
+/// True for a part that sinks onto what is in place and then touches it at points that cannot balance its
+/// weight without friction: a plate that stands in a slot with its centre of mass beside the slot.
+bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
 
 }  // namespace vps::scenes::inline v0

@@ -111,16 +111,18 @@ class SceneMaker {
   }
 
   /// The hand's time on the way, with the device recentred every 0.2 m, and as much again for what is usual.
+  /// On the last leg it goes at a third of its speed, as it may meet an edge at any time.
   [[nodiscard]] double timeFor(const SceneStep& step) const {
-    constexpr double kBetween_m = 0.2, kRecentre_s = 2;
+    constexpr double kBetween_m = 0.2, kRecentre_s = 2, kLastLeg = 3;
     double way_m = 0;
     Vec3 from = step.X_WP_start.p;
     for (const Pose& point : step.way_points) {
       way_m += (point.p - from).norm();
       from = point.p;
     }
-    way_m += (step.X_WP_target.p - from).norm();
-    const double way_s = way_m / scene_.hand.speed_m_s + kRecentre_s * way_m / kBetween_m;
+    const double last_m = (step.X_WP_target.p - from).norm();
+    const double way_s =
+        (way_m + kLastLeg * last_m) / scene_.hand.speed_m_s + kRecentre_s * (way_m + last_m) / kBetween_m;
     return std::ceil(SceneStep().timeout_s + 2 * way_s);
   }
 

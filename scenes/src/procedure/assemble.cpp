@@ -7,7 +7,7 @@ namespace vps::scenes::inline v0 {
 
 AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   requireSteps(scene);
-  const std::unique_ptr<Hand> hand = makeHand(scene, options.is_real_time, options.wish);
+  const std::unique_ptr<Hand> hand = makeHand(scene, options);
   return runProcedure(scene, *hand, nullptr, loopSettings(scene, hand->device()), options);
 }
 

@@ -11,12 +11,26 @@
 #include "procedure/run_trace.h"
 #include "procedure/step_run.h"
 #include "procedure/step_verdict.h"
+#include "vps/assert.h"
 #include "vps/load_error.h"
 #include "vps_scenes/put_down.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
+
+/// A part that did not go to its place takes no other one along. What it was to align was put at its target
+/// for it, and is there for later steps too.
+void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
+  StepResult& last = steps.back();
+  if (last.verdict == Verdict::Fits) return;
+  for (StepResult& step : steps) {
+    if (step.aligned_by != last.part) continue;
+    step.aligned_by.clear();
+    if (last.stands_on.empty()) last.stands_on = step.part;
+    if (not_in_place.empty()) not_in_place = step.part;
+  }
+}
 
 void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& drawn,
               AssembleResult& result) {
@@ -27,6 +41,7 @@ void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResul
     StepResult known = drawn[i];
     known.stands_on = not_in_place;
     result.steps.push_back(runStep(world, trace, i, std::move(known)));
+    refuseAlignment(result.steps, not_in_place);
     const StepResult& step = result.steps.back();
     if (!step.completed && not_in_place.empty()) not_in_place = step.part;
     result.completed = result.completed && step.completed;
@@ -56,6 +71,12 @@ void requireSteps(const Scene& scene) {
                     "could be wrong; give it a [[step]], fixed = true, or scenery = true if it is only to be "
                     "left out");
   }
+}
+
+std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options) {
+  if (options.device == nullptr) return makeHand(scene, options.is_real_time, options.wish);
+  VPS_ASSERT(options.is_real_time);
+  return personHand(options.device());
 }
 
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,

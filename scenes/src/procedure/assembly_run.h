@@ -12,6 +12,9 @@ namespace vps::scenes::inline v0 {
 /// Throws LoadError for a scene without a step, or with a part that is neither fixed, nor moved, nor scenery.
 void requireSteps(const Scene& scene);
 
+/// The scene's, or that of options.device. Throws LoadError as the other makeHand().
+std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options);
+
 /// Builds the models that the scene lacks and runs every step. A hand that cannot go on (the end of a
 /// recording) ends the run. Throws as assemble().
 /// @param log  may be null; receives the device's samples and wrenches, the operator's phases, and a trace at

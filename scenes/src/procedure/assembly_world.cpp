@@ -9,6 +9,7 @@
 #include "procedure/loop_settings.h"
 #include "procedure/run_trace.h"
 #include "vps/load_error.h"
+#include "vps_device/metronome.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -218,9 +219,17 @@ bool AssemblyWorld::advance(bool is_settling) {
   snap();
   step();
   passEvents();
-  if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false))
-    options_.tap->give(snapshotOf(*this));
+  if (options_.tap != nullptr && options_.tap->is_wanted.exchange(false)) giveSnapshot();
   return true;
+}
+
+void AssemblyWorld::giveSnapshot() {
+  Snapshot shot = snapshotOf(*this);
+  if (driver_->isByClock()) {
+    shot.sample_s = driver_->last().time_s;
+    shot.clock_s = device::monotonicSeconds();
+  }
+  options_.tap->give(std::move(shot));
 }
 
 void AssemblyWorld::passEvents() {

@@ -110,6 +110,7 @@ class AssemblyWorld {
   void startLocalContact();
   /// Models the other fixed parts if the moving part comes near the border of its region.
   void keepCovered();
+  void giveSnapshot();
   void passEvents();
   void shedLoad();
   /// Axis snap on the part in hand, for the coming step.

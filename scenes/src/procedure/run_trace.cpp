@@ -48,8 +48,7 @@ RunTrace::RunTrace(const Scene& scene, device::RunLog* log)
       log_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))) {}
 
 void RunTrace::beginStep(const AssemblyWorld& world) {
-  samples_.clear();
-  first_row_ = rows_.size();
+  rows_.beginStep();
   peak_contact_N_ = guide_N_ = 0;
   const SceneStep& step = world.scene().steps[static_cast<std::size_t>(world.state().step)];
   axis_W_ = insertionAxis(step, world.state().moving.X_PG);
@@ -60,11 +59,9 @@ void RunTrace::beginStep(const AssemblyWorld& world) {
 void RunTrace::add(const AssemblyWorld& world, TracePhase phase, StepResult& result) {
   const TouchState touch = world.simulation().touch();
   const TraceRow row = rowOf(world, phase, touch);
-  rows_.push_back(row);
-  if (log_ != nullptr && !world.hasEnded() && static_cast<long>(rows_.size() - 1) % log_stride_ == 0)
-    log_->add(logEntry(row));
+  if (log_ != nullptr && !world.hasEnded() && added_++ % log_stride_ == 0) log_->add(logEntry(row));
   // The solver saw the contacts of the pose at the start of the step.
-  samples_.push_back({row.time_s - world.dt_s(), world.state().X_WP_before, touch.depth_m});
+  rows_.add(row, {row.time_s - world.dt_s(), world.state().X_WP_before, touch.depth_m});
 
   result.field_penetration_m = std::max(result.field_penetration_m, touch.depth_m);
   if (!world.state().is_holding) return;
@@ -106,7 +103,7 @@ void RunTrace::logPhase(const AssemblyWorld& world) {
 }
 
 void RunTrace::moveTo(AssembleResult& result) {
-  result.trace = std::move(rows_);
+  result.trace = rows_.takeRows();
   result.start = std::move(start_);
   result.contact = std::move(contact_);
   result.end = std::move(end_);

@@ -9,6 +9,7 @@
 
 #include "judge/overlap_record.h"
 #include "procedure/assembly_world.h"
+#include "procedure/step_rows.h"
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
@@ -26,9 +27,9 @@ class RunTrace {
   /// Before the step's part is released.
   void endStep(const AssemblyWorld& world);
   /// The rows of the current step.
-  [[nodiscard]] std::span<const TraceRow> stepRows() const { return std::span(rows_).subspan(first_row_); }
+  [[nodiscard]] std::span<const TraceRow> stepRows() const { return rows_.rows(); }
   /// Hands over the samples of the current step.
-  [[nodiscard]] std::vector<OverlapSample> takeSamples() { return std::move(samples_); }
+  [[nodiscard]] std::vector<OverlapSample> takeSamples() { return rows_.takeSamples(); }
 
   /// Logs an event of the run. After the end of the hand's recording nothing is logged.
   void logEvent(const AssemblyWorld& world, device::RunEventKind kind, const std::string& text) const;
@@ -43,9 +44,8 @@ class RunTrace {
  private:
   device::RunLog* log_;
   long log_stride_;  ///< physics steps from one logged row to the next
-  std::vector<TraceRow> rows_;
-  std::size_t first_row_ = 0;  ///< of the current step
-  std::vector<OverlapSample> samples_;
+  StepRows rows_;
+  long added_ = 0;                               ///< physics steps so far
   std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
   double peak_contact_N_ = 0;                    ///< of the current step
   Vec3 axis_W_ = Vec3::Zero();                   ///< of insertion

@@ -2,12 +2,14 @@
 #include "procedure/step_verdict.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "core/insertion_axis.h"
 #include "core/length_words.h"
 #include "judge/surface_error.h"
+#include "procedure/drawn_targets.h"
 #include "procedure/screw_motion.h"
 #include "procedure/way_check.h"
 #include "vps_scenes/put_down.h"
@@ -68,6 +70,16 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
   return reason;
 }
 
+/// How far beyond its target sight left a part that nothing stops there; 0 where more than sight's error.
+double placedAlong_m(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m) {
+  const Pose& X_PG = world.state().moving.X_PG;
+  const Vec3 axis_W = insertionAxis(step, X_PG);
+  if (step.motion == StepMotion::Screw || step.takes_off || axis_W.isZero()) return 0;
+  const double along_m = axis_W.dot(X_WP * X_PG.p - step.X_WP_target * X_PG.p);
+  if (std::abs(along_m) > kSightTolerance_m) return 0;
+  return isFreeBeyondTarget(world, step, axis_W, kSightTolerance_m, limit_m) ? along_m : 0;
+}
+
 }  // namespace
 
 double penetrationLimit_m(const SceneStep& step) {
@@ -87,6 +99,13 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   };
   const Pose X_judged = judged(X_WP);
   result.final_error_m = errorAt(X_WP);
+  // Where nothing stops the part along its way, the tolerance of its fit holds across it.
+  if (result.final_error_m > result.tolerance_m && result.tolerance_m < kSightTolerance_m) {
+    const double along_m = placedAlong_m(world, step, X_WP, result.penetration_limit_m);
+    const Vec3 along_W = along_m * insertionAxis(step, X_PG);
+    const bool is_open = along_m != 0 && errorAt(Pose(X_WP.R, X_WP.p - along_W)) <= result.tolerance_m;
+    if (is_open) result.tolerance_m = kSightTolerance_m;
+  }
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;

@@ -22,13 +22,12 @@ Pose between(const Pose& a, const Pose& b, const Vec3& center_P, double share) {
 }
 
 /// Of the poses from the first on, without the last.
-Penetration deepestBetween(AssemblyWorld& world, const SceneStep& step, const Pose& from, const Pose& to) {
-  const OverlapJudge& judge = world.placed().judge();
-  const JudgedBody& body = world.placed().judgedBody(step.part);
+Penetration deepestBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P,
+                           const Pose& from, const Pose& to) {
   Penetration deepest;
   for (int i = 0; i < kPosesPerLeg; ++i) {
     const double share = i / static_cast<double>(kPosesPerLeg);
-    const Penetration here = judge.deepest(body, between(from, to, world.state().moving.X_PG.p, share));
+    const Penetration here = judge.deepest(body, between(from, to, center_P, share));
     if (here.depth_m > deepest.depth_m) deepest = here;
   }
   return deepest;
@@ -43,7 +42,8 @@ std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
   stops.push_back(step.X_WP_target);
   Penetration deepest;
   for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg) {
-    const Penetration here = deepestBetween(world, step, stops[leg], stops[leg + 1]);
+    const Penetration here = deepestBetween(judge, world.placed().judgedBody(step.part),
+                                            world.state().moving.X_PG.p, stops[leg], stops[leg + 1]);
     if (here.depth_m > deepest.depth_m) deepest = here;
   }
   if (deepest.depth_m < kShallow_m) return {};
@@ -52,12 +52,26 @@ std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
          ": give start or way_points that lead around it";
 }
 
+bool isFreeBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P, const Pose& from,
+                   const Pose& to, double limit_m) {
+  return deepestBetween(judge, body, center_P, from, to).depth_m <= limit_m;
+}
+
 bool isFreeToTarget(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m) {
   const OverlapJudge& judge = world.placed().judge();
   const JudgedBody& body = world.placed().judgedBody(step.part);
   for (const Pose& end : {X_WP, step.X_WP_target})
     limit_m = std::max(limit_m, judge.deepest(body, end).depth_m);
-  return deepestBetween(world, step, X_WP, step.X_WP_target).depth_m <= limit_m;
+  return isFreeBetween(judge, body, world.state().moving.X_PG.p, X_WP, step.X_WP_target, limit_m);
+}
+
+bool isFreeBeyondTarget(AssemblyWorld& world, const SceneStep& step, const Vec3& axis_W, double by_m,
+                        double limit_m) {
+  const OverlapJudge& judge = world.placed().judge();
+  const JudgedBody& body = world.placed().judgedBody(step.part);
+  limit_m = std::max(limit_m, judge.deepest(body, step.X_WP_target).depth_m);
+  const Pose X_beyond = Pose::translation(by_m * axis_W) * step.X_WP_target;
+  return judge.deepest(body, X_beyond).depth_m <= limit_m;
 }
 
 }  // namespace vps::scenes::inline v0

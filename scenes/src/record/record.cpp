@@ -13,7 +13,7 @@ AssembleResult assembleAndRecord(Scene& scene, const std::string& file, const As
     throw LoadError(file, "",
                     "a run with local contact cannot be replayed bit for bit; record it without "
                     "--local-contact");
-  const std::unique_ptr<Hand> hand = makeHand(scene, options.is_real_time, options.wish);
+  const std::unique_ptr<Hand> hand = makeHand(scene, options);
   const device::LoopSettings settings = loopSettings(scene, hand->device());
   RunRecord record(file, scene, hand->device(), settings, options);
   AssembleResult result = runProcedure(scene, *hand, &record, settings, options);

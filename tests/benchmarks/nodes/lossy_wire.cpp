@@ -9,6 +9,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <queue>
 #include <random>
@@ -94,8 +95,15 @@ void LossyWire::carry() {
   std::uniform_real_distribution<double> draw(0, 1);
   std::priority_queue<Packet> waiting;
   std::vector<char> buffer(70'000);
+  std::int64_t second_ns = device::monotonicClock().now_ns();
+  std::uint64_t before = 0;  // bytes until this second
   while (!is_ending_) {
     const std::int64_t now_ns = device::monotonicClock().now_ns();
+    if (now_ns - second_ns >= 1'000'000'000) {
+      busiest_ = std::max<std::uint64_t>(busiest_, bytes_ - before);
+      before = bytes_;
+      second_ns = now_ns;
+    }
     while (!waiting.empty() && waiting.top().due_ns <= now_ns) {
       const Packet& packet = waiting.top();
       send(ends_[packet.to], packet.bytes.data(), packet.bytes.size(), 0);

@@ -29,13 +29,15 @@ class LossyWire {
   /// Bytes and packets that were put on the wire, with all headers, both ways.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t packets() const { return packets_; }
+  /// Bytes in the second that had most.
+  [[nodiscard]] std::uint64_t busiest() const { return busiest_; }
 
  private:
   void carry();
 
   WireFaults faults_;
   int ends_[2] = {-1, -1};
-  std::atomic<std::uint64_t> bytes_{0}, packets_{0};
+  std::atomic<std::uint64_t> bytes_{0}, packets_{0}, busiest_{0};
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

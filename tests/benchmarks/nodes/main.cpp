@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_bench_nodes [latency|run SCENE|wire SCENE|kills N|kills-udp N]...: without words, all rows.
+// vps_bench_nodes [latency|run SCENE|wire SCENE|kills N|kills-udp N|clock SECONDS|watchers SCENE|hostile
+// SCENE| endurance SECONDS]...: without words, all rows, which take some 100 minutes.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -27,7 +28,15 @@ int main(int argc, char** argv) {
              "wire",
              VPS_SCENE_FOLDER "/peg_in_hole/scene.toml",
              "kills",
-             "100"};
+             "100",
+             "clock",
+             "60",
+             "watchers",
+             VPS_SCENE_FOLDER "/peg_in_hole/scene.toml",
+             "hostile",
+             VPS_SCENE_FOLDER "/peg_in_hole/scene.toml",
+             "endurance",
+             "3600"};
   std::printf("| case | bar | measured | |\n|---|---|---|---|\n");
   bool is_good = true;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -42,6 +51,14 @@ int main(int argc, char** argv) {
       is_good = killRows(std::atoi(words[++i].c_str()), "") && is_good;
     else if (words[i] == "kills-udp" && has_more)
       is_good = killRows(std::atoi(words[++i].c_str()), "lo") && is_good;
+    else if (words[i] == "clock" && has_more)
+      is_good = clockRow(std::atof(words[++i].c_str())) && is_good;
+    else if (words[i] == "watchers" && has_more)
+      is_good = watcherRows(words[++i]) && is_good;
+    else if (words[i] == "hostile" && has_more)
+      is_good = hostileRow(words[++i]) && is_good;
+    else if (words[i] == "endurance" && has_more)
+      is_good = enduranceRow(std::atof(words[++i].c_str())) && is_good;
     else
       return std::fprintf(stderr, "unknown: %s\n", words[i].c_str()), 2;
   }

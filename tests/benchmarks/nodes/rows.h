@@ -19,4 +19,13 @@ bool wireRows(const std::string& scene);
 /// @param network  interface; empty: shared memory
 bool killRows(int kills, const std::string& network);
 
+/// How well a node knows the clock of another one, which is 3 s ahead and gains 100 ppm.
+bool clockRow(double seconds);
+/// A scene by the clock without watchers and with ten of them.
+bool watcherRows(const std::string& scene);
+/// Garbage, foreign versions, replayed messages, a flood and a second device beside a run over UDP.
+bool hostileRow(const std::string& scene);
+/// Sessions for so long: one run that does not end, and short ones one after the other.
+bool enduranceRow(double seconds);
+
 }  // namespace vps::bench

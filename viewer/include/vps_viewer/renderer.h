@@ -8,6 +8,7 @@
 // tolerance.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -62,6 +63,9 @@ struct DrawOptions {
   bool show_hidden_marks = true;  ///< hidden contacts and forces are faintly visible through the parts
   bool highlight_hand = true;     ///< the part in hand is blue instead of its own colour
   bool show_legend = true;
+  /// A square in the lower left corner, white while something touches and black otherwise: for a light sensor
+  /// that measures how late pictures are.
+  bool show_flash = false;
   std::optional<CutPlane> cut;
   std::string title;                    ///< first line, top left; UTF-8
   std::string caption;                  ///< smaller lines under the title, separated by '\n'
@@ -74,6 +78,11 @@ struct DrawOptions {
 
   bool operator==(const DrawOptions&) const = default;
 };
+
+/// Edge of DrawOptions::show_flash's square.
+[[nodiscard]] constexpr int flashSize_px(int height) {
+  return std::max(4, height / 18);
+}
 
 /// The box in W around all that the snapshot shows, with show_waiting also around waiting parts.
 VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,

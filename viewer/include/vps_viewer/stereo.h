@@ -46,6 +46,10 @@ VPS_VIEWER_API EyePair eyesOf(const Camera& camera, double eye_distance_m, doubl
 VPS_VIEWER_API Camera cameraFor(const scenes::Display& display, const scenes::DisplayScreen& screen,
                                 const Vec3& eye_S);
 
+/// Those of a viewer in front of a screen. Throws as cameraFor().
+VPS_VIEWER_API EyePair eyesOf(const scenes::Display& display, const scenes::DisplayScreen& screen,
+                              const scenes::DisplayViewer& viewer);
+
 /// The eye between both, whose frustum ends at the same screen.
 VPS_VIEWER_API Camera middleEye(const EyePair& eyes);
 

@@ -2,11 +2,13 @@
 // A recorded run as pictures, one for each instant, and as a film.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "vps/progress.h"
 #include "vps_device/recording.h"
 #include "vps_viewer/export.h"
+#include "vps_viewer/stereo.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -22,11 +24,15 @@ struct VideoSettings {
   double speed = 1;          ///< of the run in the film
   std::string view = "iso";  ///< one of standardViews()
   CameraPath path = CameraPath::Fixed;
+  /// The film is its first screen, seen by its first viewer, in the screen's size; view and path do not
+  /// count.
+  std::optional<scenes::Display> display;
+  StereoMode stereo = StereoMode::Mono;  ///< not Spectral, which needs two films
   Progress progress;
 };
 
 /// Writes FOLDER/000001.png, ... Returns their number. Throws LoadError where the recording or the folder
-/// cannot be used, std::runtime_error as Renderer.
+/// cannot be used, and for a head that only the network knows, std::runtime_error as Renderer.
 VPS_VIEWER_API std::size_t writeFrames(const device::RecordedRun& run, const std::string& folder,
                                        const VideoSettings& settings);
 

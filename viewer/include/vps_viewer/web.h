@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "vps_device/recording.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/network/session_network.h"
 #include "vps_scenes/scene.h"
@@ -36,10 +37,12 @@ struct WebOptions {
 /// In words, what this machine lacks for the page; empty: nothing.
 VPS_VIEWER_API std::string missingForWeb();
 
-/// Serve the page until `stop` is set: a session of vps render, or a run of the scene in this process.
-/// Several browsers may watch; one that is slow gets fewer pictures and disturbs nobody. Throw LoadError
-/// where the address cannot be listened at, the token is too short, or the certificate cannot be used.
+/// Serve the page until `stop` is set: a session of vps render, a run of the scene in this process, or a
+/// recording. Several browsers may watch; one that is slow gets fewer pictures and disturbs nobody. Throw
+/// LoadError where the address cannot be listened at, the token is too short, or the certificate cannot be
+/// used.
 VPS_VIEWER_API void serveSession(const WebOptions& options);
 VPS_VIEWER_API void serveScene(const scenes::Scene& scene, const WebOptions& options);
+VPS_VIEWER_API void serveRecording(const device::RecordedRun& run, const WebOptions& options);
 
 }  // namespace vps::viewer::inline v0

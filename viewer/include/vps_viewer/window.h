@@ -5,6 +5,7 @@
 #include <atomic>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vps_device/recording.h"
 #include "vps_scenes/model_options.h"
@@ -20,12 +21,13 @@ struct WindowOptions {
   StereoMode stereo = StereoMode::Mono;    ///< not Spectral, which needs two projectors
   std::optional<scenes::Display> display;  ///< its first screen and viewer are the window's; none: a desktop
   bool runs = false;                       ///< begins with a run of the procedure instead of the tour
-  std::string hand;               ///< kind of device that moves the part in a run; empty: the scene's
-  double speed = 1;               ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
-  bool has_sound = true;          ///< of a run, where there is a sound card
-  std::string record;             ///< file in which a run is recorded; empty: none
-  std::string pictures = "view";  ///< saved pictures are PICTURES_1.png, ...
-  scenes::ModelOptions models;    ///< of a run
+  std::string hand;                ///< kind of device that moves the part in a run; empty: the scene's
+  double speed = 1;                ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
+  bool has_sound = true;           ///< of a run, where there is a sound card
+  std::string record;              ///< file in which a run is recorded; empty: none
+  std::string pictures = "view";   ///< saved pictures are PICTURES_1.png, ...
+  std::vector<std::string> notes;  ///< messages that it begins with
+  scenes::ModelOptions models;     ///< of a run
   const std::atomic<bool>* stop = nullptr;  ///< set it to close the window
 };
 

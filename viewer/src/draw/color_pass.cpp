@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The colour image: background, parts, cut faces, edges, marks, and the part's target.
 #include <algorithm>
+#include <optional>
 
 #include "draw/passes.h"
 
@@ -98,7 +99,21 @@ void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const
   if (target != nullptr) drawGhost(*target, picture);
 }
 
-Image resolvePicture(const GpuResources& gl) {
+namespace {
+
+void drawFlash(const FrameTargets& frame, bool is_lit) {
+  const int size_px = flashSize_px(frame.height);
+  const float light = is_lit ? 1.0f : 0.0f;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, size_px, size_px);
+  glClearColor(light, light, light, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace
+
+Image resolvePicture(const GpuResources& gl, std::optional<bool> flash) {
   const FrameTargets& f = *gl.frame;
   const int w = f.width * f.factor, h = f.height * f.factor;
   glBlitNamedFramebuffer(f.color_target.id(), f.resolved_target.id(), 0, 0, w, h, 0, 0, w, h,
@@ -110,6 +125,7 @@ Image resolvePicture(const GpuResources& gl) {
   gl.programs.final.set("linear_picture", 0);
   gl.programs.final.set("factor", f.factor);
   gl.drawFullScreen(gl.programs.final);
+  if (flash) drawFlash(f, *flash);
   glEnable(GL_DEPTH_TEST);
   std::vector<std::uint8_t> rgba(std::size_t(4) * f.width * f.height);
   glReadPixels(0, 0, f.width, f.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());

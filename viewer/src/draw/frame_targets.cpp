@@ -32,9 +32,9 @@ FrameTargets::FrameTargets(int width, int height, int factor)
   geometry_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, width, height, 0);
   geometry_target = targetOf(geometry, "normals", &geometry_depth);
   occlusion_raw = gl::makeTexture(GL_RG8, width, height, GL_NEAREST);
-  occlusion_raw_target = targetOf(occlusion_raw, "occlusion");
+  occlusion_raw_target = targetOf(occlusion_raw, "occlusion", &geometry_depth);
   occlusion = gl::makeTexture(GL_RG8, width, height, GL_LINEAR);
-  occlusion_target = targetOf(occlusion, "blurred occlusion");
+  occlusion_target = targetOf(occlusion, "blurred occlusion", &geometry_depth);
 
   const int w = width * factor, h = height * factor;
   color = gl::makeRenderbuffer(GL_RGBA16F, w, h, samples);

@@ -17,10 +17,24 @@ void renderGeometry(const Picture& picture) {
   drawCaps(picture.gl.programs.cap_geometry, picture);
 }
 
+namespace {
+
+/// Runs the program where something was drawn, by its depth; all light reaches the background.
+void drawOnParts(const gl::Framebuffer& target, const gl::Program& program, const GpuResources& gl) {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+  glClearColor(1, 1, 1, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  gl.drawFullScreen(program);
+}
+
+}  // namespace
+
 void renderOcclusion(const Picture& picture) {
   const View& view = picture.view;
   const FrameTargets& frame = *picture.gl.frame;
-  glDisable(GL_DEPTH_TEST);
+  // A processor takes as long for a pixel of the background as for one of a part, unless depth rules it out.
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_FALSE);
   const auto radius_m = static_cast<float>(0.16 * view.detail_m);
   glBindTextureUnit(0, frame.geometry.id());
   const gl::Program& occlusion = picture.gl.programs.occlusion;
@@ -33,16 +47,15 @@ void renderOcclusion(const Picture& picture) {
   occlusion.set("shadow_map", 1);
   occlusion.set("shadow_from_C", view.shadow_from_C);
   occlusion.set("shadow_offset_m", static_cast<float>(0.006 * view.radius_m));
-  glBindFramebuffer(GL_FRAMEBUFFER, frame.occlusion_raw_target.id());
-  picture.gl.drawFullScreen(occlusion);
+  drawOnParts(frame.occlusion_raw_target, occlusion, picture.gl);
   glBindTextureUnit(1, frame.occlusion_raw.id());
   const gl::Program& blur = picture.gl.programs.occlusion_blur;
   blur.set("geometry", 0);
   blur.set("occlusion", 1);
   blur.set("radius_m", radius_m);
-  glBindFramebuffer(GL_FRAMEBUFFER, frame.occlusion_target.id());
-  picture.gl.drawFullScreen(blur);
-  glEnable(GL_DEPTH_TEST);
+  drawOnParts(frame.occlusion_target, blur, picture.gl);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
 }
 
 void lightEverything(const Picture& picture) {

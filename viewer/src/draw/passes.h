@@ -4,6 +4,7 @@
 // Each pass expects depth test on and blending, clipping and stencil off, and leaves them so.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "draw/gpu_resources.h"
@@ -40,7 +41,8 @@ void lightEverything(const Picture& picture);
 /// @param target the part at its target pose; null: none
 void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const DrawnBody* target);
 /// Averages the samples, converts to sRGB and reads the picture back.
-Image resolvePicture(const GpuResources& gl);
+/// @param flash  DrawOptions::show_flash: whether something touches; none: no square
+Image resolvePicture(const GpuResources& gl, std::optional<bool> flash);
 
 // What several passes use.
 // mesh_drawing.cpp

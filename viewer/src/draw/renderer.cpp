@@ -114,7 +114,8 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
     renderOcclusion(picture);
   }
   renderColor(picture, snapshot, target ? &*target : nullptr);
-  Image image = resolvePicture(*impl.gl);
+  Image image = resolvePicture(
+      *impl.gl, options.show_flash ? std::optional(totalForce_N(snapshot.contacts) > 0) : std::nullopt);
   drawOverlay(image, snapshot, options, {kHandColor, kHandColor}, impl.lettering);
   return image;
 }

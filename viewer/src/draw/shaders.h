@@ -129,7 +129,7 @@ inline constexpr const char* kFullScreenVertex = R"(
 out vec2 uv;  // 0 to 1
 void main() {
   uv = vec2(gl_VertexID == 1 ? 2 : 0, gl_VertexID == 2 ? 2 : 0);
-  gl_Position = vec4(2.0 * uv - 1.0, 0, 1);
+  gl_Position = vec4(2.0 * uv - 1.0, 1, 1);  // as far as a depth test can tell
 }
 )";
 

@@ -68,7 +68,9 @@ code { padding: 1px 4px; } pre { padding: 10px 14px; overflow-x: auto; }
 #run-view input { flex: 1; min-width: 0; } #run-view button, #run-view select { font: inherit; padding: 3px 12px; }
 #run-view output { display: block; min-height: 1.5em; font-variant-numeric: tabular-nums; } #run-view p { margin: 2px 0; }
 @media (max-width: 800px) { .pictures, .pictures.two { grid-template-columns: 1fr; } }
-@media print { body { padding: 0; max-width: none; } h3 { break-after: avoid; } figure { break-inside: avoid; } }
+@media print { body { padding: 0; max-width: none; font-size: 12px; } h2, h3 { break-after: avoid; }
+       figure { break-inside: avoid; } #run-view { display: none; } .scroll { overflow: visible; } th, td { padding-right: 8px; }
+       .pictures, .pictures.two { grid-template-columns: repeat(2, 1fr); } }
 )";
 
 std::string attribute(const std::string& css_class) {

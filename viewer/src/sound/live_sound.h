@@ -2,6 +2,7 @@
 // The sound of a run while it goes on, through the machine's loudspeakers.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +31,15 @@ VPS_VIEWER_API std::optional<Vec3> soundPlace(const scenes::Snapshot& shot);
 /// The system's default output, for headphones (HRTF) where OpenAL has that. Null where there is none, and
 /// `why` says so in a line.
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
+
+/// A period of a sound card in the program, mono, and the time at which its first sample is played, by
+/// device::monotonicSeconds().
+using HeardPeriod = std::function<void(std::span<const float> samples, double time_s)>;
+/// A sound card that exists only in the program, mixed by OpenAL as a real one: two periods of 256 samples,
+/// by the clock. Null in a build without OpenAL, and `why` says so.
+/// @param heard  called on the card's thread
+VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard,
+                                                              std::string& why);
 
 /// Synthesises on a thread of its own. hear() and beep() only hand over, so that physics does not wait for
 /// modes.

@@ -102,6 +102,11 @@ Camera cameraFor(const scenes::Display& display, const scenes::DisplayScreen& sc
                          (screen.upper_left_S - screen.lower_left_S).norm() / display.scale, R_WS * R_S);
 }
 
+EyePair eyesOf(const scenes::Display& display, const scenes::DisplayScreen& screen,
+               const scenes::DisplayViewer& viewer) {
+  return {cameraFor(display, screen, viewer.eye_S(-1)), cameraFor(display, screen, viewer.eye_S(1))};
+}
+
 Camera middleEye(const EyePair& eyes) {
   Camera middle = eyes.left;  // both frusta end at one screen, so the one between them is their mean
   middle.eye_W = 0.5 * (eyes.left.eye_W + eyes.right.eye_W);
@@ -153,8 +158,7 @@ std::vector<ScreenPicture> renderDisplay(Renderer& renderer, const scenes::Snaps
       sized.width = screen.width;
       sized.height = screen.height;
       sized.show_ground = false;  // the floor is the room's
-      const EyePair eyes = {cameraFor(display, screen, viewer.eye_S(-1)),
-                            cameraFor(display, screen, viewer.eye_S(1))};
+      const EyePair eyes = eyesOf(display, screen, viewer);
       const std::string name = display.viewers.size() > 1 ? screen.name + "_" + viewer.name : screen.name;
       std::vector<Image> images = renderStereo(renderer, snapshot, eyes, sized, mode);
       for (std::size_t i = 0; i < images.size(); ++i) {

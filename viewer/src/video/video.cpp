@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "report/run_program.h"
 #include "vps/load_error.h"
 #include "vps_scenes/replay.h"
+#include "vps_scenes/tracked_heads.h"
 #include "window/camera_motion.h"
 #include "window/picture_worker.h"
 #include "window/timeline.h"
@@ -73,6 +75,45 @@ class FilmCamera {
   Vec3 wanted_W_;  ///< the middle of the part that was in hand last
 };
 
+/// Of one film: from the display's viewer, or from the film's camera.
+class FilmView {
+ public:
+  FilmView(const FilmCamera& camera, const VideoSettings& settings) : camera_(camera), settings_(settings) {
+    if (!settings.display) return;
+    for (const scenes::DisplayViewer& viewer : settings.display->viewers)
+      if (!viewer.topic.empty())
+        throw LoadError(settings.display->file, viewer.name,
+                        "has its head from the network, which a film cannot wait for; give 'recorded' or "
+                        "'head' alone");
+    heads_.emplace(*settings.display);
+  }
+
+  [[nodiscard]] PictureSize size() const {
+    if (!heads_) return {settings_.width, settings_.height};
+    const scenes::DisplayScreen& screen = heads_->display().screens.front();
+    return {screen.width, screen.height};
+  }
+  void look(double share, double time_s, PictureRequest& wanted) {
+    wanted.stereo = settings_.stereo;
+    if (heads_) {
+      const scenes::Display& display = heads_->at(time_s);
+      wanted.eyes = eyesOf(display, display.screens.front(), display.viewers.front());
+      wanted.options.show_ground = false;  // the floor is the room's
+      return;
+    }
+    wanted.camera = camera_.at(share, wanted.snapshot);
+    const PictureSize pixels = size();
+    if (settings_.stereo != StereoMode::Mono)
+      wanted.eyes = eyesOf(wanted.camera, kEyeShare * (wanted.camera.eye_W - wanted.camera.target_W).norm(),
+                           double(pixels.width) / pixels.height);
+  }
+
+ private:
+  FilmCamera camera_;
+  const VideoSettings& settings_;
+  std::optional<scenes::TrackedHeads> heads_;
+};
+
 std::string frameFile(const std::string& folder, std::size_t number) {
   char name[32];
   std::snprintf(name, sizeof name, "/%06zu.png", number);
@@ -89,8 +130,9 @@ std::size_t writeFrames(const device::RecordedRun& run, const std::string& folde
     throw LoadError(run.file, "", "has no trace of a step, so there is nothing to show");
   const RenderScene drawn = drawnMeshes(scene);
   Renderer renderer(drawn);
-  const PictureSize size = {settings.width, settings.height};
-  FilmCamera camera(cameraFor(viewNamed(settings.view), boxOf(drawn, line), size), drawn, settings);
+  const Camera start =
+      cameraFor(viewNamed(settings.view), boxOf(drawn, line), {settings.width, settings.height});
+  FilmView view(FilmCamera(start, drawn, settings), settings);
   PictureRequest last;
   Image image;
   const double frame_s = settings.speed / settings.frames_per_s;
@@ -100,12 +142,11 @@ std::size_t writeFrames(const device::RecordedRun& run, const std::string& folde
     if (settings.progress) settings.progress("drawing frames", share);
     PictureRequest wanted;
     wanted.snapshot = line.at(static_cast<double>(i) * frame_s);
-    wanted.camera = camera.at(share, wanted.snapshot);
-    wanted.options.width = settings.width;
-    wanted.options.height = settings.height;
+    wanted.options.width = view.size().width;
+    wanted.options.height = view.size().height;
+    view.look(share, static_cast<double>(i) * frame_s, wanted);
     wanted.options.title = line.chapters[line.chapterAt(wanted.snapshot.time_s)].name;
-    if (image.rgb.empty() || !isSame(wanted, last))
-      image = renderer.render(wanted.snapshot, wanted.camera, wanted.options);
+    if (image.rgb.empty() || !isSame(wanted, last)) image = drawInFull(renderer, wanted);
     savePng(image, frameFile(folder, i + 1));
     last = std::move(wanted);
   }

@@ -29,8 +29,11 @@ std::optional<Vec3> vectorOf(const nlohmann::json& value) {
   return vector;
 }
 
-constexpr std::array<std::pair<const char*, BrowserWord>, 3> kWithNumber = {
-    {{"ack", BrowserWord::Ack}, {"ping", BrowserWord::Ping}, {"sound", BrowserWord::Sound}}};
+constexpr std::array<std::pair<const char*, BrowserWord>, 5> kWithNumber = {{{"ack", BrowserWord::Ack},
+                                                                             {"ping", BrowserWord::Ping},
+                                                                             {"sound", BrowserWord::Sound},
+                                                                             {"play", BrowserWord::Play},
+                                                                             {"seek", BrowserWord::Seek}}};
 constexpr std::array<std::pair<const char*, BrowserWord>, 4> kWithVector = {{{"point", BrowserWord::Point},
                                                                              {"grab", BrowserWord::Grab},
                                                                              {"move", BrowserWord::Move},

@@ -22,6 +22,8 @@ enum class BrowserWord {
   Move,   ///< `vector`: the way of the grabbed point [m]
   Turn,   ///< `vector`: rotation vector [rad]
   Drop,   ///< what was grabbed
+  Play,   ///< `number`: 1, a recording goes on; 0, it stands
+  Seek,   ///< `number`: the time of a recording that is shown [s]
 };
 
 struct BrowserMessage {

@@ -133,6 +133,15 @@ void WebHub::greet(int number, Browser& browser) {
   browser.end->sendText(helloText(number));
   browser.end->sendText(handText());
   browser.end->sendText(jsonText({{"doing", doing_}}));
+  browser.end->sendText(playbackText());
+}
+
+std::string WebHub::playbackText() const {
+  if (!playback_) return jsonText({{"playback", nullptr}});
+  return jsonText({{"playback",
+                    {{"begin_s", playback_->begin_s},
+                     {"end_s", playback_->end_s},
+                     {"is_playing", playback_->is_playing}}}});
 }
 
 void WebHub::tellAll(const std::string& text) {
@@ -187,6 +196,10 @@ void WebHub::poll(double now_s) {
     may_take_ = may_take;
     if (!may_take) holder_ = 0;
     tellHand();
+  }
+  if (const std::optional<Playback> playback = run_.playback(); playback != playback_) {
+    playback_ = playback;
+    tellAll(playbackText());
   }
   for (const WatchedNews& news : run_.takeNews()) {
     Json json = {{"time_s", news.time_s}, {"text", news.text}};
@@ -255,6 +268,10 @@ void WebHub::obey(int number, Browser& browser, const BrowserMessage& message) {
     case BrowserWord::Sound:
       browser.has_sound = message.number > 0;
       return;
+    case BrowserWord::Play:
+      return run_.play(message.number > 0);
+    case BrowserWord::Seek:
+      return run_.seek(message.number);
     case BrowserWord::Point:
       showPointer(number, message.vector);
       return run_.point(number, message.vector);

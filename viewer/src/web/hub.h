@@ -68,6 +68,7 @@ class WebHub {
   void beginScene();
   void tellAll(const std::string& text);
   void tellHand();
+  [[nodiscard]] std::string playbackText() const;
   void showPointer(int who, const std::optional<Vec3>& p_W);
   void sendShots(double now_s);
   void sendSounds();
@@ -88,6 +89,7 @@ class WebHub {
   std::string doing_;
   std::deque<std::string> news_;  ///< the last ones, for those who come later
   std::map<int, std::string> pointers_;
+  std::optional<Playback> playback_;
   int holder_ = 0;  ///< browser that has the hand; 0: none
   std::optional<WatchedShot> shot_;
   std::unique_ptr<BlowSounds> sounds_;  ///< null: nobody listens

@@ -26,14 +26,16 @@
 
   let renderer;
   try {
-    const context = canvas.getContext("webgl", { antialias: !isSlow, xrCompatible: true });
+    // Without alpha the browser need not blend the canvas with the page.
+    const context = canvas.getContext("webgl", { alpha: false, antialias: !isSlow, xrCompatible: true });
     renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, antialias: !isSlow });
   } catch (error) {
     $("doing").textContent = "This browser shows no three-dimensional view (it has no WebGL).";
     return;
   }
   renderer.setClearColor(0xffffff);
-  renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, isSlow ? 1 : 2));
+  const fullRatio = Math.min(window.devicePixelRatio || 1, isSlow ? 1 : 2);
+  renderer.setPixelRatio(fullRatio);
   renderer.localClippingEnabled = true;
 
   const world = new THREE.Scene();
@@ -169,9 +171,31 @@
     for (const shape of [part.coarse, part.fine]) if (shape) shape.all.visible = shape === used;
     part.surface = used ? used.surface : null;
   }
-  const kStill_ms = 400;
+  // And what moves in as many pixels as it can draw 30 times a second; the last picture of a motion in all.
+  const kStill_ms = 400, kWanted_ms = 33, kShares = [1, 0.71, 0.5, 0.35];
+  const kFramesUntilFewer = 10, kFramesUntilMore = 150;
+  let share = 0, between_ms = kWanted_ms, frames = 0, frame_ms = 0;
+  function watchFrames(isMoving) {
+    const now = performance.now(), took_ms = now - frame_ms;
+    frame_ms = now;
+    if (!isMoving || took_ms > 1000) return;
+    between_ms += 0.2 * (took_ms - between_ms);
+    ++frames;
+    if (frames > kFramesUntilFewer && between_ms > 1.2 * kWanted_ms && share + 1 < kShares.length) ++share;
+    else if (frames > kFramesUntilMore && between_ms < 0.6 * kWanted_ms && share > 0) --share;
+    else return;
+    frames = 0;
+  }
   function chooseLevel() {
-    const isMoving = isSlow && performance.now() - moved_ms < kStill_ms;
+    const isPresenting = renderer.vr.isPresenting();  // then the headset says how large its pictures are
+    const isMoving = isSlow && !isPresenting && performance.now() - moved_ms < kStill_ms;
+    watchFrames(isMoving);
+    const ratio = fullRatio * (isMoving ? kShares[share] : 1);
+    if (!isPresenting && ratio !== renderer.getPixelRatio()) {
+      renderer.setPixelRatio(ratio);
+      seen.ratio = ratio;
+      isDue = true;
+    }
     if (isMoving === isCoarse) return;
     isCoarse = isMoving;
     parts.forEach(useLevel);
@@ -297,6 +321,7 @@
   function show(shot) {
     last = shot;
     ++seen.snapshots;
+    seen.time_s = shot.time_s;
     if (!scene) return;
     if (shot.isWhole) {
       seen.bodies = {};
@@ -336,6 +361,7 @@
     $("step").textContent = shot.time_s.toFixed(2) + " s" +
       (step ? " · step " + (shot.step + 1) + " of " + scene.steps.length + ": " + step.name : "");
     const force = shot.hand ? new THREE.Vector3().fromArray(shot.hand.force).length() : 0;
+    showTime(shot.time_s);
     $("force").textContent = shot.hand ? force.toFixed(1) + " N on the hand · " + shot.contacts.length + " contacts" : "";
     if (isChanged) redraw();
   }
@@ -390,6 +416,31 @@
     }
   }
 
+  // ---- a recording
+
+  let playback = null, isScrubbing = false;
+  function showPlayback(state) {
+    playback = seen.playback = state;
+    $("player").hidden = !state;
+    if (state) $("play").textContent = state.is_playing ? "Pause" : "Play";
+  }
+  function showTime(time_s) {
+    if (!playback) return;
+    const length_s = playback.end_s - playback.begin_s;
+    if (!isScrubbing) $("at").value = length_s > 0 ? 1000 * (time_s - playback.begin_s) / length_s : 0;
+    $("at-text").textContent = time_s.toFixed(1) + " of " + playback.end_s.toFixed(1) + " s";
+  }
+  let nextSeek = 0, lateSeek = 0;
+  function seek() {
+    clearTimeout(lateSeek);
+    if (performance.now() < nextSeek) {  // the last place counts
+      lateSeek = setTimeout(seek, 40);
+      return;
+    }
+    nextSeek = performance.now() + 30;
+    send({ seek: playback.begin_s + (playback.end_s - playback.begin_s) * Number($("at").value) / 1000 });
+  }
+
   // ---- sound
 
   let audio = null, ear = null;
@@ -426,6 +477,7 @@
     news: tell,
     pointer: showPointer,
     hand: showHand,
+    playback: showPlayback,
     watchers: function (count) { seen.watchers = count; }
   };
   function connect() {
@@ -510,6 +562,8 @@
   function vectorInScene(way) {
     return way.clone().applyQuaternion(root.quaternion.clone().inverse()).divideScalar(root.scale.x);
   }
+  // Where a step's part belongs, as seen.bodies has poses.
+  seen.targetOf = function (step) { return centered(scene.steps[step].target); };
   // Where a part's middle is on the page, in pixels.
   seen.placeOf = function (index) {
     const part = parts[index];
@@ -695,6 +749,9 @@
     else audio.suspend();
   });
   toggle("point", function (isOn) { if (!isOn) send({ point: null }); });
+  $("play").addEventListener("click", function () { send({ play: playback && playback.is_playing ? 0 : 1 }); });
+  $("at").addEventListener("input", function () { isScrubbing = true; seek(); });
+  $("at").addEventListener("change", function () { seek(); isScrubbing = false; });
   $("take").addEventListener("click", function () { send(isMine() ? { leave: null } : { take: null }); });
 
   resize();

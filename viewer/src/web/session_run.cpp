@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "vps/load_error.h"
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 #include "web/watched_run.h"
@@ -129,9 +130,16 @@ class SessionRun final : public WatchedRun {
     if (watcher_ == nullptr) return;
     ++number_;
     refusal_.clear();
-    if (options_.network.empty()) pointers_.emplace(options_.session);
+    findPointers();
     if (options_.allows_hand)
       device_ = std::make_unique<PageDevice>(options_, watcher_->scene().device.scale);
+  }
+  void findPointers() {
+    try {
+      pointers_.emplace(options_.session, options_.network);
+    } catch (const LoadError& refused) {  // certificates of before there were pointers
+      news_.push_back({0, std::string("pointers are not passed on: ") + refused.what(), {}});
+    }
   }
   void tell(const scenes::SessionNews& news) {
     const bool has_ended = news.kind == scenes::SessionNews::Kind::Ended;
@@ -142,7 +150,7 @@ class SessionRun final : public WatchedRun {
   std::future<std::unique_ptr<SessionWatcher>> joining_;
   std::unique_ptr<SessionWatcher> watcher_;
   std::unique_ptr<PageDevice> device_;
-  std::optional<scenes::SessionPointers> pointers_;  ///< of this machine; none over a network
+  std::optional<scenes::SessionPointers> pointers_;
   std::vector<WatchedNews> news_;
   std::string refusal_;
   int number_ = 0;

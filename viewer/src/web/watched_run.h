@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page shows: a session of other nodes, or a run of this process.
+// What the page shows: a session of other nodes, a run of this process, or a recording.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vps_device/recording.h"
 #include "vps_scenes/network/session_pointers.h"
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
@@ -26,6 +27,13 @@ struct WatchedNews {
   double time_s = 0;  ///< simulated
   std::string text;
   std::optional<scenes::Verdict> verdict;  ///< of the whole run: it has ended
+};
+
+/// Of a recording, which browsers play.
+struct Playback {
+  double begin_s = 0, end_s = 0;
+  bool is_playing = false;
+  bool operator==(const Playback&) const = default;
 };
 
 /// Used by one thread. Nothing of it waits.
@@ -52,6 +60,12 @@ class WatchedRun {
   virtual void point(int, const std::optional<Vec3>&) {}
   /// What those elsewhere point at, each change once.
   virtual std::vector<scenes::SessionPointer> takePointers() { return {}; }
+
+  /// Empty: a run that goes on by itself.
+  [[nodiscard]] virtual std::optional<Playback> playback() const { return {}; }
+  virtual void play(bool) {}
+  /// Times outside are the nearest inside.
+  virtual void seek(double) {}
 };
 
 /// Follows the session, and the next one when it has ended. With the right to the hand this process is the
@@ -59,5 +73,7 @@ class WatchedRun {
 std::unique_ptr<WatchedRun> watchedSession(const WebOptions& options);
 /// Runs the scene's procedure in this process, again and again if there is nobody's hand to wait for.
 std::unique_ptr<WatchedRun> watchedScene(const scenes::Scene& scene, const WebOptions& options);
+/// Plays from its begin. Throws LoadError where nothing of a run is in it.
+std::unique_ptr<WatchedRun> watchedRecording(const device::RecordedRun& run);
 
 }  // namespace vps::viewer::inline v0

@@ -25,11 +25,13 @@ bool isByPerson(const std::string& kind) {
 LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::function<void()> on_news)
     : scene_(std::move(scene)),
       on_news_(std::move(on_news)),
+      watch_(settings.watch),
       speed_(settings.speed),
       is_paused_(settings.is_paused) {
   if (!settings.hand.empty()) scene_.device.kind = settings.hand;
-  is_by_clock_ = isByPerson(scene_.device.kind);
-  if (scene_.device.kind == "mouse") scene_.device.placement.reset();  // it stands nowhere in the room
+  is_by_clock_ = settings.device != nullptr || isByPerson(scene_.device.kind);
+  if (scene_.device.kind == "mouse" || settings.device != nullptr)
+    scene_.device.placement.reset();  // it stands nowhere in the room
   snaps_ = settings.snaps;
   if (is_by_clock_) {
     is_paused_ = false;
@@ -38,13 +40,15 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
   }
   if (settings.has_sound) {
     std::string why;
-    if (std::unique_ptr<SoundOutput> output = openSoundOutput(SoundSettings{}.rate_hz, why))
+    const auto open = settings.open_sound ? settings.open_sound : openSoundOutput;
+    if (std::unique_ptr<SoundOutput> output = open(SoundSettings{}.rate_hz, why))
       sound_ = std::make_unique<LiveSound>(scene_, std::move(output));
     if (!why.empty()) messages_.push_back(why);
   }
   tap_.give = [this](scenes::Snapshot&& snapshot) {
-    if (sound_) {
-      sound_->hear(snapshot);
+    if (watch_) watch_(snapshot);
+    if (sound_) sound_->hear(snapshot);
+    if (sound_ || watch_) {
       tap_.is_wanted = true;
       if (!is_asked_.exchange(false)) return;
     }
@@ -169,6 +173,7 @@ void LiveRun::run(const LiveSettings& settings) {
   options.on_device_event = [this](const device::DeviceEvent& event) { report(event); };
   options.is_real_time = is_by_clock_;
   options.wish = settings.wish;
+  options.device = settings.device;
   options.after_step = [this](double time_s) { keepTime(time_s); };
   options.on_step = [this](const scenes::AssembleResult& so_far) {
     const std::lock_guard lock(mutex_);

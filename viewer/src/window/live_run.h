@@ -27,6 +27,12 @@ struct LiveSettings {
   std::shared_ptr<device::HandleWish> wish;  ///< of the mouse
   bool has_sound = true;                     ///< where there is a sound card
   bool snaps = false;                        ///< begins with axis snap
+  /// A device of one's own that moves the part, in place of `hand` (scenes::AssembleOptions::device).
+  std::function<std::unique_ptr<device::Device>()> device;
+  /// Where the sound goes; empty: openSoundOutput().
+  std::function<std::unique_ptr<SoundOutput>(int rate_hz, std::string& why)> open_sound;
+  /// Gets the snapshot of each physics step, on its thread. May be empty.
+  std::function<void(const scenes::Snapshot& shot)> watch;
 };
 
 /// Whether a person moves this kind of device. Such a run goes by the clock, cannot be paused, and its steps
@@ -90,8 +96,10 @@ class VPS_VIEWER_API LiveRun {
   std::condition_variable wake_;
   std::optional<scenes::Snapshot> newest_;
   std::vector<std::string> messages_;
-  std::unique_ptr<LiveSound> sound_;   ///< null: silent
-  std::atomic<bool> is_asked_{false};  ///< a snapshot, by the window; with sound the run gives one each step
+  std::unique_ptr<LiveSound> sound_;  ///< null: silent
+  std::function<void(const scenes::Snapshot&)> watch_;
+  /// A snapshot, by the window; with sound or `watch_` the run gives one each step.
+  std::atomic<bool> is_asked_{false};
   LiveStatus status_;
   double speed_;
   bool is_paused_;

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "vps_device/metronome.h"
+
 namespace vps::viewer::inline v0 {
 namespace {
 
@@ -43,6 +45,10 @@ Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera
 bool isSame(const PictureRequest& a, const PictureRequest& b) {
   return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
          isSameEyes(a.eyes, b.eyes) && isSameSnapshot(a.snapshot, b.snapshot);
+}
+
+Image drawInFull(Renderer& renderer, const PictureRequest& asked) {
+  return draw(renderer, asked, asked.camera, asked.options);
 }
 
 PictureWorker::PictureWorker(RenderScene scene, std::function<void()> on_done)
@@ -98,7 +104,6 @@ void PictureWorker::run(const RenderScene& scene) {
 }
 
 void PictureWorker::drawAll(Renderer& renderer) {
-  using Clock = std::chrono::steady_clock;
   // A full picture takes the place of drafts for a second at most, so it waits until the view has rested.
   constexpr auto kRest = std::chrono::milliseconds(150);
   // Drafts that take longer than a picture of a moving view may (20 a second) have fewer pixels. assumed: a
@@ -130,14 +135,14 @@ void PictureWorker::drawAll(Renderer& renderer) {
       options.width = std::max(16, options.width / shrink);
       options.height = std::max(16, options.height / shrink);
     }
-    const Clock::time_point begun = Clock::now();
+    const double begun_s = device::monotonicSeconds();
     Image image = draw(renderer, asked, camera, options);
-    const double wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    const double done_s = device::monotonicSeconds(), wall_s = done_s - begun_s;
     if (is_draft && wall_s > kSlowDraft_s && shrink < kMostShrink) ++shrink;
     if (is_draft && wall_s < kFastDraft_s && shrink > 1) --shrink;
     {
       const std::lock_guard lock(mutex_);
-      done_ = DrawnPicture{std::move(image), is_draft, wall_s};
+      done_ = DrawnPicture{std::move(image), is_draft, wall_s, done_s};
       ++count_;
     }
     has_draft = is_draft;

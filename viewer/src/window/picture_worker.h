@@ -26,10 +26,14 @@ struct PictureRequest {
 /// Whether both give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);
 
+/// In full.
+[[nodiscard]] VPS_VIEWER_API Image drawInFull(Renderer& renderer, const PictureRequest& asked);
+
 struct DrawnPicture {
   Image image;
   bool is_draft = false;
-  double wall_s = 0;  ///< time that drawing took
+  double wall_s = 0;   ///< time that drawing took
+  double clock_s = 0;  ///< when it was done, by device::monotonicSeconds()
 };
 
 /// Draws the newest request first as a draft, and in full once nothing newer is wanted. Requests in between

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where those who watch a session point, for all others who watch it on this machine. The render node and the
-// device have no part in it.
+// Where those who watch a session point, for all others who watch it. The render node and the device have no
+// part in it.
 #pragma once
 
 #include <memory>
@@ -10,6 +10,7 @@
 
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/network/session_network.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -18,14 +19,15 @@ struct SessionPointer {
   std::optional<Vec3> p_W{};  ///< none: no longer
 };
 
-/// Processes of one user find each other by the session's name. At most kMostPointing of them point at one
-/// time, and the pointers of others are not seen. Used by one thread; nothing waits.
+/// Processes of one user on one machine, or those of a network, find each other by the session's name. At
+/// most kMostPointing of them point at one time, and the pointers of others are not seen. Used by one thread;
+/// nothing waits.
 class VPS_SCENES_API SessionPointers {
  public:
   static constexpr int kMostPointing = 8, kMostPersons = 999;
 
-  /// Throws LoadError for a name that cannot be a session's.
-  explicit SessionPointers(const std::string& session);
+  /// Throws LoadError for a name that cannot be a session's, and as SessionWatcher::join() for a network.
+  explicit SessionPointers(const std::string& session, const SessionNetwork& network = {});
   ~SessionPointers();
 
   /// A person of this process points at a place, or no longer.

@@ -176,10 +176,12 @@ Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& setti
     const TopoDS_Face face = TopoDS::Face(it.Current());
     const std::size_t before = out.mesh.triangles.size();
     appendFace(face, out.mesh);
-    ++out.faces;
-    out.missing += out.mesh.triangles.size() == before;
+    out.faces.push_back({face, out.mesh.triangles.size() - before});
+    out.missing += out.faces.back().triangles == 0;
     out.folded += foldedTriangles(face);
-    deviation = std::max(deviation, deviationOf(face, enough));
+    const double of_face = deviationOf(face, enough);
+    out.off += of_face > enough;
+    deviation = std::max(deviation, of_face);
   }
   if (shape.ShapeType() == TopAbs_SOLID && !out.mesh.triangles.empty()) {
     GProp_GProps exact;
@@ -236,16 +238,24 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
     coarser = text;
   }
   if (tessellation.isTrusted()) return coarser;
-  char off[160], missing[80] = "";
+  char off[240], missing[80] = "";
   std::snprintf(
       off, sizeof off,
-      "its triangles are up to %.3g mm from the faces that the file describes, and what is measured on it is "
-      "no surer than that",
-      1e3 * tessellation.deviation_m);
+      "%d of its %zu faces have triangles up to %.3g mm off (%.4g um was asked for, and neither finer "
+      "triangles nor healing helped); what is measured there is no surer than that",
+      tessellation.off, tessellation.faces.size(), 1e3 * tessellation.deviation_m,
+      1e6 * settings.deflection_m);
+  if (tessellation.off == 0)
+    std::snprintf(
+        off, sizeof off,
+        "its volume differs from that of its faces by as much as a layer of %.3g mm; what is measured "
+        "on it is no surer than that",
+        1e3 * tessellation.deviation_m);
   if (tessellation.missing > 0)
-    std::snprintf(missing, sizeof missing, "; %d of %d faces have no triangles", tessellation.missing,
-                  tessellation.faces);
-  return coarser + (coarser.empty() ? "" : "; ") + std::string(off) + missing + "; export it again";
+    std::snprintf(missing, sizeof missing, "%d of %zu faces have no triangles; ", tessellation.missing,
+                  tessellation.faces.size());
+  return coarser + (coarser.empty() ? "" : "; ") + missing + off +
+         "; where that matters, let the CAD program write the part as a mesh (STL, OBJ), or those faces anew";
 }
 
 }  // namespace vps::scenes::inline v0::import

@@ -2,8 +2,11 @@
 // Triangulates Open CASCADE shapes and compares the triangles with the exact faces.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 
 #include "vps/mesh.h"
@@ -14,13 +17,20 @@ namespace vps::scenes::inline v0::import {
 /// Triangles of a shape, in its length unit (a metre has units_per_m of them), outward for a solid. Faces of
 /// one shape share the points of their common edges, so welding closes it.
 struct Tessellation {
+  /// A face, and how many triangles it has; they follow each other in the mesh.
+  struct Face {
+    TopoDS_Face face;
+    std::size_t triangles = 0;
+  };
+
   Mesh mesh;
+  std::vector<Face> faces;
   /// Greatest distance of a triangle's centre from its exact face, or, where the volume is wrong, its error
   /// over the area [m].
   double deviation_m = 0;
   double deflection_m = 0;  ///< that it was made with: as asked for, or more, see ImportSettings
-  int faces = 0;            ///< of the shape
-  int missing = 0;          ///< of them without triangles
+  int missing = 0;          ///< faces without triangles
+  int off = 0;              ///< faces with triangles that are farther off than asked for
   int folded = 0;           ///< triangles that are turned over within their face
 
   [[nodiscard]] bool isTrusted() const;

@@ -67,19 +67,18 @@ class DdsLink final : public Link {
   DdsLink(const std::string& session, NodeRole role, const SessionNetwork& network)
       : role_(role), writer_(newSender()), participant_(network) {
     sem_init(&wake_, 0, 0);
-    std::string prefix = "vps/" + session + "/";
-    std::replace(prefix.begin(), prefix.end(), '-', '/');  // names of topics have no -
-    beats_in_.emplace(participant_, prefix + "beat", Delivery::Newest,
+    beats_in_.emplace(participant_, topicName(session, "beat"), Delivery::Newest,
                       [this](std::string_view bytes) { takeBeat(bytes); });
-    beats_out_.emplace(participant_, prefix + "beat", Delivery::Newest, nullptr);
-    for (std::size_t i = 0; i < kChannels; ++i) addChannel(static_cast<Channel>(i), prefix);
+    beats_out_.emplace(participant_, topicName(session, "beat"), Delivery::Newest, nullptr);
+    for (std::size_t i = 0; i < kChannels; ++i) addChannel(static_cast<Channel>(i), session);
     if (role != NodeRole::Render)
-      scene_.emplace(participant_, prefix + "scene", Delivery::Kept, [this](std::string_view bytes) {
-        const std::lock_guard lock(mutex_);
-        scenes_[device::ByteReader(bytes).get<std::uint64_t>()] = bytes;
-      });
+      scene_.emplace(participant_, topicName(session, "scene"), Delivery::Kept,
+                     [this](std::string_view bytes) {
+                       const std::lock_guard lock(mutex_);
+                       scenes_[device::ByteReader(bytes).get<std::uint64_t>()] = bytes;
+                     });
     else
-      scene_.emplace(participant_, prefix + "scene", Delivery::Kept, nullptr);
+      scene_.emplace(participant_, topicName(session, "scene"), Delivery::Kept, nullptr);
   }
   ~DdsLink() override {
     if (pump_.joinable()) {
@@ -176,7 +175,7 @@ class DdsLink final : public Link {
     }
     return false;
   }
-  void addChannel(Channel channel, const std::string& prefix) {
+  void addChannel(Channel channel, const std::string& session) {
     const auto i = static_cast<std::size_t>(channel);
     rings_[i] = std::make_unique<SharedWord[]>(kChannelShapes[i].words());
     SharedWord* ring = rings_[i].get();
@@ -185,7 +184,8 @@ class DdsLink final : public Link {
     const bool is_out = writerOf(channel) == role_;
     std::function<void(std::string_view)> receive;
     if (!is_out) receive = [this, i](std::string_view bytes) { writers_[i].write(bytes); };
-    topics_[i].emplace(participant_, prefix + nameOf(channel), deliveryOf(channel), std::move(receive));
+    topics_[i].emplace(participant_, topicName(session, nameOf(channel)), deliveryOf(channel),
+                       std::move(receive));
   }
   void pump();
   void passOn();

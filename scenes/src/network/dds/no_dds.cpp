@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // In place of dds_link.cpp where Cyclone DDS is missing.
 #include "network/link.h"
+#include "network/pointer_topic.h"
 #include "vps/load_error.h"
+#include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 
 namespace vps::scenes::inline v0 {
@@ -23,6 +25,10 @@ std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const Ses
   refuseNetwork();
 }
 
+std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+
 struct RosTopics::Work {};
 RosTopics::RosTopics(int, const std::string&, const std::string&, const Scene&) {
   refuseNetwork();
@@ -30,5 +36,17 @@ RosTopics::RosTopics(int, const std::string&, const std::string&, const Scene&) 
 RosTopics::~RosTopics() = default;
 void RosTopics::publish(const Snapshot&, std::int64_t) {}
 void RosTopics::publish(const Wrench&, std::int64_t) {}
+
+struct HeadTopic::Work {};
+HeadTopic::HeadTopic(const std::string& topic, int, const std::string&) {
+  throw LoadError("", "",
+                  "this build has no network, so no head comes on '" + topic +
+                      "'; give 'head' or 'recorded' in its place, or build with Cyclone DDS (Debian: "
+                      "cyclonedds-dev)");
+}
+HeadTopic::~HeadTopic() = default;
+std::optional<Pose> HeadTopic::take() {
+  return {};
+}
 
 }  // namespace vps::scenes::inline v0

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layouts are those of ROS 2's common_interfaces, and the names those of its mapping to DDS
-// (design.ros2.org, "Topic and Service name mapping to DDS"). Structures inside structures are written out,
-// which is the same on the wire.
+// The names are those of ROS 2's mapping to DDS (design.ros2.org, "Topic and Service name mapping to DDS").
 #include "vps_scenes/network/ros_topics.h"
 
 #include <dds/dds.h>
@@ -12,24 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "network/dds/ros_types.h"
 #include "network/dds/topics.h"
-#include "vps/load_error.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
+using ros::descriptor, ros::Header, ros::kDoubles, ros::kNumber, ros::kText, ros::PoseStamped, ros::require;
+
 constexpr const char* kWorld = "world";
 
-struct Header {
-  std::int32_t sec;
-  std::uint32_t nanosec;
-  char* frame;
-};
-struct PoseStamped {
-  Header header;
-  double pose[7];  ///< position, and orientation x y z w
-};
 struct WrenchStamped {
   Header header;
   double wrench[6];  ///< force and torque
@@ -43,17 +34,8 @@ struct TfMessage {
   dds_sequence_t transforms;
 };
 
-constexpr std::uint32_t kNumber = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_4BY;
-constexpr std::uint32_t kText = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_STR;
-constexpr std::uint32_t kDoubles =
-    static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_ARR | DDS_OP_SUBTYPE_8BY;
 constexpr std::uint32_t kList = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_SEQ | DDS_OP_SUBTYPE_STU;
 
-constexpr std::uint32_t kPoseOps[] = {kNumber,  offsetof(PoseStamped, header.sec),
-                                      kNumber,  offsetof(PoseStamped, header.nanosec),
-                                      kText,    offsetof(PoseStamped, header.frame),
-                                      kDoubles, offsetof(PoseStamped, pose),
-                                      7,        DDS_OP_RTS};
 constexpr std::uint32_t kWrenchOps[] = {kNumber,  offsetof(WrenchStamped, header.sec),
                                         kNumber,  offsetof(WrenchStamped, header.nanosec),
                                         kText,    offsetof(WrenchStamped, header.frame),
@@ -77,27 +59,6 @@ constexpr std::uint32_t kTfOps[] = {kList,
                                     offsetof(TransformStamped, transform),
                                     7,
                                     DDS_OP_RTS};
-
-dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std::uint32_t* ops,
-                                  std::uint32_t instructions) {
-  return {.m_size = static_cast<std::uint32_t>(size),
-          .m_align = alignof(double),
-          .m_flagset = 0,
-          .m_nkeys = 0,
-          .m_typename = name,
-          .m_keys = nullptr,
-          .m_nops = instructions,
-          .m_ops = ops,
-          .m_meta = "",
-          .type_information = {},
-          .type_mapping = {},
-          .restrict_data_representation = 0};
-}
-
-dds_entity_t require(dds_entity_t made) {
-  if (made >= 0) return made;
-  throw LoadError("", "", std::string("the topics of ROS 2: ") + dds_strretcode(-made));
-}
 
 dds_entity_t makeWriter(const DdsParticipant& participant, const std::string& name,
                         const dds_topic_descriptor_t& type, int depth) {
@@ -130,7 +91,7 @@ struct RosTopics::Work {
       : participant(SessionNetwork(interface, "none"), domain) {
     const std::string name = rosName(session);
     const dds_topic_descriptor_t pose_type =
-        descriptor("geometry_msgs::msg::dds_::PoseStamped_", sizeof(PoseStamped), kPoseOps, 5);
+        descriptor(ros::kPoseName, sizeof(PoseStamped), ros::kPoseOps, ros::kPoseInstructions);
     const dds_topic_descriptor_t wrench_type =
         descriptor("geometry_msgs::msg::dds_::WrenchStamped_", sizeof(WrenchStamped), kWrenchOps, 5);
     const dds_topic_descriptor_t tf_type =

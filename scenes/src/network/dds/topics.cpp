@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "network/dds/topics.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
 #include <cstdlib>
@@ -82,7 +83,7 @@ dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
   const std::string find =
       isLoopback(interface)
           ? "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
-            "</ParticipantIndex><MaxAutoParticipantIndex>16</MaxAutoParticipantIndex><Peers><Peer "
+            "</ParticipantIndex><MaxAutoParticipantIndex>48</MaxAutoParticipantIndex><Peers><Peer "
             "Address=\"127.0.0.1\"/></Peers></Discovery>"
           : "</General>";
   const std::string settings =
@@ -130,6 +131,12 @@ DdsParticipant::DdsParticipant(const SessionNetwork& network, int domain)
 
 DdsParticipant::~DdsParticipant() {
   dds_delete(entity_);
+}
+
+std::string topicName(const std::string& session, const std::string& name) {
+  std::string all = "vps/" + session + "/";
+  std::replace(all.begin(), all.end(), '-', '/');  // names of topics have no -
+  return all + name;
 }
 
 struct DdsTopic::Work {

@@ -34,6 +34,9 @@ enum class Delivery {
   Kept,      ///< reliable; the last one is given to those who come later
 };
 
+/// The name in DDS of what a session has under that name.
+std::string topicName(const std::string& session, const std::string& name);
+
 /// Bytes that are published, or received, under a name. In IDL: struct Message { sequence<octet> bytes; };
 class DdsTopic {
  public:

@@ -9,4 +9,8 @@ std::unique_ptr<SoundOutput> openSoundOutput(int, std::string& why) {
   return nullptr;
 }
 
+std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod, std::string& why) {
+  return openSoundOutput(rate_hz, why);
+}
+
 }  // namespace vps::viewer::inline v0

@@ -4,22 +4,28 @@
 #include <AL/alc.h>
 #include <AL/alext.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "sound/live_sound.h"
+#include "vps_device/metronome.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr int kBuffers = 8;
-constexpr std::size_t kAtStart = 3;  // buffers. assumed: 15 ms bridge what a desktop's threads are late
-constexpr double kBuffer_s = 5e-3;   // so that at most 40 ms wait, and usually one or two buffers do
+constexpr int kBuffers = 16;
+constexpr double kBuffer_s = 2.5e-3;  // so that at most 40 ms wait, and usually what was queued at the start
+constexpr std::size_t kAtStart =
+    4;  // buffers: a card's period of 5 ms, and as much for late threads. assumed
 
 /// A source that plays a queue of short buffers. The context is current in all its functions.
 class Queue {
@@ -123,6 +129,63 @@ class OpenAlOutput final : public SoundOutput {
   std::unique_ptr<Queue> parts_, beeps_;
 };
 
+/// The card of openSoundLoopback(): a thread that mixes a period each time one would have been played.
+class LoopbackCard {
+ public:
+  LoopbackCard(ALCdevice* device, int rate_hz, HeardPeriod heard)
+      : render_(reinterpret_cast<LPALCRENDERSAMPLESSOFT>(alcGetProcAddress(device, "alcRenderSamplesSOFT"))),
+        device_(device),
+        rate_hz_(rate_hz),
+        heard_(std::move(heard)),
+        thread_([this] { play(); }) {}
+  ~LoopbackCard() {
+    is_ending_ = true;
+    thread_.join();
+  }
+  LoopbackCard(const LoopbackCard&) = delete;
+  LoopbackCard& operator=(const LoopbackCard&) = delete;
+
+ private:
+  static constexpr int kPeriod = 256;  // samples. assumed: a desktop's card that is asked for little delay
+
+  void play() {
+    const double period_s = static_cast<double>(kPeriod) / rate_hz_;
+    std::vector<float> stereo(std::size_t{2} * kPeriod), mono(kPeriod);
+    double due_s = device::monotonicSeconds();
+    while (!is_ending_) {
+      device::monotonicClock().sleepUntil(std::llround(1e9 * due_s));
+      // A card whose period is not mixed in time stops and begins again.
+      due_s = std::max(due_s, device::monotonicSeconds() - period_s);
+      render_(device_, stereo.data(), kPeriod);
+      for (std::size_t i = 0; i < mono.size(); ++i) mono[i] = 0.5F * (stereo[2 * i] + stereo[2 * i + 1]);
+      due_s += period_s;
+      heard_(mono, due_s);  // while this period is mixed, the one before is played
+    }
+  }
+
+  LPALCRENDERSAMPLESSOFT render_;
+  ALCdevice* device_;
+  int rate_hz_;
+  HeardPeriod heard_;
+  std::atomic<bool> is_ending_{false};
+  std::thread thread_;  // last, since it uses the others
+};
+
+/// With the card that it plays through.
+class LoopbackOutput final : public SoundOutput {
+ public:
+  LoopbackOutput(ALCdevice* device, ALCcontext* context, int rate_hz, HeardPeriod heard)
+      : output_(device, context, rate_hz), card_(device, rate_hz, std::move(heard)) {}
+  void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
+    output_.write(parts, beeps, to_L);
+  }
+  [[nodiscard]] bool isThere() const override { return true; }
+
+ private:
+  OpenAlOutput output_;
+  LoopbackCard card_;  // ends before its device
+};
+
 /// Whether it is worth asking: without a card ALSA's own library prints ten lines about it.
 bool mayHaveSoundCard() {
 #ifdef __linux__
@@ -140,6 +203,19 @@ bool mayHaveSoundCard() {
 #endif
 }
 
+/// For headphones: the filters of a head (HRTF). Where OpenAL has none it pans. Null where the device
+/// refuses; it is closed then.
+ALCcontext* contextOf(ALCdevice* device, std::vector<ALCint> wishes) {
+  if (alcIsExtensionPresent(device, "ALC_SOFT_HRTF") == ALC_TRUE)
+    wishes.insert(wishes.end(), {ALC_HRTF_SOFT, ALC_TRUE});
+  wishes.push_back(0);
+  ALCcontext* context = alcCreateContext(device, wishes.data());
+  if (context != nullptr && alcMakeContextCurrent(context) == ALC_TRUE) return context;
+  if (context != nullptr) alcDestroyContext(context);
+  alcCloseDevice(device);
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why) {
@@ -148,17 +224,27 @@ std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why) {
     why = "no sound card answers, so the run is silent; vps assemble --sound writes a file";
     return nullptr;
   }
-  // For headphones: the filters of a head (HRTF). Where OpenAL has none it pans.
-  const std::array<ALCint, 3> wishes = {ALC_HRTF_SOFT, ALC_TRUE, 0};
-  const bool has_hrtf = alcIsExtensionPresent(device, "ALC_SOFT_HRTF") == ALC_TRUE;
-  ALCcontext* context = alcCreateContext(device, has_hrtf ? wishes.data() : nullptr);
-  if (context == nullptr || alcMakeContextCurrent(context) == ALC_FALSE) {
-    if (context != nullptr) alcDestroyContext(context);
-    alcCloseDevice(device);
+  ALCcontext* context = contextOf(device, {});
+  if (context == nullptr) {
     why = "the sound card refuses, so the run is silent; vps assemble --sound writes a file";
     return nullptr;
   }
   return std::make_unique<OpenAlOutput>(device, context, rate_hz);
+}
+
+std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard, std::string& why) {
+  const auto open =
+      reinterpret_cast<LPALCLOOPBACKOPENDEVICESOFT>(alcGetProcAddress(nullptr, "alcLoopbackOpenDeviceSOFT"));
+  ALCdevice* device = open != nullptr ? open(nullptr) : nullptr;
+  ALCcontext* context =
+      device != nullptr ? contextOf(device, {ALC_FORMAT_CHANNELS_SOFT, ALC_STEREO_SOFT, ALC_FORMAT_TYPE_SOFT,
+                                             ALC_FLOAT_SOFT, ALC_FREQUENCY, rate_hz})
+                        : nullptr;
+  if (context == nullptr) {
+    why = "this OpenAL has no loopback; install libopenal1 (OpenAL Soft)";
+    return nullptr;
+  }
+  return std::make_unique<LoopbackOutput>(device, context, rate_hz, std::move(heard));
 }
 
 }  // namespace vps::viewer::inline v0

@@ -40,6 +40,13 @@ asio::ip::address addressOf(const std::string& text) {
   return address;
 }
 
+std::string remedyFor(const ErrorCode& failed) {
+  if (failed == boost::system::errc::address_not_available)
+    return "--listen takes an address of this machine; `ip addr` lists them";
+  if (failed == boost::system::errc::permission_denied) return "choose a port above 1023";
+  return "choose another port";
+}
+
 std::string tokenOf(const WebOptions& options, bool is_loopback) {
   if (options.token.empty()) return is_loopback ? std::string() : newToken();
   if (isGoodToken(options.token)) return options.token;
@@ -65,7 +72,7 @@ struct WebServer::Impl {
     if (!failed) acceptor.listen(asio::socket_base::max_listen_connections, failed);
     if (failed)
       throw LoadError(
-          "", "", "cannot listen at " + hostText(end) + ": " + failed.message() + "; choose another port");
+          "", "", "cannot listen at " + hostText(end) + ": " + failed.message() + "; " + remedyFor(failed));
     access.emplace(hostText(acceptor.local_endpoint()), token, tls != nullptr);
     shared.emplace(WebShared{hub, page, *access, options.most_browsers, tls.get()});
     hub.poll(webClock_s());  // so that the parts are there for the first request
@@ -137,6 +144,9 @@ void serveSession(const WebOptions& options) {
 }
 void serveScene(const scenes::Scene& scene, const WebOptions& options) {
   serveRun(*watchedScene(scene, options), options);
+}
+void serveRecording(const device::RecordedRun& run, const WebOptions& options) {
+  serveRun(*watchedRecording(run), options);
 }
 
 }  // namespace vps::viewer::inline v0

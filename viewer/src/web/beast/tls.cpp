@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "web/beast/tls.h"
 
+#include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509.h>
 
@@ -29,6 +30,14 @@ void requireReadable(const std::string& file) {
   throw LoadError(file, "", "(--tls) " + why + kHowToMake);
 }
 
+bool isTooWeak(const ErrorCode& failed) {
+  const auto code = static_cast<unsigned long>(failed.value());
+  if (!failed || ERR_GET_LIB(code) != ERR_LIB_SSL) return false;
+  const int reason = ERR_GET_REASON(code);
+  return reason == SSL_R_EE_KEY_TOO_SMALL || reason == SSL_R_CA_KEY_TOO_SMALL ||
+         reason == SSL_R_CA_MD_TOO_WEAK;
+}
+
 void requireInTime(ssl::context& context, const std::string& file) {
   const X509* certificate = SSL_CTX_get0_certificate(context.native_handle());
   if (certificate == nullptr) return;
@@ -50,6 +59,10 @@ std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, co
   context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); },
                                  failed);
   context->use_certificate_chain_file(certificate_file, failed);
+  if (isTooWeak(failed))
+    throw LoadError(
+        certificate_file, "",
+        "(--tls) has a key or a signature that is too weak for OpenSSL; make one of 2048 bits or more");
   if (failed) throw LoadError(certificate_file, "", "(--tls) holds no certificate in PEM form");
   requireInTime(*context, certificate_file);
   // OpenSSL compares the key with the certificate here, too; the kind of key may differ as well.

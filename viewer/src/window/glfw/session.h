@@ -4,8 +4,10 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "vps_scenes/tracked_heads.h"
 #include "vps_viewer/window.h"
 #include "window/glfw/glfw_window.h"
 #include "window/hand_drag.h"
@@ -45,7 +47,8 @@ struct Session {
   std::string hand;                             ///< kind of device that moves the part in the next run
   HandDrag drag;                                ///< of the mouse as a device
   Neighbours neighbours;
-  std::deque<std::string> messages;  ///< of the window itself, the newest first
+  std::optional<scenes::TrackedHeads> heads;  ///< of the display file
+  std::deque<std::string> messages;           ///< of the window itself, the newest first
   std::string drawn_by;
   double picture_ms = 0;
   bool is_draft = false;
@@ -59,7 +62,11 @@ struct Session {
         work(scene),
         hand(options.hand.empty() ? scene.device.kind : options.hand),
         drag(scene.device.scale),
-        neighbours(scene) {}
+        neighbours(scene) {
+    if (!options.display) return;
+    heads.emplace(*options.display);
+    heads->waitForAll(scenes::kHeadWait_s);
+  }
 
   void say(const std::string& words) {
     messages.push_front(words);

@@ -43,12 +43,11 @@ void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
 }
 
 /// The head and screen of the display file, else two eyes about the camera, or none.
-std::optional<EyePair> eyesOf(const Session& session, PictureSize size) {
-  if (const std::optional<scenes::Display>& display = session.options.display) {
-    const scenes::DisplayScreen& screen = display->screens.front();
-    const scenes::DisplayViewer& viewer = display->viewers.front();
-    return EyePair{cameraFor(*display, screen, viewer.eye_S(-1)),
-                   cameraFor(*display, screen, viewer.eye_S(1))};
+std::optional<EyePair> eyesOf(Session& session, PictureSize size) {
+  if (session.heads) {
+    const scenes::Display& display = session.heads->at(session.shown.time_s);
+    for (const std::string& news : session.heads->takeNews()) session.say(news);
+    return viewer::eyesOf(display, display.screens.front(), display.viewers.front());
   }
   if (session.view.stereo == StereoMode::Mono) return {};
   const Camera& camera = session.view.camera;
@@ -62,7 +61,7 @@ void askForPicture(Session& session, PictureWorker& worker) {
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
   const std::optional<EyePair> eyes = eyesOf(session, size);
-  if (session.options.display) session.view.camera = middleEye(*eyes);
+  if (session.heads) session.view.camera = middleEye(*eyes);
   PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, session.view.stereo, eyes};
   wanted.options.width = size.width;
   wanted.options.height = size.height;
@@ -118,7 +117,7 @@ void loop(Session& session, GlfwWindow& window) {
   bool is_fitted = false;
   const auto is_stopped = [&] { return session.options.stop != nullptr && session.options.stop->load(); };
   while (!window.isClosed() && !session.view.wants_close && !is_stopped()) {
-    const bool moves = session.view.is_playing;
+    const bool moves = session.view.is_playing || (session.heads && session.heads->isLive());
     const bool has_news = window.wait(moves ? kFrame_s : kIdle_s);
     const Clock::time_point now = Clock::now();
     advance(session.view, session.line, std::chrono::duration<double>(now - last).count());
@@ -139,6 +138,7 @@ void loop(Session& session, GlfwWindow& window) {
 }
 
 void openAndLoop(Session& session, const std::string& title) {
+  for (const std::string& note : session.options.notes) session.say(note);
   GlfwWindow window(title, {session.options.width, session.options.height});
   window.on_key = [&session](const std::string& key) { typed(session, key); };
   loop(session, window);

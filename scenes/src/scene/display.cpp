@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
 #include "scene/scene_file_keys.h"
 #include "scene/toml_text.h"
@@ -40,24 +43,62 @@ DisplayScreen readScreen(const SceneKeys& keys, std::size_t number) {
   return screen;
 }
 
+/// A name in the display file's folder, unless it is absolute.
+void readTrack(const SceneKeys& keys, const std::string& name, DisplayViewer& viewer) {
+  const std::string place = keys.placeOf("recorded");
+  const std::filesystem::path display(place.substr(0, place.rfind(':')));
+  viewer.track = loadHeadTrack((display.parent_path() / name).string());
+  viewer.X_SE = viewer.track.X_SE.front();
+  viewer.is_placed = true;
+}
+
+void readTopic(const SceneKeys& keys, DisplayViewer& viewer) {
+  const auto is_good = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
+  };
+  if (viewer.topic.size() < 2 || viewer.topic.front() != '/' || !std::ranges::all_of(viewer.topic, is_good))
+    keys.fail("topic", "is '" + viewer.topic + "'; expected a topic of ROS 2, as \"/anna/head\"");
+  std::int64_t domain = viewer.ros_domain;
+  keys.integer("ros_domain", domain, {.min = 0, .max = 232});
+  viewer.ros_domain = static_cast<int>(domain);
+  keys.text("network", viewer.network);
+}
+
 DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
   DisplayViewer viewer;
   viewer.name = "viewer" + std::to_string(number);
   keys.text("name", viewer.name);
-  if (!keys.has("head")) keys.fail("head", "is missing; give its pose, {position = [...]}");
-  keys.pose("head", viewer.X_SE);
+  viewer.is_placed = keys.pose("head", viewer.X_SE);
+  std::string recorded;
+  const bool is_recorded = keys.text("recorded", recorded), is_topic = keys.text("topic", viewer.topic);
+  if (is_recorded && (is_topic || viewer.is_placed))
+    keys.fail("recorded", "says where the head is at all times; leave out " +
+                              std::string(is_topic ? "'topic'" : "'head'") + ", or this");
+  if (!viewer.is_placed && !is_recorded && !is_topic)
+    keys.fail("head", "is missing; give its pose, {position = [...]}, or its stream: 'recorded' or 'topic'");
+  if (is_recorded) readTrack(keys, recorded, viewer);
+  if (is_topic) readTopic(keys, viewer);
   keys.length("eye_distance", viewer.eye_distance_m, {.min = 0, .max = 1});
   return viewer;
 }
 
 void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const DisplayScreen& screen) {
-  const Vec3 n_S = screen.axes().col(2);
-  for (const int side : {-1, 0, 1})
-    if (n_S.dot(viewer.eye_S(side) - screen.lower_left_S) < kNearest_m)
-      keys.fail("head",
-                "of '" + viewer.name + "' is behind '" + screen.name +
-                    "', which is seen from where lower_left is at the left; move the head, or swap the "
-                    "screen's left and right corners");
+  const char* const remedy =
+      "', which is seen from where lower_left is at the left; move the head, or swap the screen's left and "
+      "right "
+      "corners";
+  if (!viewer.track.time_s.empty()) {
+    DisplayViewer moved = viewer;
+    for (std::size_t i = 0; i < viewer.track.time_s.size(); ++i) {
+      moved.X_SE = viewer.track.X_SE[i];
+      if (isBehind(moved, screen))
+        keys.fail("recorded", "has '" + viewer.name + "' at " + std::to_string(viewer.track.time_s[i]) +
+                                  " s behind '" + screen.name + remedy);
+    }
+    return;
+  }
+  if (isBehind(viewer, screen))
+    keys.fail("head", "of '" + viewer.name + "' is behind '" + screen.name + remedy);
   const Vec3 across_S = screen.lower_right_S - screen.lower_left_S;
   bool is_seen = false;
   for (const Vec3& corner_S :
@@ -69,6 +110,13 @@ void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const Di
 }
 
 }  // namespace
+
+bool isBehind(const DisplayViewer& viewer, const DisplayScreen& screen) {
+  const Vec3 n_S = screen.axes().col(2);
+  for (const int side : {-1, 0, 1})
+    if (n_S.dot(viewer.eye_S(side) - screen.lower_left_S) < kNearest_m) return true;
+  return false;
+}
 
 Mat3 DisplayScreen::axes() const {
   const Vec3 x = (lower_right_S - lower_left_S).normalized();
@@ -113,8 +161,10 @@ Display loadDisplay(const std::string& file) {
                    display.screens.size() + 1));
   if (display.screens.empty()) throw LoadError(file, "", "has no [[screen]]; give its corners");
   for (const toml::table* table : top.tables("viewer")) {
-    const SceneKeys keys(*table, context, "[[viewer]]", {"name", "head", "eye_distance"});
+    const SceneKeys keys(*table, context, "[[viewer]]",
+                         {"name", "head", "recorded", "topic", "ros_domain", "network", "eye_distance"});
     display.viewers.push_back(readViewer(keys, display.viewers.size() + 1));
+    if (!display.viewers.back().is_placed) continue;  // its place comes from the network
     for (const DisplayScreen& screen : display.screens) requireInFront(keys, display.viewers.back(), screen);
   }
   if (display.viewers.empty()) throw LoadError(file, "", "has no [[viewer]]; give the pose of a head");

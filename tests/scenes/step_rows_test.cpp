@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rows that are kept of a step, however long it takes.
+#include "procedure/step_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace vps::scenes {
+namespace {
+
+TraceRow rowAt(double time_s) {
+  TraceRow row;
+  row.time_s = time_s;
+  return row;
+}
+
+TEST(StepRows, AllRowsOfAShortStepAreKept) {
+  StepRows rows(10);
+  rows.beginStep();
+  for (int i = 0; i < 10; ++i) rows.add(rowAt(i), {0.5 + i, {}, 0});
+  ASSERT_EQ(rows.rows().size(), 10u);
+  EXPECT_EQ(rows.rows()[9].time_s, 9);
+  EXPECT_EQ(rows.takeSamples().size(), 10u);
+  rows.beginStep();
+  rows.add(rowAt(10), {});
+  EXPECT_EQ(rows.rows().size(), 1u);
+  EXPECT_EQ(rows.takeRows().size(), 11u);
+}
+
+// Every second one of 11 to 20 steps, every fourth one of 21 to 40, and so on: at equal distances from the
+// first one, so that between the half and the whole of `most` is kept.
+TEST(StepRows, OfALongStepRowsAtEqualDistancesAndTheDeepestSampleAreKept) {
+  for (int count = 11; count < 500; ++count)
+    for (const int deepest : {0, 1, count / 2, count - 1}) {
+      StepRows rows(10);
+      rows.beginStep();
+      for (int i = 0; i < count; ++i)
+        rows.add(rowAt(i), {static_cast<double>(i), {}, i == deepest ? 1e-6 : 0});
+      const auto kept = rows.rows();
+      ASSERT_GE(kept.size(), 5u) << count;
+      ASSERT_LE(kept.size(), 10u) << count;
+      const double stride = kept[1].time_s;
+      for (std::size_t i = 0; i < kept.size(); ++i)
+        ASSERT_EQ(kept[i].time_s, stride * static_cast<double>(i)) << count;
+      ASSERT_GE(kept.back().time_s, count - stride) << count;
+      const auto samples = rows.takeSamples();
+      ASSERT_EQ(samples.size(), kept.size());
+      const auto found = std::max_element(samples.begin(), samples.end(),
+                                          [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
+      ASSERT_EQ(found->time_s, deepest) << count;
+    }
+}
+
+}  // namespace
+}  // namespace vps::scenes
