@@ -53,7 +53,7 @@ TEST(ShadingMesh, KnowsWhetherItIsClosedAndPointsOutwards) {
 TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
   const ShadingMesh mesh = buildShadingMesh(ball(120));
   const double cell_m = 0.08 * kRadius_m;
-  const std::vector<std::uint32_t> fewer = smoothedIndices(mesh, cell_m);
+  const std::vector<std::uint32_t> fewer = CoarseMesh(mesh).smoothedIndices(cell_m);
   EXPECT_LT(fewer.size(), mesh.indices.size() / 3);
   EXPECT_GT(fewer.size(), mesh.indices.size() / 100);
   double deepest_m = 0, volume_m3 = 0;
@@ -73,7 +73,7 @@ TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
 
 TEST(CoarseMesh, CornersOfABoxStay) {
   const ShadingMesh mesh = buildShadingMesh(makeBox({0.1, 0.1, 0.1}));
-  EXPECT_EQ(smoothedIndices(mesh, 1.0), mesh.indices);
+  EXPECT_EQ(CoarseMesh(mesh).smoothedIndices(1.0), mesh.indices);
 }
 
 }  // namespace

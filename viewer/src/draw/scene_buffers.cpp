@@ -36,16 +36,16 @@ GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vert
       colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, vertex_colors)))),
       sharp_edges(shading.sharp_edges) {
   const std::size_t triangles = shading.indices.size() / 3;
+  CoarseMesh coarse(shading);
   const auto coarser = [&](std::size_t most) {
     const double share = double(most) / static_cast<double>(std::max(most, scene_triangles));
-    return indicesOf(
-        coarseIndices(shading, static_cast<std::size_t>(share * static_cast<double>(triangles))));
+    return indicesOf(coarse.indices(static_cast<std::size_t>(share * static_cast<double>(triangles))));
   };
   details_ = {indicesOf(shading.indices), coarser(kShadowTriangles), coarser(kDraftTriangles)};
-  addLevels();
+  addLevels(coarse);
 }
 
-void GpuMesh::addLevels() {
+void GpuMesh::addLevels(CoarseMesh& coarse) {
   constexpr std::size_t kFewest = 5000;                   // triangles. assumed: fewer cost little
   constexpr std::array<double, 3> kCells = {24, 48, 96};  // along the diagonal
   constexpr double kWorthwhile = 0.7;                     // of the triangles of the level before
@@ -53,7 +53,7 @@ void GpuMesh::addLevels() {
   if (before / 3 < kFewest) return;
   for (auto cells = kCells.rbegin(); cells != kCells.rend(); ++cells) {
     const double cell_m = bounds_P.size().norm() / *cells;
-    const std::vector<std::uint32_t> fewer = smoothedIndices(shading, cell_m);
+    const std::vector<std::uint32_t> fewer = coarse.smoothedIndices(cell_m);
     if (static_cast<double>(fewer.size()) > kWorthwhile * static_cast<double>(before)) continue;
     before = fewer.size();
     levels_.insert(levels_.begin(), {cell_m, indicesOf(fewer)});
@@ -61,7 +61,7 @@ void GpuMesh::addLevels() {
 }
 
 void GpuMesh::drawAt(double px_per_m) const {
-  constexpr double kCell_px = 5;  // a surface then stays within a pixel or so, see smoothedIndices()
+  constexpr double kCell_px = 5;  // a surface then stays within a pixel or so, see CoarseMesh
   const auto level =
       std::ranges::find_if(levels_, [&](const Level& each) { return each.cell_m * px_per_m < kCell_px; });
   const Indices& drawn = level == levels_.end() ? of(Detail::Full) : level->indices;

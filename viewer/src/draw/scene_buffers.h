@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "draw/coarse_mesh.h"
 #include "draw/gl_objects.h"
 #include "draw/shading_mesh.h"
 #include "vps_viewer/renderer.h"
@@ -50,7 +51,7 @@ struct GpuMesh {
     gl::VertexArray array;
     GLsizei count = 0;
   };
-  void addLevels();
+  void addLevels(CoarseMesh& coarse);
   [[nodiscard]] Indices indicesOf(const std::vector<std::uint32_t>& indices) const;
   [[nodiscard]] const Indices& of(Detail detail) const { return details_[static_cast<std::size_t>(detail)]; }
 

@@ -100,7 +100,7 @@ Json partData(const DrawnMesh& part, std::size_t wanted) {
   std::vector<float> places, edges;
   std::vector<std::int8_t> normals;
   // Only the vertices that the coarser mesh uses, in the order of their use.
-  std::vector<std::uint32_t> triangles = coarseIndices(mesh, wanted);
+  std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
   std::uint32_t count = 0;
   for (std::uint32_t& i : triangles) {

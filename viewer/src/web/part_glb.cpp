@@ -72,7 +72,7 @@ class GlbBuffer {
 
 /// The surface's primitive, with the vertices that its triangles use, in the order of their use.
 Json surface(const ShadingMesh& mesh, std::size_t wanted, GlbBuffer& buffer) {
-  std::vector<std::uint32_t> triangles = coarseIndices(mesh, wanted);
+  std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
   std::vector<float> places, normals;
   std::uint32_t count = 0;
