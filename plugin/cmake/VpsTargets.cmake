@@ -119,6 +119,25 @@ function(vps_compile_options target)
   endif()
 endfunction()
 
+# vps_optional_library(TARGET NAME HEADER file [SUFFIX folder] LIBRARY name SOURCE file WITHOUT file MISSING words)
+# A library that need not be there: SOURCE uses it, WITHOUT stands in its place. Both are of the caller's folder.
+#   NAME     in messages, and in the cache as VPS_<NAME>_INCLUDE and VPS_<NAME>_LIBRARY
+#   MISSING  what is lost without it, and the package that has it
+function(vps_optional_library target name)
+  cmake_parse_arguments(ARG "" "HEADER;SUFFIX;LIBRARY;SOURCE;WITHOUT;MISSING" "" ${ARGN})
+  string(TOUPPER VPS_${name} variable)
+  find_path(${variable}_INCLUDE ${ARG_HEADER} PATH_SUFFIXES ${ARG_SUFFIX})
+  find_library(${variable}_LIBRARY ${ARG_LIBRARY})
+  if(NOT ${variable}_INCLUDE OR NOT ${variable}_LIBRARY)
+    message(STATUS "${name} not found: ${ARG_MISSING}")
+    target_sources(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_WITHOUT})
+    return()
+  endif()
+  target_sources(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${ARG_SOURCE})
+  target_include_directories(${target} SYSTEM PRIVATE ${${variable}_INCLUDE})
+  target_link_libraries(${target} PRIVATE ${${variable}_LIBRARY})
+endfunction()
+
 # A GoogleTest program, one per tested folder or topic.
 function(vps_add_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK" ${ARGN})
