@@ -44,12 +44,13 @@ int runCompare(const CompareArguments& given) {
   const scenes::RunComparison result =
       scenes::compareRuns(device::loadRecording(given.expert), device::loadRecording(given.trainee));
   std::vector<std::string> notes = result.notes;
+  const std::string as_json = toJson(result);
   if (out) {
     notes = writeComparePage(result, out->partial());
-    out->write("compare.json", toJson(result));
+    out->write("compare.json", as_json);
     out->commit();
   }
-  json.write(toJson(result));
+  json.write(as_json);
   std::fputs(comparisonTable(result).c_str(), stdout);
   for (const std::string& note : notes) warn(note);
   std::printf("Score %s of 100%s.\n", fixed(result.score, 0).c_str(),

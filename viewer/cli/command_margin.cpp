@@ -70,10 +70,11 @@ int runMargin(const MarginArguments& given) {
   const scenes::MarginResult result = scenes::measureMargins(scene, options);
   throwIfStopped();
   json.write(toJson(result));
-  html.write(marginPage(result));
+  const std::string page = marginPage(result);
+  html.write(page);
   bar.clear();
   const int status = tell(result);
-  pdf.write(marginPage(result));  // last, so that nothing is lost where it fails
+  pdf.write(page);  // last, so that nothing is lost where it fails
   return status;
 }
 

@@ -168,10 +168,11 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   std::erase_if(runs, [&](const scenes::StudyRun& run) { return run.run >= given.runs; });
   const scenes::StudyResult result = sumUpStudy(scene.name, variables, settings, std::move(runs));
   json.write(toJson(result));
-  html.write(studyPage(result));
+  const std::string page = studyPage(result);
+  html.write(page);
   bar.clear();
   printResult(result);
-  pdf.write(studyPage(result));  // last, so that nothing is lost where it fails
+  pdf.write(page);  // last, so that nothing is lost where it fails
   return kGood;
 }
 

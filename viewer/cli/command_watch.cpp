@@ -209,8 +209,7 @@ void addWatch(CommandLine& line) {
   addSceneOptions(command, given->scene);
   command.get_option("scene")->required(false)->description(
       "scene file (TOML) that is run for the web page, or a recording (MCAP) that it plays; without one, a "
-      "session is "
-      "followed");
+      "session is followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
   command.add_option("--rate", given->rate_hz, "lines a second about the part in hand; 0: none")

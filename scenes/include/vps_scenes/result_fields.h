@@ -49,8 +49,7 @@ inline constexpr auto kStepFields = std::make_tuple(
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
     field("aligned_by", &StepResult::aligned_by,
           "a later part that fits into it and takes it from where the hand left it to where it belongs; "
-          "empty if "
-          "none"),
+          "empty if none"),
     field("taken_off", &StepResult::is_taken_off,
           "the step took the part off (`--disassemble`); its target is where it was put away"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),

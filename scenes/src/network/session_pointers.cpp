@@ -29,10 +29,6 @@ constexpr double kRepeatEach_s = 0.5;   // assumed: who comes later does not not
 constexpr std::size_t kMostShown = 64;  // persons of one process
 constexpr double kGone_s = 2;  // over a network: who has repeated nothing for so long points no longer
 
-double pointerClock_s() {
-  return 1e-9 * static_cast<double>(device::monotonicClock().now_ns());
-}
-
 /// Another process that points.
 struct Other {
   SharedRegion region;  ///< not open over a network
@@ -196,7 +192,7 @@ void SessionPointers::point(int person, const std::optional<Vec3>& p_W) {
 
 std::vector<SessionPointer> SessionPointers::take() {
   std::vector<SessionPointer> changes;
-  const double now_s = pointerClock_s();
+  const double now_s = device::monotonicSeconds();
   if (work_->topic != nullptr) {
     work_->repeat(now_s);
     work_->readTopic(now_s, changes);

@@ -85,8 +85,7 @@ DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
 void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const DisplayScreen& screen) {
   const char* const remedy =
       "', which is seen from where lower_left is at the left; move the head, or swap the screen's left and "
-      "right "
-      "corners";
+      "right corners";
   if (!viewer.track.time_s.empty()) {
     DisplayViewer moved = viewer;
     for (std::size_t i = 0; i < viewer.track.time_s.size(); ++i) {

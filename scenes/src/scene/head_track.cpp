@@ -2,17 +2,14 @@
 #include "vps_scenes/head_track.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <span>
 
+#include "core/pose_numbers.h"
 #include "vps/load_error.h"
 #include "vps_scenes/number_table.h"
 
 namespace vps::scenes::inline v0 {
-namespace {
-
-constexpr double kUnit = 1e-3;  // by which a quaternion's length may miss one
-
-}  // namespace
 
 Pose HeadTrack::at(double t_s) const {
   const auto after = std::upper_bound(time_s.begin(), time_s.end(), t_s);
@@ -29,13 +26,13 @@ HeadTrack loadHeadTrack(const std::string& file) {
   for (const NumberRow& row :
        readNumberTable(file, 8, "time [s], x, y, z [m] and quaternion x, y, z, w of a head in the room")) {
     const std::vector<double>& n = row.numbers;
-    const Quat q(n[7], n[4], n[5], n[6]);
-    if (std::abs(q.norm() - 1) > kUnit)
+    const std::optional<Pose> X_SE = poseOf(std::span(n).subspan<1, 7>());
+    if (!X_SE)
       throw LoadError(row.place, "", "columns 5 to 8 are no rotation; expected a unit quaternion x, y, z, w");
     if (!track.time_s.empty() && n[0] <= track.time_s.back())
       throw LoadError(row.place, "", "is not later than the row before; put the rows in order of time");
     track.time_s.push_back(n[0]);
-    track.X_SE.emplace_back(q.normalized(), Vec3(n[1], n[2], n[3]));
+    track.X_SE.push_back(*X_SE);
   }
   if (track.time_s.empty()) throw LoadError(file, "", "has no row; record where the head is");
   return track;

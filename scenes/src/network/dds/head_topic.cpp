@@ -1,26 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/network/head_topic.h"
 
-#include <cmath>
-
+#include "core/pose_numbers.h"
 #include "network/dds/ros_types.h"
 #include "network/dds/topics.h"
 
 namespace vps::scenes::inline v0 {
-namespace {
-
-constexpr double kUnit = 1e-3;  // by which a quaternion's length may miss one
-
-std::optional<Pose> poseOf(const ros::PoseStamped& sample) {
-  const double(&n)[7] = sample.pose;
-  const Quat q(n[6], n[3], n[4], n[5]);
-  const Vec3 p(n[0], n[1], n[2]);
-  if (!p.allFinite() || !(std::abs(q.norm() - 1) <= kUnit)) return {};
-  return Pose(q.normalized(), p);
-}
-
-}  // namespace
-
 struct HeadTopic::Work {
   Work(const std::string& topic, int domain, const std::string& interface)
       : participant(SessionNetwork(interface, "none"), domain) {
@@ -52,7 +37,8 @@ std::optional<Pose> HeadTopic::take() {
     const dds_return_t count = dds_take(work_->reader, &sample, &info, 1, 1);
     if (count <= 0) return newest;
     if (info.valid_data)
-      if (const std::optional<Pose> X = poseOf(*static_cast<const ros::PoseStamped*>(sample))) newest = X;
+      if (const std::optional<Pose> X = poseOf(static_cast<const ros::PoseStamped*>(sample)->pose))
+        newest = X;
     dds_return_loan(work_->reader, &sample, count);
   }
 }
