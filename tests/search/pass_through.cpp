@@ -15,7 +15,7 @@ bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_
     path.add(to);
     if (!overlap(path, b.box()) || (to - from).squaredNorm() < margin_m * margin_m) continue;
     crossings.clear();
-    b.appendCrossings(from, to, crossings);
+    b.solid().appendCrossings(from, to, crossings);
     if (crossings.size() < 2) continue;
     if (b.solid().signedDistance(from) < 0 || b.solid().signedDistance(to) < 0) continue;
     std::sort(crossings.begin(), crossings.end());

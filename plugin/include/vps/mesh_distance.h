@@ -58,6 +58,11 @@ class VPS_API MeshDistance {
   /// if there are more. Boxes are those of floats, rounded outwards.
   bool overlapping(const Box& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
 
+  /// Appends where segment ab crosses the triangles, as fractions of the segment, not sorted. A crossing at
+  /// the border of two triangles may appear twice. A triangle in whose plane the segment lies is not crossed.
+  /// O(log n + triangles whose boxes the segment meets).
+  void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
+
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
 
  private:
@@ -77,6 +82,8 @@ class VPS_API MeshDistance {
     [[nodiscard]] Eigen::Array4f distance2(const Eigen::Vector3f& p) const;
     [[nodiscard]] Eigen::Array<bool, 4, 1> overlaps(const Eigen::Vector3f& low,
                                                     const Eigen::Vector3f& high) const;
+    [[nodiscard]] Eigen::Array<bool, 4, 1> meets(const Eigen::Vector3f& middle,
+                                                 const Eigen::Vector3f& half) const;
     Eigen::Array4f min[3], max[3];
     std::uint32_t child[4] = {0, 0, 0, 0};  ///< a node, or a triangle and kTriangle
   };

@@ -12,14 +12,11 @@
 
 namespace vps::inline v0 {
 
-/// A solid with the edges of its surface and a tree of its triangles' boxes.
+/// A solid with the edges of its surface.
 class VPS_API OverlapMesh {
  public:
   /// O(n log n).
   explicit OverlapMesh(std::shared_ptr<const Solid> solid);
-  ~OverlapMesh();
-  OverlapMesh(OverlapMesh&&) noexcept;
-  OverlapMesh& operator=(OverlapMesh&&) noexcept;
 
   [[nodiscard]] const Solid& solid() const { return *solid_; }
   [[nodiscard]] const Mesh& mesh() const { return solid_->mesh(); }
@@ -31,16 +28,11 @@ class VPS_API OverlapMesh {
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& trianglesAtEdges() const {
     return triangles_at_edges_;
   }
-  /// Appends where segment ab crosses the surface, as fractions of the segment, not sorted. A crossing at the
-  /// border of two triangles may appear twice.
-  void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
 
  private:
-  struct Triangles;
   std::shared_ptr<const Solid> solid_;
   Box box_;
   std::vector<std::array<std::uint32_t, 2>> edges_, triangles_at_edges_;
-  std::unique_ptr<const Triangles> triangles_;
 };
 
 struct Overlap {

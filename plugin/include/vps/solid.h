@@ -50,6 +50,10 @@ class VPS_API Solid {
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
   [[nodiscard]] bool isInside(const Vec3& p) const noexcept;
 
+  /// Where segment ab crosses the surface; see MeshDistance.
+  void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
+    distance_.appendCrossings(a, b, out);
+  }
   /// Of single facets; see MeshDistance. Triangles are numbered as in mesh().
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept {
     return distance_.featureNormal(triangle, feature);

@@ -153,8 +153,8 @@ void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_
   for (const auto& [p_S, normal_S] : points) {
     const Vec3 end = p_S - reach_m * normal_S;
     crossings.clear();
-    in.appendCrossings(p_S, end, crossings);
-    other.appendCrossings(X_OS * p_S, X_OS * end, crossings);
+    in.solid().appendCrossings(p_S, end, crossings);
+    other.solid().appendCrossings(X_OS * p_S, X_OS * end, crossings);
     double nearest = 1;
     for (const double fraction : crossings)
       if (fraction * reach_m > kOverlapCertain_m) nearest = std::min(nearest, fraction);

@@ -175,6 +175,60 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
          min[2] <= high[2] && low[2] <= max[2];
 }
 
+/// True where the segment middle +- half may meet a box: their shadows overlap along the axes and along the
+/// products of the axes with the segment (separating axes).
+[[gnu::always_inline]] inline Eigen::Array<bool, 4, 1> MeshDistance::Node::meets(
+    const Eigen::Vector3f& middle, const Eigen::Vector3f& half) const {
+  // Each product below has a few roundings of floats, relative to the size of its terms.
+  constexpr float kRounding = 2e-6f;
+  Eigen::Array4f off[3], size[3];
+  Eigen::Array<bool, 4, 1> is_met = Eigen::Array<bool, 4, 1>::Constant(true);
+  for (int k = 0; k < 3; ++k) {
+    off[k] = 0.5f * (min[k] + max[k]) - middle[k];
+    size[k] = 0.5f * (max[k] - min[k]) + kRounding * off[k].abs();
+    is_met = is_met && off[k].abs() <= size[k] + std::abs(half[k]) * (1 + kRounding);
+  }
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const float half_i = std::abs(half[i]), half_j = std::abs(half[j]);
+    const Eigen::Array4f reach = size[i] * half_j + size[j] * half_i;
+    const Eigen::Array4f rounding = kRounding * (off[i].abs() * half_j + off[j].abs() * half_i + reach);
+    is_met = is_met && (off[i] * half[j] - off[j] * half[i]).abs() <= reach + rounding;
+  }
+  return is_met;
+}
+
+void MeshDistance::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
+  if (nodes_.empty()) return;
+  // Barycentric coordinates round by about 1e-15; a crossing at a shared border must not fall between both.
+  constexpr double kBorder = -1e-12;
+  const Eigen::Vector3f middle = (0.5 * (a + b) - center_).cast<float>(),
+                        half = (0.5 * (b - a)).cast<float>();
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t next = stack[--waiting];
+    if ((next & kTriangle) == 0) {
+      const Node& node = nodes_[next];
+      const Eigen::Array<bool, 4, 1> is_met = node.meets(middle, half);
+      for (int lane = 0; lane < 4; ++lane)
+        if (is_met[lane]) stack[waiting++] = node.child[lane];
+      continue;
+    }
+    const auto& t = mesh_.triangles[next & ~kTriangle];
+    const Vec3& corner = mesh_.vertices[t[0]];
+    const Vec3 u = mesh_.vertices[t[1]] - corner, v = mesh_.vertices[t[2]] - corner, n = u.cross(v);
+    const double above_a = n.dot(a - corner), above_b = n.dot(b - corner);
+    if ((above_a > 0) == (above_b > 0)) continue;
+    const double fraction = above_a / (above_a - above_b);
+    const Vec3 q = a + fraction * (b - a) - corner;
+    const double n2 = n.squaredNorm();
+    const double along_u = q.cross(v).dot(n) / n2, along_v = u.cross(q).dot(n) / n2;
+    if (along_u >= kBorder && along_v >= kBorder && along_u + along_v <= 1 - kBorder) out.push_back(fraction);
+  }
+}
+
 bool MeshDistance::overlapping(const Box& box, std::size_t most,
                                std::vector<std::uint32_t>& triangles) const {
   triangles.clear();

@@ -7,6 +7,7 @@
 #include "mesh/box_tree.h"
 #include "mesh/facet_overlap.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/segment_search.h"
 #include "vps/sharp_edges.h"
 
 namespace vps::inline v0 {
@@ -15,13 +16,6 @@ namespace {
 
 /// Rounding turns the diagonal of a flat face by about 1e-8; edges of curved surfaces turn by more than 1e-3.
 constexpr double kFlat_rad = 1e-6;
-
-std::vector<Box> boxesOf(const Mesh& mesh) {
-  std::vector<Box> boxes(mesh.triangles.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (const std::uint32_t v : mesh.triangles[i]) boxes[i].add(mesh.vertices[v]);
-  return boxes;
-}
 
 /// The first and the last triangle at each of some edges, which are in ascending order.
 std::vector<std::array<std::uint32_t, 2>> trianglesAt(const std::vector<std::array<std::uint32_t, 2>>& edges,
@@ -62,47 +56,10 @@ std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& oth
     const auto& [from, to] = other.edges()[i];
     CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
     if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
-    in.appendCrossings(edge.a, edge.b, edge.crossings);
+    in.solid().appendCrossings(edge.a, edge.b, edge.crossings);
     near.push_back(std::move(edge));
   }
   return near;
-}
-
-double distanceToTriangle(const OverlapMesh& in, std::uint32_t triangle, const Vec3& p) {
-  const auto& t = in.mesh().triangles[triangle];
-  const auto& v = in.mesh().vertices;
-  return (closestOnTriangle(p, v[t[0]], v[t[1]], v[t[2]]).q - p).norm();
-}
-
-/// Deepest point of segment ab, which is wholly inside or wholly outside, except where it passes a crack of
-/// the mesh. The depth is the distance to the nearest triangle, so it is at most that to any one triangle,
-/// which is convex along the segment: at most that of the farther end. A segment that lies along a face needs
-/// one or two triangles, however long it is. Along with a distance that changes sign at a crack, depths are
-/// found to within the crack's width. Returns false if the segment is outside and does not touch the surface.
-bool searchSegment(const OverlapMesh& in, const Vec3& a, const Vec3& b, Deepest& deepest) {
-  struct Piece {
-    Vec3 a, b;
-  };
-  std::vector<Piece> stack{{a, b}};
-  bool is_first = true;
-  while (!stack.empty()) {
-    const Piece piece = stack.back();
-    stack.pop_back();
-    const Vec3 middle = 0.5 * (piece.a + piece.b);
-    const Solid::Closest nearest = in.solid().closest(middle);
-    const bool is_outside = nearest.normal.dot(middle - nearest.q) > 0;
-    if (is_first && is_outside) return nearest.distance_m <= kOverlapCertain_m;
-    is_first = false;
-    const double farther_end_m = std::max(distanceToTriangle(in, nearest.triangle, piece.a),
-                                          distanceToTriangle(in, nearest.triangle, piece.b));
-    const double half_m = 0.5 * (piece.b - piece.a).norm();
-    const double signed_m = is_outside ? -nearest.distance_m : nearest.distance_m;
-    if (std::min(farther_end_m, signed_m + half_m) <= deepest.depth_m + kOverlapCertain_m) continue;
-    if (signed_m > deepest.depth_m) deepest = {signed_m, middle};
-    stack.push_back({piece.a, middle});
-    stack.push_back({middle, piece.b});
-  }
-  return true;
 }
 
 /// Returns those edges, by index, that are not wholly outside of the surface.
@@ -116,7 +73,8 @@ std::vector<std::size_t> searchEdges(const OverlapMesh& in, std::vector<CrossedE
     bool may_touch = false;
     for (const double to : edge.crossings) {
       if (to > from)
-        may_touch |= searchSegment(in, at(edge.a, edge.b, from), at(edge.a, edge.b, to), deepest);
+        may_touch |= searchUncrossed(in.solid(), at(edge.a, edge.b, from), at(edge.a, edge.b, to),
+                                     kOverlapCertain_m, deepest.depth_m, deepest.p_S);
       from = to;
     }
     if (may_touch) touching.push_back(edge.index);
@@ -145,40 +103,11 @@ bool isClearlyOutside(const OverlapMesh& in, const OverlapMesh& other, const Pos
 
 }  // namespace
 
-struct OverlapMesh::Triangles {
-  explicit Triangles(const Mesh& mesh) : boxes(boxesOf(mesh)), tree(boxes) {}
-  std::vector<Box> boxes;
-  BoxTree tree;
-};
-
 OverlapMesh::OverlapMesh(std::shared_ptr<const Solid> solid)
     : solid_(std::move(solid)),
       box_(bounds(solid_->mesh())),
       edges_(sharpEdges(solid_->mesh(), kFlat_rad)),
-      triangles_at_edges_(trianglesAt(edges_, solid_->mesh())),
-      triangles_(std::make_unique<const Triangles>(solid_->mesh())) {}
-
-OverlapMesh::~OverlapMesh() = default;
-OverlapMesh::OverlapMesh(OverlapMesh&&) noexcept = default;
-OverlapMesh& OverlapMesh::operator=(OverlapMesh&&) noexcept = default;
-
-void OverlapMesh::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
-  // Barycentric coordinates round by about 1e-15; a crossing at a shared border must not fall between both.
-  constexpr double kBorder = -1e-12;
-  triangles_->tree.forEachOverlap(boxOf(a, b), [&](std::uint32_t i) {
-    const auto& t = mesh().triangles[i];
-    const Vec3& corner = mesh().vertices[t[0]];
-    const Vec3 u = mesh().vertices[t[1]] - corner, v = mesh().vertices[t[2]] - corner, n = u.cross(v);
-    const double above_a = n.dot(a - corner), above_b = n.dot(b - corner);
-    if ((above_a > 0) == (above_b > 0)) return true;
-    const double fraction = above_a / (above_a - above_b);
-    const Vec3 q = at(a, b, fraction) - corner;
-    const double n2 = n.squaredNorm();
-    const double along_u = q.cross(v).dot(n) / n2, along_v = u.cross(q).dot(n) / n2;
-    if (along_u >= kBorder && along_v >= kBorder && along_u + along_v <= 1 - kBorder) out.push_back(fraction);
-    return true;
-  });
-}
+      triangles_at_edges_(trianglesAt(edges_, solid_->mesh())) {}
 
 Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB) {
   const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();

@@ -72,7 +72,7 @@ class EdgeSearch {
  private:
   void searchPieces(std::size_t edge, const Vec3& a, const Vec3& b, CertainOverlap& best) {
     crossings_.clear();
-    in_.overlap().appendCrossings(a, b, crossings_);
+    in_.overlap().solid().appendCrossings(a, b, crossings_);
     std::sort(crossings_.begin(), crossings_.end());
     crossings_.push_back(1);
     double from = 0;

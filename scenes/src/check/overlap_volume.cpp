@@ -67,7 +67,7 @@ double sweepOfSides(const Flat& of, const PartSurface& solid, std::vector<double
   for (int i = 0; i < 3; ++i) {
     const Vec3 &a = of.t[i], &b = of.t[(i + 1) % 3];
     crossings.clear();
-    solid.overlap().appendCrossings(a, b, crossings);
+    solid.overlap().solid().appendCrossings(a, b, crossings);
     std::sort(crossings.begin(), crossings.end());
     crossings.push_back(1);
     double from = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vps/query.h"
+#include "vps/segment_depth.h"
 #include "vps/sharp_edges.h"
 
 namespace vps::scenes::inline v0 {
@@ -15,12 +16,7 @@ namespace {
 
 constexpr double kSharp_rad = 0.35;  // about 20 degrees, as for pointshells
 
-struct Deepest {
-  double depth_m = 0;
-  Vec3 p_S = Vec3::Zero();  // in the solid's frame
-};
-
-void keep(Deepest& deepest, double depth_m, const Vec3& p_S) {
+void keep(PointDepth& deepest, double depth_m, const Vec3& p_S) {
   if (depth_m > deepest.depth_m) deepest = {depth_m, p_S};
 }
 
@@ -29,56 +25,27 @@ double signedDistance(const JudgedBody& solid, const Vec3& p_S, double most_m) {
   return solid.model->solid->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
 }
 
-/// Deepest point of segment ab in the solid, to kCertain_m.
-Deepest deepestOnSegment(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
-  // Signed distance f is 1-Lipschitz: on a segment it is at least (f(a) + f(b) - |ab|) / 2.
-  struct Piece {
-    Vec3 a, b;
-    double f_a, f_b;
-  };
-  Deepest deepest;
-  std::array<Piece, 64> stack;  // bisection to kCertain_m: 64 levels would be an edge of 10^13 m
-  std::size_t count = 0;
-  const double f_a = solid.model->solid->signedDistance(a),
-               f_b = signedDistance(solid, b, std::abs(f_a) + (b - a).norm());
-  keep(deepest, -f_a, a);
-  keep(deepest, -f_b, b);
-  stack[count++] = {a, b, f_a, f_b};
-  while (count > 0) {
-    const Piece piece = stack[--count];
-    const double length_m = (piece.b - piece.a).norm();
-    if (0.5 * (piece.f_a + piece.f_b - length_m) >= -deepest.depth_m - OverlapJudge::kCertain_m) continue;
-    if (count + 2 > stack.size()) continue;
-    const Vec3 m = 0.5 * (piece.a + piece.b);
-    const double f_m =
-        signedDistance(solid, m, std::min(std::abs(piece.f_a), std::abs(piece.f_b)) + 0.5 * length_m);
-    keep(deepest, -f_m, m);
-    stack[count++] = {piece.a, m, piece.f_a, f_m};
-    stack[count++] = {m, piece.b, f_m, piece.f_b};
-  }
-  return deepest;
-}
-
 /// True if no point of segment ab can be inside, by the map's proven bound.
 bool isSurelyOutside(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
   return solid.model->map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
 }
 
-Deepest deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
+PointDepth deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   std::vector<SharpEdge> near;
   for (const SharpEdge& edge : *other.edges) {
     const SharpEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
     if (!isSurelyOutside(solid, edge_S.a, edge_S.b)) near.push_back(edge_S);
   }
-  std::vector<Deepest> found(near.size());
-  tbb::parallel_for(std::size_t{0}, near.size(),
-                    [&](std::size_t i) { found[i] = deepestOnSegment(solid, near[i].a, near[i].b); });
-  Deepest deepest;
-  for (const Deepest& d : found) keep(deepest, d.depth_m, d.p_S);
+  std::vector<PointDepth> found(near.size());
+  tbb::parallel_for(std::size_t{0}, near.size(), [&](std::size_t i) {
+    found[i] = deepestOnSegment(*solid.model->solid, near[i].a, near[i].b, OverlapJudge::kCertain_m);
+  });
+  PointDepth deepest;
+  for (const PointDepth& d : found) keep(deepest, d.depth_m, d.p_S);
   return deepest;
 }
 
-Deepest deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
+PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   // A point that is inside by exact distance reads less than the map's greatest error.
   QueryOptions options;
   options.cutoff_m = solid.model->map->sampleError_m();
@@ -93,14 +60,14 @@ Deepest deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pos
     const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.model->map->sampleError_m() : 1e3;
     depths[i] = -signedDistance(solid, X_SO * other.model->shell->points[contact.id], most_m);
   });
-  Deepest deepest;
+  PointDepth deepest;
   for (std::size_t i = 0; i < depths.size(); ++i) keep(deepest, depths[i], candidates.contacts[i].p_M);
   return deepest;
 }
 
-Deepest deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
-  Deepest deepest = deepestPoint(solid, other, X_SO);
-  const Deepest on_edge = deepestEdge(solid, other, X_SO);
+PointDepth deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
+  PointDepth deepest = deepestPoint(solid, other, X_SO);
+  const PointDepth on_edge = deepestEdge(solid, other, X_SO);
   keep(deepest, on_edge.depth_m, on_edge.p_S);
   return deepest;
 }
@@ -121,7 +88,7 @@ void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {
 
 Penetration OverlapJudge::deepest(const JudgedBody& moving, const Pose& X_WP) const {
   Penetration worst;
-  const auto consider = [&](const Deepest& found, const Pose& X_WS, std::size_t mounted) {
+  const auto consider = [&](const PointDepth& found, const Pose& X_WS, std::size_t mounted) {
     if (found.depth_m > worst.depth_m) worst = {found.depth_m, X_WS * found.p_S, mounted};
   };
   for (std::size_t i = 0; i < mounted_.size(); ++i) {

@@ -31,12 +31,11 @@ struct Penetration {
   std::size_t against = 0;  ///< index of the mounted body
 };
 
-/// Measures along every sharp edge of both parts and at the shells' points on faces. An edge is bisected
-/// until no point on it can be deeper than the result by kCertain_m (the signed distance is 1-Lipschitz along
-/// the edge). Two surfaces that cross do so at an edge of one of them. So only overlaps of smooth faces can
-/// be missed: those that lie between two face points, or are smaller than the facets' own deviation. What is
-/// inside of a faulty mesh is its Solid's answer; in the middle of a hole, where the signed distance jumps, a
-/// point may be missed.
+/// Measures along every sharp edge of both parts (deepestOnSegment(), to kCertain_m) and at the shells'
+/// points on faces. Two surfaces that cross do so at an edge of one of them. So only overlaps of smooth faces
+/// can be missed: those that lie between two face points, or are smaller than the facets' own deviation. What
+/// is inside of a faulty mesh is its Solid's answer; in the middle of a hole, where the signed distance
+/// jumps, a point may be missed.
 class OverlapJudge {
  public:
   static constexpr double kCertain_m = 0.5e-6;
