@@ -16,7 +16,8 @@ constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install 
 
 /// Runs gnuplot on a script. Returns nothing on success, and otherwise the reason of the failure.
 std::string run(const std::string& script) {
-  return runProgram({"gnuplot"}, script, kMissing);
+  // From its standard input gnuplot reads one byte at a time; from a file that it opens itself, blocks.
+  return runProgram({"gnuplot", "/dev/stdin"}, script, kMissing);
 }
 
 }  // namespace
