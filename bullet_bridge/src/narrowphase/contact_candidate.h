@@ -114,10 +114,13 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
 
 // Reducing.
 
-/// Keeps the most urgent candidate of each cell of position and direction: depth, extent and every direction
-/// of contact are preserved. Last step's contacts are preferred, so that the set does not flicker.
-/// @param cell_m  edge of a cell, a fraction of the smaller body's size
-void reduceByCell(std::vector<Candidate>& candidates, double cell_m);
+/// Keeps the most urgent candidates of each cell of position and direction, now and at the end of the step:
+/// depth, extent and every direction of contact are preserved. Last step's contacts are kept, so that the set
+/// does not flicker. Where more than `limit` are left, cells are doubled, as long as they are smaller than
+/// most_m. The grid is fixed in the world, so that the cells of a resting part do not shift.
+/// @param cell_m  edge of the first cells, a fraction of the smaller body's size
+/// @return edge of the last cells; 0 if there were no more than `limit`
+double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m);
 
 /// Keeps at most `limit`: those that carried load, then the deepest, then repeatedly the one farthest from
 /// all selected, in position (in units of length_m) and direction. The result is in ascending key order, so

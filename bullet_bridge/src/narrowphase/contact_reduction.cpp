@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -42,42 +43,77 @@ std::uint32_t directionCell(const Vec3& n) {
   return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
 }
 
-std::uint64_t cellOf(const Candidate& c, const Vec3& origin, double cell_m) {
-  const auto at = [&](int axis) {
-    return static_cast<std::uint64_t>(std::clamp((c.p_W[axis] - origin[axis]) / cell_m, 0.0, 65535.0));
-  };
-  return (((at(0) << 16 | at(1)) << 16 | at(2)) << 8) | (directionCell(c.n_W) << 2) |
-         (c.isCrossing() ? 2U : 0U) | c.side;
+/// What the reduction needs to know of a candidate, so that each pass reads a third of its size.
+struct Brief {
+  std::int32_t at[3];   // cell of the finest grid, which is fixed in the world
+  std::uint32_t kind;   // direction, side, crossing or point
+  double urgency[2];    // by Measure
+  std::uint64_t key;    // of the candidate
+  std::uint32_t index;  // of the candidate
+  bool was_contact;
+
+  [[nodiscard]] bool isMoreUrgent(const Brief& other, Measure measure) const {
+    const double own = urgency[static_cast<int>(measure)], theirs = other.urgency[static_cast<int>(measure)];
+    return own != theirs ? own < theirs : key < other.key;
+  }
+  /// Each level has cells of twice the size.
+  [[nodiscard]] std::uint64_t cell(int level) const {
+    const auto of = [&](int axis) {
+      return static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[axis] >> level) & 0xFFFF);
+    };
+    return (((of(0) << 16 | of(1)) << 16 | of(2)) << 8) | kind;
+  }
+};
+
+Brief briefOf(const Candidate& c, double cell_m, std::uint32_t index) {
+  Brief brief{{0, 0, 0},
+              (directionCell(c.n_W) << 2) | (c.isCrossing() ? 2U : 0U) | c.side,
+              {urgency(c, Measure::Now), urgency(c, Measure::EndOfStep)},
+              c.key(),
+              index,
+              c.was_contact};
+  constexpr double kMost = 1e9;  // cells; beyond them positions are no longer told apart
+  for (int k = 0; k < 3; ++k)
+    brief.at[k] = static_cast<std::int32_t>(std::floor(std::clamp(c.p_W[k] / cell_m, -kMost, kMost)));
+  return brief;
 }
 
-// Marks the most urgent candidates of each cell, by both measures. A small open-addressed table from cell to
-// its best candidate so far needs one pass; sorting 5000 candidates took five times as long. If the table is
-// full, further candidates are kept.
-void markMostUrgent(const std::vector<Candidate>& candidates, const Vec3& origin, double cell_m,
-                    std::vector<std::uint8_t>& is_kept) {
-  constexpr std::size_t kSlots = 4096, kProbes = 16;
+// Keeps the most urgent of each cell, by both measures, and last step's contacts. A small open-addressed
+// table from cell to its best candidate so far needs one pass; sorting 5000 candidates took five times as
+// long. The table is at most half full where there are fewer than 2048 candidates; if it is full, further
+// candidates are kept.
+void keepMostUrgent(std::vector<Brief>& briefs, int level) {
+  constexpr std::size_t kFewestSlots = 64, kMostSlots = 4096, kProbes = 16;
+  const std::size_t slot_count = std::clamp(std::bit_ceil(2 * briefs.size()), kFewestSlots, kMostSlots);
+  const int unused_bits = 64 - std::countr_zero(slot_count);
   struct Slot {
     std::uint64_t cell = kEmpty;
     std::uint32_t now = 0, end_of_step = 0;
   };
   thread_local std::vector<Slot> slots;
-  slots.assign(kSlots, Slot{});
-  for (std::uint32_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& c = candidates[i];
-    const std::uint64_t cell = cellOf(c, origin, cell_m);
-    std::size_t at = (cell * 0x9E3779B97F4A7C15ull) >> 52;  // Fibonacci hashing to 12 bits
+  thread_local std::vector<std::uint8_t> is_kept;
+  slots.assign(slot_count, Slot{});
+  is_kept.assign(briefs.size(), 0);
+  for (std::uint32_t i = 0; i < briefs.size(); ++i) {
+    const Brief& brief = briefs[i];
+    const std::uint64_t cell = brief.cell(level);
+    std::size_t at = (cell * 0x9E3779B97F4A7C15ull) >> unused_bits;  // Fibonacci hashing
     std::size_t probe = 0;
     for (; probe < kProbes && slots[at].cell != cell && slots[at].cell != kEmpty; ++probe)
-      at = (at + 1) % kSlots;
-    if (c.was_contact || probe == kProbes) is_kept[i] = 1;
+      at = (at + 1) % slot_count;
+    if (brief.was_contact || probe == kProbes) is_kept[i] = 1;
     if (probe == kProbes) continue;
     Slot& slot = slots[at];
     if (slot.cell == kEmpty) slot = {cell, i, i};
-    if (isMoreUrgent(c, candidates[slot.now], Measure::Now)) slot.now = i;
-    if (isMoreUrgent(c, candidates[slot.end_of_step], Measure::EndOfStep)) slot.end_of_step = i;
+    if (brief.isMoreUrgent(briefs[slot.now], Measure::Now)) slot.now = i;
+    if (brief.isMoreUrgent(briefs[slot.end_of_step], Measure::EndOfStep)) slot.end_of_step = i;
   }
   for (const Slot& slot : slots)
     if (slot.cell != kEmpty) is_kept[slot.now] = is_kept[slot.end_of_step] = 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < briefs.size(); ++i)
+    if (is_kept[i]) briefs[kept++] = briefs[i];
+  briefs.resize(kept);
 }
 
 // Candidates as reduceBySpread() weighs them: in columns of floats, so that a pass over all is fast.
@@ -139,21 +175,22 @@ struct Spread {
 
 }  // namespace
 
-void reduceByCell(std::vector<Candidate>& candidates, double cell_m) {
-  if (candidates.empty()) return;
-  Vec3 origin = candidates.front().p_W;
-  for (const Candidate& c : candidates) origin = origin.cwiseMin(c.p_W);
-  // The grid is fixed in the world, so that the cells of a resting part do not shift with its first point.
-  origin = (origin / cell_m).array().floor().matrix() * cell_m;
-
-  thread_local std::vector<std::uint8_t> is_kept;
-  is_kept.assign(candidates.size(), 0);
-  markMostUrgent(candidates, origin, cell_m, is_kept);
-  thread_local std::vector<Candidate> kept;
-  kept.clear();
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (is_kept[i]) kept.push_back(candidates[i]);
-  candidates.swap(kept);
+double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m) {
+  if (candidates.size() <= limit) return 0;
+  thread_local std::vector<Brief> briefs;
+  briefs.clear();
+  for (std::uint32_t i = 0; i < candidates.size(); ++i) briefs.push_back(briefOf(candidates[i], cell_m, i));
+  double used_m = 0;
+  double size_m = cell_m;
+  for (int level = 0; briefs.size() > limit && size_m < most_m; ++level, size_m *= 2) {
+    keepMostUrgent(briefs, level);
+    used_m = size_m;
+  }
+  // In ascending order: each moves to the front of its own place, or stays.
+  for (std::size_t i = 0; i < briefs.size(); ++i)
+    if (briefs[i].index != i) candidates[i] = candidates[briefs[i].index];
+  candidates.resize(briefs.size());
+  return used_m;
 }
 
 void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m,

@@ -49,6 +49,13 @@ CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairSta
   return {near_m, depth_m, poseAfterStep(pair, state->motion)};
 }
 
+// How far a point may be from what it touches in the step. The pull of couplings is left out, as in
+// RelativeMotion::canTouch(): a hand that presses a part against its seat never pulls with the same force in
+// two steps.
+double reach_m(const RelativeMotion& motion) {
+  return motion.contact_margin_m + motion.own_speed_m_s * motion.dt_s;
+}
+
 QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   std::optional<QueryState>& own = state.query_state[i];
   return own ? *own : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell);
@@ -161,17 +168,13 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
-  double sampling_m = 0;
   dropUnreachable(motion, candidates);
   if (writer) writer->markExistingContacts(candidates);
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
-  // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach,
-  // and affordable (about 0.5 us each).
-  for (double cell_m = radius_m / 16; candidates.size() > 4 * limit && cell_m < radius_m; cell_m *= 2) {
-    reduceByCell(candidates, cell_m);
-    sampling_m = cell_m;
-  }
+  // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach.
+  // With twice the limit a shaft in its bushings had to be solved again in most steps, which cost more.
+  const double sampling_m = reduceByCell(candidates, 4 * limit, radius_m / 16, radius_m);
   refineAll(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
@@ -192,14 +195,14 @@ void storeSelection(const std::vector<Candidate>& chosen, const PairView& pair, 
   selection.X_W0 = pair.X_WS[0];
   selection.V = motion.V;
   for (int i = 0; i < 2; ++i) selection.key[i] = pair.key(i);
-  selection.reach_m = motion.contact_margin_m + motion.speed_m_s * motion.dt_s;
+  selection.reach_m = reach_m(motion);
 }
 
 bool hasNotMoved(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
   if (!selection.is_valid) return false;
   for (int i = 0; i < 2; ++i)
     if (!(selection.key[i] == pair.key(i))) return false;
-  if (motion.contact_margin_m + motion.speed_m_s * motion.dt_s > selection.reach_m + kUnmoved_m) return false;
+  if (reach_m(motion) > selection.reach_m + kUnmoved_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();

@@ -167,8 +167,7 @@ std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, C
   // Not refined, as contacts are: the plane of a curved face is no distance from a point that is far away.
   const auto limit = static_cast<std::size_t>(context.settings.contact_limit);
   const double radius_m = pair.radius_m();
-  for (double cell_m = radius_m / 16; points.size() > 4 * limit && cell_m < radius_m; cell_m *= 2)
-    reduceByCell(points, cell_m);
+  reduceByCell(points, 4 * limit, radius_m / 16, radius_m);
   reduceBySpread(points, limit, radius_m, still.contact_margin_m);
   Candidate& first = *std::min_element(points.begin(), points.end(), isNearer);
   first = polished(first, pair);

@@ -118,8 +118,7 @@ void findOverlaps(const PairView& pair, Context& context, double tolerated_m, st
   });
   const double radius_m = pair.radius_m();
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
-  for (double cell_m = radius_m / 16; found.size() > limit && cell_m < radius_m; cell_m *= 2)
-    reduceByCell(found, cell_m);
+  reduceByCell(found, limit, radius_m / 16, radius_m);
   RelativeMotion still;
   still.contact_margin_m = context.settings.contact_margin_m;
   refineAll(pair, still, context.settings, found);

@@ -24,7 +24,7 @@ struct Selection {
   std::vector<Candidate> contacts;
   bool is_valid = false;
   Pose X_01;                              ///< body 1 in body 0
-  double reach_m = 0;                     ///< the query's distance
+  double reach_m = 0;                     ///< margin and the bodies' own motion in the step
   Pose X_W0;                              ///< of body 0
   Twist V;                                ///< RelativeMotion::V
   ShapeKey key[2];                        ///< of sides that are no Shape
