@@ -240,6 +240,20 @@ void drawKeys(ViewState& view, const PictureSize& size) {
 
 }  // namespace
 
+void drawFailure(const Session& session) {
+  if (session.picture_failure.empty()) return;
+  const float width_px = 0.8f * static_cast<float>(session.area.size.width);
+  ImGui::SetNextWindowPos({session.area.x + 0.5f * static_cast<float>(session.area.size.width),
+                           session.area.y + 0.5f * static_cast<float>(session.area.size.height)},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width_px, 0});
+  ImGui::Begin("no picture", nullptr, kFixed | ImGuiWindowFlags_NoTitleBar);
+  wrapped(session.picture_failure);
+  ImGui::TextDisabled("%s",
+                      session.run ? "The run goes on. The picture is tried again." : "It is tried again.");
+  ImGui::End();
+}
+
 void drawPanels(Session& session, const GlfwWindow& window) {
   const PictureSize size = window.size();
   const float scale = window.scale();

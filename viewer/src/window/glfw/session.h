@@ -50,6 +50,7 @@ struct Session {
   std::optional<scenes::TrackedHeads> heads;  ///< of the display file
   std::deque<std::string> messages;           ///< of the window itself, the newest first
   std::string drawn_by;
+  std::string picture_failure;  ///< why there is no picture, in words; empty: there is one
   double picture_ms = 0;
   bool is_draft = false;
   std::size_t pictures = 0;
@@ -88,6 +89,8 @@ void followWork(Session& session);
 // panels.cpp
 /// The panel at the right, the time axis below, and the list of keys. Sets session.area to what they leave.
 void drawPanels(Session& session, const GlfwWindow& window);
+/// Over the picture: why there is none.
+void drawFailure(const Session& session);
 // plots.cpp
 /// The curves of the line over time, with a mark at now_s. A click sets *now_s.
 void drawPlots(const Timeline& line, double* now_s, float scale, bool may_seek);

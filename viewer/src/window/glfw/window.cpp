@@ -16,8 +16,7 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-// Larger windows show a smaller picture, stretched: the greatest texture that every driver of OpenGL 3.3
-// takes.
+// Larger windows show a smaller picture, stretched: 4096 x 4096 with their samples are a GiB of memory.
 constexpr int kGreatestPicture = 4096;
 constexpr double kFrame_s = 1.0 / 60, kIdle_s = 0.5;
 
@@ -34,6 +33,9 @@ void typed(Session& session, const std::string& key) {
 }
 
 void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
+  const std::string failure = worker.failure();
+  if (failure != session.picture_failure && !failure.empty()) session.say(failure);
+  session.picture_failure = failure;
   std::optional<DrawnPicture> picture = worker.take();
   if (!picture) return;
   window.setPicture(picture->image);
@@ -55,14 +57,28 @@ std::optional<EyePair> eyesOf(Session& session, PictureSize size) {
                         double(size.width) / size.height);
 }
 
-void askForPicture(Session& session, PictureWorker& worker) {
+/// Stretched rows would not keep the eyes apart, so a window that is larger than a texture has no such mode.
+StereoMode stereoFor(Session& session, const GlfwWindow& window) {
+  const int most = window.greatestPicture();
+  if (session.view.stereo != StereoMode::Interleaved ||
+      (session.area.size.width <= most && session.area.size.height <= most))
+    return session.view.stereo;
+  session.say("interleaved stereo needs a window of at most " + std::to_string(most) + " pixels across");
+  return session.view.stereo = StereoMode::Mono;
+}
+
+void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& window) {
   const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
+  const StereoMode stereo = stereoFor(session, window);
   const std::optional<EyePair> eyes = eyesOf(session, size);
   if (session.heads) session.view.camera = middleEye(*eyes);
-  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, session.view.stereo, eyes};
+  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, stereo, eyes, {}};
+  if (stereo == StereoMode::Interleaved)
+    wanted.rows = {session.area.size.width, session.area.size.height,
+                   window.screenRow() + static_cast<int>(session.area.y)};
   wanted.options.width = size.width;
   wanted.options.height = size.height;
   worker.request(wanted);
@@ -87,7 +103,7 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
   drawPanels(session, window);
   session.view.size = session.area.size;
   useMouse(session);
-  askForPicture(session, worker);
+  askForPicture(session, worker, window);
   if (window.hasPicture())
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
@@ -96,6 +112,7 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     drawPathMarks(session);
     drawHandMarks(session);
   }
+  drawFailure(session);
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
   window.present();
