@@ -10,6 +10,7 @@
 #include "program.h"
 #include "vps_scenes/display.h"
 #include "vps_scenes/scene.h"
+#include "vps_viewer/model_view.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
@@ -365,6 +366,26 @@ TEST_F(Window, ShowsStereoAndSwitchesItsModeByAKey) {
     xdotool("key s");
     EXPECT_TRUE(shows(expected(0, mode))) << viewer::toText(mode);
   }
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ShowsTheModelsOfContactInPlaceOfTheParts) {
+  open("scene.toml --show voxels");
+  const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
+  viewer::RenderScene drawn = viewer::drawnMeshes(scene);
+  const viewer::ModelView models(scene, {.has_voxels = true}, drawn);
+  const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
+  viewer::DrawOptions options;
+  options.width = kPicture.width;
+  options.height = kPicture.height;
+  options.supersampling = 1;
+  options.show_legend = options.show_edges = false;
+  viewer::Renderer renderer(drawn);
+  const Image wanted = renderer.render(
+      snapshot,
+      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture), options);
+  EXPECT_TRUE(shows(wanted));
+  EXPECT_GT(viewer::compare(wanted, expected(0), 20).share_beyond, 0.01) << "which differs from the parts";
   EXPECT_EQ(close(), 0);
 }
 

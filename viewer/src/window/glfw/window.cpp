@@ -108,10 +108,9 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
                                               session.area.y + static_cast<float>(session.area.size.height)});
-  if (session.view.stereo == StereoMode::Mono) {  // marks over the picture have no depth
-    drawPathMarks(session);
-    drawHandMarks(session);
-  }
+  if (session.view.stereo == StereoMode::Mono)
+    drawPathMarks(session);  // lines over the picture have no depth
+  drawHandMarks(session);
   drawFailure(session);
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
@@ -125,10 +124,21 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.camera = cameraFor(standardViews()[0], session.box_W(), size);
   session.view.draw.show_legend = false;
   session.view.draw.supersampling = 1;
+  // Each point and each cube has edges of its own, which would darken the picture.
+  if (!session.options.show.isNone()) session.view.draw.show_edges = false;
   session.view.is_dark = session.options.is_dark;
   session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
   session.view.wants_run = session.options.runs;
   session.view.stereo = session.options.stereo;
+  // What wakes the window ends before it, whatever ends the loop.
+  const struct Ending {
+    Session& session;
+    ~Ending() {
+      session.run.reset();
+      session.gaps.reset();
+    }
+  } ending{session};
+  session.gaps = std::make_unique<GapWatch>(session.scene, [&window] { window.wake(); });
   PictureWorker worker(session.drawn, [&window] { window.wake(); });
   Clock::time_point last = Clock::now();
   bool is_fitted = false;
@@ -144,6 +154,7 @@ void loop(Session& session, GlfwWindow& window) {
       followWork(session);
     else
       session.shown = session.line.at(session.view.time_s);
+    watchGaps(session);
     takePicture(session, worker, window);
     const PictureSize size_now = window.size();
     if (size_now.width <= 0 || size_now.height <= 0) continue;  // minimised
@@ -151,7 +162,6 @@ void loop(Session& session, GlfwWindow& window) {
     if (!std::exchange(is_fitted, true))
       session.view.camera = cameraFor(standardViews()[0], session.box_W(), session.area.size);
   }
-  session.run.reset();  // before the window that it wakes
 }
 
 void openAndLoop(Session& session, const std::string& title) {
