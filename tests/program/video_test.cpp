@@ -31,6 +31,25 @@ TEST_F(Program, AFilmHasAPictureForEachInstantAndIsOneFile) {
   EXPECT_EQ(slurp(folder_ / "alone/000001.png"), slurp(folder_ / "run_frames/000001.png")) << alone.err;
 }
 
+TEST_F(Program, AFilmHasTheSoundOfTheRunThatWasRecorded) {
+  const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
+  ASSERT_EQ(run("assemble " + scene + " --out a --no-pictures --record run.mcap").status, 0);
+  ASSERT_EQ(run("assemble " + scene + " --out b --no-pictures --sound run.wav").status, 0);
+  const Ran film = run("video run.mcap -o run.mp4 --width 64 --height 48 --rate 2 --sound");
+  EXPECT_EQ(film.status, has("ffmpeg") ? 0 : 2) << film.err;
+  EXPECT_NE(film.out.find("sound: at most"), std::string::npos) << film.out;
+  EXPECT_TRUE(slurp(folder_ / "run_frames/sound.wav") == slurp(folder_ / "run.wav"))
+      << "the same bytes as those that were heard in the run itself";
+  if (has("ffprobe")) {
+    std::system(("ffprobe -v error -show_entries stream=codec_type -of csv=p=0 '" +
+                 (folder_ / "run.mp4").string() + "' > '" + (folder_ / "streams.txt").string() + "'")
+                    .c_str());
+    EXPECT_NE(slurp(folder_ / "streams.txt").find("audio"), std::string::npos);
+  }
+  expectRefused("video run.mcap -o slow.mp4 --speed 0.5 --sound", "--speed");
+  expectRefused("video -o odd.mp4 --sound run.mcap run.mcap", "is no WAV file");
+}
+
 TEST_F(Program, AFilmOfWhatIsNoRecordingIsRefused) {
   expectRefused("video missing.mcap -o run.mp4", "missing.mcap");
   expectRefused("video scene.toml -o run.mp4", "scene.toml");

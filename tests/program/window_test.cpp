@@ -10,6 +10,7 @@
 #include "program.h"
 #include "vps_scenes/display.h"
 #include "vps_scenes/scene.h"
+#include "vps_viewer/model_view.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
@@ -113,7 +114,7 @@ class Window : public Program {
   }
   /// What the finished assembly looks like from a standard view, or on a screen of a display file.
   Image expected(std::size_t view, viewer::StereoMode mode = viewer::StereoMode::Mono,
-                 const std::string& display_file = "") const {
+                 const std::string& display_file = "", int screen_row = 0) const {
     const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
     const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
     const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
@@ -136,7 +137,7 @@ class Window : public Program {
     const double distance_m = (camera.eye_W - camera.target_W).norm();
     const viewer::EyePair eyes =
         viewer::eyesOf(camera, viewer::kEyeShare * distance_m, double(kPicture.width) / kPicture.height);
-    return viewer::renderStereo(renderer, snapshot, eyes, options, mode)[0];
+    return viewer::renderStereo(renderer, snapshot, eyes, options, mode, {0, 0, screen_row})[0];
   }
   /// The part of the window that shows the scene.
   Image scenePicture() {
@@ -368,6 +369,26 @@ TEST_F(Window, ShowsStereoAndSwitchesItsModeByAKey) {
   EXPECT_EQ(close(), 0);
 }
 
+TEST_F(Window, ShowsTheModelsOfContactInPlaceOfTheParts) {
+  open("scene.toml --show voxels");
+  const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
+  viewer::RenderScene drawn = viewer::drawnMeshes(scene);
+  const viewer::ModelView models(scene, {.has_voxels = true}, drawn);
+  const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
+  viewer::DrawOptions options;
+  options.width = kPicture.width;
+  options.height = kPicture.height;
+  options.supersampling = 1;
+  options.show_legend = options.show_edges = false;
+  viewer::Renderer renderer(drawn);
+  const Image wanted = renderer.render(
+      snapshot,
+      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture), options);
+  EXPECT_TRUE(shows(wanted));
+  EXPECT_GT(viewer::compare(wanted, expected(0), 20).share_beyond, 0.01) << "which differs from the parts";
+  EXPECT_EQ(close(), 0);
+}
+
 TEST_F(Window, IsAScreenOfADisplayFile) {
   write("wall.toml",
         "[scene]\npose = {position = [0, 0.3, 0.6]}\nscale = 12\n[[screen]]\nlower_left = [-0.8, 0, 0]\n"
@@ -375,6 +396,34 @@ TEST_F(Window, IsAScreenOfADisplayFile) {
         "[[viewer]]\nhead = {position = [0.3, -1, 0.8], rpy_deg = [90, 0, 0]}\n");
   open("scene.toml --display wall.toml --stereo top_bottom");
   EXPECT_TRUE(shows(expected(0, viewer::StereoMode::TopBottom, "wall.toml")));
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, InterleavedRowsStayWithTheScreensRowsWhereverTheWindowIs) {
+  open("scene.toml --stereo interleaved");
+  const auto eyeOf = [&](int row) {  // the same picture with the rows of both eyes exchanged, or not
+    return expected(0, viewer::StereoMode::Interleaved, "", row);
+  };
+  xdotool("windowmove " + window_ + " 20 41");
+  EXPECT_TRUE(shows(eyeOf(41)));
+  xdotool("windowmove " + window_ + " 20 10");
+  EXPECT_TRUE(shows(eyeOf(10)));
+  EXPECT_NE(eyeOf(41).rgb, eyeOf(10).rgb);
+  EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ARunGoesOnWithoutPicturesWhereTheDriverIsTooOldForThem) {
+  display_ += "MESA_GL_VERSION_OVERRIDE=3.3 ";  // enough for the window, too old for the renderer
+  open(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml --run --speed 0 --silent --record run.mcap");
+  EXPECT_TRUE(soon([&] { return fs::exists(folder_ / "run.mcap"); })) << slurp(folder_ / "err.txt");
+  const Image whole = picture();
+  ASSERT_GT(whole.width, 0);
+  if (const char* kept = std::getenv("VPS_KEEP_PICTURES"))
+    viewer::savePng(whole, std::string(kept) + "/no_gl.png");
+  int ink = 0;  // of the message in the middle of where the picture would be
+  for (int y = 250; y < 400; ++y)
+    for (int x = 100; x < 850; ++x) ink += whole.at(x, y)[0] < 100;
+  EXPECT_GT(ink, 300);
   EXPECT_EQ(close(), 0);
 }
 

@@ -8,9 +8,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <span>
 #include <sstream>
+#include <string>
+#include <vector>
 
+#include "report/base64.h"
 #include "viewer/small_run.h"
+#include "vps_scenes/check.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/plot.h"
 
@@ -48,6 +54,80 @@ TEST(Report, GivesTheVerdictWithItsReasonAndHoldsItsPictures) {
   // Two pictures of the assembly and three of the step; the plot needs gnuplot.
   EXPECT_EQ(count, 2u + 3u + (hasGnuplot() ? 1u : 0u));
   EXPECT_EQ(outcome.notes.size(), (hasGnuplot() ? 0u : 1u) + (hasThree() ? 0u : 1u));
+}
+
+/// The targets of all links of a page.
+std::vector<std::string> linksOf(const std::string& page) {
+  std::vector<std::string> links;
+  const std::string begin = "href=\"";
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    links.push_back(page.substr(from, page.find('"', from) - from));
+  }
+  return links;
+}
+
+TEST(Report, HoldsWhatItLinksToSoThatNoLinkIsDeadWhenItIsMailed) {
+  const std::string dir = freshFolder("mailed");
+  const ReportOptions options = {.command = {}, .progress = {}, .width = 160, .height = 120};
+  const std::string page = textOf(writeReport(smallScene(), smallResult(), dir, options).file);
+  std::size_t tables = 0;
+  for (const std::string& link : linksOf(page)) {
+    EXPECT_TRUE(link.starts_with("#") || link.starts_with("data:")) << link.substr(0, 80);
+    tables += link.starts_with("data:text/csv;base64,");
+  }
+  EXPECT_EQ(tables, 1u) << "trace.csv";
+  const std::string csv = textOf(dir + "/trace.csv");
+  EXPECT_NE(page.find(base64(std::as_bytes(std::span(csv)))), std::string::npos);
+}
+
+TEST(Report, ATableThatIsTooLargeForMailIsNamedWithoutALink) {
+  scenes::AssembleResult result = smallResult();
+  result.trace = tapTapSlide();
+  while (result.trace.size() < 60000) {  // of more than 100 bytes each
+    scenes::TraceRow row = result.trace.back();
+    row.time_s += 1e-3;
+    result.trace.push_back(row);
+  }
+  scenes::Scene scene = smallScene();
+  scene.record.csv_rate_hz = 1000;
+  const std::string dir = freshFolder("large");
+  const std::string page =
+      textOf(writeReport(scene, result, dir, {.command = {}, .progress = {}, .has_pictures = false}).file);
+  ASSERT_GT(fs::file_size(dir + "/trace.csv"), 4'000'000u);
+  EXPECT_NE(page.find("<a>trace.csv</a>"), std::string::npos);
+  EXPECT_EQ(page.find("data:text/csv"), std::string::npos);
+}
+
+TEST(Report, HasTheSettingsOfTheRunAsASceneFile) {
+  scenes::Scene scene = smallScene();
+  scene.hand.seed = 1234567;
+  const std::string page = textOf(writeReport(scene, smallResult(), freshFolder("settings"),
+                                              {.command = {}, .progress = {}, .has_pictures = false})
+                                      .file);
+  const std::size_t from = page.find("<pre id=\"settings\">");
+  ASSERT_NE(from, std::string::npos);
+  const std::string settings = page.substr(from, page.find("</pre>", from) - from);
+  for (const char* words : {"seed = 1234567", "[[part]]", "[[step]]", "peg &amp; &lt;hole&gt;"})
+    EXPECT_NE(settings.find(words), std::string::npos) << words;
+}
+
+TEST(Report, HasTheTableOfTheCheckThatTheRunBeganWith) {
+  scenes::AssembleResult result = smallResult();
+  auto checked = std::make_shared<scenes::CheckResult>();
+  checked->pairs.resize(1);
+  checked->pairs[0].a = "hole";
+  checked->pairs[0].b = "peg <1>";
+  checked->pairs[0].clearance_m = 87.5e-6;
+  result.checked = checked;
+  const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};
+  const std::string page = textOf(writeReport(smallScene(), result, freshFolder("checked"), options).file);
+  EXPECT_NE(page.find("Pairs near each other"), std::string::npos);
+  EXPECT_NE(page.find("87.50"), std::string::npos);
+  result.checked.reset();
+  const std::string without =
+      textOf(writeReport(smallScene(), result, freshFolder("unchecked"), options).file);
+  EXPECT_EQ(without.find("Pairs near each other"), std::string::npos);
 }
 
 TEST(Report, RepeatsByteForByte) {

@@ -10,7 +10,9 @@
 #include <string>
 
 #include "report/base64.h"
+#include "support/chromium.h"
 #include "viewer/small_run.h"
+#include "vps_scenes/assemble.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/report.h"
 
@@ -106,6 +108,51 @@ TEST(RunView, ABrowserDrawsItAtTheWidthOfADeskAndOfAPhone) {
       grey += r > 90 && r < 210 && std::abs(r - g) < 12 && b > r;
     }
     EXPECT_GT(grey, 0.02 * width * 0.62 * width);
+  }
+}
+
+TEST(RunView, ARealRunIsReadAndPlayedAtBothWidths) {
+  if (!vps::test::Chromium::isThere()) GTEST_SKIP() << "needs Chromium (Debian: chromium)";
+  if (runView(smallScene(), smallResult()).html.empty()) GTEST_SKIP() << "needs libjs-three";
+  scenes::Scene scene = scenes::loadScene(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml");
+  const scenes::AssembleResult result = scenes::assemble(scene);
+  ASSERT_FALSE(result.trace.empty());
+  const std::string dir = freshFolder("real");
+  writeReport(scene, result, dir, {.command = {}, .progress = {}, .width = 320, .height = 240});
+  for (const int width : {1280, 400}) {
+    vps::test::Chromium browser(dir + "/browser_" + std::to_string(width), width, 1000,
+                                "file://" + dir + "/report.html");
+    ASSERT_TRUE(
+        browser.waitFor("document.readyState === 'complete' && document.querySelector('#run-view canvas')"));
+    // Nothing makes the page itself wider than the screen; a table that is wider scrolls in its own box, with
+    // its text in full and large enough to read.
+    EXPECT_LE(browser.evaluate("document.documentElement.scrollWidth").get<int>(), width);
+    EXPECT_GE(browser.evaluate("document.querySelectorAll('table').length").get<int>(), 4);
+    EXPECT_EQ(
+        browser.evaluate("[...document.querySelectorAll('table')].filter(t => t.offsetWidth > innerWidth &&"
+                         " getComputedStyle(t.parentElement).overflowX !== 'auto').length"),
+        0);
+    EXPECT_EQ(browser.evaluate(
+                  "[...document.querySelectorAll('td')].filter(c => c.scrollWidth > c.clientWidth + 1 ||"
+                  " parseFloat(getComputedStyle(c).fontSize) < 12).length"),
+              0);
+    EXPECT_EQ(browser.evaluate("[...document.images].filter(i => i.complete && !i.naturalWidth).length"), 0);
+    // The part is somewhere else at another time.
+    browser.evaluate("document.querySelector('#run-view').scrollIntoView()");
+    const auto at = [&](double share) {
+      browser.evaluate("(() => { const s = document.querySelector('#run-view input'); s.value = " +
+                       std::to_string(share) + " * s.max; s.dispatchEvent(new Event('input')); })()");
+      browser.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))");
+      const std::string file = dir + "/at_" + std::to_string(width) + "_" + std::to_string(share) + ".png";
+      browser.screenshot(file);
+      return loadPng(file);
+    };
+    const Image begun = at(0), ended = at(1), again = at(0);
+    // A peg of 8 mm moves by its length in a view of the whole scene: more than its slider, of about 20 x 20
+    // pixels.
+    EXPECT_GT(compare(begun, ended, 30).share_beyond * width * 1000, 1500);
+    EXPECT_EQ(compare(begun, again, 2).share_beyond, 0) << "the same time is the same picture";
+    EXPECT_TRUE(browser.console().empty()) << browser.console().front();
   }
 }
 

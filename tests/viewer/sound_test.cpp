@@ -157,6 +157,74 @@ TEST(RunSound, AContactThatSlipsIsHeardAsLongAsItSlips) {
   EXPECT_GT(tail(0.1), 10 * tail(0));
 }
 
+/// 0.3 s at 1 kHz: a wheel of 20 mm radius that rolls along x on a plate that ends at z = 0.
+std::vector<float> heardOfWheel(double speed_m_s, bool turns) {
+  scenes::Scene scene;
+  scene.parts.resize(2);
+  scene.parts[0].part = {"plate", makeBox({1, 0.1, 5e-3}), {}, {}};
+  scene.parts[0].is_fixed = true;
+  scene.parts[1].part = {"wheel", makeCylinder(0.02, 0.01, 64), {}, {}};  // about z
+  RunSound sound(scene);
+  const Mat3 across = rotationFromVector(Vec3(std::numbers::pi / 2, 0, 0));
+  for (int step = 1; step <= 300; ++step) {
+    const double way_m = speed_m_s * 1e-3 * step;
+    scenes::Snapshot shot;
+    shot.time_s = 1e-3 * step;
+    const Mat3 turned = rotationFromVector(Vec3(0, turns ? way_m / 0.02 : 0, 0)) * across;
+    shot.bodies = {{0, {}, scenes::BodyRole::Mounted},
+                   {1, Pose(turned, Vec3(way_m, 0, 0.02)), scenes::BodyRole::InHand}};
+    shot.contacts = {{Vec3(way_m, 0, 0), Vec3::UnitZ(), 0, 10, Vec3::Zero()}};
+    sound.hear(shot);
+  }
+  return sound.take().pressure_Pa;
+}
+
+TEST(RunSound, AWheelIsHeardAsLongAsItRolls) {
+  const auto tail = [](double speed_m_s, bool turns) {
+    const std::vector<float> heard = heardOfWheel(speed_m_s, turns);
+    return energy({heard.end() - 48 * 100, heard.end()});
+  };
+  EXPECT_GT(tail(0.5, true), 10 * tail(0.5, false)) << "what moves with its contact does not roll";
+  EXPECT_EQ(tail(0, true), tail(0, false));
+  EXPECT_GT(tail(0.5, true), tail(0.05, true)) << "faster is louder";
+}
+
+/// The greatest spectral line of 16-bit samples between two frequencies, by their transform.
+double loudestHz(const std::string& wav, double from_hz, double to_hz) {
+  std::vector<float> samples;
+  for (std::size_t at = 44; at + 1 < wav.size(); at += 2)
+    samples.push_back(static_cast<std::int16_t>(static_cast<std::uint8_t>(wav[at]) |
+                                                static_cast<std::uint8_t>(wav[at + 1]) << 8));
+  const double line_hz = static_cast<double>(kRate_hz) / static_cast<double>(samples.size());
+  double best = -1, best_hz = 0;
+  for (double hz = from_hz; hz <= to_hz; hz += 0.5 * line_hz)
+    if (const double amplitude = amplitudeAt(samples, hz); amplitude > best) {
+      best = amplitude;
+      best_hz = hz;
+    }
+  return best_hz;
+}
+
+TEST(Wav, ABarThatIsStruckHasTheLinesOfItsBendingInTheSpectrumOfTheFile) {
+  const scenes::Scene scene = barAndPlate();
+  RunSound sound(scene);
+  for (int step = 1; step <= 1000; ++step) {
+    scenes::Snapshot shot;
+    shot.time_s = 1e-3 * step;
+    shot.bodies = {{0, {}, scenes::BodyRole::Mounted}, {1, {}, scenes::BodyRole::InHand}};
+    if (step == 2) shot.contacts = {{Vec3(0.15, 0, -4e-3), Vec3::UnitZ(), 0, 50, Vec3::Zero()}};
+    sound.hear(shot);
+  }
+  const std::string wav = wavBytes(sound.take(), kRate_hz);
+  // Free-free bending along z of 300 x 12 x 8 mm of steel: cos(x) cosh(x) = 1 (modes_test.cpp). The modes are
+  // within 3 % of it, a line of a second is 1 Hz wide, and decay widens it by 40 / (4 pi) Hz.
+  for (const double x : {4.730041, 7.853205}) {
+    const double hz =
+        x * x / (2 * std::numbers::pi * 0.3 * 0.3) * 8e-3 / std::sqrt(12.0) * std::sqrt(210e9 / 7850);
+    EXPECT_NEAR(loudestHz(wav, 0.85 * hz, 1.15 * hz), hz, 0.03 * hz + 5) << x;
+  }
+}
+
 /// Keeps what it is given, and says that it is gone after a while.
 class KeptOutput final : public SoundOutput {
  public:
@@ -192,6 +260,38 @@ TEST(LiveSound, PlaysWhatIsHeardAndSaysOnceThatTheSoundCardIsGone) {
   EXPECT_EQ(count, 14400u) << "48 kHz for 0.3 s";
   EXPECT_NE(news.find("silence"), std::string::npos);
   EXPECT_EQ(sound.takeNews(), "") << "once is enough";
+}
+
+TEST(LiveSound, PlaysAgainOnceTheSoundCardIsBack) {
+  const scenes::Scene scene = barAndPlate();
+  std::atomic<std::size_t> before{0}, after{0};
+  std::atomic<bool> is_back{false};
+  std::atomic<int> attempts{0};
+  const auto open = [&]() -> std::unique_ptr<SoundOutput> {
+    ++attempts;
+    if (!is_back) return nullptr;
+    after = 0;
+    return std::make_unique<KeptOutput>(after);
+  };
+  LiveSound sound(scene, std::make_unique<KeptOutput>(before), open, 1e-3);
+  std::string told;
+  int step = 0;
+  const auto hearUntil = [&](auto is_true) {
+    for (int i = 0; i < 6000 && !is_true(); ++i) {
+      scenes::Snapshot shot;
+      shot.time_s = 1e-3 * ++step;
+      sound.hear(shot);
+      told += sound.takeNews();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return is_true();
+  };
+  EXPECT_TRUE(hearUntil([&] { return told.find("is gone") != std::string::npos; }));
+  EXPECT_TRUE(hearUntil([&] { return attempts >= 3; }));
+  EXPECT_EQ(after, 0u);
+  is_back = true;
+  EXPECT_TRUE(hearUntil([&] { return told.find("the sound card is back") != std::string::npos; }));
+  EXPECT_TRUE(hearUntil([&] { return after > 0; }));
 }
 
 std::uint32_t numberAt(const std::string& bytes, std::size_t at, int count) {

@@ -206,6 +206,27 @@ TEST(Spectral, WhiteStaysWhiteForBothEyesAndColoursStayApart) {
   EXPECT_NE(images[0].rgb, images[1].rgb);
 }
 
+TEST_P(Stereo, PicturesOfAFewPixelsAreAsLargeAsWasAskedForAndShowBothEyes) {
+  Camera camera;
+  camera.eye_W = Vec3(0, 0, 0.02);
+  camera.target_W = Vec3::Zero();
+  camera.up_W = Vec3::UnitY();
+  for (const auto& [width, height] :
+       {std::pair(16, 16), std::pair(17, 19), std::pair(2, 2), std::pair(16, 400)}) {
+    const EyePair eyes = eyesOf(camera, 1e-3, double(width) / height);
+    for (const Image& image :
+         renderStereo(renderer_, at(Vec3::Zero()), eyes, plain(width, height), GetParam())) {
+      EXPECT_EQ(image.width, width);
+      EXPECT_EQ(image.height, height);
+      // The ball, dark on a background of 241, covers more than half of a pixel in the middle of each eye's
+      // picture.
+      const int x = GetParam() == StereoMode::SideBySide ? width / 2 + width / 4 : width / 2;
+      const int y = GetParam() == StereoMode::TopBottom ? height / 2 + height / 4 : height / 2;
+      EXPECT_LT(image.at(x, y)[1], 180) << width << " x " << height;
+    }
+  }
+}
+
 TEST(DisplayCamera, AnEyeBehindItsScreenIsRefused) {
   scenes::Display room;
   room.file = "room.toml";

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "window/exploded.h"
 #include "window/view_state.h"
 
@@ -174,6 +176,54 @@ TEST(ViewStateTest, TheSectionKeyCutsAcrossTheView) {
   EXPECT_EQ(view.draw.cut->n_W, Vec3(0, 1, 0));
   apply(Action::Section, view, line, box);
   EXPECT_FALSE(view.draw.cut);
+}
+
+TEST(LiveCurves, HaveAValueForEachInstantAndNoneWhereNothingIsKnown) {
+  Timeline line;
+  line.curves = liveCurves();
+  scenes::Snapshot shot;
+  shot.time_s = 0.5;
+  shot.has_hand = true;
+  shot.F_hand_W.f = Vec3(3, 0, 4);
+  shot.F_hand_W.tau = Vec3(0, 0.2, 0);
+  shot.contacts = {{Vec3::Zero(), Vec3::UnitZ(), 2e-6}, {Vec3::Zero(), Vec3::UnitZ(), 7e-6}};
+  addInstant(line, shot, {});
+  shot.time_s = 0.6;
+  shot.figures = scenes::RunFigures{.injected_J = 3e-6};
+  addInstant(line, shot, 12e-6);
+  EXPECT_EQ(line.time_s, (std::vector<double>{0.5, 0.6}));
+  EXPECT_EQ(line.end_s, 0.6);
+  const auto valuesOf = [&](const std::string& name) {
+    for (const Curve& curve : line.curves)
+      if (curve.name == name) return curve.values;
+    ADD_FAILURE() << name;
+    return std::vector<float>(2);
+  };
+  EXPECT_EQ(valuesOf("force")[0], 5.0f);
+  EXPECT_EQ(valuesOf("torque")[0], 0.2f);
+  EXPECT_FLOAT_EQ(valuesOf("depth")[0], 7.0f);
+  EXPECT_EQ(valuesOf("contacts")[0], 2.0f);
+  EXPECT_TRUE(std::isnan(valuesOf("clearance")[0]));
+  EXPECT_TRUE(std::isnan(valuesOf("energy injected")[0]));
+  EXPECT_FLOAT_EQ(valuesOf("clearance")[1], 12.0f);
+  EXPECT_FLOAT_EQ(valuesOf("energy injected")[1], 3e-3f);
+}
+
+TEST(LiveCurves, RatesAreThoseSinceTheFiguresBefore) {
+  const scenes::RunFigures before = {.ticks = 1000, .physics_steps = 500};
+  const scenes::RunFigures now = {.ticks = 5000,
+                                  .missed = 3,
+                                  .physics_steps = 2500,
+                                  .physics_missed = 1,
+                                  .tick_p99_us = 41,
+                                  .step_p99_us = 600,
+                                  .to_hand_J = 2e-3,
+                                  .injected_J = 5e-6};
+  const std::vector<std::string> lines = figureLines(now, before, 2);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0], "haptic ticks: 2000 a second, p99 41 µs, 3 missed");
+  EXPECT_EQ(lines[1], "physics steps: 1000 a second, p99 600 µs, 1 missed");
+  EXPECT_EQ(lines[2], "energy: 2 mJ to the hand, 0 from it, 0.005 injected");
 }
 
 }  // namespace

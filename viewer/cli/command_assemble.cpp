@@ -10,6 +10,7 @@
 #include "cad_arguments.h"
 #include "command.h"
 #include "file_kind.h"
+#include "heard_run.h"
 #include "json_out.h"
 #include "output.h"
 #include "pdf_file.h"
@@ -25,7 +26,6 @@
 #include "vps_scenes/disassembly.h"
 #include "vps_scenes/record.h"
 #include "vps_scenes/tries.h"
-#include "vps_viewer/sound.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
@@ -49,36 +49,6 @@ struct AssembleArguments {
   bool has_pdf = false;
 };
 
-/// Hears every physics step of a run.
-class HeardRun {
- public:
-  HeardRun(const scenes::Scene& scene, scenes::AssembleOptions& options) : sound_(scene) {
-    tap_.is_wanted = true;
-    tap_.give = [this](scenes::Snapshot&& shot) {
-      sound_.hear(shot);
-      tap_.is_wanted = true;
-    };
-    options.tap = &tap_;
-    options.on_device_event = [this](const device::DeviceEvent& event) {
-      sound_.beep(device::beepOf(event.kind));
-    };
-  }
-  void write(OutputFile& file) {
-    double full_scale_Pa = 0;
-    file.write(wavBytes(sound_.take(), sound_.rate_hz(), &full_scale_Pa));
-    // Sound pressure level: in decibels above 20 uPa.
-    if (full_scale_Pa > 0)
-      std::printf("sound: at most %s dB at half a metre\n",
-                  fixed(20 * std::log10(0.708 * full_scale_Pa / 20e-6), 0).c_str());
-    else
-      std::printf("sound: none, since nothing touched\n");
-  }
-
- private:
-  RunSound sound_;
-  scenes::SnapshotTap tap_;
-};
-
 scenes::Verdict runScene(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
   requireNoCadOptions(file, given.cad);
@@ -98,8 +68,11 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   options.is_real_time = given.is_real_time;
   options.degrades = given.sheds_load;
   options.has_local_contact = given.has_local_contact;
-  std::optional<HeardRun> heard;
-  if (!given.sound.empty()) heard.emplace(scene, options);
+  HeardRun heard;
+  if (!given.sound.empty()) {
+    heard.hear(scene);
+    heard.listenTo(options);
+  }
   const std::string unfinished = given.out + "/unfinished.json";
   std::optional<scenes::AssembleResult> so_far;
   options.on_step = [&](const scenes::AssembleResult& now) {
@@ -134,7 +107,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   std::filesystem::remove(unfinished);
   json.write(toJson(result));
   bar.clear();
-  if (heard) heard->write(wav);
+  if (!given.sound.empty()) wav.write(heard.wav());
 
   printOutcome(result, notes, given.record, given.out);
   // Last, so that nothing is lost where it fails.

@@ -18,7 +18,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/tracked_heads.h"
 #include "vps_viewer/image.h"
-#include "vps_viewer/model_meshes.h"
+#include "vps_viewer/model_view.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
 
@@ -131,38 +131,6 @@ std::vector<NamedPicture> renderFor(const SnapshotArguments& given, Renderer& re
   return {{"_left", std::move(images[0])}, {"_right", std::move(images[1])}};
 }
 
-/// Pointshells and voxels in place of the parts (figures 7 and 8 of the paper): where both are shown, points
-/// of the parts that a step moves and voxels of the others, as contact uses them.
-class ModelView {
- public:
-  ModelView(const scenes::Scene& scene, const std::vector<std::string>& show, RenderScene& drawn) {
-    const auto has = [&](const char* word) {
-      return std::find(show.begin(), show.end(), word) != show.end();
-    };
-    const bool has_points = has("points"), has_voxels = has("voxels");
-    if (!has_points && !has_voxels) return;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-      const scenes::ScenePart& part = scene.parts[i];
-      const bool is_moved = std::any_of(scene.steps.begin(), scene.steps.end(),
-                                        [i](const scenes::SceneStep& step) { return step.part == i; });
-      const bool shows_points = has_points && (!has_voxels || is_moved);
-      const Solid solid(part.part.mesh, part.part.name);
-      meshes_.push_back(std::make_unique<TintedMesh>());
-      TintedMesh& shown = *meshes_.back();
-      if (shows_points)
-        shown.mesh =
-            pointMesh(buildPointShell(solid, {.spacing_m = scene.fidelity.spacing_m}, part.part.name));
-      else
-        shown = voxelMesh(buildVoxMap(solid, {.voxel_m = scene.fidelity.voxel_m}, part.part.name));
-      drawn[i].mesh = &shown.mesh;
-      if (!shown.tints.empty()) drawn[i].vertex_colors = &shown.tints;
-    }
-  }
-
- private:
-  std::vector<std::unique_ptr<TintedMesh>> meshes_;
-};
-
 std::string withSuffix(const std::string& file, const std::string& suffix) {
   const std::filesystem::path path(file);
   return (path.parent_path() / (path.stem().string() + suffix + path.extension().string())).string();
@@ -197,7 +165,7 @@ int runSnapshot(const SnapshotArguments& given) {
 
   const scenes::Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
   RenderScene drawn = drawnMeshes(scene);
-  const ModelView models(scene, given.show, drawn);
+  const ModelView models(scene, shownModels(given.show), drawn);
   // Each point and each cube has edges of its own, which would darken the picture.
   if (!given.show.empty()) options.show_edges = false;
   const scenes::Snapshot snapshot = finished(scene);

@@ -6,9 +6,13 @@
 #include <vector>
 
 #include "command.h"
+#include "file_kind.h"
+#include "heard_run.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "terminal.h"
 #include "vps/load_error.h"
+#include "vps_scenes/replay.h"
 #include "vps_viewer/video.h"
 
 namespace vps::viewer::inline v0 {
@@ -18,8 +22,35 @@ namespace {
 struct VideoArguments {
   std::string recording, out, frames, sound;
   std::string camera = "fixed", display, stereo = "mono";
+  bool has_sound = false;
   VideoSettings settings;
 };
+
+/// A track for the film: the recorded run happens again, and is heard.
+std::string soundOf(const device::RecordedRun& run, const Progress& progress) {
+  HeardRun heard;
+  scenes::ReplayOptions options;
+  heard.listenTo(options);
+  options.on_scene = [&heard](const scenes::Scene& scene) { heard.hear(scene); };
+  options.progress = progress;
+  options.stop = &stopRequested();
+  const scenes::ReplayResult replayed = scenes::replay(run, options);
+  throwIfStopped();
+  if (!replayed.departure.empty())
+    warn(run.file + " does not run again as it was recorded, so sound and pictures differ from " +
+         replayed.departure + " on");
+  return heard.wav();
+}
+
+void requireSound(const VideoArguments& given) {
+  if (!given.has_sound) return;
+  if (given.settings.speed != 1)
+    throw LoadError("", "", "--sound is for films at the run's own speed; leave out --speed");
+  if (!given.sound.empty() && lowerExtension(given.sound) != ".wav")
+    throw LoadError(
+        given.sound, "",
+        "is no WAV file; --sound alone, at the end of the line, makes the track from the recording");
+}
 
 int runVideo(const VideoArguments& given) {
   const std::filesystem::path film(given.out);
@@ -27,6 +58,7 @@ int runVideo(const VideoArguments& given) {
   const std::string folder = given.frames.empty()
                                  ? (film.parent_path() / (film.stem().string() + "_frames")).string()
                                  : given.frames;
+  requireSound(given);
   const device::RecordedRun run = device::loadRecording(given.recording);
   OutputFile out(given.out, {given.recording, given.sound, given.display});
   OutputFolder frames(folder);
@@ -39,9 +71,13 @@ int runVideo(const VideoArguments& given) {
   settings.stereo = stereoModeOf(given.stereo);
   if (!given.display.empty()) settings.display = scenes::loadDisplay(given.display);
   const std::size_t count = writeFrames(run, frames.partial(), settings);
+  std::string track = given.sound;
+  if (given.has_sound && track.empty()) {
+    track = frames.partial() + "/sound.wav";
+    frames.write("sound.wav", soundOf(run, bar.progress()));
+  }
   bar.progress()("encoding", 1);
-  const std::string failure =
-      encodeVideo(frames.partial(), settings.frames_per_s, given.sound, out.partial());
+  const std::string failure = encodeVideo(frames.partial(), settings.frames_per_s, track, out.partial());
   frames.commit();
   bar.clear();
   std::printf("%zu pictures: %s\n", count, folder.c_str());
@@ -59,15 +95,21 @@ void addVideo(CommandLine& line) {
   CLI::App& command =
       addCommand(line, "video", "makes a film of a recording: PNG pictures, and MP4 with ffmpeg",
                  "vps video run.mcap -o run.mp4 --camera follow", [given] { return runVideo(*given); });
+  command.parse_complete_callback([given, &command] { given->has_sound = command.count("--sound") > 0; });
   command.add_option("recording", given->recording, "what vps assemble --record wrote")
       ->required()
       ->type_name("RECORDING");
   command.add_option("-o,--out", given->out, "film to write")->required()->type_name("FILE.mp4");
   command.add_option("--frames", given->frames, "folder of the pictures; without it NAME_frames")
       ->type_name("DIR");
-  command.add_option("--sound", given->sound, "sound track: what vps assemble --sound wrote of the same run")
+  command
+      .add_option(
+          "--sound", given->sound,
+          "sound track: made from the recording, whose run happens again for it; or this file, which vps "
+          "assemble --sound wrote of the same run")
+      ->expected(0, 1)
       ->check(CLI::ExistingFile)
-      ->type_name("FILE.wav");
+      ->type_name("[FILE.wav]");
   VideoSettings& settings = given->settings;
   command.add_option("--width", settings.width, "of the pictures")
       ->capture_default_str()

@@ -24,6 +24,7 @@ struct ViewArguments {
   SceneArguments scene;
   WindowOptions window;
   std::string stereo = "mono", display;
+  std::vector<std::string> show;
   bool seeks_headset = false, measures_latency = false;
   LatencySettings latency;
   std::string json;
@@ -51,6 +52,7 @@ int runView(const ViewArguments& given) {
     say(window.notes.back());
   }
   window.stereo = stereoModeOf(given.stereo);
+  window.show = shownModels(given.show);
   if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
   if (lowerExtension(file) == ".mcap") {
     if (window.runs || !window.record.empty() || !window.hand.empty())
@@ -121,6 +123,12 @@ void addView(CommandLine& line) {
           "display file (TOML): the window is its first screen, seen by its first viewer, and a device "
           "whose place it has moves the part where the hand is")
       ->type_name("FILE");
+  command
+      .add_option("--show", given->show,
+                  "the models of contact in place of the parts: points, voxels, or points,voxels (points of "
+                  "the parts that a step moves)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"points", "voxels"}));
   CLI::Option* latency = command.add_flag(
       "--measure-latency", given->measures_latency,
       "without window, display and sound card: how far picture, sound and force of a contact are apart");
@@ -130,7 +138,8 @@ void addView(CommandLine& line) {
       ->needs(latency);
   addJsonOption(command, given->json);
   command.get_option("--json")->needs(latency);
-  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display"}) latency->excludes(name);
+  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display", "--show"})
+    latency->excludes(name);
   command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
       ->capture_default_str()
       ->type_name("NAME");

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 
 #include "vps_device/recording.h"
+#include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
@@ -14,6 +16,12 @@ namespace vps::scenes::inline v0 {
 
 struct ReplayOptions : ModelOptions {
   const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
+  SnapshotTap* tap = nullptr;               ///< as in AssembleOptions
+  /// As in AssembleOptions.
+  std::function<void(const device::DeviceEvent&)> on_device_event;
+  /// Called with the scene before it is run, and before its models are built. It stays where it is until
+  /// replay() returns. May be empty.
+  std::function<void(const Scene&)> on_scene;
 };
 
 struct ReplayResult {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -171,6 +172,8 @@ struct TryResult {
   std::string reason;  ///< "part: why", of the first step that does not fit; empty when all fit
 };
 
+struct CheckResult;
+
 struct AssembleResult {
   std::string scene;
   Verdict verdict =
@@ -184,6 +187,9 @@ struct AssembleResult {
   std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
   Snapshot finished;
   double haptic_rate_hz = 0, physics_rate_hz = 0;
+  /// What the drawing alone says (check.h), without play: the run measures it before its first step. Null: it
+  /// did not.
+  std::shared_ptr<const CheckResult> checked;
   TickTimes haptic, physics;
   std::optional<RealTimeResult> real_time;  ///< of a run in real time
   struct {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vps/pose.h"
@@ -39,6 +41,14 @@ struct ContactMark {
   return sum_N;
 }
 
+/// How a run does so far, for those who watch it.
+struct RunFigures {
+  std::uint64_t ticks = 0, missed = 0;  ///< of the haptic loop; missed: periods without a tick
+  std::uint64_t physics_steps = 0, physics_missed = 0;    ///< missed: took longer than their period
+  double tick_p99_us = 0, step_p99_us = 0;                ///< longest but for one in a hundred
+  double to_hand_J = 0, from_hand_J = 0, injected_J = 0;  ///< see EnergyLedger
+};
+
 struct Snapshot {
   double time_s = 0;
   int step = -1;  ///< index into Scene::steps, -1 outside of a step
@@ -54,6 +64,8 @@ struct Snapshot {
   /// device's clock, and the physics step that followed it was done at clock_s, by monotonicSeconds(): the
   /// one time of its contacts, by which picture, sound and force are compared.
   double sample_s = 0, clock_s = 0;
+  /// Of a run that gives it to a SnapshotTap, at most 50 ms of simulated time old; not sent over networks.
+  std::optional<RunFigures> figures;
 };
 
 }  // namespace vps::scenes::inline v0

@@ -2,6 +2,7 @@
 #include "procedure/assembly_run.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "core/wall_clock.h"
@@ -82,10 +83,12 @@ std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& option
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options) {
   const double begun_s = wallSeconds();
-  const std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress);
+  std::shared_ptr<const CheckResult> checked;
+  const std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress, &checked);
   const double checked_s = wallSeconds() - begun_s;
   AssembleResult result = runProcedure(scene, hand, log, settings, options, drawn);
   result.build_wall_s += checked_s;
+  result.checked = std::move(checked);
   return result;
 }
 

@@ -229,6 +229,16 @@ void AssemblyWorld::giveSnapshot() {
     shot.sample_s = driver_->last().time_s;
     shot.clock_s = device::monotonicSeconds();
   }
+  constexpr double kFiguresAge_s = 0.05;  // a summary reads some thousand counters
+  if (!figures_ || state_.time_s - figures_time_s_ >= kFiguresAge_s) {
+    const TickTimes haptic = driver_->times(), physics = physics_clock_.summary();
+    const device::PassivityObserver energy = driver_->passivity();
+    figures_ =
+        RunFigures{haptic.count,   haptic.missed,    physics.count,      physics.missed,   haptic.p99_us,
+                   physics.p99_us, energy.to_hand_J, energy.from_hand_J, energy.injected_J};
+    figures_time_s_ = state_.time_s;
+  }
+  shot.figures = figures_;
   options_.tap->give(std::move(shot));
 }
 

@@ -137,6 +137,8 @@ class AssemblyWorld {
   double stored_before_J_ = 0;    ///< energy stored in parts that were released before
   bool has_ended_ = false;
   TickClock physics_clock_;
+  std::optional<RunFigures> figures_;  ///< as last given to the tap, and when
+  double figures_time_s_ = 0;
 };
 
 }  // namespace vps::scenes::inline v0

@@ -111,10 +111,14 @@ double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_pl
 
 }  // namespace
 
-std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress) {
+std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
+                                          std::shared_ptr<const CheckResult>* to) {
   CheckSettings settings;
   settings.has_play = false;
-  const CheckResult checked = checkAssembly(scene.name, drawnParts(scene), settings, progress);
+  const auto kept =
+      std::make_shared<const CheckResult>(checkAssembly(scene.name, drawnParts(scene), settings, progress));
+  if (to != nullptr) *to = kept;
+  const CheckResult& checked = *kept;
   std::vector<StepResult> steps(scene.steps.size());
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const SceneStep& planned = scene.steps[i];

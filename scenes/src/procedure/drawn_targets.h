@@ -3,6 +3,7 @@
 // belongs.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "vps/progress.h"
@@ -22,6 +23,8 @@ inline constexpr double kContactOnBothSides_m = 20e-6;
 /// where geometry proves that the part cannot be there: at its target it overlaps what is in place by then,
 /// by more than the error of the meshes (and the scene does not allow it), or it starts or ends in a room
 /// without a way in. Exact distances, on all cores.
-std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress);
+/// @param checked  receives what the steps' results were made from; may be null
+std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
+                                          std::shared_ptr<const CheckResult>* checked = nullptr);
 
 }  // namespace vps::scenes::inline v0

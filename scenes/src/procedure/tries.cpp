@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -124,7 +125,8 @@ void requireTries(const Scene& scene, const TrySettings& settings, const Assembl
 AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
                              const AssembleOptions& options) {
   requireTries(scene, settings, options);
-  std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress);
+  std::shared_ptr<const CheckResult> checked;
+  std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress, &checked);
   const bool is_blocked = std::any_of(drawn.begin(), drawn.end(),
                                       [](const StepResult& step) { return !step.blocked_by.empty(); });
   Scene modelled = scene;
@@ -143,7 +145,9 @@ AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
     throw;  // the threads end first
   }
   pool.clear();
-  return tries.take();
+  AssembleResult result = tries.take();
+  result.checked = std::move(checked);
+  return result;
 }
 
 }  // namespace vps::scenes::inline v0

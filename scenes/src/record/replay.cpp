@@ -38,6 +38,9 @@ ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options
   AssembleOptions assembling;
   static_cast<ModelOptions&>(assembling) = options;
   assembling.stop = options.stop;
+  assembling.tap = options.tap;
+  assembling.on_device_event = options.on_device_event;
+  if (options.on_scene) options.on_scene(replayed.scene);
   assembling.models_everything = about(run, "models_everything") == "1";
   assembling.keep_going = about(run, "keeps_going") != "0";
   device::Recording recording(run);

@@ -9,6 +9,8 @@
 
 namespace vps::viewer::inline v0 {
 
+/// Tables of pairs, fits and press fits, without pictures, for the report of a run.
+VPS_VIEWER_API std::string checkTablesOfRun(const scenes::CheckResult& result);
 /// Tables of pairs, fits and play, for a page that has other sections.
 VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result);
 /// A page of its own, with the answer first.

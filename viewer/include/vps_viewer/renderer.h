@@ -53,8 +53,8 @@ struct CutPlane {
 inline constexpr std::size_t kDraftTriangles = 40000;
 
 struct DrawOptions {
-  int width = 1280, height = 960;
-  bool show_waiting = false;  ///< parts whose step has not begun
+  int width = 1280, height = 960;  ///< see pictureLength_px()
+  bool show_waiting = false;       ///< parts whose step has not begun
   bool show_target = true;
   bool show_contacts = true;
   bool show_force = true;
@@ -78,6 +78,12 @@ struct DrawOptions {
 
   bool operator==(const DrawOptions&) const = default;
 };
+
+/// Pictures are at least one pixel and at most this wide and high; other sizes become the nearest of these.
+inline constexpr int kGreatestPicture_px = 8192;
+[[nodiscard]] constexpr int pictureLength_px(int wanted) {
+  return std::clamp(wanted, 1, kGreatestPicture_px);
+}
 
 /// Edge of DrawOptions::show_flash's square.
 [[nodiscard]] constexpr int flashSize_px(int height) {
@@ -105,6 +111,8 @@ class VPS_VIEWER_API Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws one picture. Half a million triangles at 1280x960 take about a second on two cores with llvmpipe.
+  /// Throws std::runtime_error, which says what helps, where OpenGL is out of memory or the graphics card was
+  /// reset; then only a new Renderer draws again.
   Image render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
 
   /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".

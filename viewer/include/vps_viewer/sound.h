@@ -20,9 +20,10 @@ struct SoundSettings {
 };
 
 /// Modal synthesis of the contacts. A contact force that rises within a physics step strikes its two parts
-/// with its impulse; one that slips rubs them. Each part answers with its modes (src/sound/modes.h), which
-/// are found where it is first struck, and with the click of its acceleration, which is all of a part too
-/// small to ring. Deterministic: the same snapshots give the same samples. Use it on one thread.
+/// with its impulse; one that slips rubs them, and one that rolls rubs them less. Each part answers with its
+/// modes (src/sound/modes.h), which are found where it is first struck, and with the click of its
+/// acceleration, which is all of a part too small to ring. Deterministic: the same snapshots give the same
+/// samples. Use it on one thread.
 class VPS_VIEWER_API RunSound {
  public:
   /// The scene outlives it.

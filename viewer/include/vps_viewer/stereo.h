@@ -33,6 +33,16 @@ VPS_VIEWER_API StereoMode stereoModeOf(const std::string& name);
 /// which most people have no trouble.
 inline constexpr double kEyeShare = 1.0 / 30;
 
+/// Where an interleaved picture is shown: each of its rows must be one row of the screen, of which only the
+/// even ones reach the left eye.
+struct ScreenRows {
+  int width = 0,
+      height = 0;  ///< both pictures are stretched to this before their rows are taken; 0: their own
+  int first = 0;   ///< row of the screen that shows the uppermost row
+
+  bool operator==(const ScreenRows&) const = default;
+};
+
 struct EyePair {
   Camera left, right;
 };
@@ -55,9 +65,10 @@ VPS_VIEWER_API Camera middleEye(const EyePair& eyes);
 
 /// One picture of options' size, or two for Spectral: left, right. Without legend and title, which would have
 /// no place in depth.
+/// @param rows  of Interleaved, whose picture has the size that they state
 VPS_VIEWER_API std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snapshot,
                                                const EyePair& eyes, const DrawOptions& options,
-                                               StereoMode mode);
+                                               StereoMode mode, const ScreenRows& rows = {});
 
 /// What a screen shows to a viewer.
 struct ScreenPicture {

@@ -11,6 +11,7 @@
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
+#include "vps_viewer/model_view.h"
 #include "vps_viewer/stereo.h"
 
 namespace vps::viewer::inline v0 {
@@ -26,6 +27,7 @@ struct WindowOptions {
   bool has_sound = true;           ///< of a run, where there is a sound card
   std::string record;              ///< file in which a run is recorded; empty: none
   std::string pictures = "view";   ///< saved pictures are PICTURES_1.png, ...
+  ShownModels show;                ///< in place of the parts
   std::vector<std::string> notes;  ///< messages that it begins with
   scenes::ModelOptions models;     ///< of a run
   const std::atomic<bool>* stop = nullptr;  ///< set it to close the window

@@ -3,6 +3,8 @@
 
 #include <epoxy/egl.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace vps::viewer::inline v0 {
@@ -40,14 +42,21 @@ EglContext::EglContext() : display_(openDisplay()) {
   EGLint count = 0;
   if (!eglChooseConfig(display_, config_wanted, &config, 1, &count) || count == 0)
     config = nullptr;  // EGL_KHR_no_config_context suffices, since framebuffer objects are drawn into
+  // A robust context says when the graphics card was reset; another one may end the program then.
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            4,
                            EGL_CONTEXT_MINOR_VERSION,
                            5,
                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
+                           EGL_LOSE_CONTEXT_ON_RESET_KHR,
                            EGL_NONE};
+  std::array<EGLint, 7> plain = {};  // without these two, for drivers that have no robust contexts
+  std::copy_n(wanted, plain.size() - 1, plain.begin());
+  plain.back() = EGL_NONE;
   context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, wanted);
+  if (context_ == EGL_NO_CONTEXT) context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, plain.data());
   if (context_ == EGL_NO_CONTEXT) fail("the driver has no OpenGL 4.5 core profile");
 }
 

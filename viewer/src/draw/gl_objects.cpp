@@ -27,6 +27,27 @@ GLuint compile(const char* name, GLenum stage, const std::string& source) {
 
 }  // namespace
 
+void requireSound() {
+  if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+    throw std::runtime_error(
+        "the graphics card was reset, and the picture is lost; if it happens again, look for the driver's "
+        "messages (dmesg), or draw without the card: LIBGL_ALWAYS_SOFTWARE=1");
+  GLenum first = GL_NO_ERROR;
+  constexpr int kMost = 16;  // a lost context may report errors without end
+  for (int i = 0; i < kMost; ++i) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) break;
+    if (first == GL_NO_ERROR || error == GL_OUT_OF_MEMORY) first = error;
+  }
+  if (first == GL_OUT_OF_MEMORY)
+    throw std::runtime_error(
+        "the graphics card has too little free memory for this picture; make the picture or window smaller, "
+        "close other programs that draw, or draw without the card: LIBGL_ALWAYS_SOFTWARE=1");
+  if (first != GL_NO_ERROR)
+    throw std::runtime_error("the OpenGL driver reports error " + std::to_string(first) +
+                             "; try Mesa's own renderer: LIBGL_ALWAYS_SOFTWARE=1");
+}
+
 Buffer makeBuffer(const void* data, std::size_t byte_count, GLenum usage) {
   GLuint id = 0;
   glCreateBuffers(1, &id);

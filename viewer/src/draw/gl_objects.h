@@ -11,6 +11,10 @@
 
 namespace vps::viewer::inline v0::gl {
 
+/// Throws std::runtime_error, which says what helps, where the graphics card was reset or is out of memory
+/// since the last call. What was drawn is then worth nothing.
+void requireSound();
+
 /// An object's name and the function that deletes it; movable.
 template <void (*Delete)(GLuint)>
 class Object {

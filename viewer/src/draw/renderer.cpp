@@ -2,6 +2,7 @@
 #include "vps_viewer/renderer.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "draw/egl_context.h"
 #include "draw/overlay.h"
@@ -28,6 +29,24 @@ struct Renderer::Impl {
 
   explicit Impl(const RenderScene& scene) : parts(partExtents(scene)) {
     const EglContext::Current current(context);
+    try {
+      upload(scene);
+      gl::requireSound();
+    } catch (...) {
+      gl.reset();  // while the context is current
+      throw;
+    }
+  }
+  ~Impl() {
+    try {
+      const EglContext::Current current(context);
+      gl.reset();
+    } catch (const std::exception&) {
+      static_cast<void>(gl.release());  // a lost context; its objects went with it
+    }
+  }
+
+  void upload(const RenderScene& scene) {
     gl = std::make_unique<GpuResources>();
     std::size_t triangles = 0;
     for (const DrawnMesh& part : scene) triangles += part.mesh->triangles.size();
@@ -39,10 +58,6 @@ struct Renderer::Impl {
     }
     description = std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
                   reinterpret_cast<const char*>(glGetString(GL_VERSION));
-  }
-  ~Impl() {
-    const EglContext::Current current(context);
-    gl.reset();
   }
 
   DrawnBody bodyAt(std::size_t part, const Pose& X_WP, const View& view) const {
@@ -93,8 +108,8 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
   Impl& impl = *impl_;
   const EglContext::Current current(impl.context);
   DrawOptions clamped = options;
-  clamped.width = std::clamp(options.width, 16, 8192);
-  clamped.height = std::clamp(options.height, 16, 8192);
+  clamped.width = pictureLength_px(options.width);
+  clamped.height = pictureLength_px(options.height);
   impl.gl->resizeFrame(clamped.width, clamped.height, std::clamp(options.supersampling, 1, 4));
 
   glEnable(GL_DEPTH_TEST);
@@ -116,6 +131,7 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
   renderColor(picture, snapshot, target ? &*target : nullptr);
   Image image = resolvePicture(
       *impl.gl, options.show_flash ? std::optional(totalForce_N(snapshot.contacts) > 0) : std::nullopt);
+  gl::requireSound();
   drawOverlay(image, snapshot, options, {kHandColor, kHandColor}, impl.lettering);
   return image;
 }

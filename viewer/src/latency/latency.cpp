@@ -110,6 +110,7 @@ class Watcher {
       worker_.request(wanted_);
       run.ask();
     }
+    if (const std::string why = worker_.failure(); !why.empty()) throw std::runtime_error(why);
     if (const std::optional<DrawnPicture> picture = worker_.take())
       log.pictures.push_back({picture->clock_s - picture->wall_s, picture->clock_s, isLit(picture->image)});
   }

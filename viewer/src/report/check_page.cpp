@@ -176,6 +176,10 @@ std::string meshes(const scenes::CheckResult& result) {
 
 }  // namespace
 
+std::string checkTablesOfRun(const scenes::CheckResult& result) {
+  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result);
+}
+
 std::string checkSection(const scenes::CheckResult& result) {
   const bool has_play =
       std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <span>
+#include <string_view>
 
 #include "report/base64.h"
 #include "report/text_file.h"
@@ -93,6 +94,38 @@ std::string withPictures(const std::string& body, const std::string& folder) {
   return out.append(body, done);
 }
 
+/// Files of the folder, to which the body links, as part of the page: a click saves them. A file that is too
+/// large for mail, or missing, is named without a link. Links to pages and to places in this one stay.
+std::string withLinkedFiles(const std::string& body, const std::string& folder) {
+  static const std::string kLink = "<a href=\"";
+  constexpr std::size_t kMost_bytes = 4'000'000;  // common mail servers take 10 MB, of which text is 3/4
+  std::string out;
+  std::size_t done = 0;
+  for (std::size_t at = body.find(kLink); at != std::string::npos; at = body.find(kLink, done)) {
+    const std::size_t from = at + kLink.size(), to = body.find('"', from);
+    const std::string file = body.substr(from, to - from);
+    const std::string_view kind = file.ends_with(".csv")   ? "text/csv"
+                                  : file.ends_with(".svg") ? "image/svg+xml"
+                                  : file.ends_with(".png") ? "image/png"
+                                                           : "";
+    if (kind.empty() || file.find(':') != std::string::npos) {
+      out.append(body, done, to - done);
+      done = to;
+      continue;
+    }
+    out.append(body, done, at - done).append("<a");
+    done = to + 1;
+    const std::string bytes = textOf(folder + "/" + file);
+    if (bytes.empty() || bytes.size() > kMost_bytes) continue;
+    out.append(" download=\"")
+        .append(file.substr(file.rfind('/') + 1))
+        .append("\" href=\"data:")
+        .append(kind);
+    out.append(";base64,").append(base64(std::as_bytes(std::span(bytes)))).append("\"");
+  }
+  return out.append(body, done);
+}
+
 }  // namespace
 
 std::string format(double value, const char* form) {
@@ -123,16 +156,16 @@ std::string facts(const std::vector<std::pair<std::string, std::string>>& rows) 
 }
 
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link) {
-  const std::string target = escapeHtml(link.empty() ? file : link);
-  return "<figure><a href=\"" + target + "\"><img src=\"" + escapeHtml(file) +
-         "\" alt=\"\" loading=\"lazy\"></a>" + "<figcaption>" + caption_html + "</figcaption></figure>\n";
+  const std::string image = "<img src=\"" + escapeHtml(file) + "\" alt=\"\" loading=\"lazy\">";
+  return "<figure>" + (link.empty() ? image : "<a href=\"" + escapeHtml(link) + "\">" + image + "</a>") +
+         "<figcaption>" + caption_html + "</figcaption></figure>\n";
 }
 
 std::string page(const std::string& title, const std::string& body, const std::string& folder) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
          escapeHtml(title) + "</title>\n<style>" + kStyleSheet + "</style>\n</head>\n<body>\n" +
-         (folder.empty() ? body : withPictures(body, folder)) + "</body>\n</html>\n";
+         (folder.empty() ? body : withPictures(withLinkedFiles(body, folder), folder)) + "</body>\n</html>\n";
 }
 
 }  // namespace html

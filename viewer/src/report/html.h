@@ -24,11 +24,11 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 /// A two-column table: name, value.
 std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 
-/// A picture that links to `link`, or to itself in full size. `file` is relative to the page.
+/// A picture, which links to `link` if there is one. Both are relative to the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
-/// The page around a body. Pictures (PNG) that it shows from `folder` are written into it, so that it can be
-/// sent on without the folder.
+/// The page around a body. Pictures (PNG) that it shows from `folder`, and tables and drawings (CSV, SVG) that
+/// it links to, are written into it, so that it can be sent on without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
 }  // namespace vps::viewer::inline v0::html

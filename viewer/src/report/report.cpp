@@ -16,7 +16,10 @@
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
+#include "vps_scenes/check.h"
 #include "vps_scenes/load_level.h"
+#include "vps_scenes/scene_text.h"
+#include "vps_viewer/check_page.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer::inline v0 {
@@ -108,8 +111,7 @@ std::string stepFacts(const scenes::StepResult& s) {
 }
 
 std::string plotFigure(const std::string& name, const std::string& caption) {
-  return html::figure("plots/" + name + ".png", caption + " (<a href=\"plots/" + name + ".svg\">SVG</a>)",
-                      "plots/" + name + ".svg");
+  return html::figure("plots/" + name + ".png", caption + " (<a href=\"plots/" + name + ".svg\">SVG</a>)");
 }
 
 /// A plot of the whole run, and which steps have one of their own.
@@ -296,12 +298,21 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
   return out + tryTable(result);
 }
 
-std::string howToRepeat(const std::string& command) {
+/// The settings as they were in force, whatever file or command line they came from.
+std::string exactSettings(const scenes::Scene& scene) {
+  std::vector<std::string> files;
+  for (const scenes::ScenePart& part : scene.parts) files.push_back(part.file);
+  return "<details><summary>Exact settings of this run, as a scene file</summary>\n<pre id=\"settings\">" +
+         escapeHtml(scenes::sceneText(scene, files, "as it was run")) + "</pre></details>\n";
+}
+
+std::string howToRepeat(const scenes::Scene& scene, const std::string& command) {
   std::string out = "<h2>How to repeat this run</h2>\n";
   if (!command.empty()) out += "<pre>" + escapeHtml(command) + "</pre>\n";
   return out +
          "<p>The same command gives the same numbers, bit for bit, except for the run times above. "
-         "<a href=\"trace.csv\">trace.csv</a> has the samples.</p>\n";
+         "<a href=\"trace.csv\">trace.csv</a> has the samples.</p>\n" +
+         exactSettings(scene);
 }
 
 void makeFolder(const std::string& folder) {
@@ -345,8 +356,9 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     body += stepSection(i, result.steps[i], i < pictures.steps.size() ? pictures.steps[i] : StepPictures(),
                         plots);
+  if (result.checked) body += checkTablesOfRun(*result.checked);
   body += ergonomicsSection(scene, result) + method(scene, result) + performance(result) +
-          howToRepeat(options.command);
+          howToRepeat(scene, options.command);
   writeWholeFile(outcome.file, html::page(name + ": assembly report", body, dir));
   return outcome;
 }

@@ -8,6 +8,8 @@
 #include <thread>
 #include <utility>
 
+#include "vps_device/metronome.h"
+
 namespace vps::viewer::inline v0 {
 namespace {
 
@@ -24,18 +26,24 @@ float loudness(float pressure_Pa) {
 
 struct LiveSound::Impl {
   const scenes::Scene& scene;
-  std::unique_ptr<SoundOutput> output;
+  std::unique_ptr<SoundOutput> output;  ///< null: gone
+  std::function<std::unique_ptr<SoundOutput>()> open;
+  double wait_s, next_s = 0;  ///< to the next attempt; and when that is, by device::monotonicSeconds()
   std::mutex mutex;
   std::condition_variable wake;
   std::vector<scenes::Snapshot> waiting;
   std::vector<device::Beep> beeps;
   std::string news;  ///< empty: none so far
   Pose X_WL;         ///< of the listener
-  bool is_ending = false, was_told = false;
+  std::string told;  ///< the last news
+  bool is_ending = false;
   std::thread thread;
 
-  Impl(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output)
-      : scene(scene), output(std::move(output)), thread([this] { work(); }) {}
+  Impl(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output,
+       std::function<std::unique_ptr<SoundOutput>()> open, double wait_s)
+      : scene(scene), output(std::move(output)), open(std::move(open)), wait_s(wait_s), thread([this] {
+          work();
+        }) {}
 
   bool isEnding() {
     const std::lock_guard lock(mutex);
@@ -72,10 +80,25 @@ struct LiveSound::Impl {
   void play(RunSound::Samples heard, const Vec3& to_L) {
     for (float& x : heard.pressure_Pa) x = loudness(x);
     for (float& x : heard.beeps) x = std::clamp(kLiveBeepLevel * x, -1.0f, 1.0f);
+    if (!output && !reopen()) return;
     output->write(heard.pressure_Pa, heard.beeps, to_L);
     if (output->isThere()) return;
+    tell("the sound card is gone; the run goes on in silence");
+    if (!open) return;
+    output.reset();  // first, since a card is opened once
+    next_s = device::monotonicSeconds() + wait_s;
+  }
+  bool reopen() {
+    const double now_s = device::monotonicSeconds();
+    if (now_s < next_s) return false;
+    next_s = now_s + wait_s;
+    output = open();
+    if (output) tell("the sound card is back");
+    return output != nullptr;
+  }
+  void tell(const std::string& words) {
     const std::lock_guard lock(mutex);
-    if (!std::exchange(was_told, true)) news = "the sound card is gone; the run goes on in silence";
+    if (words != told) news = told = words;
   }
 };
 
@@ -90,8 +113,9 @@ std::optional<Vec3> soundPlace(const scenes::Snapshot& shot) {
   return Vec3(sum_W / force_N);
 }
 
-LiveSound::LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output)
-    : impl_(std::make_unique<Impl>(scene, std::move(output))) {}
+LiveSound::LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output,
+                     std::function<std::unique_ptr<SoundOutput>()> open, double wait_s)
+    : impl_(std::make_unique<Impl>(scene, std::move(output), std::move(open), wait_s)) {}
 
 LiveSound::~LiveSound() {
   {

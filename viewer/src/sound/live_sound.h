@@ -46,7 +46,10 @@ VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, Heard
 class VPS_VIEWER_API LiveSound {
  public:
   /// The scene outlives it; its models are complete before the first hear().
-  LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output);
+  /// @param open    opens the output again once it is gone, or gives null; empty: it stays silent then
+  /// @param wait_s  between attempts
+  LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output,
+            std::function<std::unique_ptr<SoundOutput>()> open = {}, double wait_s = 2);
   ~LiveSound();
   LiveSound(const LiveSound&) = delete;
   LiveSound& operator=(const LiveSound&) = delete;
@@ -55,7 +58,7 @@ class VPS_VIEWER_API LiveSound {
   /// From now on: the listener's pose in W, x right, y up, z back; as of a camera.
   void listenAt(const Pose& X_WL);
   void beep(device::Beep beep);
-  /// Once, if the sound card is gone: a line that says so.
+  /// Once, if the sound card is gone, or is back: a line that says so.
   [[nodiscard]] std::string takeNews();
 
  private:

@@ -22,10 +22,12 @@ constexpr double kLeastRise_N = 0.05;
 constexpr double kMemory_s = 0.01;
 constexpr double kRoughness_m = 0.1e-3;  // length of a wave of the surface's roughness. assumed: milled
 constexpr double kRubShare = 0.1;        // of the normal force that roughness modulates. assumed
+constexpr double kRollShare = 0.01;      // the same of what rolls: 20 dB less. assumed
 
 /// The contacts of one step as one force.
 struct TotalContact {
   double force_N = 0, slip_m_s = 0;
+  double roll_m_s = 0;  ///< at which the contact moves over both surfaces alike
   Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
 };
 TotalContact totalOf(const std::vector<scenes::ContactMark>& marks) {
@@ -48,7 +50,16 @@ struct Sounding {
   std::vector<Stroke> strokes;
   Touch rubbed;
   double plane_strain_Pa = 1;
+  Vec3 center_P = Vec3::Zero();  ///< of mass
 };
+
+/// The speed of a contact over a part that rolls: its turning about the axes across the normal, as if the
+/// part were round about its centre of mass, as wheels, balls and pins are.
+double rollSpeed_m_s(const Pose& X_before, const Pose& X_now, double step_s, const TotalContact& total,
+                     const Vec3& center_P) {
+  const Vec3 w_W = rotationVector(X_now.R * X_before.R.transpose()) / step_s;
+  return (w_W - total.n_W * total.n_W.dot(w_W)).norm() * (total.p_W - X_now * center_P).norm();
+}
 
 }  // namespace
 
@@ -61,6 +72,7 @@ struct RunSound::Impl {
   device::Random random{1};
   long now = 0;                                 ///< sample
   std::vector<std::pair<double, double>> past;  ///< time and contact force
+  std::optional<scenes::BodySnapshot> moved;    ///< the moving part as it was last heard of
   double noise = 0;
 
   explicit Impl(const scenes::Scene& scene, const SoundSettings& settings)
@@ -79,6 +91,7 @@ Sounding& RunSound::Impl::sounding(std::size_t index) {
   if (sounding.voice) return sounding;
   const scenes::ScenePart& part = scene.parts[index];
   sounding.plane_strain_Pa = planeStrain_Pa(part);
+  sounding.center_P = massProperties(part.part.mesh).com;
   sounding.voice.emplace(partVoice(part, settings));
   return sounding;
 }
@@ -118,9 +131,12 @@ void RunSound::Impl::strike(const TotalContact& total, double rise_N, double ste
 
 void RunSound::Impl::render(long end, const TotalContact& total) {
   // Roughness as noise, smoothed to the rate at which its waves pass.
-  const double passing_hz = std::min(total.slip_m_s / kRoughness_m, 0.4 * settings.rate_hz);
+  const double speed_m_s = total.slip_m_s + total.roll_m_s;
+  const double passing_hz = std::min(speed_m_s / kRoughness_m, 0.4 * settings.rate_hz);
   const double keep = std::exp(-2 * kHalfTurn * passing_hz / settings.rate_hz);
-  const double friction = passing_hz > 1 ? kRubShare * total.force_N : 0;
+  const double share =
+      speed_m_s > 0 ? (kRubShare * total.slip_m_s + kRollShare * total.roll_m_s) / speed_m_s : 0;
+  const double friction = passing_hz > 1 ? share * total.force_N : 0;
   for (; now < end; ++now) {
     noise = keep * noise + std::sqrt(1 - keep * keep) * (2 * random.uniform() - 1);
     double pressure_Pa = 0;
@@ -162,6 +178,12 @@ void RunSound::hear(const scenes::Snapshot& shot) {
   const auto moving = std::find_if(shot.bodies.begin(), shot.bodies.end(), [](const auto& body) {
     return body.role == scenes::BodyRole::InHand || body.role == scenes::BodyRole::Released;
   });
+  if (moving != shot.bodies.end()) {
+    if (total.force_N > 0 && impl.moved && impl.moved->part == moving->part)
+      total.roll_m_s =
+          rollSpeed_m_s(impl.moved->X_WP, moving->X_WP, step_s, total, impl.sounding(moving->part).center_P);
+    impl.moved = *moving;
+  }
   const double rise_N = total.force_N - before_N;
   if (total.force_N > 0 && moving != shot.bodies.end())
     impl.strike(total, rise_N > kLeastRise_N ? rise_N : 0, step_s, shot, moving->part);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "stereo/spectral.h"
 #include "vps/load_error.h"
@@ -27,16 +28,24 @@ Camera behindRectangle(const Vec3& eye, const Vec3& lower_left, double width_m, 
   return camera;
 }
 
-/// Copies an image into another one.
+/// Copies what fits of an image into another one.
 void place(const Image& part, int x, int y, Image& whole) {
-  for (int row = 0; row < part.height; ++row)
-    std::copy_n(part.at(0, row), 3 * static_cast<std::size_t>(part.width), whole.at(x, y + row));
+  const int width = std::min(part.width, whole.width - x), height = std::min(part.height, whole.height - y);
+  if (width <= 0) return;
+  for (int row = 0; row < height; ++row)
+    std::copy_n(part.at(0, row), 3 * static_cast<std::size_t>(width), whole.at(x, y + row));
 }
 
-Image interleaved(const Image& left, const Image& right) {
-  Image both = left;
-  for (int y = 1; y < both.height; y += 2)
-    std::copy_n(right.at(0, y), 3 * static_cast<std::size_t>(both.width), both.at(0, y));
+/// Stretched without mixing rows or columns, since a mixture of rows would show each eye the other's picture.
+Image interleaved(const Image& left, const Image& right, const ScreenRows& rows) {
+  Image both(rows.width > 0 ? rows.width : left.width, rows.height > 0 ? rows.height : left.height);
+  for (int y = 0; y < both.height; ++y) {
+    const Image& eye = (rows.first + y) % 2 == 0 ? left : right;
+    const int from_y = static_cast<int>(std::int64_t(y) * eye.height / both.height);
+    for (int x = 0; x < both.width; ++x)
+      std::copy_n(eye.at(static_cast<int>(std::int64_t(x) * eye.width / both.width), from_y), 3,
+                  both.at(x, y));
+  }
   return both;
 }
 
@@ -117,13 +126,16 @@ Camera middleEye(const EyePair& eyes) {
 }
 
 std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snapshot, const EyePair& eyes,
-                                const DrawOptions& options, StereoMode mode) {
+                                const DrawOptions& options, StereoMode mode, const ScreenRows& rows) {
   DrawOptions half = options;
+  half.width = pictureLength_px(options.width);
+  half.height = pictureLength_px(options.height);
+  const int width = half.width, height = half.height;
   half.show_legend = false;
   half.title.clear();
   half.caption.clear();
-  if (mode == StereoMode::SideBySide) half.width = options.width / 2;
-  if (mode == StereoMode::TopBottom) half.height = options.height / 2;
+  if (mode == StereoMode::SideBySide) half.width = width / 2;
+  if (mode == StereoMode::TopBottom) half.height = height / 2;
   if (mode == StereoMode::Mono) return {renderer.render(snapshot, middleEye(eyes), half)};
   const Image left = renderer.render(snapshot, eyes.left, half);
   const Image right = renderer.render(snapshot, eyes.right, half);
@@ -133,13 +145,13 @@ std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snap
     case StereoMode::SideBySide:
     case StereoMode::TopBottom: {
       const bool is_across = mode == StereoMode::SideBySide;
-      Image both(options.width, options.height);
+      Image both(width, height);
       place(left, 0, 0, both);
       place(right, is_across ? left.width : 0, is_across ? 0 : left.height, both);
       return {both};
     }
     case StereoMode::Interleaved:
-      return {interleaved(left, right)};
+      return {interleaved(left, right, rows)};
     case StereoMode::Anaglyph:
       return {anaglyph(left, right)};
     case StereoMode::Spectral:

@@ -40,9 +40,13 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
   }
   if (settings.has_sound) {
     std::string why;
-    const auto open = settings.open_sound ? settings.open_sound : openSoundOutput;
+    const std::function<std::unique_ptr<SoundOutput>(int, std::string&)> open =
+        settings.open_sound ? settings.open_sound : openSoundOutput;
     if (std::unique_ptr<SoundOutput> output = open(SoundSettings{}.rate_hz, why))
-      sound_ = std::make_unique<LiveSound>(scene_, std::move(output));
+      sound_ = std::make_unique<LiveSound>(scene_, std::move(output), [open] {
+        std::string still_silent;
+        return open(SoundSettings{}.rate_hz, still_silent);
+      });
     if (!why.empty()) messages_.push_back(why);
   }
   tap_.give = [this](scenes::Snapshot&& snapshot) {

@@ -37,22 +37,39 @@ bool isSameEyes(const std::optional<EyePair>& a, const std::optional<EyePair>& b
 Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera,
            const DrawOptions& options) {
   if (!asked.eyes) return renderer.render(asked.snapshot, camera, options);
-  return std::move(renderStereo(renderer, asked.snapshot, *asked.eyes, options, asked.stereo).front());
+  ScreenRows rows = asked.rows;
+  if (rows.width <= 0) rows.width = asked.options.width;
+  if (rows.height <= 0) rows.height = asked.options.height;
+  return std::move(renderStereo(renderer, asked.snapshot, *asked.eyes, options, asked.stereo, rows).front());
 }
 
 }  // namespace
 
 bool isSame(const PictureRequest& a, const PictureRequest& b) {
   return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
-         isSameEyes(a.eyes, b.eyes) && isSameSnapshot(a.snapshot, b.snapshot);
+         isSameEyes(a.eyes, b.eyes) && a.rows == b.rows && isSameSnapshot(a.snapshot, b.snapshot);
 }
 
 Image drawInFull(Renderer& renderer, const PictureRequest& asked) {
   return draw(renderer, asked, asked.camera, asked.options);
 }
 
-PictureWorker::PictureWorker(RenderScene scene, std::function<void()> on_done)
-    : on_done_(std::move(on_done)), thread_([this, drawn = std::move(scene)] { run(drawn); }) {}
+Image drawDraft(Renderer& renderer, const PictureRequest& asked, int shrink) {
+  DrawOptions options = asked.options;
+  options.is_draft = true;
+  options.supersampling = 1;
+  Camera camera = asked.camera;
+  if (shrink > 1) {
+    camera.aspect = double(options.width) / options.height;  // the same view, although sizes are rounded
+    options.width = pictureLength_px(options.width / shrink);
+    options.height = pictureLength_px(options.height / shrink);
+  }
+  return draw(renderer, asked, camera, options);
+}
+
+PictureWorker::PictureWorker(RenderScene scene, std::function<void()> on_done, double wait_s)
+    : on_done_(std::move(on_done)),
+      thread_([this, drawn = std::move(scene), wait_s] { run(drawn, wait_s); }) {}
 
 PictureWorker::~PictureWorker() {
   {
@@ -74,8 +91,12 @@ void PictureWorker::request(const PictureRequest& wanted) {
 
 std::optional<DrawnPicture> PictureWorker::take() {
   const std::lock_guard lock(mutex_);
-  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return std::exchange(done_, std::nullopt);
+}
+
+std::string PictureWorker::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
 }
 
 std::size_t PictureWorker::count() const {
@@ -88,19 +109,29 @@ std::string PictureWorker::description() const {
   return description_;
 }
 
-void PictureWorker::run(const RenderScene& scene) {
-  try {
-    Renderer renderer(scene);
-    {
+void PictureWorker::run(const RenderScene& scene, double wait_s) {
+  double next_s = wait_s;
+  for (;;) {
+    const std::size_t drawn = count();
+    try {
+      Renderer renderer(scene);
+      {
+        const std::lock_guard lock(mutex_);
+        description_ = renderer.description();
+      }
+      drawAll(renderer);
+      return;
+    } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
-      description_ = renderer.description();
+      failure_ = error.what();
+      wanted_ = last_;
     }
-    drawAll(renderer);
-  } catch (...) {
-    const std::lock_guard lock(mutex_);
-    failure_ = std::current_exception();
+    on_done_();
+    if (count() > drawn) next_s = wait_s;
+    std::unique_lock lock(mutex_);
+    if (wake_.wait_for(lock, std::chrono::duration<double>(next_s), [this] { return is_ending_; })) return;
+    next_s = std::min(2 * next_s, kLongestWait_s);
   }
-  on_done_();
 }
 
 void PictureWorker::drawAll(Renderer& renderer) {
@@ -126,17 +157,8 @@ void PictureWorker::drawAll(Renderer& renderer) {
       asked = *wanted_;
       if (!is_draft) wanted_.reset();
     }
-    DrawOptions options = asked.options;
-    options.is_draft = is_draft;
-    if (is_draft) options.supersampling = 1;
-    Camera camera = asked.camera;
-    if (is_draft && shrink > 1) {
-      camera.aspect = double(options.width) / options.height;  // the same view, although sizes are rounded
-      options.width = std::max(16, options.width / shrink);
-      options.height = std::max(16, options.height / shrink);
-    }
     const double begun_s = device::monotonicSeconds();
-    Image image = draw(renderer, asked, camera, options);
+    Image image = is_draft ? drawDraft(renderer, asked, shrink) : drawInFull(renderer, asked);
     const double done_s = device::monotonicSeconds(), wall_s = done_s - begun_s;
     if (is_draft && wall_s > kSlowDraft_s && shrink < kMostShrink) ++shrink;
     if (is_draft && wall_s < kFastDraft_s && shrink > 1) --shrink;
@@ -144,6 +166,7 @@ void PictureWorker::drawAll(Renderer& renderer) {
       const std::lock_guard lock(mutex_);
       done_ = DrawnPicture{std::move(image), is_draft, wall_s, done_s};
       ++count_;
+      failure_.clear();
     }
     has_draft = is_draft;
     on_done_();

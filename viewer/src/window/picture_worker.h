@@ -3,7 +3,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <exception>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -21,13 +20,17 @@ struct PictureRequest {
   DrawOptions options;
   StereoMode stereo = StereoMode::Mono;
   std::optional<EyePair>
-      eyes;  ///< of a picture for two eyes, or for the middle between them; none: `camera`'s
+      eyes;         ///< of a picture for two eyes, or for the middle between them; none: `camera`'s
+  ScreenRows rows;  ///< of an interleaved picture
 };
 /// Whether both give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);
 
 /// In full.
 [[nodiscard]] VPS_VIEWER_API Image drawInFull(Renderer& renderer, const PictureRequest& asked);
+/// The same view as a draft with that share of the pixels across. An interleaved one has all of its rows.
+/// @param shrink  >= 1
+[[nodiscard]] VPS_VIEWER_API Image drawDraft(Renderer& renderer, const PictureRequest& asked, int shrink);
 
 struct DrawnPicture {
   Image image;
@@ -37,27 +40,34 @@ struct DrawnPicture {
 };
 
 /// Draws the newest request first as a draft, and in full once nothing newer is wanted. Requests in between
-/// are skipped, and one that asks for the same again draws nothing.
+/// are skipped, and one that asks for the same again draws nothing. Where the renderer fails (no OpenGL, out
+/// of memory, the graphics card was reset), it makes a new one after a while and draws the newest request
+/// again.
 class VPS_VIEWER_API PictureWorker {
  public:
   /// @param scene    its meshes outlive the worker
   /// @param on_done  called on the worker's thread after each picture, and after a failure
-  PictureWorker(RenderScene scene, std::function<void()> on_done);
+  /// @param wait_s   from a first failure to the next attempt; twice as long after each further one, up to
+  ///                 kLongestWait_s
+  explicit PictureWorker(RenderScene scene, std::function<void()> on_done, double wait_s = 1);
   ~PictureWorker();
   PictureWorker(const PictureWorker&) = delete;
   PictureWorker& operator=(const PictureWorker&) = delete;
 
   void request(const PictureRequest& wanted);
-  /// The newest picture, once. Throws what the renderer threw: std::runtime_error, which names the packages
-  /// to install.
+  static constexpr double kLongestWait_s = 30;
+  /// The newest picture, once.
   [[nodiscard]] std::optional<DrawnPicture> take();
+  /// Why there is no picture of the newest request, in words with a remedy; empty: nothing has failed since
+  /// the last picture.
+  [[nodiscard]] std::string failure() const;
   /// Pictures drawn so far.
   [[nodiscard]] std::size_t count() const;
   /// What draws, in words; empty before the first picture.
   [[nodiscard]] std::string description() const;
 
  private:
-  void run(const RenderScene& scene);
+  void run(const RenderScene& scene, double wait_s);
   void drawAll(Renderer& renderer);
 
   std::function<void()> on_done_;
@@ -66,8 +76,7 @@ class VPS_VIEWER_API PictureWorker {
   std::optional<PictureRequest> wanted_;  ///< not drawn in full yet
   std::optional<PictureRequest> last_;    ///< the newest request
   std::optional<DrawnPicture> done_;
-  std::exception_ptr failure_;
-  std::string description_;
+  std::string failure_, description_;
   std::size_t count_ = 0;
   bool is_ending_ = false;
   std::thread thread_;  // last, since it uses the others

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,11 @@ namespace vps::viewer::inline v0 {
 struct Chapter {
   std::string name;
   double start_s = 0;
-  std::string verdict;  ///< in words; empty: not known
+  std::string verdict;      ///< in words; empty: not known
+  std::string reason = {};  ///< of the verdict, in the judge's words; empty: it fits, or none is known
 };
 
-/// A quantity over time, at Timeline::time_s.
+/// A quantity over time, at Timeline::time_s; not a number where it is not known.
 struct Curve {
   std::string name, unit;
   std::vector<float> values;
@@ -42,6 +44,19 @@ struct VPS_VIEWER_API Timeline {
   /// Index of the chapter at that time.
   [[nodiscard]] std::size_t chapterAt(double t_s) const;
 };
+
+/// The curves that a run draws while it goes on: force, torque, depth, contacts, clearance, energy.
+[[nodiscard]] VPS_VIEWER_API std::vector<Curve> liveCurves();
+/// Adds an instant of a run to them.
+/// @param clearance_m  least distance of the part in hand to another; none: not known, or farther than
+/// measured
+VPS_VIEWER_API void addInstant(Timeline& line, const scenes::Snapshot& shot,
+                               std::optional<double> clearance_m);
+/// In words: what a run has done so far, at which rate, what it missed, and its energy. One line each.
+/// @param elapsed_s  by the clock, in which `shot`'s figures came to be since `before`'s
+[[nodiscard]] VPS_VIEWER_API std::vector<std::string> figureLines(const scenes::RunFigures& now,
+                                                                  const scenes::RunFigures& before,
+                                                                  double elapsed_s);
 
 /// The finished assembly at time 0, then each step's part on its path, without physics: 2 s a step. The scene
 /// outlives it.

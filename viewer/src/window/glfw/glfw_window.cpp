@@ -82,6 +82,7 @@ GlfwWindow::GlfwWindow(const std::string& title, PictureSize size) {
   glfwSetWindowUserPointer(window_, this);
   openImGui();
   glGenTextures(1, &texture_);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &greatest_picture_);
 }
 
 GlfwWindow::~GlfwWindow() {
@@ -115,6 +116,7 @@ void GlfwWindow::openImGui() {
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int) { onAny(w); });
   glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int) { onAny(w); });
   glfwSetFramebufferSizeCallback(window_, [](GLFWwindow* w, int, int) { onAny(w); });
+  glfwSetWindowPosCallback(window_, [](GLFWwindow* w, int, int) { onAny(w); });
   glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { onAny(w); });
 
   float across = 1, down = 1;
@@ -152,6 +154,26 @@ PictureSize GlfwWindow::size() const {
   PictureSize size;
   glfwGetFramebufferSize(window_, &size.width, &size.height);
   return size;
+}
+
+int GlfwWindow::screenRow() const {
+  int x = 0, y = 0, width = 0, height = 0;
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  int top = 0;
+  for (int i = 0; i < count; ++i) {
+    int left = 0, above = 0;
+    glfwGetMonitorPos(monitors[i], &left, &above);
+    const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]);
+    if (mode == nullptr || x < left || y < above || x >= left + mode->width || y >= above + mode->height)
+      continue;
+    top = above;
+  }
+  // Where the display counts in larger units than pixels, they start on whole ones.
+  const int pixels = height > 0 ? std::max(1, size().height / height) : 1;
+  return (y - top) * pixels;
 }
 
 void GlfwWindow::beginFrame(bool is_dark) {

@@ -32,6 +32,10 @@ class GlfwWindow {
   [[nodiscard]] bool isClosed() const;
   /// In pixels; 0 while it is minimised.
   [[nodiscard]] PictureSize size() const;
+  /// Row of the monitor that shows the window's uppermost row; 0 where the display does not say it (Wayland).
+  [[nodiscard]] int screenRow() const;
+  /// Greatest width and height of setPicture()'s image.
+  [[nodiscard]] int greatestPicture() const { return greatest_picture_; }
   /// Of texts and distances: 1 on a common screen, 2 on one with twice the pixels for the same length.
   [[nodiscard]] float scale() const { return scale_; }
 
@@ -54,6 +58,7 @@ class GlfwWindow {
   unsigned texture_ = 0;
   PictureSize texture_size_{0, 0};
   float scale_ = 1;
+  int greatest_picture_ = 0;
   bool has_picture_ = false;
   int frames_due_ = 3;
   std::atomic<bool> has_news_{false};

@@ -41,6 +41,9 @@ void drawPart(Session& session) {
     const Vec3 p_mm = 1e3 * body.X_WP.p;
     ImGui::Text("at %.3f, %.3f, %.3f mm", p_mm.x(), p_mm.y(), p_mm.z());
   }
+  ImGui::TextDisabled("near it, where it is shown:");
+  if (const std::optional<MeasuredGaps> measured = session.gaps->of(index))
+    for (const std::string& line : gapLines(session.scene, *measured)) wrapped("  " + line);
   ImGui::TextDisabled("near it, as drawn:");
   for (const std::string& line : session.neighbours.of(part.part.name)) wrapped("  " + line);
 }
@@ -91,6 +94,11 @@ void drawSteps(Session& session) {
                               "##step" + std::to_string(i);
     if (ImGui::Selectable(label.c_str(), i == now) && !session.is_at_work)
       session.view.time_s = chapter.start_s;
+    if (!chapter.reason.empty()) {
+      ImGui::Indent();
+      wrapped(chapter.reason);
+      ImGui::Unindent();
+    }
   }
 }
 
@@ -99,6 +107,15 @@ void drawTicks(const char* name, const scenes::TickTimes& times) {
   ImGui::Text("%s: %llu, p50 %.0f, p99 %.0f µs", name, static_cast<unsigned long long>(times.count),
               times.p50_us, times.p99_us);
   ImGui::Text("  longest %.0f µs, %llu missed", times.max_us, static_cast<unsigned long long>(times.missed));
+}
+
+/// The least distance of the part in hand, where it is shown.
+void drawClearance(const Session& session) {
+  const scenes::BodySnapshot* body = partInHand(session.shown);
+  if (body == nullptr) return;
+  const std::optional<MeasuredGaps> measured = session.gaps->of(body->part);
+  if (!measured) return;
+  wrapped("part in hand: " + gapLines(session.scene, *measured).front());
 }
 
 /// The kinds of device by which a run is made.
@@ -141,6 +158,7 @@ void drawRun(Session& session) {
   if (!ImGui::CollapsingHeader("Run", ImGuiTreeNodeFlags_DefaultOpen)) return;
   if (session.is_recording) {
     ImGui::TextDisabled("a recording");
+    drawClearance(session);
     return;
   }
   drawGuidance(session.view);
@@ -162,6 +180,11 @@ void drawRun(Session& session) {
   wrapped(status.doing);
   ImGui::ProgressBar(static_cast<float>(status.share), ImVec2(-1, 0));
   ImGui::Text("%.3f s, %zu physics steps", status.time_s, status.steps);
+  if (session.figures.physics_steps > 0)
+    for (const std::string& line :
+         figureLines(session.figures, session.figures_before, session.figures_s - session.figures_before_s))
+      wrapped(line);
+  drawClearance(session);
   if (session.run->isByClock()) {
     ImGui::TextDisabled("by the clock, with %s", session.run_hand.c_str());
   } else {
@@ -239,6 +262,20 @@ void drawKeys(ViewState& view, const PictureSize& size) {
 }
 
 }  // namespace
+
+void drawFailure(const Session& session) {
+  if (session.picture_failure.empty()) return;
+  const float width_px = 0.8f * static_cast<float>(session.area.size.width);
+  ImGui::SetNextWindowPos({session.area.x + 0.5f * static_cast<float>(session.area.size.width),
+                           session.area.y + 0.5f * static_cast<float>(session.area.size.height)},
+                          ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({width_px, 0});
+  ImGui::Begin("no picture", nullptr, kFixed | ImGuiWindowFlags_NoTitleBar);
+  wrapped(session.picture_failure);
+  const bool runs = session.run && !session.status.is_over;
+  ImGui::TextDisabled("%s", runs ? "The run goes on. The picture is tried again." : "It is tried again.");
+  ImGui::End();
+}
 
 void drawPanels(Session& session, const GlfwWindow& window) {
   const PictureSize size = window.size();

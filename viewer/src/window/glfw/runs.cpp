@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "vps_device/metronome.h"
 #include "vps_viewer/verdict_words.h"
 #include "window/glfw/session.h"
 
@@ -26,14 +27,23 @@ std::string chapterName(const Session& session, std::size_t step) {
   return std::to_string(step + 1) + " " + session.scene.parts[session.scene.steps[step].part].part.name;
 }
 
+void tellVerdict(Chapter& chapter, const scenes::StepResult& step) {
+  chapter.verdict = words(step.verdict);
+  chapter.reason = step.reason.empty() ? step.failure_reason : step.reason;
+}
+
 /// The time axis of what begins now.
 void beginLine(Session& session) {
   Timeline& line = session.run_line;
   line = {};
   line.chapters = {{session.work.isFree() ? "free assembly" : "before the first step", 0, ""}};
-  for (std::size_t i = 0; i < session.before.size(); ++i)
-    line.chapters.push_back({chapterName(session, i), 0, words(session.before[i].verdict)});
-  line.curves = {{"force", "N", {}}, {"torque", "N m", {}}, {"depth", "um", {}}, {"contacts", "", {}}};
+  for (std::size_t i = 0; i < session.before.size(); ++i) {
+    line.chapters.push_back({chapterName(session, i), 0, ""});
+    tellVerdict(line.chapters.back(), session.before[i]);
+  }
+  line.curves = liveCurves();
+  session.figures = session.figures_before = {};
+  session.figures_s = session.figures_before_s = device::monotonicSeconds();
   session.view.time_s = 0;
   session.view.is_playing = false;
 }
@@ -127,17 +137,20 @@ void takeOrPutDown(Session& session, GlfwWindow& window) {
   rest(session);
 }
 
+/// Least distance of the part in hand to another one, as last measured.
+std::optional<double> clearanceOf(const Session& session, const scenes::Snapshot& shot) {
+  const scenes::BodySnapshot* body = partInHand(shot);
+  if (body == nullptr) return {};
+  const std::optional<MeasuredGaps> measured = session.gaps->of(body->part);
+  constexpr double kOld_s = 0.5;
+  if (!measured || measured->gaps.empty() || shot.time_s - measured->time_s > kOld_s) return {};
+  return measured->gaps.front().distance_m;
+}
+
 void addToCurves(Session& session, const scenes::Snapshot& shot) {
   Timeline& line = session.run_line;
-  double depth_m = 0;
-  for (const scenes::ContactMark& mark : shot.contacts) depth_m = std::max(depth_m, mark.depth_m);
-  line.time_s.push_back(shot.time_s);
-  line.end_s = session.view.time_s = shot.time_s;
-  const double values[] = {shot.has_hand ? shot.F_hand_W.f.norm() : 0,
-                           shot.has_hand ? shot.F_hand_W.tau.norm() : 0, depth_m * 1e6,
-                           static_cast<double>(shot.contacts.size())};
-  for (std::size_t i = 0; i < line.curves.size(); ++i)
-    line.curves[i].values.push_back(static_cast<float>(values[i]));
+  addInstant(line, shot, clearanceOf(session, shot));
+  session.view.time_s = shot.time_s;
   const bool is_new_step = shot.step >= 0 && static_cast<std::size_t>(shot.step) + 1 >= line.chapters.size();
   if (!is_new_step) return;
   const std::string name = session.work.isFree() ? session.scene.parts[shot.target_part].part.name
@@ -156,7 +169,24 @@ void noteSteps(Session& session) {
   }
   addEarlierSteps(session.before, session.scene.steps.size(), result);
   for (std::size_t i = 0; i < result.steps.size() && i + 1 < session.run_line.chapters.size(); ++i)
-    session.run_line.chapters[i + 1].verdict = words(result.steps[i].verdict);
+    tellVerdict(session.run_line.chapters[i + 1], result.steps[i]);
+}
+
+/// Rates are those of the last second.
+void keepFigures(Session& session, const scenes::RunFigures& figures) {
+  constexpr double kRate_s = 1;
+  const double now_s = device::monotonicSeconds();
+  if (session.figures.ticks == 0) {  // the first ones: before them models were built
+    session.figures = session.figures_before = figures;
+    session.figures_s = session.figures_before_s = now_s;
+  }
+  if (now_s - session.figures_before_s >= 2 * kRate_s) {
+    session.figures_before = session.figures;
+    session.figures_before_s = session.figures_s;
+  }
+  if (now_s - session.figures_s < kRate_s) return;
+  session.figures = figures;
+  session.figures_s = now_s;
 }
 
 }  // namespace
@@ -174,10 +204,19 @@ void followWork(Session& session) {
   if (std::optional<scenes::Snapshot> shot = session.run->take()) {
     if (shot->step >= 0) shot->step += static_cast<int>(session.first_step);
     if (!session.status.is_over) addToCurves(session, *shot);
+    if (shot->figures) keepFigures(session, *shot->figures);
     session.drag.watch(*shot);
     session.shown = std::move(*shot);
     session.run->ask();
   }
+}
+
+void watchGaps(Session& session) {
+  std::vector<std::size_t> parts;
+  if (const scenes::BodySnapshot* body = partInHand(session.shown)) parts.push_back(body->part);
+  if (session.view.picked && std::ranges::find(parts, session.view.picked->part) == parts.end())
+    parts.push_back(session.view.picked->part);
+  session.gaps->request(session.shown, std::move(parts));
 }
 
 void carryOutWork(Session& session, GlfwWindow& window) {

@@ -9,6 +9,7 @@
 
 #include "vps_scenes/tracked_heads.h"
 #include "vps_viewer/window.h"
+#include "window/gap_watch.h"
 #include "window/glfw/glfw_window.h"
 #include "window/hand_drag.h"
 #include "window/hand_work.h"
@@ -31,6 +32,7 @@ struct Session {
   Timeline line;  ///< the tour or the recording
   bool is_recording = false;
   RenderScene drawn;
+  ModelView models;  ///< whose meshes `drawn` has, where they are shown
   ViewState view;
   PictureArea area;
   scenes::Snapshot shown;   ///< before it is exploded
@@ -47,9 +49,13 @@ struct Session {
   std::string hand;                             ///< kind of device that moves the part in the next run
   HandDrag drag;                                ///< of the mouse as a device
   Neighbours neighbours;
-  std::optional<scenes::TrackedHeads> heads;  ///< of the display file
-  std::deque<std::string> messages;           ///< of the window itself, the newest first
+  std::unique_ptr<GapWatch> gaps;              ///< while the window is open, which it wakes
+  scenes::RunFigures figures, figures_before;  ///< of the run, now and where its rates begin
+  double figures_s = 0, figures_before_s = 0;  ///< by the clock
+  std::optional<scenes::TrackedHeads> heads;   ///< of the display file
+  std::deque<std::string> messages;            ///< of the window itself, the newest first
   std::string drawn_by;
+  std::string picture_failure;  ///< why there is no picture, in words; empty: there is one
   double picture_ms = 0;
   bool is_draft = false;
   std::size_t pictures = 0;
@@ -59,6 +65,7 @@ struct Session {
       : scene(scene),
         options(options),
         drawn(drawnMeshes(scene)),
+        models(scene, options.show, drawn),
         work(scene),
         hand(options.hand.empty() ? scene.device.kind : options.hand),
         drag(scene.device.scale),
@@ -76,10 +83,14 @@ struct Session {
   [[nodiscard]] Box box_W() const { return snapshotBounds(drawn, placed); }
   /// Whether the mouse moves the part in hand.
   [[nodiscard]] bool isByMouse() const { return run && !status.is_over && run_hand == "mouse"; }
+  /// Whether a person moves it, by whatever device: those that are known push nothing back.
+  [[nodiscard]] bool isByHand() const { return run && !status.is_over && isByPerson(run_hand); }
   [[nodiscard]] const Timeline& shownLine() const { return is_at_work ? run_line : line; }
 };
 
 // runs.cpp
+/// Asks for the distances of the picked part and of the part in hand at the poses that are shown.
+void watchGaps(Session& session);
 /// Carries out what the view wants of runs and of what has been put down: start, stop, undo, redo, take.
 void carryOutWork(Session& session, GlfwWindow& window);
 /// Takes over what is new from the run, or shows what has been put down.
@@ -88,6 +99,8 @@ void followWork(Session& session);
 // panels.cpp
 /// The panel at the right, the time axis below, and the list of keys. Sets session.area to what they leave.
 void drawPanels(Session& session, const GlfwWindow& window);
+/// Over the picture: why there is none.
+void drawFailure(const Session& session);
 // plots.cpp
 /// The curves of the line over time, with a mark at now_s. A click sets *now_s.
 void drawPlots(const Timeline& line, double* now_s, float scale, bool may_seek);
@@ -98,8 +111,8 @@ void useMouse(Session& session);
 /// Over the picture: the planned path of the part in hand, and with axis snap the axis.
 void drawPathMarks(const Session& session);
 // hand_marks.cpp
-/// Over the picture: the spring from the grabbed point to the cursor, with the force's size as colour and
-/// number.
+/// Over the picture: the force on a person's hand as colour and number, and the spring from the grabbed point
+/// to the mouse's cursor.
 void drawHandMarks(const Session& session);
 
 }  // namespace vps::viewer::inline v0

@@ -16,8 +16,7 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-// Larger windows show a smaller picture, stretched: the greatest texture that every driver of OpenGL 3.3
-// takes.
+// Larger windows show a smaller picture, stretched: 4096 x 4096 with their samples are a GiB of memory.
 constexpr int kGreatestPicture = 4096;
 constexpr double kFrame_s = 1.0 / 60, kIdle_s = 0.5;
 
@@ -34,6 +33,9 @@ void typed(Session& session, const std::string& key) {
 }
 
 void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
+  const std::string failure = worker.failure();
+  if (failure != session.picture_failure && !failure.empty()) session.say(failure);
+  session.picture_failure = failure;
   std::optional<DrawnPicture> picture = worker.take();
   if (!picture) return;
   window.setPicture(picture->image);
@@ -55,14 +57,28 @@ std::optional<EyePair> eyesOf(Session& session, PictureSize size) {
                         double(size.width) / size.height);
 }
 
-void askForPicture(Session& session, PictureWorker& worker) {
+/// Stretched rows would not keep the eyes apart, so a window that is larger than a texture has no such mode.
+StereoMode stereoFor(Session& session, const GlfwWindow& window) {
+  const int most = window.greatestPicture();
+  if (session.view.stereo != StereoMode::Interleaved ||
+      (session.area.size.width <= most && session.area.size.height <= most))
+    return session.view.stereo;
+  session.say("interleaved stereo needs a window of at most " + std::to_string(most) + " pixels across");
+  return session.view.stereo = StereoMode::Mono;
+}
+
+void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& window) {
   const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
+  const StereoMode stereo = stereoFor(session, window);
   const std::optional<EyePair> eyes = eyesOf(session, size);
   if (session.heads) session.view.camera = middleEye(*eyes);
-  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, session.view.stereo, eyes};
+  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, stereo, eyes, {}};
+  if (stereo == StereoMode::Interleaved)
+    wanted.rows = {session.area.size.width, session.area.size.height,
+                   window.screenRow() + static_cast<int>(session.area.y)};
   wanted.options.width = size.width;
   wanted.options.height = size.height;
   worker.request(wanted);
@@ -87,15 +103,15 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
   drawPanels(session, window);
   session.view.size = session.area.size;
   useMouse(session);
-  askForPicture(session, worker);
+  askForPicture(session, worker, window);
   if (window.hasPicture())
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
                                               session.area.y + static_cast<float>(session.area.size.height)});
-  if (session.view.stereo == StereoMode::Mono) {  // marks over the picture have no depth
-    drawPathMarks(session);
-    drawHandMarks(session);
-  }
+  if (session.view.stereo == StereoMode::Mono)
+    drawPathMarks(session);  // lines over the picture have no depth
+  drawHandMarks(session);
+  drawFailure(session);
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
   window.present();
@@ -108,10 +124,21 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.camera = cameraFor(standardViews()[0], session.box_W(), size);
   session.view.draw.show_legend = false;
   session.view.draw.supersampling = 1;
+  // Each point and each cube has edges of its own, which would darken the picture.
+  if (!session.options.show.isNone()) session.view.draw.show_edges = false;
   session.view.is_dark = session.options.is_dark;
   session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
   session.view.wants_run = session.options.runs;
   session.view.stereo = session.options.stereo;
+  // What wakes the window ends before it, whatever ends the loop.
+  const struct Ending {
+    Session& session;
+    ~Ending() {
+      session.run.reset();
+      session.gaps.reset();
+    }
+  } ending{session};
+  session.gaps = std::make_unique<GapWatch>(session.scene, [&window] { window.wake(); });
   PictureWorker worker(session.drawn, [&window] { window.wake(); });
   Clock::time_point last = Clock::now();
   bool is_fitted = false;
@@ -127,6 +154,7 @@ void loop(Session& session, GlfwWindow& window) {
       followWork(session);
     else
       session.shown = session.line.at(session.view.time_s);
+    watchGaps(session);
     takePicture(session, worker, window);
     const PictureSize size_now = window.size();
     if (size_now.width <= 0 || size_now.height <= 0) continue;  // minimised
@@ -134,7 +162,6 @@ void loop(Session& session, GlfwWindow& window) {
     if (!std::exchange(is_fitted, true))
       session.view.camera = cameraFor(standardViews()[0], session.box_W(), session.area.size);
   }
-  session.run.reset();  // before the window that it wakes
 }
 
 void openAndLoop(Session& session, const std::string& title) {

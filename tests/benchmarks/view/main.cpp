@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What pictures and a window cost, as one table. Processor time is that of all threads of this process, which
+// other programs on the machine change little; the load average is printed, so that a busy machine is seen.
+//
+//   vps_bench_view           everything, about a minute
+//   vps_bench_view --check   small, and tests only that pictures show what they should
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "vps_device/device.h"
+#include "vps_viewer/renderer.h"
+#include "window/camera_motion.h"
+#include "window/live_run.h"
+#include "window/picture_worker.h"
+#include "window/timeline.h"
+
+namespace {
+
+using namespace vps;
+using namespace vps::viewer;
+
+double cpuSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+double wallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+double loadAverage() {
+  double load = 0;
+  return getloadavg(&load, 1) == 1 ? load : 0;
+}
+
+/// Median and greatest of several measurements.
+struct Row {
+  std::string what, bar;
+  std::vector<double> cpu_s, wall_s;
+};
+void print(const Row& row) {
+  const auto median = [](std::vector<double> values) {
+    std::ranges::sort(values);
+    return values[values.size() / 2];
+  };
+  std::printf("%-58s %8.3f %8.3f %8.3f   %s\n", row.what.c_str(), median(row.cpu_s),
+              *std::ranges::max_element(row.cpu_s), median(row.wall_s), row.bar.c_str());
+}
+template <class Work>
+void time(Row& row, Work work) {
+  const double cpu_s = cpuSeconds(), wall_s = wallSeconds();
+  work();
+  row.cpu_s.push_back(cpuSeconds() - cpu_s);
+  row.wall_s.push_back(wallSeconds() - wall_s);
+}
+
+/// Four balls and their plate: curved, in front of each other, with shadows.
+struct Balls {
+  Mesh ball, plate = makeBox({0.5, 0.5, 0.02});
+  RenderScene drawn;
+  scenes::Snapshot shot;
+
+  explicit Balls(int subdivisions) : ball(makeSphere(0.06, subdivisions)) {
+    drawn = {{&plate}};
+    shot.bodies = {{0, Pose::translation(Vec3(0, 0, -0.07)), scenes::BodyRole::Mounted}};
+    for (int i = 0; i < 6; ++i) {
+      drawn.push_back({&ball});
+      shot.bodies.push_back({drawn.size() - 1, Pose::translation(Vec3(0.13 * (i % 3 - 1), 0.15 * (i / 3), 0)),
+                             scenes::BodyRole::Mounted});
+    }
+  }
+  [[nodiscard]] std::size_t triangles() const { return plate.triangles.size() + 6 * ball.triangles.size(); }
+};
+
+DrawOptions sized(bool is_draft) {
+  DrawOptions options;
+  options.width = 1280;
+  options.height = 720;
+  options.supersampling = 1;  // besides the 4 samples
+  options.show_legend = false;
+  options.is_draft = is_draft;
+  return options;
+}
+
+/// False where the picture does not show the scene.
+bool timePictures(int subdivisions, int repeats) {
+  const Balls balls(subdivisions);
+  Renderer renderer(balls.drawn);
+  Camera camera = frameScene(snapshotBounds(balls.drawn, balls.shot), Vec3(1, -1, 1), 0.5, 1280.0 / 720);
+  std::printf("drawn by %s\n", renderer.description().c_str());
+  bool shows = true;
+  for (const bool is_draft : {false, true}) {
+    char what[80];
+    std::snprintf(what, sizeof what, "%s of %zu triangles, 1280 x 720, 4 samples",
+                  is_draft ? "draft" : "picture", balls.triangles());
+    Row row{what, is_draft ? "" : "bar 0.25", {}, {}};
+    static_cast<void>(renderer.render(balls.shot, camera, sized(is_draft)));  // shaders are compiled
+    for (int i = 0; i < repeats; ++i) {
+      camera.eye_W.x() += 1e-3;  // as a view that turns
+      time(row, [&] {
+        const Image image = renderer.render(balls.shot, camera, sized(is_draft));
+        std::size_t dark = 0;
+        for (std::size_t k = 0; k < image.rgb.size(); k += 3) dark += image.rgb[k] < 200;
+        shows = shows && dark > image.rgb.size() / 3 / 20;
+      });
+    }
+    print(row);
+  }
+  return shows;
+}
+
+void timeFirstPicture(int repeats) {
+  Row row{"first picture of the demo: scene, renderer, draft", "bar 1", {}, {}};
+  for (int i = 0; i < repeats; ++i)
+    time(row, [] {
+      const scenes::Scene scene = scenes::loadScene(VPS_SCENE_FOLDER "/bearing_block/scene.toml");
+      const RenderScene drawn = drawnMeshes(scene);
+      const scenes::Snapshot shot = sceneTour(scene).at(0);
+      Renderer renderer(drawn);
+      const Camera camera = cameraFor(standardViews()[0], snapshotBounds(drawn, shot), {1280, 720});
+      static_cast<void>(renderer.render(shot, camera, sized(true)));
+    });
+  print(row);
+}
+
+/// A handle that rests, in a person's hand.
+class Resting final : public device::Device {
+ public:
+  device::DeviceSample read() noexcept override {
+    device::DeviceSample sample;
+    sample.time_s = 1e-3 * static_cast<double>(++reads_);
+    return sample;
+  }
+  void write(const Wrench& /*F_Ho_D*/) noexcept override {}
+  [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {.peak_force_N = 10}; }
+  [[nodiscard]] std::string_view name() const noexcept override { return "resting"; }
+
+ private:
+  long reads_ = 0;
+};
+
+/// What the haptic loop misses in some seconds by the clock, with pictures drawn as a window does, or
+/// without.
+void countMissed(bool is_watched, double seconds) {
+  const scenes::Scene scene = scenes::loadScene(VPS_SCENE_FOLDER "/peg_in_hole/scene.toml");
+  const RenderScene drawn = drawnMeshes(scene);
+  LiveSettings settings;
+  settings.has_sound = false;
+  settings.device = [] { return std::make_unique<Resting>(); };
+  std::optional<PictureWorker> worker;
+  PictureRequest wanted;
+  if (is_watched) worker.emplace(drawn, [] {});
+  wanted.options = sized(false);
+  LiveRun run(scene, settings, [] {});
+  run.ask();
+  std::optional<scenes::RunFigures> first, last;
+  double end_s = 1e300;
+  while (wallSeconds() < end_s && !run.status().is_over) {
+    if (std::optional<scenes::Snapshot> shot = run.take()) {
+      if (shot->figures && !first) {
+        first = shot->figures;
+        end_s = wallSeconds() + seconds;
+      }
+      if (shot->figures) last = shot->figures;
+      if (worker) {
+        wanted.snapshot = std::move(*shot);
+        wanted.camera = cameraFor(standardViews()[0], snapshotBounds(drawn, wanted.snapshot), {1280, 720});
+        wanted.camera.eye_W.x() += 1e-4 * static_cast<double>(worker->count() % 2);  // each one is drawn
+        worker->request(wanted);
+        static_cast<void>(worker->take());
+      }
+      run.ask();
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (!first || !last) return void(std::printf("the run did not begin: %s\n", run.status().error.c_str()));
+  std::printf("haptic loop %s: %llu of %llu ticks missed, p99 %.0f us%s\n",
+              is_watched ? "with a window's pictures" : "alone",
+              static_cast<unsigned long long>(last->missed - first->missed),
+              static_cast<unsigned long long>(last->ticks - first->ticks), last->tick_p99_us,
+              worker ? (", " + std::to_string(worker->count()) + " pictures").c_str() : "");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // rows appear as they are measured
+  const bool is_check = count > 1 && std::strcmp(arguments[1], "--check") == 0;
+  std::printf("load average %.1f on %u processors\n", loadAverage(), std::thread::hardware_concurrency());
+  std::printf("%-58s %8s %8s %8s\n", "", "cpu [s]", "most", "wall [s]");
+  // 6 balls of 20 * 4^6 triangles.
+  const bool shows = timePictures(is_check ? 3 : 6, is_check ? 1 : 7);
+  timeFirstPicture(is_check ? 1 : 3);
+  if (!is_check)
+    for (const bool is_watched : {false, true}) countMissed(is_watched, 10);
+  std::printf("load average %.1f\n", loadAverage());
+  if (!shows) std::printf("a picture does not show the scene\n");
+  return shows ? 0 : 1;
+}
