@@ -56,9 +56,9 @@ void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& p
       throwIfStopped();
       std::string& file = file_of[part.part.name];
       if (file.empty()) {
-        file = partFileName(part.part.name, taken);
+        file = partFileName(part.part.name, meshExtension(part.part.mesh), taken);
         requireNotRead((std::filesystem::path(given.out) / file).string(), read);
-        out.write(file, stlBytes(part.part.mesh));
+        out.write(file, meshBytes(part.part.mesh));
       }
       files.push_back(file);
     }
