@@ -73,6 +73,7 @@ std::string objOf(const std::vector<NamedBox>& boxes) {
   constexpr std::array<std::array<int, 4>, 6> kFaces = {
       {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
   std::ostringstream out;
+  out.precision(12);
   int first = 1;
   std::string name;
   for (const NamedBox& box : boxes) {
@@ -109,6 +110,94 @@ TEST_F(Plan, ACadFileIsPlannedAndAssembledInOneGoAsItsSceneIs) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "once/report.html"));
   EXPECT_NE(once.out.find("all parts planned"), std::string::npos) << once.out;
   EXPECT_EQ(run("assemble once/plan/scene.toml --units mm --out other").status, 2);
+}
+
+// As `vps import` takes them.
+TEST_F(Plan, SeveralCadFilesAreOneAssemblyForPlanAssembleAndCheck) {
+  write("plate.obj", objOf({kPlate}));
+  write("block.obj", objOf({{"block", {20, 20, 10}, {40, 40, 30}}}));
+  const Ran plan = run("plan plate.obj block.obj --units mm -o planned");
+  ASSERT_EQ(plan.status, 0) << plan.out << plan.err;
+  EXPECT_NE(slurp(folder_ / "planned/scene.toml").find("\"plate.obj\", \"block.obj\""), std::string::npos);
+  const Ran check = run("check plate.obj block.obj --units mm --json check.json --no-play");
+  ASSERT_EQ(check.status, 0) << check.out << check.err;
+  EXPECT_EQ(json::parse(slurp(folder_ / "check.json"))["parts"].size(), 2U);
+  const Ran both =
+      run("assemble plate.obj block.obj --units mm --out run --no-pictures --base block --bench");
+  ASSERT_NE(both.status, 2) << both.out << both.err;
+  const json plan_json = json::parse(slurp(folder_ / "run/plan/plan.json"));
+  EXPECT_EQ(plan_json["assemblies"][0]["fixed"][0], "block");
+  EXPECT_EQ(plan_json["assemblies"][0]["steps"][0]["is_on_bench"], true) << plan_json.dump(1);
+
+  expectRefused("check plate.obj scene.toml --units mm", "is a scene, which is given alone");
+  expectRefused("plan --verify planned/scene.toml block.obj", "--verify checks one scene");
+  expectRefused("assemble planned/scene.toml --out again --bench", "leave out --base, --bench");
+}
+
+TEST_F(Plan, PartsFarFromTheirOriginKeepTheirGap) {
+  write("far.obj", objOf({{"plate", {300000, 0, 0}, {300060, 60, 10}},
+                          {"post", {300010, 10, 10}, {300020, 20, 30}},
+                          {"block", {300020.04, 10, 10}, {300040, 40, 30}}}));
+  ASSERT_EQ(run("plan far.obj --units mm -o planned").status, 0);
+  const Ran check = run("check planned/scene.toml --no-play --json check.json");
+  ASSERT_EQ(check.status, 0) << check.out << check.err;
+  const json found = json::parse(slurp(folder_ / "check.json"));
+  bool is_found = false;
+  for (const json& pair : found["pairs"])
+    if ((pair["a"] == "post" && pair["b"] == "block") || (pair["a"] == "block" && pair["b"] == "post")) {
+      is_found = true;
+      // Floats about the middle of parts of 60 mm.
+      EXPECT_NEAR(pair["clearance_m"].get<double>(), 40e-6, 2 * 0.06 * 0x1p-24);
+    }
+  EXPECT_TRUE(is_found) << found["pairs"].dump(1);
+}
+
+// Stopped later and later until it is in the middle of it.
+TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
+  std::vector<NamedBox> boxes = {kPlate};
+  for (int i = 0; i < 120; ++i) {
+    const double x = 5 * (i % 11), y = 5 * (i / 11);
+    boxes.push_back({"block " + std::to_string(i), {x, y, 10}, {x + 4.9, y + 4.9, 14.0 + i % 3}});
+  }
+  write("many.obj", objOf(boxes));
+  ASSERT_EQ(run("plan many.obj --units mm -o whole").status, 0);
+  bool is_stopped = false;
+  for (double s = 0.05; !is_stopped && s < 60; s *= 1.15) {
+    std::filesystem::remove_all(folder_ / "planned");
+    const std::string seconds = std::to_string(s);
+    const std::string command = "cd '" + folder_.string() + "' && timeout -s INT " + seconds +
+                                " '" VPS_PROGRAM
+                                "' plan many.obj --units mm -o planned >out.txt 2>&1 </dev/null";
+    is_stopped = std::system(command.c_str()) != 0 && fs::exists(folder_ / "planned/unfinished_plan.json");
+    ASSERT_FALSE(fs::exists(folder_ / "planned/scene.toml")) << "it was never stopped while it took apart";
+  }
+  ASSERT_TRUE(is_stopped);
+  EXPECT_NE(slurp(folder_ / "out.txt").find("go on with --resume"), std::string::npos);
+  const json found = json::parse(slurp(folder_ / "planned/unfinished_plan.json"));
+  EXPECT_FALSE(found["taken_off"].empty());
+
+  expectRefused("plan many.obj --units mm -o planned --resume --base 'block 3'",
+                "is of other parts or another base");
+  ASSERT_EQ(run("plan many.obj --units mm -o planned --resume").status, 0);
+  for (const char* file : {"scene.toml", "plan.dot", "plan.svg"})
+    EXPECT_EQ(slurp(folder_ / "planned" / file), slurp(folder_ / "whole" / file)) << file;
+  EXPECT_FALSE(fs::exists(folder_ / "planned/unfinished_plan.json"));
+}
+
+TEST_F(Plan, TheTableOfAFolderHasARowForEachAssembly) {
+  fs::create_directories(folder_ / "cad/two");
+  write("cad/two/a.obj", objOf({kPlate}));
+  write("cad/two/b.obj", objOf({{"block", {20, 20, 10}, {40, 40, 30}}}));
+  write("cad/c.step", "no STEP");
+  const std::string command = "cd '" + folder_.string() +
+                              "' && '" VPS_SOURCE_DIR
+                              "/tests/cad_table/vps_bench_cad' cad --plan-only --vps '" VPS_PROGRAM
+                              "' >table.txt 2>table.err";
+  const int status = std::system(command.c_str());
+  const std::string table = slurp(folder_ / "table.txt");
+  EXPECT_EQ(WEXITSTATUS(status), 1) << table << slurp(folder_ / "table.err");  // of c.step
+  EXPECT_NE(table.find("| two | 2 | 1 |  |"), std::string::npos) << table;
+  EXPECT_NE(table.find("| c.step |"), std::string::npos) << table;
 }
 
 // A tongue in its groove: walls keep both from parting, so that they are joined before they go into the

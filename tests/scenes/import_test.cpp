@@ -13,6 +13,7 @@
 #include <iterator>
 #include <random>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -22,7 +23,9 @@
 #include "import/own_process.h"
 #include "import/part_names.h"
 #include "import/readers.h"
+#include "support/stl_box.h"
 #include "vps/load_error.h"
+#include "vps_scenes/check.h"
 
 namespace vps::scenes {
 namespace {
@@ -290,6 +293,89 @@ TEST(ImportObj, AGroupForEachFaceIsOneClosedPart) {
   const ImportedCad cad = importCad(folder.write("faces.obj", text).string(), inUnit("m"));
   ASSERT_EQ(cad.parts.size(), 1u);
   EXPECT_TRUE(checkMesh(cad.parts[0].mesh).isClosed());
+}
+
+TEST(ImportObj, ObjectsWithTheSameNameAreAsManyParts) {
+  const Folder folder;
+  std::string text = cubeObj(1, "bolt");
+  text += cubeObj(1, "bolt", 9, 5);
+  text += cubeObj(1, "nut", 17, 10);
+  const ImportedCad cad = importCad(folder.write("same.obj", text).string(), inUnit("m"));
+  ASSERT_EQ(cad.parts.size(), 3U);
+  EXPECT_EQ(cad.parts[0].name, "bolt");
+  EXPECT_EQ(cad.parts[1].name, "bolt_2");
+  EXPECT_EQ(cad.parts[2].name, "nut");
+  for (const ImportedPart& part : cad.parts) EXPECT_NEAR(volume(part), 1, 1e-6);
+}
+
+TEST(ImportObj, NamesKeepTheirSpacesAndGroupsThatGoOnAreOnePart) {
+  const Folder folder;
+  std::string text = cubeObj(1, "head cap  M8");
+  text += cubeObj(1, "head cap  M10\r", 9, 5);
+  text += "g all of it\nf 1 2 3\ng all of it\nf 1 3 4\n";
+  const std::string grouped = "g side plate\n" + cubeObj(1, "x").erase(0, 3);
+  const ImportedCad cad = importCad(folder.write("spaces.obj", text).string(), inUnit("m"));
+  ASSERT_EQ(cad.parts.size(), 3U);
+  EXPECT_EQ(cad.parts[0].name, "head cap  M8");
+  EXPECT_EQ(cad.parts[1].name, "head cap  M10");
+  EXPECT_EQ(cad.parts[2].name, "all of it");
+  EXPECT_EQ(cad.parts[2].mesh.triangles.size(), 2U);
+  EXPECT_EQ(importCad(folder.write("group.obj", grouped).string(), inUnit("m")).parts.at(0).name,
+            "side plate");
+}
+
+/// Two cubes of 10 mm above each other with a gap of 40 um, 300 m from the origin; exact in decimals.
+std::string farCubesObj() {
+  constexpr int kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  std::ostringstream text;
+  for (int cube = 0; cube < 2; ++cube) {
+    text << "o cube" << cube << '\n';
+    for (int k = 0; k < 8; ++k)
+      text << "v " << 300000 + 10 * (k & 1) << ' ' << 10 * (k >> 1 & 1) << ' ' << cube * 10 + 10 * (k >> 2)
+           << (cube == 1 ? ".04\n" : "\n");
+    for (const auto& face : kFaces) {
+      text << 'f';
+      for (const int k : face) text << ' ' << 8 * cube + 1 + k;
+      text << '\n';
+    }
+  }
+  return text.str();
+}
+
+TEST(ImportFar, TextKeepsAGapThatFloatsAtThatPlaceDoNotHave) {
+  const Folder folder;
+  std::string text = farCubesObj();
+  const ImportedCad cad = importCad(folder.write("far.obj", text).string(), inUnit("mm"));
+  ASSERT_EQ(cad.parts.size(), 2U);
+  EXPECT_TRUE(cad.warnings.empty());
+  const CheckResult found = checkAssembly("far", drawnParts(cad), {.has_fits = false, .has_play = false});
+  ASSERT_EQ(found.pairs.size(), 1U);
+  EXPECT_NEAR(found.pairs[0].clearance_m, 40e-6, 2 * 20e-3 * 0x1p-24);  // floats about the middle
+  EXPECT_EQ(found.pairs[0].state, PairState::Apart);
+}
+
+TEST(ImportFar, TheFloatsOfABinaryFileCountAsErrorAndAreToldOf) {
+  const Folder folder;
+  const double at_m = 300;
+  std::vector<DrawnPart> parts;
+  std::vector<std::string> warnings;
+  for (const double z_m : {0.0, 0.01 + 20e-6}) {
+    const Mesh box = transformed(makeBox(Vec3(0.01, 0.01, 0.01)), Pose::translation(Vec3(0, 0, at_m + z_m)));
+    const ImportedCad cad = importCad(folder.write("far.stl", stlOf(box)).string(), inUnit("m"));
+    parts.push_back(drawnParts(cad).at(0));
+    parts.back().name = std::to_string(z_m);
+    warnings = cad.warnings;
+    // Half of the last of 24 bits at 300 m: 2^-24 * 300 m.
+    EXPECT_NEAR(cad.parts[0].rounding_m, 17.9e-6, 0.1e-6);
+  }
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("300 m from the origin of its file"), std::string::npos) << warnings[0];
+  const CheckResult found = checkAssembly("far", parts, {.has_fits = false, .has_play = false});
+  ASSERT_EQ(found.pairs.size(), 1U);
+  // The gap of 20 um is within the error of both: none can be told.
+  EXPECT_EQ(found.pairs[0].state, PairState::Contact);
+  EXPECT_LE(std::abs(found.pairs[0].clearance_m - 20e-6), found.pairs[0].error_m);
 }
 
 TEST(ImportObj, AnInvertedMeshIsFlippedWithAWarning) {

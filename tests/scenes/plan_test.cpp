@@ -354,6 +354,134 @@ TEST(Plan, AnyNumberOfThreadsGivesTheSamePlan) {
                 four.assemblies[a].steps[i].before_W.front().p);
 }
 
+TEST(Plan, ContactsSayWhoTouchesWhomAndWhatStopsWhat) {
+  const Mesh cube = makeBox(Vec3::Constant(0.02));
+  const PlanResult plan =
+      planAssembly("test", {at("left", cube, {-0.03, 0, 0.015}), at("right", cube, {0.03, 0, 0.015}),
+                            at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})});
+  ASSERT_EQ(plan.contacts.size(), 2U);  // the cubes are 40 mm apart
+  for (const PlannedContact& contact : plan.contacts) {
+    EXPECT_EQ(contact.b, "plate");
+    EXPECT_EQ(contact.state, PairState::Contact);
+    // Of the six axes the plate stops a cube only downwards.
+    ASSERT_EQ(contact.blocked_W.size(), 1U);
+    EXPECT_EQ(contact.blocked_W.front(), Vec3(0, 0, -1));
+    EXPECT_EQ(contact.free_W.size(), 5U);
+  }
+  ASSERT_EQ(plan.equal.size(), 1U);
+  EXPECT_EQ(plan.equal.front().names, (Names{"left", "right"}));
+}
+
+TEST(Plan, ItsPictureHasEachStepRightOfWhatComesBefore) {
+  const std::vector<DrawnPart> parts = {at("core <1>", makeBox(Vec3::Constant(0.008)), {0, 0, 0.007}),
+                                        at("cup 2", cup(0.02, 0.001), {0, 0, 0.002}),
+                                        at("cup 1", cup(0.01, 0.0005), {0, 0, 0.003})};
+  const std::string svg = planSvg(planAssembly("cups & core", parts));
+  double last = -1;
+  for (const char* name : {">cup 2<", ">1 cup 1<", ">2 core &lt;1&gt;<"}) {
+    const std::size_t text = svg.find(name);
+    ASSERT_NE(text, std::string::npos) << name << "\n" << svg;
+    const double x = std::stod(svg.substr(svg.rfind("<text x='", text) + 9));
+    EXPECT_GT(x, last) << name;
+    last = x;
+  }
+  EXPECT_NE(svg.find("cups &amp; core"), std::string::npos);
+}
+
+TEST(Plan, StoppedInTheMiddleAndGoneOnWithIsTheSame) {
+  const std::vector<DrawnPart> parts = {
+      at("core", makeBox(Vec3::Constant(0.008)), {0, 0, 0.007}), at("cup 2", cup(0.02, 0.001), {0, 0, 0.002}),
+      at("cup 3", cup(0.03, 0.001), {0, 0, 0.001}), at("cup 1", cup(0.01, 0.0005), {0, 0, 0.003}),
+      at("cup 4", cup(0.04, 0.001), {0, 0, 0})};
+  struct Stop {};
+  PlanFindings found;
+  PlanSettings settings;
+  settings.found = &found;
+  const auto stopsLate = [&](std::string_view, double) {
+    if (found.taken_off.size() == 2) throw Stop();
+  };
+  EXPECT_THROW(planAssembly("test", parts, settings, stopsLate), Stop);
+  EXPECT_EQ(found.taken_off, (Names{"core", "cup 1"}));
+  EXPECT_FALSE(found.motions.empty());
+
+  const PlanFindings stopped = found;
+  settings.known = &stopped;
+  const PlanResult resumed = planAssembly("test", parts, settings), whole = planAssembly("test", parts);
+  EXPECT_EQ(planDot(resumed), planDot(whole));
+  ASSERT_EQ(stepsOf(resumed.assemblies.front()), stepsOf(whole.assemblies.front()));
+  for (std::size_t i = 0; i < whole.assemblies.front().steps.size(); ++i)
+    EXPECT_EQ(resumed.assemblies.front().steps[i].before_W.front().p,
+              whole.assemblies.front().steps[i].before_W.front().p);
+  // What was known is used: had it been that nothing stops anything, all would leave upwards at once.
+  PlanFindings wrong = found;
+  for (std::uint64_t& one : wrong.motions) one &= ~std::uint64_t{3};
+  settings.known = &wrong;
+  EXPECT_NE(planDot(planAssembly("test", parts, settings)), planDot(whole));
+}
+
+TEST(CheckWays, AWayThroughAWallThinnerThanAnyStepIsNamed) {
+  // 0.1 mm on a way of 1 m, of which 24 poses are 42 mm apart, and the block is 20 mm long.
+  const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+                                        at("wall", makeBox(Vec3(0.2, 0.2, 1e-4)), {0, 0, 0.07})};
+  PlanSettings settings;
+  settings.fixed = {"plate", "wall"};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts, settings)).front();
+  SceneStep& step = scene.steps.front();
+  step.way_points.clear();
+  for (const double turn_rad : {0.0, 1.0}) {
+    step.X_WP_start = Pose(rotationFromVector(Vec3(0, 0, turn_rad)), Vec3(0, 0, 1.015));
+    const std::vector<WayFault> faults = checkWays(scene);
+    ASSERT_EQ(faults.size(), 1U) << turn_rad;
+    EXPECT_EQ(faults.front().kind, WayFaultKind::Through);
+    EXPECT_EQ(faults.front().against, "wall");
+    EXPECT_NEAR(faults.front().depth_m, 50e-6, 2e-6);  // in the middle of the wall
+  }
+}
+
+TEST(CheckWays, AnOrderASupportAndAClearanceThatAreLostAreNamed) {
+  const std::vector<DrawnPart> parts = {at("core", makeBox(Vec3::Constant(0.006)), {0, 0, 0.004}),
+                                        at("cup", cup(0.01, 0.001), {0, 0, 0.001}),
+                                        at("lid", makeBox(Vec3(0.02, 0.02, 0.002)), {0, 0, 0.02})};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts)).front();
+  for (const WayFault& fault : checkWays(scene)) ADD_FAILURE() << toText(fault.kind) << " " << fault.part;
+
+  ASSERT_EQ(scene.steps.size(), 2U);
+  Scene swapped = scene;
+  std::swap(swapped.steps[0], swapped.steps[1]);
+  const std::vector<WayFault> order = checkWays(swapped);
+  ASSERT_FALSE(order.empty());
+  EXPECT_EQ(order.front().kind, WayFaultKind::Order);
+  EXPECT_EQ(order.front().part, "core");
+  EXPECT_EQ(order.front().against, "lid");
+
+  Scene loose = scene;
+  for (SceneStep& step : loose.steps) step.is_held = false;  // the lid hangs in the air
+  const std::vector<WayFault> support = checkWays(loose);
+  ASSERT_EQ(support.size(), 1U);
+  EXPECT_EQ(support.front().kind, WayFaultKind::Support);
+  EXPECT_EQ(support.front().part, "lid");
+}
+
+TEST(CheckWays, AClearanceThatIsLessThanPlannedIsNamed) {
+  const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+                                        at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+                                        at("post", makeBox(Vec3(0.01, 0.01, 0.1)), {0.018, 0, 0.055})};
+  PlanSettings settings;
+  settings.fixed = {"plate", "post"};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts, settings)).front();
+  ASSERT_EQ(scene.steps.size(), 1U);
+  const std::map<std::string, double> planned = {{"block", 3e-3}};  // from x = 10 to 13 mm
+  EXPECT_TRUE(checkWays(scene, {}, planned).empty());
+  scene.steps.front().X_WP_start.p.x() += 1e-3;
+  const std::vector<WayFault> faults = checkWays(scene, {}, planned);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults.front().kind, WayFaultKind::Clearance);
+  EXPECT_EQ(faults.front().against, "post");
+  EXPECT_NEAR(faults.front().clearance_m, 2e-3, 3e-6);
+  EXPECT_EQ(faults.front().planned_m, 3e-3);
+}
+
 TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
   const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
                                         at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};

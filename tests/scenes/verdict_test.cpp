@@ -87,6 +87,25 @@ TEST(Verdict, TheToleranceIsStatedOrTheClearancePlusTwentyMicrometres) {
   EXPECT_DOUBLE_EQ(assemble(scene).steps[0].tolerance_m, 33e-6);
 }
 
+// The clearance is 0.1 mm in diameter, so that a mesh may be half of it off.
+TEST(Verdict, AMeshThatIsFartherOffItsFacesThanTheClearanceShowsNothing) {
+  Scene scene = pegInCup();
+  scene.parts[0].deflection_m = 49e-6;
+  const AssembleResult near = assemble(scene);
+  EXPECT_EQ(near.verdict, Verdict::Fits) << near.steps[0].reason;
+  EXPECT_TRUE(near.steps[0].mesh_doubt.empty());
+  scene.parts[0].deflection_m = 51e-6;
+  const AssembleResult far = assemble(scene);
+  EXPECT_EQ(far.verdict, Verdict::NotShown);
+  EXPECT_TRUE(far.steps[0].completed);
+  EXPECT_NE(far.steps[0].reason.find("the mesh of 'cup' is known to be up to"), std::string::npos)
+      << far.steps[0].reason;
+  // Rounding of the file counts as the same.
+  scene.parts[0].deflection_m = 0;
+  scene.parts[1].rounding_m = 51e-6;
+  EXPECT_EQ(assemble(scene).verdict, Verdict::NotShown);
+}
+
 // Let go beside the cup it falls 20 m in two seconds, which is not how far the hand was from its target.
 TEST(Verdict, AStepThatTheHandGaveUpHasTheErrorOfThatMoment) {
   Scene scene = pegInCup();

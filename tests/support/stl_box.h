@@ -9,9 +9,8 @@
 
 namespace vps {
 
-/// Binary STL of a box, in the numbers given.
-inline std::string stlBox(const Vec3& size) {
-  const Mesh mesh = makeBox(size);
+/// Binary STL of a mesh, in the numbers given.
+inline std::string stlOf(const Mesh& mesh) {
   std::string out(80, ' ');
   const auto put = [&](const auto& value) {
     out.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -24,6 +23,10 @@ inline std::string stlBox(const Vec3& size) {
     put(std::uint16_t{0});
   }
   return out;
+}
+
+inline std::string stlBox(const Vec3& size) {
+  return stlOf(makeBox(size));
 }
 
 }  // namespace vps

@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "file_kind.h"
 #include "scene_arguments.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/plan.h"
 #include "vps_scenes/scene_groups.h"
+#include "vps_scenes/scene_text.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -50,6 +52,23 @@ scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t
       throw LoadError("", "", "--up is '" + given.up + "'; expected one of: x, -x, y, -y, z, -z");
   }
   return settings;
+}
+
+bool areCadFiles(const std::vector<std::string>& files) {
+  if (files.size() == 1 && !isCadExtension(lowerExtension(files.front()))) return false;
+  for (const std::string& file : files) {
+    if (files.size() > 1 && lowerExtension(file) == ".toml")
+      throw LoadError(file, "",
+                      "is a scene, which is given alone; several files are parts of one assembly in CAD");
+    requireCadFile(file);
+  }
+  return true;
+}
+
+std::string listedFiles(const std::vector<std::string>& files) {
+  std::string out;
+  for (const std::string& file : files) out += (out.empty() ? "" : ", ") + scenes::tomlText(file);
+  return out;
 }
 
 std::vector<scenes::PartGroup> groupsOf(scenes::ImportedCad& cad, const CadArguments& given) {

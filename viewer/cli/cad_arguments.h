@@ -33,6 +33,12 @@ void addCadOptions(CLI::App& command, CadArguments& given);
 /// `most_triangles` are read coarser, and what is up is guessed. Throws LoadError naming the option.
 scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t most_triangles);
 
+/// Whether these are CAD files, which are read into one frame, and not a scene file. Throws LoadError for a
+/// scene among several files, and for what is no CAD file.
+bool areCadFiles(const std::vector<std::string>& files);
+/// The files, quoted as in TOML, with commas between them.
+std::string listedFiles(const std::vector<std::string>& files);
+
 /// Finds the groups of the file, and says on stderr which and why.
 std::vector<scenes::PartGroup> groupsOf(scenes::ImportedCad& cad, const CadArguments& given);
 

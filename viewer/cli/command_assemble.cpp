@@ -34,7 +34,8 @@ namespace {
 
 struct AssembleArguments {
   SceneArguments scene;
-  CadArguments cad;
+  PlanArguments plan;                   ///< of CAD files
+  std::vector<std::string> more_files;  ///< CAD, besides `scene`
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
@@ -51,7 +52,6 @@ struct AssembleArguments {
 
 scenes::Verdict runScene(const AssembleArguments& given) {
   const std::string& file = given.scene.scene;
-  requireNoCadOptions(file, given.cad);
   OutputFolder out(given.out);
   OutputFile json(given.json, {file});
   OutputFile wav(given.sound, {file});
@@ -156,24 +156,35 @@ scenes::Verdict runPlanned(const AssembleArguments& given, const std::vector<std
   return whole;
 }
 
-/// Plans the CAD file into a folder of the results, then runs what was planned. Good only if both are.
+std::vector<std::string> filesOf(const AssembleArguments& given) {
+  std::vector<std::string> files{given.scene.scene};
+  files.insert(files.end(), given.more_files.begin(), given.more_files.end());
+  return files;
+}
+
+/// Plans the CAD files into a folder of the results, then runs what was planned. Good only if both are.
 int runCad(AssembleArguments given) {
-  PlanArguments plan;
-  plan.assembly = given.scene.scene;
+  PlanArguments plan = std::move(given.plan);
+  plan.assembly = filesOf(given);
   plan.out = (std::filesystem::path(given.out) / "plan").string();
-  plan.cad = given.cad;
   plan.is_forced = true;
-  requireNotRead(given.json, {plan.assembly});
+  requireNotRead(given.json, plan.assembly);
   ProgressBar bar;
   const PlannedFolder planned = planInto(plan, bar);
-  given.cad = {};
+  given.plan = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
   return statusOf(planned.status == kGood ? verdict : worseOf(verdict, scenes::Verdict::Blocked));
 }
 
 int runAssemble(const AssembleArguments& given) {
   if (given.has_pdf) requirePdf();
-  if (isCadExtension(lowerExtension(given.scene.scene))) return runCad(given);
+  if (areCadFiles(filesOf(given))) return runCad(given);
+  requireNoCadOptions(given.scene.scene, given.plan.cad);
+  if (!given.plan.bases.empty() || given.plan.has_bench || given.plan.is_resumed)
+    throw LoadError(given.scene.scene, "",
+                    "is a scene, which states its order and ways; leave out --base, --bench and --resume, or "
+                    "plan it anew "
+                    "with vps plan");
   return statusOf(runScene(given));
 }
 
@@ -188,7 +199,10 @@ void addAssemble(CommandLine& line) {
   command.get_option("scene")
       ->description("scene file (TOML), or a CAD file, which is planned first, as vps plan does")
       ->type_name("SCENE|CAD");
-  addCadOptions(command, given->cad);
+  command.add_option("more", given->more_files, "more CAD files, which share one frame with the first")
+      ->type_name("CAD");
+  addCadOptions(command, given->plan.cad);
+  addPlanOptions(command, given->plan);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
   command.add_flag("--pdf", given->has_pdf, "report.pdf as well, printed by Chromium");

@@ -6,7 +6,6 @@
 #include "cad_arguments.h"
 #include "check_report.h"
 #include "command.h"
-#include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "pdf_file.h"
@@ -21,7 +20,8 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 struct CheckArguments {
-  std::string assembly, near, json, csv, html, pdf;
+  std::vector<std::string> assembly;  ///< CAD files in one frame, or one scene file
+  std::string near, json, csv, html, pdf;
   CadArguments cad;
   bool has_no_play = false;
 };
@@ -33,24 +33,27 @@ struct Assembly {
 };
 
 Assembly readScene(const CheckArguments& given, const Progress& progress) {
-  requireNoCadOptions(given.assembly, given.cad);
-  const scenes::Scene scene = scenes::loadScene(given.assembly, progress);
+  const std::string& file = given.assembly.front();
+  requireNoCadOptions(file, given.cad);
+  const scenes::Scene scene = scenes::loadScene(file, progress);
   for (const std::string& warning : scene.warnings) warn(warning);
-  Assembly assembly{scene.name, scenes::drawnParts(scene), {given.assembly}};
+  Assembly assembly{scene.name, scenes::drawnParts(scene), {file}};
   for (const scenes::ScenePart& part : scene.parts) assembly.read.push_back(part.file);
   return assembly;
 }
 
 Assembly readCad(const CheckArguments& given, const Progress& progress) {
-  requireCadFile(given.assembly);
   const scenes::Scene scene = groupedScene(
       scenes::importCad(given.assembly, importSettingsFrom(given.cad, kMostTriangles), progress), given.cad);
-  for (const std::string& warning : scene.warnings) warn(given.assembly + ": " + warning);
-  return {given.assembly, scenes::drawnParts(scene), {given.assembly}};
+  const std::string& first = given.assembly.front();
+  for (const std::string& warning : scene.warnings)
+    warn(given.assembly.size() > 1 ? warning : first + ": " + warning);
+  return {given.assembly.size() > 1 ? listedFiles(given.assembly) : first, scenes::drawnParts(scene),
+          given.assembly};
 }
 
 int runCheck(const CheckArguments& given) {
-  const std::vector<std::string> inputs = {given.assembly};
+  const std::vector<std::string>& inputs = given.assembly;
   OutputFile json(given.json, inputs), csv(given.csv, inputs), html(given.html, inputs);
   PdfFile pdf(given.pdf, inputs);
   scenes::CheckSettings settings;
@@ -59,7 +62,7 @@ int runCheck(const CheckArguments& given) {
   if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
   ProgressBar bar;
-  const bool is_cad = isCadExtension(lowerExtension(given.assembly));
+  const bool is_cad = areCadFiles(given.assembly);
   const Assembly assembly = is_cad ? readCad(given, bar.progress()) : readScene(given, bar.progress());
   for (const std::string& output : {given.json, given.csv, given.html, given.pdf})
     requireNotRead(output, assembly.read);
@@ -88,7 +91,7 @@ void addCheck(CommandLine& line) {
                  [given] { return runCheck(*given); });
   command
       .add_option("assembly", given->assembly,
-                  "a CAD file, or a scene file (TOML): its parts at their targets")
+                  "a CAD file, or several in one frame, or a scene file (TOML): its parts at their targets")
       ->required()
       ->type_name("CAD|SCENE");
   addCadOptions(command, given->cad);

@@ -125,10 +125,11 @@ int runImport(const ImportArguments& given) {
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
   for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
-    const ImportedPartAnswer row{part.name, partFileName(part.name, taken), part.mesh.triangles.size(),
-                                 checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
+    const ImportedPartAnswer row{part.name, partFileName(part.name, meshExtension(part.mesh), taken),
+                                 part.mesh.triangles.size(), checkMesh(part.mesh).isClosed(),
+                                 bounds(part.mesh).size()};
     requireNotRead((fs::path(given.out) / row.file).string(), given.files);
-    out.write(row.file, stlBytes(part.mesh));
+    out.write(row.file, meshBytes(part.mesh));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
                    fixed(row.size_m.z() * 1e3, 2),

@@ -8,6 +8,7 @@
 #include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
+#include "plan_memory.h"
 #include "plan_report.h"
 #include "planned_folder.h"
 #include "terminal.h"
@@ -19,17 +20,19 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 int verify(const PlanArguments& given) {
-  OutputFile json(given.json, {given.assembly});
+  if (given.assembly.size() > 1)
+    throw LoadError(given.assembly[1], "", "is a second file; --verify checks one scene");
+  OutputFile json(given.json, given.assembly);
   ProgressBar bar;
-  requireSceneFile(given.assembly);
-  const scenes::Scene scene = scenes::loadScene(given.assembly, bar.progress());
-  const std::vector<scenes::WayFault> faults = checkWays(scene, bar.progress());
+  requireSceneFile(given.assembly.front());
+  const scenes::Scene scene = scenes::loadScene(given.assembly.front(), bar.progress());
+  const std::vector<scenes::WayFault> faults =
+      checkWays(scene, bar.progress(), plannedClearances(given.assembly.front()));
   throwIfStopped();
   json.write(toJson(scene.name, faults));
   bar.clear();
   for (const scenes::WayFault& fault : faults) std::printf("%s\n", inWords(fault).c_str());
-  std::printf("%s: %zu steps, %zu ways lead through parts in place\n", scene.name.c_str(), scene.steps.size(),
-              faults.size());
+  std::printf("%s: %zu steps, %zu at fault\n", scene.name.c_str(), scene.steps.size(), faults.size());
   return faults.empty() ? kGood : kBad;
 }
 
@@ -52,20 +55,22 @@ void addPlan(CommandLine& line) {
       line, "plan", "order and ways of an assembly, found by taking it apart; writes a scene",
       "vps plan scenes/bearing_block/bearing_block.step -o planned", [given] { return runPlan(*given); });
   command
-      .add_option("assembly", given->assembly,
-                  "a CAD file, or a scene file (TOML): its parts at their targets, its steps are replaced")
+      .add_option(
+          "assembly", given->assembly,
+          "a CAD file, or several in one frame, or a scene file (TOML): its parts at their targets, its "
+          "steps are replaced")
       ->required()
       ->type_name("CAD|SCENE");
-  command.add_option("-o,--out", given->out, "folder for scene.toml, meshes, plan.json and plan.dot")
+  command
+      .add_option("-o,--out", given->out, "folder for scene.toml, meshes, plan.json, plan.dot and plan.svg")
       ->type_name("DIR");
-  command.add_option("--base", given->bases, "a part that stands still, by name; may be given several times")
-      ->type_name("NAME");
   addCadOptions(command, given->cad);
-  command.add_flag("--bench", given->has_bench,
-                   "lay the parts out around the base; each is lifted over everything to where it goes");
+  addPlanOptions(command, *given);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
-  command.add_flag("--verify", given->is_verify,
-                   "plan nothing: check that the ways of a scene lead through no part in place");
+  command.add_flag(
+      "--verify", given->is_verify,
+      "plan nothing: check that the ways of a scene lead through no part in place, keep the clearance of "
+      "the plan.json beside it, and that what is let go is carried");
   addJsonOption(command, given->json);
 }
 

@@ -26,6 +26,11 @@ inline Json toValue(const Quat& q) {
 inline Json toValue(const Box& box) {
   return {toValue(box.min), toValue(box.max)};
 }
+inline Json toValue(const std::vector<Vec3>& list) {
+  Json out = Json::array();
+  for (const Vec3& v : list) out.push_back(toValue(v));
+  return out;
+}
 inline Json toValue(const std::optional<double>& x) {
   return x ? Json(*x) : Json(nullptr);
 }

@@ -141,10 +141,20 @@ std::string planHeadline(const scenes::PlanResult& plan) {
 }
 
 std::string inWords(const scenes::WayFault& fault) {
+  if (fault.kind == scenes::WayFaultKind::Support)
+    return "nothing in place carries '" + fault.part +
+           "' when it is let go; mount what carries it before, or say holds = true in its step";
+  if (fault.kind == scenes::WayFaultKind::Clearance)
+    return "the way of '" + fault.part + "' passes '" + fault.against + "' at " +
+           fixed(1e3 * fault.clearance_m, 3) + " mm, where " + fixed(1e3 * fault.planned_m, 3) +
+           " mm were planned; give other way_points";
+  const std::string remedy = fault.kind == scenes::WayFaultKind::Order
+                                 ? "; mount '" + fault.against + "' after it, or give other way_points"
+                                 : "; give other way_points, or another order";
   return "the way of '" + fault.part + "' leads through '" + fault.against + "', " +
          fixed(1e3 * fault.depth_m, 3) + " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " +
          fixed(1e3 * fault.at_W.y(), 2) + ", " + fixed(1e3 * fault.at_W.z(), 2) + ") mm (" +
-         fixed(1e3 * fault.allowed_m, 3) + " mm allowed); give other way_points, or another order";
+         fixed(1e3 * fault.allowed_m, 3) + " mm allowed)" + remedy;
 }
 
 }  // namespace vps::viewer::inline v0

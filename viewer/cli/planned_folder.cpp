@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planned_folder.h"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "command.h"
-#include "file_kind.h"
 #include "json_out.h"
 #include "output.h"
 #include "part_file_name.h"
+#include "plan_memory.h"
 #include "plan_report.h"
 #include "stl.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
+#include "vps/write_file.h"
 #include "vps_scenes/scene_text.h"
 
 namespace vps::viewer::inline v0 {
@@ -29,11 +33,10 @@ constexpr std::size_t kMostToPlan = 50'000;
 constexpr double kCoarsestToPlan_m = 16e-6;
 
 scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) {
-  if (!isCadExtension(lowerExtension(given.assembly))) {
-    requireNoCadOptions(given.assembly, given.cad);
-    return scenes::loadScene(given.assembly, progress);
+  if (!areCadFiles(given.assembly)) {
+    requireNoCadOptions(given.assembly.front(), given.cad);
+    return scenes::loadScene(given.assembly.front(), progress);
   }
-  requireCadFile(given.assembly);
   scenes::ImportSettings settings = importSettingsFrom(given.cad, kMostToPlan);
   settings.coarsest_m = kCoarsestToPlan_m;
   return groupedScene(scenes::importCad(given.assembly, settings, progress), given.cad);
@@ -56,16 +59,16 @@ void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& p
       throwIfStopped();
       std::string& file = file_of[part.part.name];
       if (file.empty()) {
-        file = partFileName(part.part.name, taken);
+        file = partFileName(part.part.name, meshExtension(part.part.mesh), taken);
         requireNotRead((std::filesystem::path(given.out) / file).string(), read);
-        out.write(file, stlBytes(part.part.mesh));
+        out.write(file, meshBytes(part.part.mesh));
       }
       files.push_back(file);
     }
     const std::string name = sceneFileName(plan, i);
     requireNotRead((std::filesystem::path(given.out) / name).string(), read);
     const std::string comment =
-        "Planned from " + scenes::tomlText(given.assembly) +
+        "Planned from " + listedFiles(given.assembly) +
         (i == 0 ? "; run it with vps assemble." : ": a subassembly, which scene.toml mounts as one part.");
     out.write(name, scenes::sceneText(planned[i], files, comment));
   }
@@ -83,7 +86,45 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
   return faults;
 }
 
+/// Plans; what it had found when it is stopped is kept in the folder.
+scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scene,
+                           scenes::PlanSettings settings, ProgressBar& bar) {
+  const std::string unfinished = (std::filesystem::path(given.out) / kUnfinishedPlan).string();
+  const std::string key = planKey(scene, settings);
+  std::optional<scenes::PlanFindings> known;
+  if (given.is_resumed) {
+    known = readFindings(unfinished, key);
+    if (!known) say("no " + unfinished + ": there is nothing to resume, and all is planned");
+  }
+  scenes::PlanFindings found;
+  if (known) settings.known = &*known;
+  settings.found = &found;
+  try {
+    return planAssembly(scene, settings, bar.progress());
+  } catch (const Stopped&) {
+    bar.clear();
+    if (!found.motions.empty() || !found.taken_off.empty()) {
+      writeWholeFile(unfinished, findingsText(key, found));
+      std::printf("stopped with %zu motions known and %zu parts or sets taken off", found.motions.size(),
+                  found.taken_off.size());
+      for (std::size_t i = 0; i < found.taken_off.size(); ++i)
+        std::printf("%s'%s'", i == 0 ? ": " : ", ", found.taken_off[i].c_str());
+      std::printf("; kept in %s, go on with --resume\n", unfinished.c_str());
+    }
+    throw;
+  }
+}
+
 }  // namespace
+
+void addPlanOptions(CLI::App& command, PlanArguments& given) {
+  command.add_option("--base", given.bases, "a part that stands still, by name; may be given several times")
+      ->type_name("NAME");
+  command.add_flag("--bench", given.has_bench,
+                   "lay the parts out around the base; each is lifted over everything to where it goes");
+  command.add_flag("--resume", given.is_resumed,
+                   "go on where an earlier plan into the same folder was stopped (Ctrl-C)");
+}
 
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   std::error_code error;
@@ -91,30 +132,36 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
     throw LoadError(given.out, "",
                     "has a scene.toml already; choose another folder, or replace it with --force");
   OutputFolder out(given.out);
-  OutputFile json(given.json, {given.assembly});
+  OutputFile json(given.json, given.assembly);
   const scenes::Scene scene = sceneToPlan(given, bar.progress());
-  for (const std::string& warning : scene.warnings) warn(given.assembly + ": " + warning);
+  for (const std::string& warning : scene.warnings)
+    warn(given.assembly.size() > 1 ? warning : given.assembly.front() + ": " + warning);
   scenes::PlanSettings settings;
   settings.fixed = given.bases;
   settings.has_bench = given.has_bench;
-  const scenes::PlanResult plan = planAssembly(scene, settings, bar.progress());
-  std::vector<std::string> read{given.assembly};
+  const scenes::PlanResult plan = planned(given, scene, settings, bar);
+  std::vector<std::string> read = given.assembly;
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
   writeScenes(given, plannedScenes(scene, plan), plan, read, out);
   const std::vector<scenes::WayFault> faults = faultsOf(plan, out, bar.progress());
   throwIfStopped();
   out.write("plan.dot", planDot(plan));
+  out.write("plan.svg", planSvg(plan));
   out.write("plan.json", toJson(plan, faults));
   out.commit();
+  std::filesystem::remove(std::filesystem::path(given.out) / kUnfinishedPlan, error);
   json.write(toJson(plan, faults));
   bar.clear();
   std::fputs(planTables(plan).c_str(), stdout);
   for (const scenes::WayFault& fault : faults) warn(inWords(fault));
   std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
-  PlannedFolder planned{plan.blocked() > 0 || !faults.empty() ? kBad : kGood, {}};
+  // The planner has said already what nothing carries.
+  const bool is_free = std::ranges::all_of(
+      faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
+  PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, {}};
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
-    planned.scene_files.push_back((std::filesystem::path(given.out) / sceneFileName(plan, i)).string());
-  return planned;
+    folder.scene_files.push_back((std::filesystem::path(given.out) / sceneFileName(plan, i)).string());
+  return folder;
 }
 
 }  // namespace vps::viewer::inline v0

@@ -12,12 +12,17 @@
 namespace vps::viewer::inline v0 {
 
 struct PlanArguments {
-  std::string assembly, out, json;
+  std::vector<std::string> assembly;  ///< CAD files in one frame, or one scene file
+  std::string out, json;
   CadArguments cad;
   std::vector<std::string> bases;
   bool is_forced = false;
-  bool has_bench = false;  ///< see scenes::PlanSettings
+  bool is_resumed = false;  ///< takes what an earlier plan into `out` had found when it was stopped
+  bool has_bench = false;   ///< see scenes::PlanSettings
 };
+
+/// Adds --base, --bench and --resume.
+void addPlanOptions(CLI::App& command, PlanArguments& given);
 
 /// What planInto() came to.
 struct PlannedFolder {
@@ -26,9 +31,12 @@ struct PlannedFolder {
   std::vector<std::string> scene_files;
 };
 
-/// Plans a CAD file or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json and
-/// plan.dot, and prints the plan and what is wrong with it. Parts of a CAD file that have very many triangles
-/// are read with a greater deflection, and this is said, unless --deflection is given.
+/// Where planInto() keeps what it had found when it was stopped.
+inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
+
+/// Plans CAD files or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json,
+/// plan.dot and plan.svg, and prints the plan and what is wrong with it. Parts of a CAD file that have very
+/// many triangles are read with a greater deflection, and this is said, unless --deflection is given.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
 }  // namespace vps::viewer::inline v0

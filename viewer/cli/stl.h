@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh as a binary STL file.
+// A mesh as a binary STL file, or as an OBJ file where the floats of STL are too coarse.
 #pragma once
 
 #include <string>
@@ -11,5 +11,11 @@ namespace vps::viewer::inline v0 {
 /// The bytes of the file, in metres. Coordinates are floats, which resolve 0.06 um at 1 m; vertices that are
 /// equal stay equal to the bit, so that readers can weld them.
 std::string stlBytes(const Mesh& mesh);
+
+/// ".stl", or ".obj" for a mesh so far from its origin that floats would move its vertices by more than 0.1
+/// um.
+std::string meshExtension(const Mesh& mesh);
+/// A file with that extension, in metres. OBJ reads back within a float's resolution of the mesh's size.
+std::string meshBytes(const Mesh& mesh);
 
 }  // namespace vps::viewer::inline v0

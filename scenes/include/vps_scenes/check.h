@@ -30,6 +30,7 @@ struct DrawnPart {
   double youngs_modulus_Pa = 210e9;
   double poissons_ratio = 0.3;
   double friction = 0.15;
+  double rounding_m = 0;  ///< see ImportedPart; counts as error of the part
 };
 
 /// The parts of a CAD file at their poses.

@@ -52,6 +52,9 @@ struct ImportedPart {
   /// Names of the assemblies that it is in, from the outermost, and last of its product, where the format has
   /// a tree (STEP, IGES). Each instance has a name of its own: a repeated one becomes "<name>_2" and so on.
   std::vector<std::string> within = {};
+  /// Greatest distance of its vertices from where the file has them, or from where they were before the file
+  /// kept them as 32-bit floats, which are 15 um apart at 300 m. 0: less than 0.05 um.
+  double rounding_m = 0;
 };
 
 struct ImportedCad {

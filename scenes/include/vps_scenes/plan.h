@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,12 @@
 
 namespace vps::scenes::inline v0 {
 
+/// What a plan had found by the time it was stopped. A later plan of the same parts need not find it again.
+struct PlanFindings {
+  std::vector<std::uint64_t> motions;  ///< straight motions of pairs, each with its answer
+  std::vector<std::string> taken_off;  ///< parts and sets of parts, in this order
+};
+
 struct PlanSettings {
   /// Parts that stand still, by name; empty: one is proposed, the part that holds most among the largest.
   std::vector<std::string> fixed;
@@ -19,6 +27,8 @@ struct PlanSettings {
   /// The parts start beside each other around those that stand still, and are lifted over them. False: each
   /// starts on its last leg, just outside.
   bool has_bench = false;
+  const PlanFindings* known = nullptr;  ///< of an earlier plan of the same parts; null: none
+  PlanFindings* found = nullptr;  ///< where to put what was found, also if `progress` throws; null: nowhere
 };
 
 enum class WayKind {
@@ -78,6 +88,21 @@ struct PlannedAssembly {
   std::vector<BlockedPart> blocked;
 };
 
+/// Two parts that touch, fit into each other, or are near.
+struct PlannedContact {
+  std::string a, b;
+  PairState state = PairState::Apart;
+  double clearance_m = 0;         ///< least distance of the surfaces
+  std::vector<std::string> fits;  ///< "shaft H7/g6", "thread M8", ...
+  std::vector<Vec3> blocked_W;    ///< unit directions, of the likely ones, in which b stops a
+  std::vector<Vec3> free_W;       ///< and those in which it does not; b leaves a in their opposites
+};
+
+/// Parts of equal geometry, of which each can take another's place.
+struct EqualParts {
+  std::vector<std::string> names;
+};
+
 /// Two parts of equal geometry in one place.
 struct DrawnTwice {
   std::string first, second;
@@ -118,6 +143,8 @@ struct PlanResult {
   std::vector<OverlapChoice>
       choices;  ///< one for each overlap that is not allowed, then shafts drawn line to line
   std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
+  std::vector<PlannedContact> contacts;     ///< the graph of contacts and of what blocks what
+  std::vector<EqualParts> equal;            ///< two or more of each
   /// Overlaps as drawn. On their ways these parts may overlap as deep as they are drawn.
   std::vector<CheckedPair> overlaps;
   std::vector<DrawnTwice> twice;       ///< among the overlaps too
@@ -143,6 +170,9 @@ VPS_SCENES_API PlanResult planAssembly(const Scene& scene, PlanSettings settings
 /// is left out.
 VPS_SCENES_API std::string planDot(const PlanResult& plan);
 
+/// The same graph as a picture (SVG), the steps from left to right.
+VPS_SCENES_API std::string planSvg(const PlanResult& plan);
+
 /// The parts of a CAD file as a scene without steps.
 VPS_SCENES_API Scene sceneOf(const ImportedCad& cad);
 
@@ -150,16 +180,31 @@ VPS_SCENES_API Scene sceneOf(const ImportedCad& cad);
 /// parts of a subassembly are one part of the scene that mounts it.
 VPS_SCENES_API std::vector<Scene> plannedScenes(const Scene& scene, const PlanResult& plan);
 
-/// Where a step's way, as its scene states it, leads through a part in place.
+enum class WayFaultKind {
+  Through,    ///< its way leads through a part in place
+  Order,      ///< the same, and that part would pass if it were mounted later
+  Support,    ///< nothing in place carries it when it is let go
+  Clearance,  ///< it passes a part nearer than was planned
+};
+VPS_SCENES_API const char* toText(WayFaultKind kind);
+
+/// What is wrong with a step as its scene states it.
 struct WayFault {
+  WayFaultKind kind = WayFaultKind::Through;
   std::string part, against;
   double depth_m = 0;    ///< of the meshes
   double allowed_m = 0;  ///< what they overlap at the target, and 10 um
   Vec3 at_W = Vec3::Zero();
+  double clearance_m = 0, planned_m = 0;  ///< of a lost clearance
 };
 
-/// Measures the exact overlap along the ways of all steps, at 24 poses of each leg. A screw is followed along
-/// its thread from its target on. The deepest fault of each step, in order; empty: all ways are free.
-VPS_SCENES_API std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress = {});
+/// Follows the ways of all steps: conservative advancement finds what is deeper than allowed however thin it
+/// is, along straight legs and threads, and along turning legs within 2 um; the depth is then measured at 24
+/// poses of the leg, and where it was stopped. A screw is followed along its thread from its target on. A
+/// part that no step holds has to be carried by what is in place. The worst fault of each step, in order;
+/// empty: none.
+/// @param planned_clearance_m  of the ways, by part, where less is a fault (PlannedStep::clearance_m)
+VPS_SCENES_API std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress = {},
+                                               const std::map<std::string, double>& planned_clearance_m = {});
 
 }  // namespace vps::scenes::inline v0

@@ -80,12 +80,28 @@ inline constexpr auto kOverlapChoiceFields = std::make_tuple(
     field("changed", &OverlapChoice::changed, "a part with another mesh or `press_fit` there; empty: none"),
     field("press_fit_m", &OverlapChoice::press_fit_m, "that it is given; 0: none"));
 
+inline constexpr auto kPlannedContactFields = std::make_tuple(
+    field("a", &PlannedContact::a, "a part"), field("b", &PlannedContact::b, "another one that is near it"),
+    field("state", &PlannedContact::state, "as `vps check` tells it"),
+    field("clearance_m", &PlannedContact::clearance_m, "least distance of their surfaces"),
+    field("fits", &PlannedContact::fits, "kinds of fit, with the name in a standard"),
+    field("blocked", &PlannedContact::blocked_W,
+          "unit directions, of the axes of the world, of a and of its fits, in which b stops a"),
+    field("free", &PlannedContact::free_W, "those of them in which it does not"));
+static_assert(coversAllMembers<PlannedContact>(kPlannedContactFields));
+
+inline constexpr auto kEqualPartsFields =
+    std::make_tuple(field("names", &EqualParts::names, "parts of equal geometry"));
+static_assert(coversAllMembers<EqualParts>(kEqualPartsFields));
+
 inline constexpr auto kPlanFields =
     std::make_tuple(field("assembly", &PlanResult::assembly, "what was planned"),
                     list("fasteners", &PlanResult::fasteners, kFastenerFields),
                     list("choices", &PlanResult::choices, kOverlapChoiceFields),
                     field("blocked_count", &PlanResult::blocked, "parts that were not taken off"),
                     list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
+                    list("contacts", &PlanResult::contacts, kPlannedContactFields),
+                    list("equal", &PlanResult::equal, kEqualPartsFields),
                     list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
                     list("twice", &PlanResult::twice, kDrawnTwiceFields),
                     list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
@@ -95,12 +111,17 @@ inline constexpr auto kPlanWallFields =
     std::make_tuple(field("check_s", &PlanResult::check_wall_s, "time to check the parts as drawn"),
                     field("plan_s", &PlanResult::plan_wall_s, "time to take them apart"));
 
-inline constexpr auto kWayFaultFields =
-    std::make_tuple(field("part", &WayFault::part, "the part that moves"),
-                    field("against", &WayFault::against, "the part in place that its way leads through"),
-                    field("depth_m", &WayFault::depth_m, "greatest depth on the way"),
-                    field("allowed_m", &WayFault::allowed_m, "depth at the target, and 10 um"),
-                    field("at_m", &WayFault::at_W, "where, in the world"));
+inline constexpr auto kWayFaultFields = std::make_tuple(
+    field("kind", &WayFault::kind,
+          "`through` a part in place, `order` (that part has to come later), `support` (nothing "
+          "carries it when it is let go), `clearance` (less than was planned)"),
+    field("part", &WayFault::part, "the part that moves"),
+    field("against", &WayFault::against, "the part in place that its way leads through"),
+    field("depth_m", &WayFault::depth_m, "greatest depth on the way"),
+    field("allowed_m", &WayFault::allowed_m, "depth at the target, and 10 um"),
+    field("at_m", &WayFault::at_W, "where, in the world"),
+    field("clearance_m", &WayFault::clearance_m, "of a lost clearance: least distance on the way"),
+    field("planned_m", &WayFault::planned_m, "and as planned"));
 static_assert(coversAllMembers<WayFault>(kWayFaultFields));
 
 }  // namespace vps::scenes::inline v0

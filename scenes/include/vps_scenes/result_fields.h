@@ -47,6 +47,9 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
+    field("mesh_doubt", &StepResult::mesh_doubt,
+          "why the meshes cannot show that it fits: their known error is more than its clearance; empty: "
+          "they can"),
     field("aligned_by", &StepResult::aligned_by,
           "a later part that fits into it and takes it from where the hand left it to where it belongs; "
           "empty if none"),

@@ -68,7 +68,8 @@ struct ScenePart {
   std::string file;                    ///< file that the mesh was read from, for messages
   std::vector<std::string> members;    ///< of a group: the parts that it is made of
   std::string fastener;                ///< what it is taken for by its shape, in words: "nut M8"; empty: none
-  std::optional<double> deflection_m;  ///< see ImportedPart
+  std::optional<double> deflection_m;  ///< see ImportedPart, as rounding_m
+  double rounding_m = 0;
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for

@@ -101,6 +101,10 @@ inline constexpr auto kPartKeys = std::make_tuple(
     field("deflection", &ScenePart::deflection_m,
           "greatest distance of the mesh from the faces that it stands for; `vps import` writes it",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file, or estimated"}),
+    field("rounding", &ScenePart::rounding_m,
+          "greatest distance of the vertices from where they were before a file kept them as 32-bit floats; "
+          "`vps import` writes it",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file"}),
     field("allow_overlap", &ScenePart::allow_overlap,
           "the part may start inside another one (interference fits)"),
     field("press_fit", &ScenePart::press_fit_m,

@@ -13,10 +13,11 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-/// Rounding of some sums of coordinates; and where a crack was closed, the surface lies between its sides.
+/// Rounding of some sums of coordinates, and of the part's file; and where a crack was closed, the surface
+/// lies between its sides.
 double uncertainty_m(const PlacedSurface& part) {
   const double greatest_m = part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff();
-  return 16 * std::numeric_limits<double>::epsilon() * greatest_m +
+  return 16 * std::numeric_limits<double>::epsilon() * greatest_m + part.drawn->rounding_m +
          0.5 * part.surface->solid().report().joined_m;
 }
 

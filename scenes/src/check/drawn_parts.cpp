@@ -7,7 +7,11 @@ namespace vps::scenes::inline v0 {
 std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
   std::vector<DrawnPart> parts;
   for (const ImportedPart& part : cad.parts)
-    parts.push_back({part.name, part.mesh, part.X_WP, part.deflection_m, false});
+    parts.push_back({.name = part.name,
+                     .mesh = part.mesh,
+                     .X_WP = part.X_WP,
+                     .chord_m = part.deflection_m,
+                     .rounding_m = part.rounding_m});
   return parts;
 }
 
@@ -16,7 +20,7 @@ std::vector<DrawnPart> drawnParts(const Scene& scene) {
   for (const ScenePart& part : scene.parts)
     parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
                      part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
-                     part.part.material.friction});
+                     part.part.material.friction, part.rounding_m});
   for (const SceneStep& step : scene.steps) parts[step.part].X_WP = placeOf(step);
   return parts;
 }

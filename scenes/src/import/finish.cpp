@@ -29,6 +29,10 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   part.deflection_m = raw.deviation_m;
   part.note = raw.note;
   part.within = raw.within;
+  // That of two parts together is then no more than the 0.1 um to which check finds the depth of an overlap.
+  constexpr double kLeastRounding_m = 0.05e-6;
+  if (const double rounding_m = raw.rounding * unit_m; rounding_m > kLeastRounding_m)
+    part.rounding_m = rounding_m;
   const Mat3 M = raw.X_WP.linear();
   const double scale = std::cbrt(std::abs(M.determinant()));
   Mat3 R = Mat3::Identity(), rest = M;
@@ -113,12 +117,15 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
   }
   Mesh all;
   MeshReport joined;
+  double rounding_m = 0;
+  for (const ImportedPart& part : open) rounding_m = std::max(rounding_m, part.rounding_m);
   for (const ImportedPart& part : open) append(all, transformed(part.mesh, part.X_WP));
   if (open.size() > 1) all = weldedToClose(all, joined);
   if (open.size() < 2 || joined.open_edges >= open_edges) {
     kept.insert(kept.end(), std::make_move_iterator(open.begin()), std::make_move_iterator(open.end()));
   } else if (meaning == Shapes::BoundOne) {
     kept.push_back({"", std::move(all), Pose(), open.front().color});
+    kept.back().rounding_m = rounding_m;
   } else {
     for (Mesh& shell : shells(all)) {
       // Name and colour come from the shape with its first vertex.
@@ -127,9 +134,17 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
                                        [&](const ImportedPart& part) { return hasVertex(part, p_W); });
       const ImportedPart& like = source == open.end() ? open.front() : *source;
       kept.push_back({like.name, std::move(shell), Pose(), like.color});
+      kept.back().rounding_m = rounding_m;
     }
   }
   parts = std::move(kept);
+}
+
+double farthest_m(const ImportedPart& part) {
+  double farthest_m = part.X_WP.p.norm();
+  for (const Vec3& p : part.mesh.vertices)
+    farthest_m = std::max({farthest_m, p.norm(), (part.X_WP * p).norm()});
+  return farthest_m;
 }
 
 void describe(const ImportedPart& part, const MeshReport& report, std::vector<std::string>& warnings) {
@@ -141,6 +156,17 @@ void describe(const ImportedPart& part, const MeshReport& report, std::vector<st
   warn(report.non_manifold_edges, "edges with more than two triangles: bodies touch or surfaces cross there");
   warn(report.flipped_edges, "edges between facets of opposite orientation: some facets face inwards");
   warn(report.degenerate_triangles, "triangles without area");
+  constexpr double kNamed_m = 1e-6;  // as far as import follows curved faces
+  if (part.rounding_m > kNamed_m) {
+    char text[320];
+    std::snprintf(
+        text, sizeof text,
+        "part '%s': is %.3g m from the origin of its file, whose numbers of 32 bits are off by up to "
+        "%.2g um there, and this counts as its error; move the assembly to the origin and export it "
+        "again, or export STEP",
+        part.name.c_str(), farthest_m(part), 1e6 * part.rounding_m);
+    warnings.emplace_back(text);
+  }
   const double extent_m = bounds(part.mesh).size().maxCoeff();
   if (extent_m > 10 || extent_m < 1e-3) {
     char text[160];
@@ -196,6 +222,16 @@ void weldAll(ImportedCad& cad) {
 }
 
 }  // namespace
+
+double floatRounding(const Mesh& mesh, const Eigen::Affine3d& X_WP) {
+  constexpr double kRelative = 0x1p-24;  // half of a float's last bit
+  double farthest = 0;
+  for (const Vec3& p : mesh.vertices) farthest = std::max(farthest, p.squaredNorm());
+  const double vertex = kRelative * std::sqrt(farthest);
+  if (X_WP.matrix().isIdentity(0)) return vertex;
+  // Vertices, the matrix that multiplies them, and its translation.
+  return 2 * X_WP.linear().norm() * vertex + kRelative * X_WP.translation().norm();
+}
 
 std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
   std::array<float, 3> linear{};

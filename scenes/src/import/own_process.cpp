@@ -148,6 +148,7 @@ void transfer(Io& io, RawCad& cad) {
     io(part.color.data(), sizeof part.color);
     transfer(io, part.deviation_m);
     transferArray(io, part.note);
+    transfer(io, part.rounding);
     transferEach(io, part.within, [&](std::string& name) { transferArray(io, name); });
   });
   transferEach(io, cad.warnings, [&](std::string& line) { transferArray(io, line); });

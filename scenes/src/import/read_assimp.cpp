@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada, 3MF and others.
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <optional>
 
+#include "import/mesh_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -47,6 +51,20 @@ std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_g
   return ImportedPart().color;
 }
 
+/// Gives assimp other bytes in place of one file; the files that it names are read where they are.
+class ReplacedFile : public Assimp::DefaultIOSystem {
+ public:
+  ReplacedFile(std::string file, const std::string& bytes) : file_(std::move(file)), bytes_(bytes) {}
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (name != file_) return DefaultIOSystem::Open(name, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+  }
+
+ private:
+  std::string file_;
+  const std::string& bytes_;
+};
+
 struct Walk {
   const aiScene& scene;
   bool is_gltf;
@@ -63,6 +81,7 @@ struct Walk {
       if (part.name.empty()) part.name = mesh.mName.C_Str();
       appendMesh(mesh, part.mesh);
     }
+    part.rounding = floatRounding(part.mesh, X_WP);
     if (n.mNumMeshes > 0) cad.parts.push_back(std::move(part));
     for (unsigned i = 0; i < n.mNumChildren; ++i) node(*n.mChildren[i], X_WP);
   }
@@ -123,6 +142,7 @@ double unitOf(const std::string& file, const std::string& format, const ImportSe
 
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
                   const Progress&) {
+  std::optional<MeshText> text;
   Assimp::Importer importer;  // its logger is silent unless asked
   if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
       format == "IFC") {
@@ -135,6 +155,9 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   try {
     std::optional<std::string> ply;
     if (format == "PLY") ply = plyItReadsRight(file);
+    if (format == "OBJ") text = objText(file);
+    if (format == "STL") text = stlText(file);
+    if (text) importer.SetIOHandler(new ReplacedFile(file, text->bytes));  // the importer deletes it
     scene =
         ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
     for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
@@ -159,6 +182,10 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
   for (RawPart& part : cad.parts) {
+    if (text) {
+      part.name = text->nameIn(part.name);
+      for (Vec3& p : part.mesh.vertices) p += text->shift;
+    }
     // STL's header and assimp's placeholders are no names.
     if (format == "STL" && cad.parts.size() == 1) part.name.clear();
     if (part.name.starts_with("<") || part.name == "defaultobject" || part.name == "RootNode")

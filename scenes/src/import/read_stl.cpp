@@ -57,6 +57,7 @@ std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSetting
                                  valueAt<float>(corner + 8));
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
+  cad.parts.back().rounding = floatRounding(mesh);
   return cad;
 }
 

@@ -22,7 +22,12 @@ struct RawPart {
   double deviation_m = 0;                ///< of the mesh from the file's exact faces, as measured
   std::string note;                      ///< what is wrong with it, for a warning; empty: nothing
   std::vector<std::string> within = {};  ///< see ImportedPart
+  double rounding = 0;                   ///< of the vertices in the assembly, in file units, see ImportedPart
 };
+
+/// The greatest distance of a vertex in the assembly from where it was before its coordinates, and those of
+/// the part's transform, became 32-bit floats.
+double floatRounding(const Mesh& mesh, const Eigen::Affine3d& X_WP = Eigen::Affine3d::Identity());
 
 /// The meaning of open shapes that together form a closed surface.
 enum class Shapes {

@@ -146,7 +146,7 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
   const Box &moving = parts_[part].box_W, &fixed = parts_[held].box_W;
   if (staysBeside(moving, fixed, motion.direction, 0, leave_m_)) return false;
   const std::uint64_t key = slot(part, held, direction);
-  if (const auto known = known_.find(key); known != known_.end()) return known->second;
+  if (const auto known = known_.find(key); known != known_.end()) return known->second.is_stopped;
   const auto near = near_.find({part, held});
   const bool is_near = near != near_.end();
   const double depth_m = is_near ? near->second.crossing_m : touchOf(parts_[part], parts_[held]);
@@ -156,8 +156,23 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
       (is_near ? near->second.stops(motion, leave_m_, work)
                : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
   // Another thread may have found it meanwhile.
-  if (known_.emplace(key, is_stopped).second && work.isSpent()) ++cut_;
+  if (known_.emplace(key, Answer{is_stopped, work.isSpent()}).second && work.isSpent()) ++cut_;
   return is_stopped;
+}
+
+std::vector<std::uint64_t> PairMotions::found() const {
+  std::vector<std::uint64_t> out;
+  for (const auto& [slot, answer] : known_)
+    out.push_back(slot << 2U | (answer.is_stopped ? 1U : 0U) | (answer.is_cut ? 2U : 0U));
+  std::ranges::sort(out);
+  return out;
+}
+
+void PairMotions::take(const std::vector<std::uint64_t>& found) {
+  for (const std::uint64_t one : found) {
+    const Answer answer{(one & 1U) != 0, (one & 2U) != 0};
+    if (known_.emplace(one >> 2U, answer).second && answer.is_cut) ++cut_;
+  }
 }
 
 MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,

@@ -52,6 +52,10 @@ class PairMotions {
 
   /// Whether a part that moves away in a direction meets the held one. Kept once it is known. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
+  /// The answers of stops() so far, and those of an earlier plan of the same parts. A motion's number is its
+  /// slot(), then a bit for its answer and one for whether it was too long to be followed.
+  [[nodiscard]] std::vector<std::uint64_t> found() const;
+  void take(const std::vector<std::uint64_t>& found);
   /// How many motions of stops() were too long to be followed to their end.
   [[nodiscard]] std::size_t cutMotions() const { return cut_; }
   /// The parts that keep this one from falling by more than 1 mm, ascending.
@@ -92,7 +96,10 @@ class PairMotions {
   double leave_m_ = 0;
   mutable std::atomic<std::size_t> cut_ = 0;
   /// By slot(): whether the part is stopped. Only of pairs whose boxes do not tell.
-  mutable tbb::concurrent_unordered_map<std::uint64_t, bool> known_;
+  struct Answer {
+    bool is_stopped = false, is_cut = false;
+  };
+  mutable tbb::concurrent_unordered_map<std::uint64_t, Answer> known_;
 };
 
 /// A part moved by a motion of the world.

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 
 #include "check/check_placed.h"
+#include "check/on_cores.h"
 #include "core/wall_clock.h"
 #include "plan/base_part.h"
 #include "plan/bench.h"
@@ -84,7 +86,8 @@ double leavingDistance(const PairMotions& motions, const Removal& removal,
 
 class Planner {
  public:
-  Planner(const PairMotions& motions, const Progress& progress) : motions_(motions), progress_(progress) {
+  Planner(const PairMotions& motions, const Progress& progress, PlanFindings* found)
+      : motions_(motions), progress_(progress), found_(found) {
     for (const PlacedSurface& part : motions.parts()) names_.insert(part.name);
   }
 
@@ -96,7 +99,8 @@ class Planner {
       fixed = {base.part};
       reason = base.reason;
     }
-    const Disassembly apart = takeApart(motions_, members, fixed, progress_);
+    const Disassembly apart =
+        takeApart(motions_, members, fixed, progress_, [&](const Removal& removal) { note(removal); });
     PlannedAssembly planned{name, {}, std::move(reason), {}, {}, {}};
     for (const std::size_t part : apart.fixed) planned.fixed.push_back(nameOf(part));
     for (const Disassembly::Blocked& blocked : apart.blocked) {
@@ -119,6 +123,12 @@ class Planner {
   }
 
  private:
+  void note(const Removal& removal) {
+    if (found_ == nullptr) return;
+    std::string names;
+    for (const std::size_t part : removal.parts) names += (names.empty() ? "" : ", ") + nameOf(part);
+    found_->taken_off.push_back(std::move(names));
+  }
   [[nodiscard]] const std::string& nameOf(std::size_t part) const { return motions_.parts()[part].name; }
 
   std::string newName() {
@@ -173,8 +183,73 @@ class Planner {
 
   const PairMotions& motions_;
   const Progress& progress_;
+  PlanFindings* found_;
   std::set<std::string> names_;
 };
+
+/// Keeps the motions that were found, whichever way planning ends.
+class Keeping {
+ public:
+  Keeping(PairMotions& motions, const PlanSettings& settings) : motions_(motions), found_(settings.found) {
+    if (settings.known != nullptr) motions.take(settings.known->motions);
+    if (found_ != nullptr) found_->taken_off.clear();
+  }
+  ~Keeping() {
+    if (found_ != nullptr) found_->motions = motions_.found();
+  }
+  Keeping(const Keeping&) = delete;
+  Keeping& operator=(const Keeping&) = delete;
+
+ private:
+  const PairMotions& motions_;
+  PlanFindings* found_;
+};
+
+std::string wordsOf(const CheckedFit& fit) {
+  const std::string standard = standardOf(fit);
+  return toText(fit.kind) + (standard.empty() ? "" : " " + standard);
+}
+
+/// What `check` found near each other, with what stops what in the likely directions.
+std::vector<PlannedContact> contactsOf(const PairMotions& motions, const CheckResult& checked,
+                                       const Progress& progress) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < motions.parts().size(); ++i) index[motions.parts()[i].name] = i;
+  std::map<std::pair<std::size_t, std::size_t>, PlannedContact> by_pair;
+  const auto pairOf = [&](const std::string& a, const std::string& b) -> PlannedContact& {
+    const auto key = std::minmax(index.at(a), index.at(b));
+    PlannedContact& contact = by_pair[key];
+    contact.a = motions.parts()[key.first].name;
+    contact.b = motions.parts()[key.second].name;
+    return contact;
+  };
+  for (const CheckedPair& pair : checked.pairs) {
+    PlannedContact& contact = pairOf(pair.a, pair.b);
+    contact.state = pair.state;
+    contact.clearance_m = pair.clearance_m;
+  }
+  for (const CheckedFit& fit : checked.fits) pairOf(fit.shaft, fit.bore).fits.push_back(wordsOf(fit));
+  std::vector<PlannedContact> out;
+  for (auto& [key, contact] : by_pair) out.push_back(std::move(contact));
+  forEachOnCores(out.size(), progress, "who stops whom", [&](std::size_t i) {
+    const std::size_t a = index.at(out[i].a), b = index.at(out[i].b);
+    for (const std::size_t d : motions.axesOf(a))
+      (motions.stops(b, a, d) ? out[i].blocked_W : out[i].free_W).push_back(motions.directions()[d]);
+  });
+  return out;
+}
+
+std::vector<EqualParts> equalParts(const std::vector<PlacedSurface>& parts) {
+  std::map<const PartSurface*, std::size_t> known;
+  std::vector<EqualParts> out;
+  for (const PlacedSurface& part : parts) {
+    const auto [at, is_new] = known.try_emplace(part.surface.get(), out.size());
+    if (is_new) out.emplace_back();
+    out[at->second].names.push_back(part.name);
+  }
+  std::erase_if(out, [](const EqualParts& one) { return one.names.size() < 2; });
+  return out;
+}
 
 std::vector<std::size_t> indicesOf(const std::vector<std::string>& names,
                                    const std::vector<DrawnPart>& parts) {
@@ -215,20 +290,23 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   std::ranges::move(lineToLineChoices(placed, checked, result.choices), std::back_inserter(result.choices));
   for (const OverlapChoice& choice : result.choices)
     if (choice.kind == OverlapKind::Twice) result.twice.push_back({choice.a, choice.b});
-  const PairMotions motions(placed, checked, settings.up_W, progress);
+  PairMotions motions(placed, checked, settings.up_W, progress);
+  const Keeping keeping(motions, settings);
   std::vector<std::size_t> members(parts.size());
   std::iota(members.begin(), members.end(), std::size_t{0});
   const std::vector<std::size_t> left_out = leftOut(placed, result.choices);
   std::erase_if(members, [&](std::size_t part) {
     return std::ranges::binary_search(left_out, part) && !std::ranges::binary_search(fixed, part);
   });
-  Planner(motions, progress).plan(name, members, fixed, "as asked for", result.assemblies);
+  Planner(motions, progress, settings.found).plan(name, members, fixed, "as asked for", result.assemblies);
   const Placing placing{placed, checked, settings.up_W};
   for (PlannedAssembly& assembly : result.assemblies) {
     if (settings.has_bench) layOnBench(placing, assembly);
     measureWays(placing, assembly, progress);
   }
   result.cut_motions = motions.cutMotions();
+  result.contacts = contactsOf(motions, checked, progress);
+  result.equal = equalParts(placed);
   result.plan_wall_s = wallSeconds() - begun_s;
   return result;
 }

@@ -151,6 +151,7 @@ Scene sceneOf(const ImportedCad& cad) {
     part.X_WP = imported.X_WP;
     part.file = cad.file;
     part.deflection_m = imported.deflection_m;
+    part.rounding_m = imported.rounding_m;
     scene.parts.push_back(std::move(part));
   }
   return scene;

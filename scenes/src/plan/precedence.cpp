@@ -54,8 +54,9 @@ std::string dotQuoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Those that do not follow from two others.
-std::vector<PlannedOrder> reduced(const std::vector<PlannedOrder>& order) {
+}  // namespace
+
+std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order) {
   std::map<std::string, std::set<std::string>> after;
   for (const PlannedOrder& one : order) after[one.before].insert(one.after);
   std::vector<PlannedOrder> out;
@@ -79,8 +80,6 @@ std::vector<PlannedOrder> reduced(const std::vector<PlannedOrder>& order) {
   return out;
 }
 
-}  // namespace
-
 std::string planDot(const PlanResult& plan) {
   std::string out = "digraph " + dotQuoted(plan.assembly) +
                     " {\n  rankdir = LR;\n  node [shape = box, fontname = \"sans-serif\"];\n";
@@ -99,7 +98,7 @@ std::string planDot(const PlanResult& plan) {
     }
     for (std::size_t i = 0; i < assembly.steps.size(); ++i)
       node(assembly.steps[i].name, std::to_string(i + 1) + " " + assembly.steps[i].name, "");
-    const std::vector<PlannedOrder> order = reduced(assembly.order);
+    const std::vector<PlannedOrder> order = reducedOrder(assembly.order);
     for (const PlannedOrder& one : order)
       out += "    " + dotQuoted(prefix + one.before) + " -> " + dotQuoted(prefix + one.after) +
              (one.reason == OrderReason::Carries ? " [style = dashed]" : "") + ";\n";

@@ -10,4 +10,7 @@ namespace vps::scenes::inline v0 {
 std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
                                      const std::vector<std::string>& names);
 
+/// Those that do not follow from two others.
+std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order);
+
 }  // namespace vps::scenes::inline v0

@@ -23,8 +23,8 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& all, const std:
 class TakingApart {
  public:
   TakingApart(const PairMotions& motions, std::vector<std::size_t> members, std::vector<std::size_t> fixed,
-              const Progress& progress)
-      : motions_(motions), remaining_(std::move(members)), fixed_(std::move(fixed)) {
+              const Progress& progress, const std::function<void(const Removal&)>& on_removal)
+      : motions_(motions), remaining_(std::move(members)), fixed_(std::move(fixed)), on_removal_(on_removal) {
     std::ranges::sort(remaining_);
     std::ranges::sort(fixed_);
     stopped_by_.resize(motions.parts().size());
@@ -45,6 +45,7 @@ class TakingApart {
       if (removal.parts.empty()) break;
       remaining_ = without(remaining_, removal.parts);
       last_ = removal.way.direction;
+      if (on_removal_) on_removal_(removal);
       out.removals.push_back(std::move(removal));
     }
     for (const std::size_t part : without(remaining_, fixed_)) out.blocked.push_back(blockedOf(part));
@@ -248,6 +249,7 @@ class TakingApart {
   std::vector<Screw> screws_;
   std::vector<SearchWork> legs_;  ///< of the last search for legs, by part
   std::uint64_t work_of_legs_ = 0;
+  const std::function<void(const Removal&)>& on_removal_;
   Progress progress_;
   std::size_t last_ = 0;
 };
@@ -262,8 +264,9 @@ int slopeOf(const PairMotions& motions, const Vec3& direction_W) {
 }
 
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
-                      const std::vector<std::size_t>& fixed, const Progress& progress) {
-  return TakingApart(motions, members, fixed, progress).run();
+                      const std::vector<std::size_t>& fixed, const Progress& progress,
+                      const std::function<void(const Removal&)>& on_removal) {
+  return TakingApart(motions, members, fixed, progress, on_removal).run();
 }
 
 }  // namespace vps::scenes::inline v0

@@ -2,6 +2,7 @@
 // The order in which parts leave an assembly.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "plan/way.h"
@@ -33,8 +34,10 @@ struct Disassembly {
 /// leaves alone, the smallest set that leaves straight as one does; where none does, ways of several legs are
 /// searched, of parts alone and then of sets, with limits of work for each and for all. What is left in the
 /// end is blocked. On all cores.
+/// @param on_removal  hears of each as it is found
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
-                      const std::vector<std::size_t>& fixed, const Progress& progress);
+                      const std::vector<std::size_t>& fixed, const Progress& progress,
+                      const std::function<void(const Removal&)>& on_removal = {});
 
 /// The smallest set of parts without a fixed one that leaves straight, with its direction: for each part and
 /// direction all that it would push along, of which it needs the least. Empty if there is none.

@@ -95,6 +95,46 @@ std::string alignedBy(const CheckResult& checked, const Scene& scene, std::size_
   return {};
 }
 
+double knownError_m(const ScenePart& part) {
+  return part.deflection_m.value_or(0) + part.rounding_m;
+}
+
+/// Whether the meshes are farther off the faces that they stand for than the parts are from each other. What
+/// counts as contact (10 um) is less than that. Flat faces are exact wherever import is as asked for, so a
+/// part without a fit is doubted only where the error is more than its tolerance.
+std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std::vector<InPlace>& in_place,
+                      const SceneStep& planned, const StepResult& step) {
+  constexpr double kContact_m = 10e-6;
+  const ScenePart& own = scene.parts[planned.part];
+  std::string doubt;
+  double most_m = 0;
+  const auto consider = [&](const std::string& mate, double clearance_m, const char* what) {
+    const auto other = std::ranges::find(in_place, mate, [](const InPlace& p) { return p.part->part.name; });
+    const ScenePart& worse = knownError_m(own) >= knownError_m(*other->part) ? own : *other->part;
+    const double error_m = knownError_m(own) + knownError_m(*other->part);
+    // On both sides: a clearance is that of the diameter.
+    if (2 * error_m <= std::max(clearance_m, kContact_m) || error_m <= most_m) return;
+    most_m = error_m;
+    doubt = "the mesh of '" + worse.part.name + "' is known to be up to " +
+            lengthInWords(knownError_m(worse)) + " off its exact faces, which its " + what + " '" + mate +
+            "' (" + lengthInWords(clearance_m) +
+            ") does not allow; give a finer --deflection, or a better file of that part";
+  };
+  bool has_fit = false;
+  for (const CheckedFit& fit : checked.fits) {
+    const std::string* mate = otherOf(step.part, fit.shaft, fit.bore, in_place);
+    if (mate == nullptr) continue;
+    has_fit = true;
+    const double found_m = std::max(0.0, fit.diametral_clearance_m);
+    consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : found_m, "clearance in");
+  }
+  if (has_fit) return doubt;
+  for (const CheckedPair& pair : checked.pairs)
+    if (const std::string* mate = otherOf(step.part, pair.a, pair.b, in_place))
+      consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : 2 * step.tolerance_m, "place at");
+  return doubt;
+}
+
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
                    const std::string& part) {
   if (planned.tolerance_m > 0) return planned.tolerance_m;
@@ -128,6 +168,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
     findOverlap(checked, in_place, steps[i]);
     steps[i].aligned_by = alignedBy(checked, scene, i, in_place, steps[i].part);
+    steps[i].mesh_doubt = meshDoubt(scene, checked, in_place, planned, steps[i]);
     findPressFit(checked, in_place, steps[i]);
     if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
   }

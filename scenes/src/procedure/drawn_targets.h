@@ -19,10 +19,10 @@ inline constexpr double kSightTolerance_m = 0.5e-3;
 /// Added to the clearance of a fit: 10 um count as contact, and a part may touch on both sides.
 inline constexpr double kContactOnBothSides_m = 20e-6;
 
-/// A result for each step with tolerance_m, aligned_by and press_needed_N, and with reason and blocked_...
-/// where geometry proves that the part cannot be there: at its target it overlaps what is in place by then,
-/// by more than the error of the meshes (and the scene does not allow it), or it starts or ends in a room
-/// without a way in. Exact distances, on all cores.
+/// A result for each step with tolerance_m, aligned_by, mesh_doubt and press_needed_N, and with reason and
+/// blocked_... where geometry proves that the part cannot be there: at its target it overlaps what is in
+/// place by then, by more than the error of the meshes (and the scene does not allow it), or it starts or
+/// ends in a room without a way in. Exact distances, on all cores.
 /// @param checked  receives what the steps' results were made from; may be null
 std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* checked = nullptr);

@@ -147,6 +147,8 @@ void judgeStep(StepResult& result, double hand_N) {
         "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
   } else if (result.press_needed_N > hand_N) {
     result.reason = pressReason(result, hand_N);
+  } else if (!result.mesh_doubt.empty()) {
+    result.reason = "the hand brought it home, but " + result.mesh_doubt;
   } else {
     result.verdict = Verdict::Fits;
   }

@@ -174,7 +174,7 @@ void fields(Archive& archive, T& x) {
   // recorded.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
                           youngs_modulus_Pa, poissons_ratio, tolerance, file, members, fastener, deflection_m,
-                          model, is_cropped] = x;
+                          rounding_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>

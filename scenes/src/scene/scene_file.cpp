@@ -81,6 +81,7 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   part.X_WP = imported.X_WP;
   part.file = file;
   part.deflection_m = imported.deflection_m;
+  part.rounding_m = imported.rounding_m;
   return part;
 }
 

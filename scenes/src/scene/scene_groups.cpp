@@ -27,6 +27,7 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
     whole.is_fixed = whole.is_fixed || part.is_fixed;
     whole.allow_overlap = whole.allow_overlap || part.allow_overlap;
     whole.press_fit_m = std::max(whole.press_fit_m, part.press_fit_m);
+    whole.rounding_m = std::max(whole.rounding_m, part.rounding_m);
     if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
   }
   if (volume_m3 > 0) whole.part.material.density_kg_m3 = mass_kg / volume_m3;

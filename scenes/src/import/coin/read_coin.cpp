@@ -178,6 +178,7 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
 
   RawCad cad = std::move(collector.cad);
   cad.open_shapes = Shapes::BoundBodies;
+  for (RawPart& part : cad.parts) part.rounding = floatRounding(part.mesh, part.X_WP);
   for (const std::string& line : messages.lines) cad.warnings.push_back(line);
   if (!hasUnits(root)) {
     cad.unit_m = settings.unit_m.value_or(1.0);

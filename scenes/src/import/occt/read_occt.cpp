@@ -5,8 +5,10 @@
 #include <mutex>
 #include <set>
 
+#include <BRepGProp.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <GProp_GProps.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESControl_Controller.hxx>
 #include <Interface_Check.hxx>
@@ -209,7 +211,7 @@ class Tree {
     return false;
   }
 
-  /// The solid's colour, or that of its first face that has one.
+  /// The solid's colour, or the one that most of the area of its faces has, among those that have one.
   bool colorOf(const TopoDS_Shape& shape, Color& out) const {
     const auto has = [&](const TopoDS_Shape& s) {
       Quantity_Color c;
@@ -221,10 +223,16 @@ class Tree {
       return false;
     };
     if (has(shape)) return true;
+    std::map<Color, double> area_of;
     for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-      if (has(it.Current())) return true;
+      if (!has(it.Current())) continue;
+      GProp_GProps face;
+      BRepGProp::SurfaceProperties(it.Current(), face);
+      area_of[out] += face.Mass();
     }
-    return false;
+    if (area_of.empty()) return false;
+    out = std::ranges::max_element(area_of, {}, [](const auto& one) { return one.second; })->first;
+    return true;
   }
 
   Handle(XCAFDoc_ShapeTool) shapes_;
