@@ -40,7 +40,7 @@ class DeviceEnd {
   [[nodiscard]] double silence_s() const;
 
   /// Sends a request and waits until it is carried out. False: the device was lost meanwhile, or the run is
-  /// stopped.
+  /// stopped. Throws LoadError if the device's node refuses it, in its words; Stop is never refused.
   /// @param wait  called from time to time meanwhile
   bool request(const RequestMessage& request, const std::function<void()>& wait);
   /// To the last request.

@@ -54,7 +54,8 @@ struct DeviceNodeResult {
   int sessions = 0;  ///< joined
   int lost = 0;      ///< of these, how many render nodes were lost
   std::uint64_t ticks = 0, missed = 0, faults = 0;
-  std::uint64_t refused = 0;  ///< messages
+  std::uint64_t refused = 0;           ///< messages
+  std::uint64_t refused_requests = 0;  ///< of render nodes, for what cannot be; the first one is said
 };
 
 /// Joins the session, drives the device that its scene names, and returns when the session has ended or
