@@ -33,6 +33,7 @@ struct WatchArguments {
   scenes::SessionNetwork network;
   double rate_hz = 1;   ///< lines a second about the part in hand; 0: none
   int ros_domain = -1;  ///< negative: no topics of ROS 2
+  bool is_ros_in_clear = false;
   SceneArguments scene;
   int port = -1;  ///< of the web page; negative: none
   WebOptions web;
@@ -168,7 +169,20 @@ int serveWeb(const WatchArguments& given) {
   return kGood;
 }
 
+/// ROS 2's tools hear the topics without certificates, and so does everybody else at that interface.
+void requireRosAllowed(const WatchArguments& given) {
+  const std::string& interface = given.network.interface;
+  if (given.ros_domain < 0 || given.is_ros_in_clear || interface.empty()) return;
+  if (given.network.security.empty() || given.network.security == "none") return;
+  throw LoadError(
+      "--ros", "",
+      "publishes handle, force and parts on " + interface +
+          " without encryption, while the session is protected by --security; add --ros-in-clear if "
+          "everybody on that network may read them, or leave out --ros");
+}
+
 int runWatch(const WatchArguments& given) {
+  requireRosAllowed(given);
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())
     throw LoadError(given.scene.scene, "",
@@ -221,6 +235,10 @@ void addWatch(CommandLine& line) {
                   "(PoseStamped), force (WrenchStamped) and /tf, at the interface of --network, or else lo")
       ->type_name("DOMAIN")
       ->check(CLI::Range(0, 232));
+  command
+      .add_flag("--ros-in-clear", given->is_ros_in_clear,
+                "with --security: publish the topics of ROS 2 all the same, which nothing encrypts")
+      ->needs("--ros");
   CLI::Option* web =
       command
           .add_option("--web", given->port,
