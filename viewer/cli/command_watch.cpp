@@ -73,6 +73,7 @@ class Watching {
  private:
   void readAll() {
     while (const auto news = watcher_.takeNews()) tell(*news);
+    for (const std::string& doubt : watcher_.takeDoubts()) say(doubt);
     if (pointers_)
       for (const scenes::SessionPointer& pointer : pointers_->take()) tell(pointer);
     if (const auto force = watcher_.takeForce()) {
@@ -202,7 +203,8 @@ int runWatch(const WatchArguments& given) {
     Watching watching(*watcher, given);
     watching.run();
     if (watching.verdict()) {
-      std::printf("%zu snapshots seen\n", watching.snapshots());
+      std::printf("%zu snapshots seen, %llu messages refused\n", watching.snapshots(),
+                  static_cast<unsigned long long>(watcher->refused()));
       return statusOf(*watching.verdict());
     }
     if (!stopRequested()) say(watcher->hasEnded() ? "the session was stopped" : "the render node is lost");

@@ -153,6 +153,8 @@ std::string DeviceEnd::refusals() const {
     if (count == 0) continue;
     words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + toText(static_cast<Reading>(i));
   }
+  if (const std::uint64_t beats = link_.refusedBeats(); beats > 0)
+    words += (words.empty() ? "" : ", ") + std::to_string(beats) + " beats of any node";
   return words;
 }
 

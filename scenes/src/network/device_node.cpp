@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "haptics/haptic_side.h"
+#include "network/clock_doubts.h"
 #include "network/device_end.h"
 #include "procedure/loop_settings.h"
 #include "record/scene_archive.h"
@@ -106,7 +107,10 @@ class DeviceSession {
     for (int polls = 1;; ++polls) {
       if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
       takeRequests();
-      if (polls % kPollsPerTimes == 0) sendTimes();
+      if (polls % kPollsPerTimes == 0) {
+        sendTimes();
+        for (const std::string& words : doubts_.takeNew(link_)) say(words);
+      }
       if (options_.stop != nullptr && options_.stop->load()) return finish(true);
       if (polls % kPollsPerLook == 0) {
         if (link_.hasEnded()) return finish(true);
@@ -228,7 +232,8 @@ class DeviceSession {
     result_.ticks += times.count;
     result_.missed += times.missed;
     result_.faults += side_->realTime().faults;
-    result_.refused += remote_.refused() + reader_.refused();
+    result_.refused += remote_.refused() + reader_.refused() + link_.refusedBeats();
+    if (const std::string doubts = ClockDoubts::summary(link_); !doubts.empty()) say(doubts);
     return has_ended;
   }
 
@@ -240,6 +245,7 @@ class DeviceSession {
   MessageWriter haptic_writer_;  ///< of the haptic thread: other kinds of messages
   MessageReader reader_;
   ReplyMessage reply_;  ///< the last one
+  ClockDoubts doubts_;
   CouplingGains most_gains_;
   bool has_said_bound_ = false;
   bool has_request_ = false;

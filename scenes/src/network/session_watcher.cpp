@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <vector>
 
+#include "network/clock_doubts.h"
 #include "network/link.h"
 #include "network/messages.h"
 #include "record/scene_archive.h"
@@ -22,7 +23,8 @@ struct SessionWatcher::Work {
   MessageReader reader;         ///< of the render node
   std::int64_t shot_ns = 0;     ///< when it sent the last snapshot
   MessageReader device_reader;  ///< of any device
-  HapticMessage haptic;         ///< the last one, of which a compact one repeats a part
+  ClockDoubts doubts;
+  HapticMessage haptic;  ///< the last one, of which a compact one repeats a part
 };
 
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -82,7 +84,10 @@ bool SessionWatcher::hasDevice() const {
   return work_->link->isAlive(NodeRole::Device);
 }
 std::uint64_t SessionWatcher::refused() const {
-  return work_->reader.refused() + work_->device_reader.refused();
+  return work_->reader.refused() + work_->device_reader.refused() + work_->link->refusedBeats();
+}
+std::vector<std::string> SessionWatcher::takeDoubts() {
+  return work_->doubts.takeNew(*work_->link);
 }
 
 }  // namespace vps::scenes::inline v0

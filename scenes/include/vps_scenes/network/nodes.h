@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
@@ -102,6 +103,8 @@ class VPS_SCENES_API SessionWatcher {
   [[nodiscard]] bool hasEnded() const;
   [[nodiscard]] bool hasDevice() const;
   [[nodiscard]] std::uint64_t refused() const;
+  /// Of other nodes whose clocks contradict themselves, in words; each once.
+  std::vector<std::string> takeDoubts();
 
  private:
   struct Work;
