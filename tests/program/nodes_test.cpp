@@ -163,9 +163,10 @@ TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
 TEST_F(NodesOverUdp, RosTopicsOfASecuredSessionNeedAnOptionOfTheirOwn) {
   const std::string watch = "watch --network lo --session x --security keys/watch --ros 77";
   expectRefused(watch, "add --ros-in-clear");
-  test::ChildProcess allowed({VPS_PROGRAM, "watch", "--network", "lo", "--session", "x", "--security",
-                              (folder_ / "keys/watch").string(), "--ros", "77", "--ros-in-clear"},
-                             (folder_ / "allowed.txt").string());
+  test::ChildProcess allowed(
+      {VPS_PROGRAM, "watch", "--terminal", "--network", "lo", "--session", "x", "--security",
+       (folder_ / "keys/watch").string(), "--ros", "77", "--ros-in-clear"},
+      (folder_ / "allowed.txt").string());
   EXPECT_TRUE(test::NodeProcesses::waitFor(
       [&] { return slurp(folder_ / "allowed.txt").find("waiting for") != std::string::npos; }, 30));
   expectRefused("watch --session x --ros-in-clear", "--ros");

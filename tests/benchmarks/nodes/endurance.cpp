@@ -95,7 +95,7 @@ bool enduranceRow(double seconds) {
   };
   test::ChildProcess long_render = render(long_scene, endless, "long_render.txt");
   test::ChildProcess page = start({"watch", "--web", "0", "--allow-hand"}, endless, "page.txt");
-  test::ChildProcess watch = start({"watch"}, endless, "watch.txt");
+  test::ChildProcess watch = start({"watch", "--terminal"}, endless, "watch.txt");
   test::ChildProcess device = start({"device", "--stay"}, brief, "device.txt");
   test::ChildProcess other_page = start({"watch", "--web", "0"}, brief, "other_page.txt");
   test::ChildProcess short_render = render(short_scene, brief, "short_render.txt");
