@@ -15,6 +15,7 @@
 #include "rows.h"
 #include "support/child_process.h"
 #include "support/temporary_folder.h"
+#include "usage.h"
 
 namespace vps::bench {
 
@@ -24,29 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLook_s = 20;
 constexpr double kGrowthBar_MB = 1;  // assumed: what an allocator keeps, more or less
-
-/// What a process uses.
-struct Usage {
-  double memory_MB = 0;
-  long files = 0, threads = 0;
-};
-
-Usage usageOf(pid_t id) {
-  const std::string folder = "/proc/" + std::to_string(id);
-  Usage usage;
-  std::ifstream status(folder + "/status");
-  for (std::string word; status >> word;) {
-    if (word == "VmRSS:") status >> usage.memory_MB;
-    if (word == "Threads:") status >> usage.threads;
-  }
-  usage.memory_MB /= 1024;
-  std::error_code gone;
-  for (const auto& entry : fs::directory_iterator(folder + "/fd", gone)) {
-    (void)entry;
-    ++usage.files;
-  }
-  return usage;
-}
 
 long segmentsOf(const std::string& session) {
   long count = 0;
