@@ -11,6 +11,7 @@
 #include "network/clock_doubts.h"
 #include "network/link.h"
 #include "network/messages.h"
+#include "record/scene_archive.h"
 #include "scenes/two_pins.h"
 #include "support/no_alloc.h"
 #include "vps/load_error.h"
@@ -126,6 +127,30 @@ TEST_F(NetworkLink, APeerThatLiesAboutTimeIsReportedOnceAndItsBadBeatsAreCounted
   }));
 }
 #endif
+
+// Pictures were stamped with the time at which they were read, so that a watcher that was busy showed them as
+// new.
+TEST_F(NetworkLink, AWatcherKnowsWhenASnapshotWasSentByItsOwnClock) {
+  render_.reset();
+  render_ = makeSession(session_ + "-clock", sceneToBytes(twoPins()), "lo");
+  std::unique_ptr<SessionWatcher> watcher;
+  ASSERT_TRUE(soon([&] { return (watcher = SessionWatcher::join(session_ + "-clock", "lo")) != nullptr; }));
+  ASSERT_TRUE(soon([&] { return render_->timing(NodeRole::Watch).has_value(); }));
+  MessageWriter writer(render_->sessionId(), render_->form());
+  const auto now_ns = [] { return device::monotonicClock().now_ns(); };
+  bool is_known = false;
+  for (int i = 0; i < 50 && !is_known; ++i) {
+    const std::int64_t before_ns = now_ns();
+    render_->send(Channel::Snapshot, writer.write(SnapshotMessage{}));
+    const std::int64_t sent_ns = now_ns();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (!watcher->takeSnapshot()) continue;
+    const double error_ns = 1e9 * render_->timing(NodeRole::Watch)->round_trip_s + 1000;  // of a compact time
+    is_known = static_cast<double>(watcher->snapshotSent_ns() - sent_ns) < error_ns &&
+               static_cast<double>(before_ns - watcher->snapshotSent_ns()) < error_ns && error_ns < 1e8;
+  }
+  EXPECT_TRUE(is_known);
+}
 
 TEST_F(NetworkLink, AnEndedSessionSaysSo) {
   const auto watcher = join(NodeRole::Watch);

@@ -2,9 +2,11 @@
 #include <vector>
 
 #include "network/clock_doubts.h"
+#include "network/clock_estimate.h"
 #include "network/link.h"
 #include "network/messages.h"
 #include "record/scene_archive.h"
+#include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -55,7 +57,10 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
 }
 
 std::int64_t SessionWatcher::snapshotSent_ns() const {
-  return work_->shot_ns;
+  const std::int64_t now_ns = device::monotonicClock().now_ns();
+  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // of this machine
+  const std::optional<PeerTiming> timing = work_->link->timing(NodeRole::Render);
+  return timing ? sentByClockHere_ns(work_->shot_ns, timing->clock_offset_s, now_ns) : now_ns;
 }
 
 std::optional<SessionNews> SessionWatcher::takeNews() {

@@ -93,7 +93,8 @@ class VPS_SCENES_API SessionWatcher {
   [[nodiscard]] const Scene& scene() const;
   /// The newest snapshot, once.
   std::optional<Snapshot> takeSnapshot();
-  /// When the last one was sent, by the monotonic clock of the render node's machine.
+  /// When the last one was sent, by the monotonic clock of this machine. Over a network it is right to half
+  /// of a round trip; the time of this call, until the other clock is known after some 0.3 s.
   [[nodiscard]] std::int64_t snapshotSent_ns() const;
   /// The next news, each once.
   std::optional<SessionNews> takeNews();
