@@ -159,6 +159,19 @@ TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
   EXPECT_EQ(nodes_->watch.wait(), 0) << texts();
 }
 
+// The topics of ROS 2 are in clear, so a session with certificates does not get them by the way.
+TEST_F(NodesOverUdp, RosTopicsOfASecuredSessionNeedAnOptionOfTheirOwn) {
+  const std::string watch = "watch --network lo --session x --security keys/watch --ros 77";
+  expectRefused(watch, "add --ros-in-clear");
+  test::ChildProcess allowed(
+      {VPS_PROGRAM, "watch", "--terminal", "--network", "lo", "--session", "x", "--security",
+       (folder_ / "keys/watch").string(), "--ros", "77", "--ros-in-clear"},
+      (folder_ / "allowed.txt").string());
+  EXPECT_TRUE(test::NodeProcesses::waitFor(
+      [&] { return slurp(folder_ / "allowed.txt").find("waiting for") != std::string::npos; }, 30));
+  expectRefused("watch --session x --ros-in-clear", "--ros");
+}
+
 TEST_F(NodesOverUdp, InterfacesThatOthersReachNeedCertificates) {
   expectRefused("watch --network eth7 --session x", "add --security FOLDER");
   expectRefused("watch --network lo --session x --security nowhere", "has no ca.pem");

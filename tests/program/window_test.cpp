@@ -3,12 +3,16 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "program.h"
+#include "support/child_process.h"
 #include "vps_scenes/display.h"
+#include "vps_scenes/network/session_pointers.h"
 #include "vps_scenes/scene.h"
 #include "vps_viewer/model_view.h"
 #include "vps_viewer/renderer.h"
@@ -341,6 +345,70 @@ TEST_F(Window, APartIsTakenFreelyMovedPutDownAndBroughtBack) {
   EXPECT_EQ(close(), 0);
 }
 
+// Remote assistance: what others point at is marked in the window, and others see where it points.
+TEST_F(Window, FollowsASessionShowsWhereOthersPointAndPointsItself) {
+  write("scene.toml",
+        std::string(kScene) +
+            "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 12]}\ntarget = {position = [0, 0, "
+            "9]}\ntolerance = '2mm'\n");
+  const std::string session = "window-" + std::to_string(getpid());
+  const auto start = [&](std::vector<std::string> words, const char* output) {
+    words.insert(words.begin(), VPS_PROGRAM);
+    words.insert(words.end(), {"--session", session});
+    return test::ChildProcess(std::move(words), (folder_ / output).string());
+  };
+  test::ChildProcess render = start(
+      {"render", (folder_ / "scene.toml").string(), "--no-pictures", "--out", (folder_ / "out").string()},
+      "render.txt");
+  open("--session " + session + " --silent");  // waits for the session, and for its device
+  const Image before = restingPicture();
+  // The middle of the plate's upper side, from the camera that the window begins with.
+  const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
+  const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
+  const viewer::Camera camera = viewer::cameraFor(
+      viewer::standardViews()[0], viewer::snapshotBounds(drawn, viewer::sceneTour(scene).at(0)), kPicture);
+  const Box plate = bounds(scene.parts[0].part.mesh);
+  const Vec3 p_W(0.8 * plate.max.x(), 0.8 * plate.min.y(), plate.max.z());
+  const auto at = camera.project(p_W, kPicture.width, kPicture.height);
+  const auto isMarked = [&](const std::array<int, 3>& color) {
+    const Image now = scenePicture();
+    const unsigned char* pixel = now.at(static_cast<int>(at[0]), static_cast<int>(at[1]));
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(pixel[i] - color[static_cast<std::size_t>(i)]) > 2) return false;
+    return true;
+  };
+  constexpr std::array<int, 3> kOther = {214, 39, 140}, kOwn = {20, 130, 60};
+  scenes::SessionPointers pointers(session);
+  EXPECT_FALSE(isMarked(kOther));
+  pointers.point(1, p_W);
+  EXPECT_TRUE(soon([&] {
+    (void)pointers.take();
+    return isMarked(kOther);
+  })) << "the mark of another watcher";
+  pointers.point(1, {});
+  EXPECT_TRUE(soon([&] {
+    (void)pointers.take();
+    return !isMarked(kOther);
+  }));
+  xdotool("mousemove " + std::to_string(std::lround(at[0])) + " " + std::to_string(std::lround(at[1])) +
+          " click 1");
+  std::optional<Vec3> seen_W;
+  xdotool("key m");
+  EXPECT_TRUE(soon([&] {
+    for (const scenes::SessionPointer& pointer : pointers.take()) seen_W = pointer.p_W;
+    return seen_W.has_value();
+  })) << "the mark of the window";
+  // A pixel is about a tenth of a millimetre here; a whole millimetre is still the place that was clicked.
+  EXPECT_LT((seen_W.value_or(Vec3::Constant(1)) - p_W).norm(), 1e-3);
+  EXPECT_TRUE(isMarked(kOwn));
+  test::ChildProcess device = start({"device"}, "device.txt");
+  EXPECT_EQ(render.wait(), 0) << slurp(folder_ / "render.txt");
+  EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), before, 20).share_beyond > 1e-4; }))
+      << "the window shows the run";
+  std::this_thread::sleep_for(1s);  // until it has read the verdict
+  EXPECT_EQ(close(), 0) << slurp(folder_ / "err.txt");
+}
+
 TEST_F(Window, ThePlannedPathIsShownAndHidden) {
   write("scene.toml", std::string(kScene) + "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 40]}\n");
   open("scene.toml");
@@ -383,7 +451,8 @@ TEST_F(Window, ShowsTheModelsOfContactInPlaceOfTheParts) {
   viewer::Renderer renderer(drawn);
   const Image wanted = renderer.render(
       snapshot,
-      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture), options);
+      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture),
+      options);
   EXPECT_TRUE(shows(wanted));
   EXPECT_GT(viewer::compare(wanted, expected(0), 20).share_beyond, 0.01) << "which differs from the parts";
   EXPECT_EQ(close(), 0);
@@ -440,6 +509,8 @@ TEST_F(Program, AWindowWithoutADisplayIsRefusedInWords) {
   expectRefused("view scene.toml", "no window can be opened");
   expectRefused("view missing.toml", "missing.toml");
   expectRefused("view scene.toml --width 0", "--width");
+  expectRefused("view", "--session NAME");
+  expectRefused("view scene.toml --session x", "leave out the file");
   expectRefused("view scene.toml --hand spoon", "known are dual_arm");
 }
 

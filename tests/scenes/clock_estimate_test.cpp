@@ -86,5 +86,19 @@ TEST(ClockEstimate, AClockThatWasSetIsFollowedAfterAWhile) {
   EXPECT_NEAR(estimate.offset_s(1'300'000'000), -1, 50e-6);
 }
 
+TEST(ClockEstimate, ATimeOfSendingIsGivenByTheClockHereHoweverFarTheClocksAreApart) {
+  constexpr std::int64_t kNow_ns = 90'000'000'000'000, kAgo_ns = 40'000'000;  // a day after boot; 40 ms ago
+  for (const double ahead_s : {0.0, 3.0, -3.0, 40'000.0, -80'000.0, 1e9}) {
+    const auto there_ns = static_cast<std::int64_t>(kNow_ns - kAgo_ns + 1e9 * ahead_s);
+    // A double has 1e18 ns to 128 ns.
+    EXPECT_NEAR(static_cast<double>(kNow_ns - sentByClockHere_ns(there_ns, ahead_s, kNow_ns)), kAgo_ns, 300);
+    // Of a compact message only the lower bits of the microseconds came: any whole number of wraps is lost.
+    const std::int64_t wraps_ns = 5 * (std::int64_t{1} << 32U) * 1000;
+    EXPECT_NEAR(static_cast<double>(kNow_ns - sentByClockHere_ns(there_ns + wraps_ns, ahead_s, kNow_ns)),
+                kAgo_ns, 300);
+  }
+  EXPECT_EQ(sentByClockHere_ns(kNow_ns + 1000, 0, kNow_ns), kNow_ns) << "nothing comes before it is sent";
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -8,11 +8,18 @@
 #include <functional>
 #include <thread>
 
+#include "network/clock_doubts.h"
 #include "network/link.h"
+#include "network/messages.h"
+#include "record/scene_archive.h"
 #include "scenes/two_pins.h"
 #include "support/no_alloc.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/nodes.h"
+
+#if __has_include(<dds/dds.h>)
+#include "network/dds/topics.h"
+#endif
 
 namespace vps::scenes {
 namespace {
@@ -81,6 +88,68 @@ TEST_F(NetworkLink, BothKnowTheRoundTripAndThatTheClocksAreOne) {
   EXPECT_GT(timing.round_trip_s, 0);
   // Both ends read the same clock: its offset is 0.
   EXPECT_LE(std::abs(timing.clock_offset_s), timing.clock_error_s);
+}
+
+#if __has_include(<dds/dds.h>)
+// It says that it had a beat a second before that was sent, so a round trip took less than no time.
+TEST_F(NetworkLink, APeerThatLiesAboutTimeIsReportedOnceAndItsBadBeatsAreCounted) {
+  const DdsParticipant participant("lo");
+  std::atomic<std::uint64_t> render{0};
+  std::atomic<std::int64_t> sent_ns{0};
+  const auto hear = [&](std::string_view bytes) {
+    MessageReader reader;
+    BeatMessage beat;
+    if (reader.read(bytes, beat) != Reading::Good || beat.role != NodeRole::Render) return;
+    render = reader.envelope().sender;
+    sent_ns = reader.envelope().time_ns;
+  };
+  DdsTopic out(participant, topicName(session_, "beat"), Delivery::Newest, nullptr);
+  const DdsTopic in(participant, topicName(session_, "beat"), Delivery::Newest, hear);
+  MessageWriter writer(77);
+  ClockDoubts doubts;
+  EXPECT_TRUE(doubts.takeNew(*render_).empty());
+  std::vector<std::string> said;
+  ASSERT_TRUE(soon([&] {
+    const std::int64_t lie_ns = device::monotonicClock().now_ns() - 1'000'000'000;
+    const BeatMessage beat{NodeRole::Device, render_->sessionId(), false, render, sent_ns, lie_ns};
+    if (render != 0) out.write(writer.write(beat));
+    said = doubts.takeNew(*render_);
+    return !said.empty();
+  }));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("the device's node"), std::string::npos) << said[0];
+  EXPECT_TRUE(doubts.takeNew(*render_).empty());
+  EXPECT_NE(ClockDoubts::summary(*render_).find("of the device's node"), std::string::npos);
+  const std::uint64_t before = render_->refusedBeats();
+  ASSERT_TRUE(soon([&] {
+    out.write("no beat");
+    return render_->refusedBeats() > before;
+  }));
+}
+#endif
+
+// Pictures were stamped with the time at which they were read, so that a watcher that was busy showed them as
+// new.
+TEST_F(NetworkLink, AWatcherKnowsWhenASnapshotWasSentByItsOwnClock) {
+  render_.reset();
+  render_ = makeSession(session_ + "-clock", sceneToBytes(twoPins()), "lo");
+  std::unique_ptr<SessionWatcher> watcher;
+  ASSERT_TRUE(soon([&] { return (watcher = SessionWatcher::join(session_ + "-clock", "lo")) != nullptr; }));
+  ASSERT_TRUE(soon([&] { return render_->timing(NodeRole::Watch).has_value(); }));
+  MessageWriter writer(render_->sessionId(), render_->form());
+  const auto now_ns = [] { return device::monotonicClock().now_ns(); };
+  bool is_known = false;
+  for (int i = 0; i < 50 && !is_known; ++i) {
+    const std::int64_t before_ns = now_ns();
+    render_->send(Channel::Snapshot, writer.write(SnapshotMessage{}));
+    const std::int64_t sent_ns = now_ns();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    if (!watcher->takeSnapshot()) continue;
+    const double error_ns = 1e9 * render_->timing(NodeRole::Watch)->round_trip_s + 1000;  // of a compact time
+    is_known = static_cast<double>(watcher->snapshotSent_ns() - sent_ns) < error_ns &&
+               static_cast<double>(before_ns - watcher->snapshotSent_ns()) < error_ns && error_ns < 1e8;
+  }
+  EXPECT_TRUE(is_known);
 }
 
 TEST_F(NetworkLink, AnEndedSessionSaysSo) {

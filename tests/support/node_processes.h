@@ -33,7 +33,7 @@ class NodeProcesses {
                    "render.txt");
   }
   void startDevice() { device = start({program_, "device", "--stay"}, "device.txt"); }
-  void startWatch() { watch = start({program_, "watch"}, "watch.txt"); }
+  void startWatch() { watch = start({program_, "watch", "--terminal"}, "watch.txt"); }
 
   /// Joins the session as one more watcher; waits for it.
   bool join(double limit_s = 30) {

@@ -13,11 +13,11 @@
 #include "viewer/web_run.h"
 #include "vps_device/detail/bytes.h"
 #include "web/access.h"
-#include "web/blow_sounds.h"
 #include "web/browser_message.h"
 #include "web/hub.h"
 #include "web/part_glb.h"
 #include "web/snapshot_coder.h"
+#include "window/blow_sounds.h"
 
 namespace vps::viewer {
 namespace {

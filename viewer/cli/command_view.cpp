@@ -8,7 +8,9 @@
 #include "file_kind.h"
 #include "latency_report.h"
 #include "output.h"
+#include "run_report.h"
 #include "scene_arguments.h"
+#include "session_option.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
@@ -47,6 +49,7 @@ int runView(const ViewArguments& given) {
   const std::string& file = given.scene.scene;
   WindowOptions window = given.window;
   window.stop = &stopRequested();
+  window.say = [](const std::string& words) { say(words); };
   if (given.seeks_headset) {
     window.notes.push_back(headsetWords());
     say(window.notes.back());
@@ -54,6 +57,14 @@ int runView(const ViewArguments& given) {
   window.stereo = stereoModeOf(given.stereo);
   window.show = shownModels(given.show);
   if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
+  if (!window.session.empty()) {
+    if (!file.empty())
+      throw LoadError(file, "", "is shown in place of a session; leave out the file, or --session");
+    const std::optional<scenes::Verdict> verdict = viewSession(window);
+    return verdict ? statusOf(*verdict) : kGood;
+  }
+  if (file.empty())
+    throw LoadError("", "", "say what to show: a scene file, a recording, or --session NAME of vps render");
   if (lowerExtension(file) == ".mcap") {
     if (window.runs || !window.record.empty() || !window.hand.empty())
       throw LoadError(file, "", "is a recording; --run, --hand and --record are for scenes");
@@ -81,11 +92,20 @@ int runView(const ViewArguments& given) {
 void addView(CommandLine& line) {
   const auto given = std::make_shared<ViewArguments>();
   CLI::App& command = addCommand(
-      line, "view", "opens a window on a scene or a recording: look, play, run; `?` in it lists the keys",
+      line, "view",
+      "opens a window on a scene, a recording or a session: look, play, run; `?` in it lists the keys",
       "vps view scenes/bearing_block/scene.toml", [given] { return runView(*given); });
   addSceneOptions(command, given->scene);
   command.get_option("scene")->description("scene file (TOML), or what vps assemble --record wrote (MCAP)");
+  command.get_option("scene")->required(false);
   WindowOptions& window = given->window;
+  CLI::Option* session =
+      command
+          .add_option(
+              "--session", window.session,
+              "follow this session of vps render in place of a file; M marks a place for all who watch")
+          ->type_name("NAME");
+  addNetworkOption(command, window.network)->needs(session);
   command.add_option("--width", window.width, "width of the window")
       ->capture_default_str()
       ->check(CLI::Range(64, 16384));
@@ -138,8 +158,9 @@ void addView(CommandLine& line) {
       ->needs(latency);
   addJsonOption(command, given->json);
   command.get_option("--json")->needs(latency);
-  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display", "--show"})
+  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display", "--show", "--session"})
     latency->excludes(name);
+  for (const char* name : {"--run", "--hand", "--record"}) session->excludes(name);
   command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
       ->capture_default_str()
       ->type_name("NAME");

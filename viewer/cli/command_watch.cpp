@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps watch: prints what happens in a session. A watcher reads only, so that it can disturb nobody.
+// vps watch: shows a session in a window, or prints what happens in it. A watcher reads only, so that it can
+// disturb nobody.
 // vps watch --web: shows a session, a run of a scene, or a recording in web browsers.
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <set>
@@ -23,6 +25,7 @@
 #include "vps_scenes/network/ros_topics.h"
 #include "vps_scenes/network/session_pointers.h"
 #include "vps_viewer/web.h"
+#include "vps_viewer/window.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -33,6 +36,9 @@ struct WatchArguments {
   scenes::SessionNetwork network;
   double rate_hz = 1;   ///< lines a second about the part in hand; 0: none
   int ros_domain = -1;  ///< negative: no topics of ROS 2
+  bool is_ros_in_clear = false;
+  bool is_terminal = false;  ///< no window, also where there is a display
+  bool is_silent = false;
   SceneArguments scene;
   int port = -1;  ///< of the web page; negative: none
   WebOptions web;
@@ -72,6 +78,7 @@ class Watching {
  private:
   void readAll() {
     while (const auto news = watcher_.takeNews()) tell(*news);
+    for (const std::string& doubt : watcher_.takeDoubts()) say(doubt);
     if (pointers_)
       for (const scenes::SessionPointer& pointer : pointers_->take()) tell(pointer);
     if (const auto force = watcher_.takeForce()) {
@@ -168,11 +175,41 @@ int serveWeb(const WatchArguments& given) {
   return kGood;
 }
 
+/// ROS 2's tools hear the topics without certificates, and so does everybody else at that interface.
+void requireRosAllowed(const WatchArguments& given) {
+  const std::string& interface = given.network.interface;
+  if (given.ros_domain < 0 || given.is_ros_in_clear || interface.empty()) return;
+  if (given.network.security.empty() || given.network.security == "none") return;
+  throw LoadError(
+      "--ros", "",
+      "publishes handle, force and parts on " + interface +
+          " without encryption, while the session is protected by --security; add --ros-in-clear if "
+          "everybody on that network may read them, or leave out --ros");
+}
+
+/// Where there is a display and nothing was asked for that only the terminal does.
+bool wantsWindow(const WatchArguments& given) {
+  const bool has_display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  return has_display && !given.is_terminal && given.ros_domain < 0 && missingForWindow().empty();
+}
+
+int showWindow(const WatchArguments& given) {
+  WindowOptions window;
+  window.session = given.session;
+  window.network = given.network;
+  window.has_sound = !given.is_silent;
+  window.stop = &stopRequested();
+  window.say = [](const std::string& words) { say(words); };
+  const std::optional<scenes::Verdict> verdict = viewSession(window);
+  return verdict ? statusOf(*verdict) : kGood;
+}
+
 int runWatch(const WatchArguments& given) {
+  requireRosAllowed(given);
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())
-    throw LoadError(given.scene.scene, "",
-                    "only a session is followed in the terminal; add --web PORT, or use vps view");
+    throw LoadError(given.scene.scene, "", "vps watch follows a session; add --web PORT, or use vps view");
+  if (wantsWindow(given)) return showWindow(given);
   bool has_said = false;
   while (!stopRequested()) {
     const std::unique_ptr<scenes::SessionWatcher> watcher =
@@ -188,7 +225,8 @@ int runWatch(const WatchArguments& given) {
     Watching watching(*watcher, given);
     watching.run();
     if (watching.verdict()) {
-      std::printf("%zu snapshots seen\n", watching.snapshots());
+      std::printf("%zu snapshots seen, %llu messages refused\n", watching.snapshots(),
+                  static_cast<unsigned long long>(watcher->refused()));
       return statusOf(*watching.verdict());
     }
     if (!stopRequested()) say(watcher->hasEnded() ? "the session was stopped" : "the render node is lost");
@@ -212,15 +250,23 @@ void addWatch(CommandLine& line) {
       "session is followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
-  command.add_option("--rate", given->rate_hz, "lines a second about the part in hand; 0: none")
+  command
+      .add_option("--rate", given->rate_hz, "in the terminal: lines a second about the part in hand; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
+  command.add_flag("--terminal", given->is_terminal,
+                   "print what happens in place of a window; also without a display, and with --ros");
+  command.add_flag("--silent", given->is_silent, "a window without sound");
   command
       .add_option("--ros", given->ros_domain,
                   "publish what is seen as topics of ROS 2 in this domain (ROS_DOMAIN_ID): handle "
                   "(PoseStamped), force (WrenchStamped) and /tf, at the interface of --network, or else lo")
       ->type_name("DOMAIN")
       ->check(CLI::Range(0, 232));
+  command
+      .add_flag("--ros-in-clear", given->is_ros_in_clear,
+                "with --security: publish the topics of ROS 2 all the same, which nothing encrypts")
+      ->needs("--ros");
   CLI::Option* web =
       command
           .add_option("--web", given->port,

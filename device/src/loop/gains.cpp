@@ -48,6 +48,12 @@ CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timi
   return gains;
 }
 
+CouplingGains softerOf(const CouplingGains& a, const CouplingGains& b) noexcept {
+  return {std::min(a.k_N_per_m, b.k_N_per_m),       std::min(a.b_Ns_per_m, b.b_Ns_per_m),
+          std::min(a.k_Nm_per_rad, b.k_Nm_per_rad), std::min(a.b_Nms_per_rad, b.b_Nms_per_rad),
+          std::min(a.max_force_N, b.max_force_N),   std::min(a.max_torque_Nm, b.max_torque_Nm)};
+}
+
 bool areUsable(const CouplingGains& gains) noexcept {
   const auto isWithin = [](double value, double most) {
     return value >= 0 && value <= most;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/wall_clock.h"
+#include "vps_device/gains.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::scenes::inline v0 {
@@ -31,11 +32,9 @@ const LoadLevel& loadLevelOf(int level) {
 }
 
 CouplingGains softer(const CouplingGains& a, const CouplingGains& b) {
-  CouplingGains gains = a;
-  gains.k_N_per_m = std::min(a.k_N_per_m, b.k_N_per_m);
-  gains.b_Ns_per_m = std::min(a.b_Ns_per_m, b.b_Ns_per_m);
-  gains.k_Nm_per_rad = std::min(a.k_Nm_per_rad, b.k_Nm_per_rad);
-  gains.b_Nms_per_rad = std::min(a.b_Nms_per_rad, b.b_Nms_per_rad);
+  CouplingGains gains = device::softerOf(a, b);
+  gains.max_force_N = a.max_force_N;
+  gains.max_torque_Nm = a.max_torque_Nm;
   return gains;
 }
 

@@ -77,4 +77,15 @@ double ClockEstimate::error_s() const noexcept {
   return worst_s;
 }
 
+std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept {
+  constexpr std::int64_t kWrap_ns = (std::int64_t{1} << 32U) * 1000;
+  // Modulo the wrap, without overflow whatever a peer claims.
+  const std::int64_t offset_ns =
+      static_cast<std::int64_t>(std::fmod(1e9 * offset_s, static_cast<double>(kWrap_ns)));
+  std::int64_t ago_ns = (now_ns % kWrap_ns - sent_ns % kWrap_ns + offset_ns) % kWrap_ns;
+  if (ago_ns > kWrap_ns / 2) ago_ns -= kWrap_ns;
+  if (ago_ns < -kWrap_ns / 2) ago_ns += kWrap_ns;
+  return now_ns - std::max<std::int64_t>(0, ago_ns);
+}
+
 }  // namespace vps::scenes::inline v0

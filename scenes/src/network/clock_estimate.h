@@ -61,4 +61,11 @@ class ClockEstimate {
   int contradictions_in_a_row_ = 0;
 };
 
+/// When a message was sent, by the clock here; never later than now. Takes times of which only the lower 32
+/// bits of the microseconds came, too, as those of compact messages: so the result is within 36 minutes
+/// before now.
+/// @param sent_ns   by the clock there
+/// @param offset_s  what that clock is ahead
+std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept;
+
 }  // namespace vps::scenes::inline v0

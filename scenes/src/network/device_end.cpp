@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "vps/load_error.h"
 #include "vps_device/metronome.h"
 
 namespace vps::scenes::inline v0 {
@@ -127,6 +128,9 @@ bool DeviceEnd::request(const RequestMessage& request, const std::function<void(
     std::this_thread::sleep_for(kReplyPoll);
   }
   heard_ns_ = now_ns();
+  // A run that ends does so whatever the device's node answers.
+  if (reply_.refusal[0] != '\0' && request.kind != RequestKind::Stop)
+    throw LoadError("", "", std::string("the device's node refuses: ") + reply_.refusal.data());
   return true;
 }
 
@@ -149,6 +153,8 @@ std::string DeviceEnd::refusals() const {
     if (count == 0) continue;
     words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + toText(static_cast<Reading>(i));
   }
+  if (const std::uint64_t beats = link_.refusedBeats(); beats > 0)
+    words += (words.empty() ? "" : ", ") + std::to_string(beats) + " beats of any node";
   return words;
 }
 

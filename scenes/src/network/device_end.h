@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptics/hand.h"
+#include "network/clock_doubts.h"
 #include "network/link.h"
 #include "network/messages.h"
 
@@ -40,7 +41,7 @@ class DeviceEnd {
   [[nodiscard]] double silence_s() const;
 
   /// Sends a request and waits until it is carried out. False: the device was lost meanwhile, or the run is
-  /// stopped.
+  /// stopped. Throws LoadError if the device's node refuses it, in its words; Stop is never refused.
   /// @param wait  called from time to time meanwhile
   bool request(const RequestMessage& request, const std::function<void()>& wait);
   /// To the last request.
@@ -61,6 +62,12 @@ class DeviceEnd {
   }
   /// What came and was refused, in words; empty: nothing.
   [[nodiscard]] std::string refusals() const;
+  /// Says once of each node that its times contradict themselves.
+  void sayDoubts() {
+    for (const std::string& words : doubts_.takeNew(link_)) say(words);
+  }
+  /// All of them with their counts; empty: none.
+  [[nodiscard]] std::string doubts() const { return ClockDoubts::summary(link_); }
   [[nodiscard]] bool isStopped() const { return stop_ != nullptr && stop_->load(); }
   void say(const std::string& words) const { say_(words); }
   /// See Link.
@@ -75,6 +82,7 @@ class DeviceEnd {
   MessageWriter writer_;
   MessageReader hello_reader_, reply_reader_, state_reader_, log_reader_;
   std::vector<char> buffer_;
+  ClockDoubts doubts_;
   std::optional<HelloMessage> first_;
   bool is_present_ = false;
   std::uint64_t sender_ = 0;  ///< of the device's messages

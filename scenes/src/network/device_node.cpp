@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The device's node: the haptic side of a run, with physics at the other end of a link.
+#include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include "haptics/haptic_side.h"
+#include "network/clock_doubts.h"
 #include "network/device_end.h"
 #include "procedure/loop_settings.h"
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
+#include "vps_device/gains.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -89,8 +94,11 @@ class DeviceSession {
     reader_.bindTo(link.sessionId());
     port_.remote = &remote_;
     const double physics_s = 1 / scene_.fidelity.physics_rate_hz;
-    side_.emplace(*hand_, port_, loopSettings(scene_, hand_->device()),
-                  HapticTiming{2 * physics_s, peerPhysicsLimit_s(physics_s)}, log_);
+    // The scene comes from the render node, too, so what it wishes is bounded as well.
+    most_gains_ = passiveGains(scene_, hand_->device().limits(), scene_.fidelity.physics_rate_hz);
+    device::LoopSettings settings = loopSettings(scene_, hand_->device());
+    settings.gains = bounded(settings.gains);
+    side_.emplace(*hand_, port_, settings, HapticTiming{2 * physics_s, peerPhysicsLimit_s(physics_s)}, log_);
     hand_state_ = &side_->stateByte();
   }
 
@@ -99,7 +107,10 @@ class DeviceSession {
     for (int polls = 1;; ++polls) {
       if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
       takeRequests();
-      if (polls % kPollsPerTimes == 0) sendTimes();
+      if (polls % kPollsPerTimes == 0) {
+        sendTimes();
+        for (const std::string& words : doubts_.takeNew(link_)) say(words);
+      }
       if (options_.stop != nullptr && options_.stop->load()) return finish(true);
       if (polls % kPollsPerLook == 0) {
         if (link_.hasEnded()) return finish(true);
@@ -155,34 +166,64 @@ class DeviceSession {
       if (reading == Reading::Replayed) link_.send(Channel::Reply, writer_.write(reply_));  // it was lost
       if (reading != Reading::Good) continue;
       has_request_ = true;
-      carryOut(request);
+      const std::string refusal = carryOut(request);
+      if (!refusal.empty() && result_.refused_requests++ == 0) say(refusal);
       const std::uint8_t hand = device::toByte(side_->state());
-      reply_ = {reader_.envelope().number, hand, side_->tick()};
+      reply_ = {reader_.envelope().number, hand, side_->tick(), {}};
+      std::memcpy(reply_.refusal.data(), refusal.data(), std::min(refusal.size(), reply_.refusal.size() - 1));
       link_.send(Channel::Reply, writer_.write(reply_));
     }
   }
-  void carryOut(const RequestMessage& request) {
+  /// Empty: done. Otherwise why not.
+  std::string carryOut(const RequestMessage& request) {
     switch (request.kind) {
       case RequestKind::Start:
-        return side_->start();
+        side_->start();
+        return {};
       case RequestKind::Stop:
         side_->stop();
-        return sendTimes();
+        sendTimes();
+        return {};
       case RequestKind::Setup:
         log_.setOn(request.keeps_log);
-        return side_->setGains(request.gains);
+        side_->setGains(bounded(request.gains));
+        return {};
       case RequestKind::Command:
         break;
     }
-    if (request.step > scene_.steps.size()) return;  // GoBack names the step after the last one, too
+    const bool begins = request.command == device::SyncEventKind::Begin;
+    // GoBack names the step after the last one, too.
+    if (request.step >= scene_.steps.size() + (begins ? 0 : 1))
+      return "the render node names step " + std::to_string(request.step + std::uint64_t{1}) +
+             ", but the scene has " + std::to_string(scene_.steps.size()) + " steps; nothing was done";
     HandCommand command{request.command, request.X_WG, request.step, request.now_s, request.task};
-    if (command.what == device::SyncEventKind::Begin) {
-      if (request.step == scene_.steps.size()) return;
+    if (begins) {
       const std::vector<Pose>& all = scene_.steps[request.step].way_points;
       const std::size_t ahead = std::min<std::size_t>(request.way_points_left, all.size());
       command.task.way_points.assign(all.end() - static_cast<std::ptrdiff_t>(ahead), all.end());
     }
     side_->carryOut(command);
+    return {};
+  }
+  /// What the device's passivity allows of the gains that another node wishes; said once.
+  CouplingGains bounded(const CouplingGains& wish) {
+    const CouplingGains gains = device::softerOf(wish, most_gains_);
+    const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.b_Ns_per_m < wish.b_Ns_per_m ||
+                            gains.k_Nm_per_rad < wish.k_Nm_per_rad ||
+                            gains.b_Nms_per_rad < wish.b_Nms_per_rad;
+    if (is_bounded && !std::exchange(has_said_bound_, true)) {
+      char words[160];
+      std::snprintf(
+          words, sizeof words,
+          "the render node wishes a coupling of %.0f N/m and %.1f N m/rad; this device is passive up to "
+          "%.0f and %.1f, so it uses these",
+          wish.k_N_per_m, wish.k_Nm_per_rad, most_gains_.k_N_per_m, most_gains_.k_Nm_per_rad);
+      say(words);
+    }
+    return gains;
+  }
+  void say(const std::string& words) const {
+    if (options_.say) options_.say(words);
   }
   bool finish(bool has_ended) {
     side_->stop();
@@ -191,7 +232,8 @@ class DeviceSession {
     result_.ticks += times.count;
     result_.missed += times.missed;
     result_.faults += side_->realTime().faults;
-    result_.refused += remote_.refused() + reader_.refused();
+    result_.refused += remote_.refused() + reader_.refused() + link_.refusedBeats();
+    if (const std::string doubts = ClockDoubts::summary(link_); !doubts.empty()) say(doubts);
     return has_ended;
   }
 
@@ -203,6 +245,9 @@ class DeviceSession {
   MessageWriter haptic_writer_;  ///< of the haptic thread: other kinds of messages
   MessageReader reader_;
   ReplyMessage reply_;  ///< the last one
+  ClockDoubts doubts_;
+  CouplingGains most_gains_;
+  bool has_said_bound_ = false;
   bool has_request_ = false;
   std::vector<char> buffer_;
   Scene scene_;

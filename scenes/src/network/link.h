@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "network/broadcast_ring.h"
 #include "network/shared_region.h"
@@ -62,6 +63,13 @@ struct PeerTiming {
   std::uint64_t contradictions = 0;  ///< times that it gave and that cannot be
 };
 
+/// What another node said of its times, and cannot be.
+struct PeerDoubt {
+  NodeRole role = NodeRole::Watch;
+  std::uint64_t sender = 0;
+  std::uint64_t contradictions = 0;
+};
+
 /// send() and receive() neither throw, allocate, lock nor wait. A channel is used by one thread at a time.
 class Link {
  public:
@@ -89,6 +97,10 @@ class Link {
   [[nodiscard]] virtual bool hasEnded() const = 0;
   /// Empty in one machine, and while nothing is known.
   [[nodiscard]] virtual std::optional<PeerTiming> timing(NodeRole) const { return {}; }
+  /// The nodes of this session whose times contradict themselves.
+  [[nodiscard]] virtual std::vector<PeerDoubt> doubts() const { return {}; }
+  /// Beats that could not be read, or were sent again.
+  [[nodiscard]] virtual std::uint64_t refusedBeats() const { return 0; }
   /// The scene, as its archive; the caller checks it.
   [[nodiscard]] virtual std::string sceneBytes() const = 0;
 

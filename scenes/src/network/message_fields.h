@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fields of each message, in the order of its bytes: one table for writing and reading.
 //
-// visit(x) for a number, vector, pose, twist, wrench, flag or text; visit.choice(e, count) for an enumeration
+// visit(x) for a number, vector, pose, twist, wrench, flag or text; visit.notNegative(x) for a number of at
+// least 0; visit.choice(e, count) for an enumeration
 // with that many values; visit.unchecked(on) where a value may be anything, as in the log of a faulty device.
 #pragma once
 
@@ -75,12 +76,12 @@ void fields(PhysicsMessage& m, V& visit) {
 
 template <typename V>
 void fields(CouplingGains& gains, V& visit) {
-  visit(gains.k_N_per_m);
-  visit(gains.b_Ns_per_m);
-  visit(gains.k_Nm_per_rad);
-  visit(gains.b_Nms_per_rad);
-  visit(gains.max_force_N);
-  visit(gains.max_torque_Nm);
+  visit.notNegative(gains.k_N_per_m);  // a negative spring or damper makes energy
+  visit.notNegative(gains.b_Ns_per_m);
+  visit.notNegative(gains.k_Nm_per_rad);
+  visit.notNegative(gains.b_Nms_per_rad);
+  visit.notNegative(gains.max_force_N);
+  visit.notNegative(gains.max_torque_Nm);
 }
 
 template <typename V>
@@ -119,6 +120,7 @@ void fields(ReplyMessage& m, V& visit) {
   visit(m.request);
   visit(m.hand);
   visit(m.tick);
+  visit(m.refusal);
 }
 
 template <typename V>

@@ -82,6 +82,10 @@ class Visit {
   template <typename T>
   requires std::is_arithmetic_v<T>
   void operator()(T& x) { self().number(x); }
+  void notNegative(double& x) {
+    self().number(x);
+    if (x < 0) self().refuse();
+  }
   void unchecked(bool on) { is_unchecked_ = on; }
   void alternative(device::LogEntry& entry) {
     std::uint8_t index = static_cast<std::uint8_t>(entry.index());
@@ -334,6 +338,8 @@ const char* toText(Reading reading) {
       return "of another sender";
     case Reading::Replayed:
       return "sent before";
+    case Reading::TooFarAhead:
+      return "with a number too far ahead";
   }
   return "unknown";
 }
@@ -409,9 +415,11 @@ Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
       taken = take(get, [](Message& m, Get& visit) { wire::fields(m, visit); });
     }
     if (taken != Reading::Good) return taken;
-    std::uint64_t& last = numbers_[static_cast<std::size_t>(kKind)];
-    if (envelope.number <= last && envelope.sender == envelope_.sender) return Reading::Replayed;
-    last = envelope.number;
+    if (envelope.sender != envelope_.sender) orders_ = {};
+    const MessageOrder::Place place =
+        orders_[static_cast<std::size_t>(kKind)].place(envelope.number, envelope.time_ns, clock_->now_ns());
+    if (place != MessageOrder::Place::Next)
+      return place == MessageOrder::Place::Old ? Reading::Replayed : Reading::TooFarAhead;
     envelope_ = envelope;
     message = std::move(read);
     return Reading::Good;

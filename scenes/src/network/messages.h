@@ -12,9 +12,11 @@
 #include <variant>
 #include <vector>
 
+#include "network/message_order.h"
 #include "network/shared_region.h"
 #include "network/wire_form.h"
 #include "vps_device/coupling_port.h"
+#include "vps_device/metronome.h"
 #include "vps_device/operator.h"
 #include "vps_device/run_log.h"
 #include "vps_device/tick_statistics.h"
@@ -24,7 +26,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 4;
+inline constexpr std::uint16_t kMessageVersion = 5;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -79,9 +81,10 @@ struct RequestMessage {
 };
 
 struct ReplyMessage {
-  std::uint64_t request = 0;  ///< the number of the request that was carried out
+  std::uint64_t request = 0;  ///< the number of the request that was carried out, or refused
   std::uint8_t hand = 0;      ///< after it
   std::int32_t tick = 0;      ///< the loop's last one; states of this tick and before show the hand before it
+  std::array<char, 160> refusal{};  ///< why it was not carried out, zero-terminated; empty: it was
 };
 
 /// The device's node when it joins.
@@ -150,9 +153,10 @@ enum class Reading : std::uint8_t {
   BadKind,
   BadValue,  ///< not finite, out of range, or a rotation that is none
   WrongSender,
-  Replayed,  ///< its number is not above the last one of its kind
+  Replayed,     ///< its number is not above the last one of its kind
+  TooFarAhead,  ///< its number is above what the sender can have sent by now; see MessageOrder
 };
-inline constexpr std::size_t kReadings = 7;
+inline constexpr std::size_t kReadings = 8;
 const char* toText(Reading reading);
 
 /// Writes messages without allocating: `out` keeps its room from one message to the next.
@@ -180,10 +184,11 @@ class MessageWriter {
 /// Reads messages and counts what was refused.
 class MessageReader {
  public:
+  explicit MessageReader(device::RealTimeClock& clock = device::monotonicClock()) noexcept : clock_(&clock) {}
   /// Refuses all senders but this one, whose messages begin at any number.
   void bindTo(std::uint64_t sender) noexcept {
     sender_ = sender;
-    numbers_ = {};
+    orders_ = {};
   }
   /// Good: `message` has the values. Otherwise it is unchanged. Takes both forms; of a compact state some
   /// values may be those that `message` had. Allocates for snapshots only.
@@ -196,8 +201,9 @@ class MessageReader {
   [[nodiscard]] std::uint64_t refused() const noexcept;
 
  private:
+  device::RealTimeClock* clock_;
   std::uint64_t sender_ = 0;  ///< 0: any
-  std::array<std::uint64_t, 16> numbers_{};
+  std::array<MessageOrder, 16> orders_{};
   Envelope envelope_;
   std::array<std::uint64_t, kReadings> counts_{};
 };

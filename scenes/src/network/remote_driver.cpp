@@ -23,6 +23,7 @@ namespace {
 /// A live device that is silent for longer stops physics as well. assumed: longer than any hiccup of a
 /// scheduler; the proxy stands still meanwhile.
 constexpr double kHiccup_s = 0.1;
+constexpr std::uint64_t kAdvancesPerDoubt = 256;  // assumed: some times a second
 /// Good physics steps before the loop is re-armed, if its node allows that.
 constexpr int kStepsUntilRearm = 50;
 
@@ -89,6 +90,7 @@ class RemoteDriver final : public ClockedDriver {
     end_.poll();
     takeStateSinceRequest();
     if (!keepDevice()) return false;
+    if (++advances_ % kAdvancesPerDoubt == 0) end_.sayDoubts();
     rearmWhenGood();
     takeStateSinceRequest();
     takeLog();
@@ -198,7 +200,7 @@ class RemoteDriver final : public ClockedDriver {
   int good_steps_ = 0;  ///< since a fault
   PhysicsClock clock_;
   int joins_;
-  std::uint64_t interruptions_ = 0;
+  std::uint64_t interruptions_ = 0, advances_ = 0;
 };
 
 void RemoteDriver::showThatPhysicsLives() {
@@ -336,6 +338,7 @@ std::optional<RealTimeResult> RemoteDriver::realTime() {
     result.warnings.push_back("the device was lost " + std::to_string(interruptions_) + " times");
   if (const std::string refused = end_.refusals(); !refused.empty())
     result.warnings.push_back("messages of the device that were refused: " + refused);
+  if (const std::string doubts = end_.doubts(); !doubts.empty()) result.warnings.push_back(doubts);
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include "record/run_record.h"
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
+#include "vps_device/gains.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -113,6 +114,10 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
     for (SceneStep& step : scene.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
   const std::unique_ptr<Hand> hand = remoteHand(end, scene);
   device::LoopSettings settings = loopSettings(scene, hand->device(), networkDelay_s(end, given));
+  if (!device::areUsable(settings.gains))
+    throw LoadError(scene.file, "",
+                    "the device '" + std::string(hand->device().name()) +
+                        "' states limits from which no usable coupling follows; check its node");
   if (!given.network.empty()) {
     char words[120];
     std::snprintf(words, sizeof words, "so the coupling has %.0f N/m and %.1f N m/rad",

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <vector>
 
+#include "network/clock_doubts.h"
+#include "network/clock_estimate.h"
 #include "network/link.h"
 #include "network/messages.h"
 #include "record/scene_archive.h"
+#include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -22,7 +25,8 @@ struct SessionWatcher::Work {
   MessageReader reader;         ///< of the render node
   std::int64_t shot_ns = 0;     ///< when it sent the last snapshot
   MessageReader device_reader;  ///< of any device
-  HapticMessage haptic;         ///< the last one, of which a compact one repeats a part
+  ClockDoubts doubts;
+  HapticMessage haptic;  ///< the last one, of which a compact one repeats a part
 };
 
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -53,7 +57,10 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
 }
 
 std::int64_t SessionWatcher::snapshotSent_ns() const {
-  return work_->shot_ns;
+  const std::int64_t now_ns = device::monotonicClock().now_ns();
+  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // of this machine
+  const std::optional<PeerTiming> timing = work_->link->timing(NodeRole::Render);
+  return timing ? sentByClockHere_ns(work_->shot_ns, timing->clock_offset_s, now_ns) : now_ns;
 }
 
 std::optional<SessionNews> SessionWatcher::takeNews() {
@@ -82,7 +89,10 @@ bool SessionWatcher::hasDevice() const {
   return work_->link->isAlive(NodeRole::Device);
 }
 std::uint64_t SessionWatcher::refused() const {
-  return work_->reader.refused() + work_->device_reader.refused();
+  return work_->reader.refused() + work_->device_reader.refused() + work_->link->refusedBeats();
+}
+std::vector<std::string> SessionWatcher::takeDoubts() {
+  return work_->doubts.takeNew(*work_->link);
 }
 
 }  // namespace vps::scenes::inline v0

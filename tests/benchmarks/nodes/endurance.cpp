@@ -15,6 +15,7 @@
 #include "rows.h"
 #include "support/child_process.h"
 #include "support/temporary_folder.h"
+#include "usage.h"
 
 namespace vps::bench {
 
@@ -24,29 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLook_s = 20;
 constexpr double kGrowthBar_MB = 1;  // assumed: what an allocator keeps, more or less
-
-/// What a process uses.
-struct Usage {
-  double memory_MB = 0;
-  long files = 0, threads = 0;
-};
-
-Usage usageOf(pid_t id) {
-  const std::string folder = "/proc/" + std::to_string(id);
-  Usage usage;
-  std::ifstream status(folder + "/status");
-  for (std::string word; status >> word;) {
-    if (word == "VmRSS:") status >> usage.memory_MB;
-    if (word == "Threads:") status >> usage.threads;
-  }
-  usage.memory_MB /= 1024;
-  std::error_code gone;
-  for (const auto& entry : fs::directory_iterator(folder + "/fd", gone)) {
-    (void)entry;
-    ++usage.files;
-  }
-  return usage;
-}
 
 long segmentsOf(const std::string& session) {
   long count = 0;
@@ -95,7 +73,7 @@ bool enduranceRow(double seconds) {
   };
   test::ChildProcess long_render = render(long_scene, endless, "long_render.txt");
   test::ChildProcess page = start({"watch", "--web", "0", "--allow-hand"}, endless, "page.txt");
-  test::ChildProcess watch = start({"watch"}, endless, "watch.txt");
+  test::ChildProcess watch = start({"watch", "--terminal"}, endless, "watch.txt");
   test::ChildProcess device = start({"device", "--stay"}, brief, "device.txt");
   test::ChildProcess other_page = start({"watch", "--web", "0"}, brief, "other_page.txt");
   test::ChildProcess short_render = render(short_scene, brief, "short_render.txt");

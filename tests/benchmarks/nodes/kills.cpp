@@ -13,6 +13,7 @@
 #include "rows.h"
 #include "support/node_processes.h"
 #include "support/temporary_folder.h"
+#include "usage.h"
 
 namespace vps::bench {
 
@@ -22,6 +23,30 @@ constexpr double kBar_s = 0.02;
 
 struct Tally {
   int kills = 0, resumed = 0;
+};
+
+/// Memory of a role's processes, one after the other, each looked at before a kill.
+class MemoryOfKills {
+ public:
+  void look(const test::ChildProcess& process) {
+    if (process.isRunning()) all_MB_.push_back(usageOf(process.id()).memory_MB);
+  }
+  /// Median of the first, or the last, third.
+  [[nodiscard]] double early_MB() const { return median({all_MB_.begin(), all_MB_.begin() + third()}); }
+  [[nodiscard]] double late_MB() const { return median({all_MB_.end() - third(), all_MB_.end()}); }
+  [[nodiscard]] bool isSteady() const {
+    // assumed: what an allocator keeps, more or less, and where in its run a process is
+    return !all_MB_.empty() && late_MB() - early_MB() <= std::max(1.0, 0.05 * early_MB());
+  }
+
+ private:
+  [[nodiscard]] std::ptrdiff_t third() const { return static_cast<std::ptrdiff_t>((all_MB_.size() + 2) / 3); }
+  static double median(std::vector<double> some) {
+    if (some.empty()) return 0;
+    std::sort(some.begin(), some.end());
+    return some[some.size() / 2];
+  }
+  std::vector<double> all_MB_;
 };
 
 std::string counts(const char* name, const Tally& tally) {
@@ -40,6 +65,9 @@ bool killRows(int kills, const std::string& network) {
   std::vector<double> safe_s;
   int unsafe = 0;
   std::size_t most_segments = 0;
+  std::array<MemoryOfKills, 3> memory;
+  double own_early_MB =
+      0;  // of this process, which joins each session as a watcher and lives through all kills
   nodes.startDevice();
   nodes.startWatch();
   nodes.startRender();
@@ -57,6 +85,9 @@ bool killRows(int kills, const std::string& network) {
       continue;
     }
     ++tally.kills;
+    const std::array<const test::ChildProcess*, 3> alive = {&nodes.render, &nodes.device, &nodes.watch};
+    for (std::size_t role = 0; role < alive.size(); ++role) memory[role].look(*alive[role]);
+    if (i <= kills / 3) own_early_MB = usageOf(getpid()).memory_MB;
     if (i % 3 == 0) {
       const std::int64_t killed_ns = nodes.render.killNow();
       const std::optional<double> safe = nodes.safeAfter_s(killed_ns);
@@ -101,7 +132,19 @@ bool killRows(int kills, const std::string& network) {
   printRow("shared segments during and after", "1 and 0",
            std::to_string(most_segments) + " and " + std::to_string(is_gone ? 0 : nodes.segments()),
            most_segments <= 1 && is_gone);
-  return is_safe && has_resumed && is_gone;
+  const double own_MB = usageOf(getpid()).memory_MB;
+  std::snprintf(
+      words, sizeof words,
+      "render %.1f and %.1f MB, device %.1f and %.1f, watch %.1f and %.1f; a watcher that was never killed "
+      "%.1f and %.1f",
+      memory[0].early_MB(), memory[0].late_MB(), memory[1].early_MB(), memory[1].late_MB(),
+      memory[2].early_MB(), memory[2].late_MB(), own_early_MB, own_MB);
+  const bool is_steady =
+      own_MB - own_early_MB <= 1 &&
+      std::all_of(memory.begin(), memory.end(), [](const MemoryOfKills& one) { return one.isSteady(); });
+  printRow("memory in the first and the last third of the kills" + how, "at most 1 MB or 5 % more", words,
+           is_steady);
+  return is_safe && has_resumed && is_gone && is_steady;
 }
 
 }  // namespace vps::bench

@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "network/link.h"
@@ -34,7 +36,9 @@ std::int64_t now_ns() {
 
 /// One end of the link with what it needs to write and read.
 struct End {
-  End(std::unique_ptr<Link> joined, std::uint64_t sender) : link(std::move(joined)), writer(sender) {}
+  /// @param form  as the nodes write states on the link that is measured
+  End(std::unique_ptr<Link> joined, std::uint64_t sender, WireForm form)
+      : link(std::move(joined)), writer(sender, form) {}
 
   void sendHaptic(std::int32_t tick) {
     haptic.state.tick = tick;
@@ -60,6 +64,11 @@ struct End {
   PhysicsMessage physics;
   std::vector<char> buffer = std::vector<char>(kLongestMessage);
 };
+
+/// In which the nodes write states there: over UDP the compact one.
+WireForm formOf(const std::string& network) {
+  return network.empty() ? WireForm::Exact : WireForm::Compact;
+}
 
 /// Between two looks at a link whose threads need a processor, too.
 void pauseFor(const std::string& network) {
@@ -112,12 +121,13 @@ struct Ends {
   explicit Ends(const std::string& network) {
     other = fork();
     if (other == 0) {
-      End render(makeSession(kSession, "no scene", network), 1);
+      End render(makeSession(kSession, "no scene", network), 1, formOf(network));
       echo(render, network);
     }
     std::unique_ptr<Link> link;
     while ((link = joinSession(kSession, NodeRole::Device, network)) == nullptr) usleep(1000);
-    device.emplace(std::move(link), 2);
+    if (link->form() != formOf(network)) throw std::logic_error("the link has another form than is measured");
+    device.emplace(std::move(link), 2, formOf(network));
   }
   ~Ends() {
     kill(other, SIGKILL);
@@ -127,20 +137,27 @@ struct Ends {
   std::optional<End> device;
 };
 
-/// The same calls in one process.
-Times bareTimes(double seconds) {
-  End render(makeSession("bench-bare", "no scene"), 1);
-  End device(joinSession("bench-bare", NodeRole::Device), 2);
-  return timed(seconds, [&](std::int32_t i) {
+/// The same calls in one process, through shared memory.
+Times bareTimes(double seconds, WireForm form) {
+  device::requestRealTime(80, false);
+  End render(makeSession("bench-bare", "no scene"), 1, form);
+  End device(joinSession("bench-bare", NodeRole::Device), 2, form);
+  Times times = timed(seconds, [&](std::int32_t i) {
     device.sendHaptic(i);
     render.takeHaptic();
     render.sendPhysics(i);
     device.takePhysics();
   });
+  device::leaveRealTime();
+  return times;
 }
 
-bool latencyRow(const std::string& network, double seconds, const Times& bare, double p50_bar_us,
-                double p99_bar_us) {
+bool latencyRow(const std::string& network, double seconds, double p50_bar_us, double p99_bar_us) {
+  const Times bare = bareTimes(seconds, formOf(network));
+  MessageWriter sizes(1, formOf(network));
+  HapticMessage odd;  // most states have only what changes at every tick
+  odd.state.tick = 1;
+  const std::size_t bytes = sizes.write(odd).size();
   Ends ends(network);
   End& device = *ends.device;
   int unanswered = 0;
@@ -162,9 +179,9 @@ bool latencyRow(const std::string& network, double seconds, const Times& bare, d
   char words[240], bar[80];
   std::snprintf(words, sizeof words,
                 "p50 %.1f us, p99 %.1f us, p99.9 %.1f us; %d of %zu not within a period; bare calls p50 %.1f "
-                "us, p99 %.1f us",
+                "us, p99 %.1f us; a state of the proxy has %zu bytes",
                 both.us(0.5), both.us(0.99), both.us(0.999), unanswered, both.all.size(), bare.us(0.5),
-                bare.us(0.99));
+                bare.us(0.99), bytes);
   std::snprintf(bar, sizeof bar, "p50 <= %.0f us, p99 <= %.0f us beyond bare calls", p50_bar_us, p99_bar_us);
   const bool is_reached =
       both.us(0.5) - bare.us(0.5) <= p50_bar_us && both.us(0.99) - bare.us(0.99) <= p99_bar_us;
@@ -176,11 +193,8 @@ bool latencyRow(const std::string& network, double seconds, const Times& bare, d
 }  // namespace
 
 bool latencyRows(double seconds) {
-  device::requestRealTime(80, false);
-  const Times bare = bareTimes(seconds);
-  device::leaveRealTime();
-  const bool is_shared_good = latencyRow("", seconds, bare, 20, 60);
-  return latencyRow("lo", seconds, bare, 100, 250) && is_shared_good;
+  const bool is_shared_good = latencyRow("", seconds, 20, 60);
+  return latencyRow("lo", seconds, 100, 250) && is_shared_good;
 }
 
 }  // namespace vps::bench

@@ -17,17 +17,34 @@ namespace {
 
 using nlohmann::json;
 
+// Two runs by the clock are never the same to the bit, so "as in one process" needs a width. assumed: as far
+// as two runs of one program were seen apart, a factor of two; depths to the error of a part's mesh, and
+// misses to one in 1000, which a scheduler causes.
+constexpr double kFactor = 2, kDepth_m = 2e-6, kMissedShare = 1e-3;
+
+double deepest_m(const json& run) {
+  double deepest = 0;
+  for (const json& step : run["steps"]) deepest = std::max(deepest, step["max_penetration_m"].get<double>());
+  return deepest;
+}
+double missedShare(const json& run) {
+  return run["wall"]["haptic"]["missed"].get<double>() / std::max(1.0, run["haptic"]["ticks"].get<double>());
+}
+bool hasSameVerdicts(const json& a, const json& b) {
+  if (a["verdict"] != b["verdict"] || a["steps"].size() != b["steps"].size()) return false;
+  for (std::size_t i = 0; i < a["steps"].size(); ++i)
+    if (a["steps"][i]["verdict"] != b["steps"][i]["verdict"]) return false;
+  return true;
+}
+
 std::string summary(const json& run) {
-  double deepest_m = 0;
-  for (const json& step : run["steps"])
-    deepest_m = std::max(deepest_m, step["max_penetration_m"].get<double>());
   const auto fits = std::count_if(run["steps"].begin(), run["steps"].end(),
                                   [](const json& step) { return step["verdict"] == "fits"; });
   char words[200];
   std::snprintf(
       words, sizeof words, "%s, %ld of %zu steps fit, deepest %.2f um, haptic periods missed %ld of %ld",
       run["verdict"].get<std::string>().c_str(), static_cast<long>(fits), run["steps"].size(),
-      1e6 * deepest_m, run["wall"]["haptic"]["missed"].get<long>(), run["haptic"]["ticks"].get<long>());
+      1e6 * deepest_m(run), run["wall"]["haptic"]["missed"].get<long>(), run["haptic"]["ticks"].get<long>());
   return words;
 }
 
@@ -57,8 +74,16 @@ bool runRows(const std::string& scene) {
     printRow("three processes: " + scene, "as in one process", "a run gave no result", false);
     return false;
   }
-  const bool is_reached = status == 0 && three["verdict"] == one["verdict"];
-  printRow("three processes: " + three["scene"].get<std::string>(), "as in one process", summary(three),
+  const bool has_same = status == 0 && hasSameVerdicts(three, one);
+  const bool is_as_deep = deepest_m(three) <= kFactor * deepest_m(one) + kDepth_m;
+  const bool is_as_punctual = missedShare(three) <= kFactor * missedShare(one) + kMissedShare;
+  const bool is_reached = has_same && is_as_deep && is_as_punctual;
+  std::string departs = summary(three);
+  if (!has_same) departs += "; another verdict, of the whole or of a step";
+  if (!is_as_deep) departs += "; deeper than in one process";
+  if (!is_as_punctual) departs += "; misses more periods than one process";
+  printRow("three processes: " + three["scene"].get<std::string>(),
+           "verdicts of all steps as in one process; depth and share of misses at most twice its", departs,
            is_reached);
   printRow("one process", "", summary(one), true);
   return is_reached;

@@ -29,7 +29,7 @@ void addRun(const std::string& scene, int watchers, Missed& sum) {
   test::NodeProcesses nodes(VPS_PROGRAM, scene, session, folder.path());
   std::vector<test::ChildProcess> all;
   for (int i = 0; i < watchers; ++i) {
-    std::vector<std::string> words = {VPS_PROGRAM, "watch", "--session", session};
+    std::vector<std::string> words = {VPS_PROGRAM, "watch", "--terminal", "--session", session};
     if (i == 0) words.insert(words.end(), {"--web", "0"});
     all.emplace_back(std::move(words), (folder.path() / ("watch" + std::to_string(i) + ".txt")).string());
   }

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "vps_device/recording.h"
 #include "vps_scenes/model_options.h"
+#include "vps_scenes/network/session_network.h"
 #include "vps_scenes/scene.h"
+#include "vps_scenes/verdict.h"
 #include "vps_viewer/export.h"
 #include "vps_viewer/model_view.h"
 #include "vps_viewer/stereo.h"
@@ -30,7 +33,10 @@ struct WindowOptions {
   ShownModels show;                ///< in place of the parts
   std::vector<std::string> notes;  ///< messages that it begins with
   scenes::ModelOptions models;     ///< of a run
-  const std::atomic<bool>* stop = nullptr;  ///< set it to close the window
+  const std::atomic<bool>* stop = nullptr;      ///< set it to close the window
+  std::string session;                          ///< of vps render, for viewSession()
+  scenes::SessionNetwork network;               ///< where it is
+  std::function<void(const std::string&)> say;  ///< before there is a window; may be empty
 };
 
 /// In words, what this build lacks for a window; empty: nothing.
@@ -40,5 +46,9 @@ VPS_VIEWER_API std::string missingForWindow();
 /// helps: a build without a window, no display, OpenGL too old.
 VPS_VIEWER_API void viewScene(const scenes::Scene& scene, const WindowOptions& options);
 VPS_VIEWER_API void viewRecording(const device::RecordedRun& run, const WindowOptions& options);
+/// Waits for the session, shows it and where others point, and marks places for them; hears impacts. The last
+/// picture stays when it ends. Returns its verdict; empty: the window was closed before. Throws LoadError
+/// where the session cannot be watched.
+VPS_VIEWER_API std::optional<scenes::Verdict> viewSession(const WindowOptions& options);
 
 }  // namespace vps::viewer::inline v0

@@ -228,9 +228,11 @@ void WebHub::sendSounds() {
                                     [](const auto& entry) { return entry.second.has_sound; });
   if (!is_heard || !has_scene_) return sounds_.reset();
   if (!sounds_) sounds_ = std::make_unique<BlowSounds>(*run_.scene());
-  for (const std::string& sound : sounds_->take())
+  for (const BlowSound& sound : sounds_->take()) {
+    const std::string bytes = blowBytes(sound);
     for (auto& [number, browser] : browsers_)
-      if (browser.has_sound && browser.end->isFree()) browser.end->sendBytes(sound);
+      if (browser.has_sound && browser.end->isFree()) browser.end->sendBytes(bytes);
+  }
 }
 
 void WebHub::sendShots(double now_s) {

@@ -13,7 +13,6 @@
 
 #include "draw/shading_mesh.h"
 #include "web/access.h"
-#include "web/blow_sounds.h"
 #include "web/browser_message.h"
 #include "web/snapshot_coder.h"
 #include "web/watched_run.h"

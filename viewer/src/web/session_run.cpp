@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "vps/load_error.h"
-#include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 #include "web/watched_run.h"
 
@@ -94,10 +93,7 @@ class SessionRun final : public WatchedRun {
     if (watcher_ == nullptr) return {};
     std::optional<scenes::Snapshot> shot = watcher_->takeSnapshot();
     if (!shot) return {};
-    // Another machine has another clock.
-    const std::int64_t taken_ns =
-        options_.network.empty() ? watcher_->snapshotSent_ns() : device::monotonicClock().now_ns();
-    return WatchedShot{std::move(*shot), taken_ns};
+    return WatchedShot{std::move(*shot), watcher_->snapshotSent_ns()};
   }
   std::vector<WatchedNews> takeNews() override { return std::exchange(news_, {}); }
   [[nodiscard]] HandDrag* drag() override { return device_ ? device_->drag() : nullptr; }

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "vps_device/detail/bytes.h"
-#include "web/blow_sounds.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -100,6 +99,19 @@ std::string SnapshotCoder::encode(const WatchedShot& shot) {
     writer.put(static_cast<float>(mark.force_N));
   }
   return out;
+}
+
+std::string blowBytes(const BlowSound& sound) {
+  double most_Pa = 1e-9;  // the samples are as large as 16 bits hold
+  for (const double p : sound.pressure_Pa) most_Pa = std::max(most_Pa, std::abs(p));
+  std::string bytes;
+  ByteWriter writer(bytes);
+  writer.put(kBlowKind);
+  writer.put(static_cast<std::uint32_t>(BlowSound::kRate_hz));
+  writer.put(static_cast<float>(most_Pa));
+  for (const double p : sound.pressure_Pa)
+    writer.put(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(32767 * p / most_Pa))));
+  return bytes;
 }
 
 }  // namespace vps::viewer::inline v0

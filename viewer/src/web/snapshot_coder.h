@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "web/watched_run.h"
+#include "window/blow_sounds.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -39,5 +40,11 @@ class SnapshotCoder {
 };
 
 inline constexpr std::size_t kMostContacts = 256;
+
+/// First byte of the messages to a browser.
+inline constexpr std::uint8_t kShotKind = 1, kBlowKind = 2;
+
+/// u8 kBlowKind, u32 rate_hz, f32 pressure in Pa of the number 32767, i16 samples.
+std::string blowBytes(const BlowSound& sound);
 
 }  // namespace vps::viewer::inline v0

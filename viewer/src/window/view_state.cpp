@@ -95,6 +95,7 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{Action::Snap, "A", "axis snap: a spring guides the part in hand to its axis, or not"},
       KeyBinding{Action::Path, "W", "shows or hides the planned path"},
       KeyBinding{Action::Stereo, "S", "stereo: none, side by side, top and bottom, anaglyph, interleaved"},
+      KeyBinding{Action::Point, "M", "of a session: marks the picked place for all who watch, or no longer"},
       KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
       KeyBinding{Action::Deselect, "Escape", "deselects the part"},
       KeyBinding{Action::Close, "Q", "closes the window"}};
@@ -214,6 +215,9 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::SavePicture:
       state.wants_picture_file = true;
+      break;
+    case Action::Point:
+      state.wants_point = true;
       break;
     case Action::Deselect:
       state.picked.reset();

@@ -47,6 +47,7 @@ enum class Action {
   Snap,
   Path,
   Stereo,
+  Point,
   SavePicture,
   Deselect,
   Close,
@@ -77,7 +78,8 @@ struct ViewState {
   StereoMode stereo = StereoMode::Mono;
   // What the window carries out and clears.
   bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
-       wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false;
+       wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false,
+       wants_point = false;
 };
 
 /// The mode that the key switches to from that one: those that one picture of a window can show.

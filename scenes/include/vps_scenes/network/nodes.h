@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
@@ -54,7 +55,8 @@ struct DeviceNodeResult {
   int sessions = 0;  ///< joined
   int lost = 0;      ///< of these, how many render nodes were lost
   std::uint64_t ticks = 0, missed = 0, faults = 0;
-  std::uint64_t refused = 0;  ///< messages
+  std::uint64_t refused = 0;           ///< messages
+  std::uint64_t refused_requests = 0;  ///< of render nodes, for what cannot be; the first one is said
 };
 
 /// Joins the session, drives the device that its scene names, and returns when the session has ended or
@@ -91,7 +93,8 @@ class VPS_SCENES_API SessionWatcher {
   [[nodiscard]] const Scene& scene() const;
   /// The newest snapshot, once.
   std::optional<Snapshot> takeSnapshot();
-  /// When the last one was sent, by the monotonic clock of the render node's machine.
+  /// When the last one was sent, by the monotonic clock of this machine. Over a network it is right to half
+  /// of a round trip; the time of this call, until the other clock is known after some 0.3 s.
   [[nodiscard]] std::int64_t snapshotSent_ns() const;
   /// The next news, each once.
   std::optional<SessionNews> takeNews();
@@ -101,6 +104,8 @@ class VPS_SCENES_API SessionWatcher {
   [[nodiscard]] bool hasEnded() const;
   [[nodiscard]] bool hasDevice() const;
   [[nodiscard]] std::uint64_t refused() const;
+  /// Of other nodes whose clocks contradict themselves, in words; each once.
+  std::vector<std::string> takeDoubts();
 
  private:
   struct Work;

@@ -25,7 +25,9 @@ namespace vps::scenes::inline v0 {
 class VPS_SCENES_API RosTopics {
  public:
   /// @param domain     ROS_DOMAIN_ID, 0 to 232
-  /// @param interface  of the network; "lo": this machine only
+  /// @param interface  of the network; "lo": this machine only. On others everybody who reaches them reads
+  /// the
+  ///                   topics: ROS 2's tools know nothing of the session's certificates
   /// Throws LoadError where this build has no network, or the system refuses.
   RosTopics(int domain, const std::string& interface, const std::string& session, const Scene& scene);
   ~RosTopics();

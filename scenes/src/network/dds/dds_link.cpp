@@ -57,6 +57,7 @@ struct Peer {
   bool has_ended = false;
   std::int64_t sent_ns = 0;   ///< its last beat, by its clock
   std::int64_t heard_ns = 0;  ///< and by ours
+  MessageOrder order;         ///< of its beats
   ClockEstimate clock;
   std::vector<double> trips_s;  ///< the last ones
   std::size_t next_trip = 0;
@@ -151,6 +152,15 @@ class DdsLink final : public Link {
     });
   }
   [[nodiscard]] std::optional<PeerTiming> timing(NodeRole role) const override;
+  [[nodiscard]] std::vector<PeerDoubt> doubts() const override {
+    const std::lock_guard lock(mutex_);
+    std::vector<PeerDoubt> doubts;
+    for (const auto& [sender, peer] : peers_)
+      if (peer.session == session_ && peer.clock.contradictions() > 0)
+        doubts.push_back({peer.role, sender, peer.clock.contradictions()});
+    return doubts;
+  }
+  [[nodiscard]] std::uint64_t refusedBeats() const override { return refused_beats_; }
   [[nodiscard]] std::string sceneBytes() const override {
     const std::lock_guard lock(mutex_);
     const auto found = scenes_.find(session_);
@@ -205,6 +215,7 @@ class DdsLink final : public Link {
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
   sem_t wake_{};
   std::atomic<bool> is_ending_{false};
+  std::atomic<std::uint64_t> refused_beats_{0};
   // After all that threads of DDS use.
   std::array<std::optional<DdsTopic>, kChannels> topics_;
   std::optional<DdsTopic> beats_in_, beats_out_, scene_;
@@ -279,7 +290,10 @@ void DdsLink::takeBeat(std::string_view bytes) {
   const std::int64_t heard_ns = now_ns();
   MessageReader reader;
   BeatMessage beat;
-  if (reader.read(bytes, beat) != Reading::Good) return;
+  if (reader.read(bytes, beat) != Reading::Good) {
+    ++refused_beats_;
+    return;
+  }
   const Envelope& envelope = reader.envelope();
   if (envelope.sender == writer_.sender()) return;  // one's own
   const std::lock_guard lock(mutex_);
@@ -288,6 +302,10 @@ void DdsLink::takeBeat(std::string_view bytes) {
     std::erase_if(peers_, [](const auto& entry) { return since_s(entry.second.heard_ns) > kAlive_s; });
   if (!peers_.contains(envelope.sender) && peers_.size() >= kMostPeers) return;
   Peer& peer = peers_[envelope.sender];
+  if (peer.order.place(envelope.number, envelope.time_ns, heard_ns) != MessageOrder::Place::Next) {
+    ++refused_beats_;
+    return;
+  }
   peer.role = beat.role;
   peer.session = beat.session;
   peer.has_ended = peer.has_ended || beat.has_ended;

@@ -18,4 +18,8 @@ void viewRecording(const device::RecordedRun&, const WindowOptions&) {
   throw std::runtime_error(missingForWindow());
 }
 
+std::optional<scenes::Verdict> viewSession(const WindowOptions&) {
+  throw std::runtime_error(missingForWindow());
+}
+
 }  // namespace vps::viewer::inline v0

@@ -161,6 +161,17 @@ void drawRun(Session& session) {
     drawClearance(session);
     return;
   }
+  if (session.followed != nullptr) {
+    const FollowedSession& followed = *session.followed;
+    wrapped(followed.verdict()
+                ? words(*followed.verdict())
+                : "session '" + session.options.session + "'" + (followed.isOver() ? ": it is over" : ""));
+    if (session.shown.has_hand) ImGui::Text("force on the hand %.1f N", session.shown.F_hand_W.f.norm());
+    ImGui::Text("%zu others point at something", followed.pointers().size());
+    session.view.wants_point |= ImGui::Button(followed.pointing() ? "mark the picked place, or no longer"
+                                                                  : "mark the picked place for all");
+    return;
+  }
   drawGuidance(session.view);
   drawWork(session);
   if (!session.run) {
@@ -222,7 +233,8 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ViewState& view = session.view;
   const Timeline& line = session.shownLine();
   if (session.is_at_work) {
-    ImGui::Text("%s %.3f s", session.run ? "running live:" : "at rest after", view.time_s);
+    ImGui::Text("%s %.3f s", session.run || session.followed != nullptr ? "running live:" : "at rest after",
+                view.time_s);
   } else {
     if (ImGui::Button(view.is_playing ? "pause" : "play"))
       apply(Action::PlayPause, view, line, session.box_W());

@@ -189,6 +189,16 @@ void keepFigures(Session& session, const scenes::RunFigures& figures) {
   session.figures_s = now_s;
 }
 
+/// Where the person has clicked; the same place again: no longer.
+void pointAtPicked(Session& session) {
+  FollowedSession& followed = *session.followed;
+  const std::optional<PickedPlace>& picked = session.view.picked;
+  const bool is_new = picked && picked->p_W != followed.pointing();
+  if (!is_new && !followed.pointing()) return session.say("click on a place first; M then marks it for all");
+  followed.point(is_new ? std::optional(picked->p_W) : std::nullopt);
+  session.say(is_new ? "all who watch see the mark; M takes it away" : "the mark is gone");
+}
+
 }  // namespace
 
 void followWork(Session& session) {
@@ -219,8 +229,33 @@ void watchGaps(Session& session) {
   session.gaps->request(session.shown, std::move(parts));
 }
 
+void followSession(Session& session) {
+  FollowedSession& followed = *session.followed;
+  if (!session.is_at_work) {
+    session.is_at_work = true;
+    beginLine(session);
+  }
+  followed.poll();
+  followed.listenAt(session.view.camera.pose());
+  for (const std::string& words : followed.takeMessages()) session.say(words);
+  if (std::optional<scenes::Snapshot> shot = followed.take()) {
+    addToCurves(session, *shot);
+    session.shown = std::move(*shot);
+  }
+  for (const auto& [step, verdict] : followed.steps())
+    if (const auto chapter = static_cast<std::size_t>(step) + 1;
+        step >= 0 && chapter < session.run_line.chapters.size())
+      session.run_line.chapters[chapter].verdict = words(verdict);
+}
+
 void carryOutWork(Session& session, GlfwWindow& window) {
   ViewState& view = session.view;
+  if (std::exchange(view.wants_point, false)) {
+    if (session.followed == nullptr)
+      session.say("only a session has others who would see it; vps view --session NAME");
+    else
+      pointAtPicked(session);
+  }
   if (std::exchange(view.wants_mouse, false)) {
     session.hand = "mouse";
     view.wants_run = true;
@@ -230,6 +265,8 @@ void carryOutWork(Session& session, GlfwWindow& window) {
                         std::exchange(view.wants_take, false)};
   if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
   if (std::ranges::none_of(wants, [](bool wanted) { return wanted; })) return;
+  if (session.followed != nullptr)
+    return session.say("the session is run by vps render, and moved by its device; here it is watched");
   if (session.is_recording) return session.say("a recording is not run; vps replay does");
   if (wants[0] && session.is_at_work)
     backToTour(session);

@@ -9,6 +9,7 @@
 
 #include "vps_scenes/tracked_heads.h"
 #include "vps_viewer/window.h"
+#include "window/followed_session.h"
 #include "window/gap_watch.h"
 #include "window/glfw/glfw_window.h"
 #include "window/hand_drag.h"
@@ -31,6 +32,7 @@ struct Session {
   const WindowOptions& options;
   Timeline line;  ///< the tour or the recording
   bool is_recording = false;
+  FollowedSession* followed = nullptr;  ///< what is shown is a session of vps render; null: it is not
   RenderScene drawn;
   ModelView models;  ///< whose meshes `drawn` has, where they are shown
   ViewState view;
@@ -96,6 +98,9 @@ void carryOutWork(Session& session, GlfwWindow& window);
 /// Takes over what is new from the run, or shows what has been put down.
 void followWork(Session& session);
 
+/// Shows what is new in the session that the window follows.
+void followSession(Session& session);
+
 // panels.cpp
 /// The panel at the right, the time axis below, and the list of keys. Sets session.area to what they leave.
 void drawPanels(Session& session, const GlfwWindow& window);
@@ -110,6 +115,9 @@ void useMouse(Session& session);
 // path_marks.cpp
 /// Over the picture: the planned path of the part in hand, and with axis snap the axis.
 void drawPathMarks(const Session& session);
+// pointer_marks.cpp
+/// Over the picture: where people point at who watch the session.
+void drawPointerMarks(const Session& session);
 // hand_marks.cpp
 /// Over the picture: the force on a person's hand as colour and number, and the spring from the grabbed point
 /// to the mouse's cursor.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include "vps_scenes/replay.h"
@@ -19,6 +20,7 @@ namespace {
 // Larger windows show a smaller picture, stretched: 4096 x 4096 with their samples are a GiB of memory.
 constexpr int kGreatestPicture = 4096;
 constexpr double kFrame_s = 1.0 / 60, kIdle_s = 0.5;
+constexpr std::chrono::milliseconds kSessionPoll{20};
 
 PictureSize pictureSize(const PictureArea& area) {
   const double shrink =
@@ -28,6 +30,8 @@ PictureSize pictureSize(const PictureArea& area) {
 
 void typed(Session& session, const std::string& key) {
   if (session.run && key == "Space") return session.run->pause(!session.run->isPaused());
+  if (session.followed != nullptr && key == "Space")
+    return session.say("a session cannot be paused from here");
   for (const KeyBinding& binding : keyBindings())
     if (key == binding.key) apply(binding.action, session.view, session.shownLine(), session.box_W());
 }
@@ -108,8 +112,10 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
                                              {session.area.x + static_cast<float>(session.area.size.width),
                                               session.area.y + static_cast<float>(session.area.size.height)});
-  if (session.view.stereo == StereoMode::Mono)
-    drawPathMarks(session);  // lines over the picture have no depth
+  if (session.view.stereo == StereoMode::Mono) {  // marks over the picture have no depth
+    drawPathMarks(session);
+    drawPointerMarks(session);
+  }
   drawHandMarks(session);
   drawFailure(session);
   window.endFrame();
@@ -144,13 +150,16 @@ void loop(Session& session, GlfwWindow& window) {
   bool is_fitted = false;
   const auto is_stopped = [&] { return session.options.stop != nullptr && session.options.stop->load(); };
   while (!window.isClosed() && !session.view.wants_close && !is_stopped()) {
-    const bool moves = session.view.is_playing || (session.heads && session.heads->isLive());
+    const bool moves = session.view.is_playing || (session.heads && session.heads->isLive()) ||
+                       (session.followed != nullptr && !session.followed->isOver());
     const bool has_news = window.wait(moves ? kFrame_s : kIdle_s);
     const Clock::time_point now = Clock::now();
     advance(session.view, session.line, std::chrono::duration<double>(now - last).count());
     last = now;
     carryOutWork(session, window);
-    if (session.is_at_work)
+    if (session.followed != nullptr)
+      followSession(session);
+    else if (session.is_at_work)
       followWork(session);
     else
       session.shown = session.line.at(session.view.time_s);
@@ -190,6 +199,25 @@ void viewRecording(const device::RecordedRun& run, const WindowOptions& options)
   session.line = recordedTimeline(scene, run);
   session.is_recording = true;
   openAndLoop(session, run.file + " - vps view");
+}
+
+std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
+  const auto is_stopped = [&] { return options.stop != nullptr && options.stop->load(); };
+  std::unique_ptr<scenes::SessionWatcher> watcher;
+  for (bool has_said = false; !is_stopped(); has_said = true) {
+    watcher = scenes::SessionWatcher::join(options.session, options.network);
+    if (watcher != nullptr) break;
+    if (!has_said && options.say)
+      options.say("waiting for the session '" + options.session + "', which vps render starts");
+    std::this_thread::sleep_for(kSessionPoll);
+  }
+  if (watcher == nullptr) return {};
+  FollowedSession followed(std::move(watcher), options.session, options.network, options.has_sound);
+  Session session(followed.scene(), options);
+  session.line = sceneTour(followed.scene());
+  session.followed = &followed;
+  openAndLoop(session, followed.scene().name + ", session " + options.session + " - vps view");
+  return followed.verdict();
 }
 
 }  // namespace vps::viewer::inline v0

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sound of impacts, for browsers, which get too few snapshots to synthesise it as a window does.
+// The sound of impacts, for those who watch a session: they get too few snapshots to synthesise it as a run
+// does.
 #pragma once
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
+#include "vps_viewer/export.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -17,11 +18,19 @@ struct Blow {
   std::size_t part = 0;
   double impulse_Ns = 0;
   Vec3 p_P = Vec3::Zero(), n_P = Vec3::UnitZ();  ///< of the part: place and direction
+  Vec3 p_W = Vec3::Zero();                       ///< the place
+};
+
+/// What a blow sounds like.
+struct BlowSound {
+  static constexpr int kRate_hz = 24000;
+  std::vector<double> pressure_Pa;
+  Vec3 p_W = Vec3::Zero();  ///< where it comes from
 };
 
 /// Finds blows between snapshots: where contact begins, the part gives up the speed at which it came along
 /// the contact's normal. A part that was in contact already strikes nothing.
-class BlowSense {
+class VPS_VIEWER_API BlowSense {
  public:
   /// @param masses_kg  by part
   explicit BlowSense(std::vector<double> masses_kg) : masses_kg_(std::move(masses_kg)) {}
@@ -35,7 +44,7 @@ class BlowSense {
 };
 
 /// Lets the struck part ring, by its modes, on a thread of its own.
-class BlowSounds {
+class VPS_VIEWER_API BlowSounds {
  public:
   /// Copies the scene.
   explicit BlowSounds(const scenes::Scene& scene);
@@ -44,16 +53,12 @@ class BlowSounds {
   BlowSounds& operator=(const BlowSounds&) = delete;
 
   void hear(const scenes::Snapshot& shot);
-  /// What is ready, each once: u8 kBlowKind, u32 rate_hz, f32 pressure in Pa of the number 32767, i16
-  /// samples.
-  std::vector<std::string> take();
+  /// What is ready, each once.
+  std::vector<BlowSound> take();
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// First byte of the messages to a browser.
-inline constexpr std::uint8_t kShotKind = 1, kBlowKind = 2;
 
 }  // namespace vps::viewer::inline v0

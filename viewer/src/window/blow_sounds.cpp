@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "web/blow_sounds.h"
+#include "window/blow_sounds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +11,14 @@
 #include <utility>
 
 #include "sound/scene_voice.h"
-#include "vps_device/detail/bytes.h"
 #include "window/hand_drag.h"
 
 namespace vps::viewer::inline v0 {
 
 namespace {
 
-constexpr double kLeastSpeed_m_s = 2e-3;  // assumed: slower ones are not heard
-constexpr double kLength_s = 0.4;         // assumed: by then a part in a hand has died away by 70 dB
-constexpr int kBlowRate_hz = 24000;
+constexpr double kLeastSpeed_m_s = 2e-3;      // assumed: slower ones are not heard
+constexpr double kLength_s = 0.4;             // assumed: by then a part in a hand has died away by 70 dB
 constexpr std::size_t kMostWaitingBlows = 4;  // more are not kept apart by an ear
 
 std::vector<double> massesOf(const scenes::Scene& scene) {
@@ -30,20 +28,6 @@ std::vector<double> massesOf(const scenes::Scene& scene) {
                                       : std::abs(massProperties(part.part.mesh).volume_m3) *
                                             part.part.material.density_kg_m3);
   return masses_kg;
-}
-
-/// The samples, as large as 16 bits hold.
-std::string bytesOf(const std::vector<double>& pressure_Pa) {
-  double most_Pa = 1e-9;
-  for (const double p : pressure_Pa) most_Pa = std::max(most_Pa, std::abs(p));
-  std::string bytes;
-  device::ByteWriter writer(bytes);
-  writer.put(kBlowKind);
-  writer.put(static_cast<std::uint32_t>(kBlowRate_hz));
-  writer.put(static_cast<float>(most_Pa));
-  for (const double p : pressure_Pa)
-    writer.put(static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(32767 * p / most_Pa))));
-  return bytes;
 }
 
 }  // namespace
@@ -69,8 +53,8 @@ std::optional<Blow> BlowSense::hear(const scenes::Snapshot& shot) {
       // Whichever of the two the normal points to.
       const double speed_m_s = std::abs(n_W.dot(v_W_)) - std::max(0.0, std::abs(n_W.dot(v_W)));
       if (speed_m_s > kLeastSpeed_m_s)
-        blow =
-            Blow{body->part, mass_kg * speed_m_s, body->X_WP.inverse() * p_W, body->X_WP.R.transpose() * n_W};
+        blow = Blow{body->part, mass_kg * speed_m_s, body->X_WP.inverse() * p_W,
+                    body->X_WP.R.transpose() * n_W, p_W};
     }
     v_W_ = v_W;
   }
@@ -93,7 +77,7 @@ struct BlowSounds::Impl {
 
   void run() {
     SoundSettings settings;
-    settings.rate_hz = kBlowRate_hz;
+    settings.rate_hz = BlowSound::kRate_hz;
     std::map<std::size_t, PartVoice> voices;
     std::unique_lock lock(mutex);
     for (;;) {
@@ -105,20 +89,20 @@ struct BlowSounds::Impl {
       auto voice = voices.find(blow.part);
       if (voice == voices.end())
         voice = voices.emplace(blow.part, partVoice(scene.parts[blow.part], settings)).first;
-      std::string bytes = bytesOf(sound(voice->second, blow));
+      BlowSound heard{sound(voice->second, blow), blow.p_W};
       lock.lock();
-      ready.push_back(std::move(bytes));
+      ready.push_back(std::move(heard));
     }
   }
   [[nodiscard]] std::vector<double> sound(PartVoice& voice, const Blow& blow) const {
     const double length_s = strokeDuration_s(voice.mass_kg(), planeStrain_Pa(scene.parts[blow.part]),
                                              blow.impulse_Ns / std::max(1e-9, voice.mass_kg()));
     const Stroke stroke{voice.touch(blow.p_P, blow.n_P), blow.impulse_Ns, 0,
-                        std::max(1.0, length_s * kBlowRate_hz)};
-    std::vector<double> pressure_Pa(static_cast<std::size_t>(kLength_s * kBlowRate_hz));
+                        std::max(1.0, length_s * BlowSound::kRate_hz)};
+    std::vector<double> pressure_Pa(static_cast<std::size_t>(kLength_s * BlowSound::kRate_hz));
     for (std::size_t i = 0; i < pressure_Pa.size(); ++i) {
       const auto sample = static_cast<long>(i);
-      if (!stroke.isOver(sample)) voice.push(stroke.touch, stroke.force_N(sample, kBlowRate_hz));
+      if (!stroke.isOver(sample)) voice.push(stroke.touch, stroke.force_N(sample, BlowSound::kRate_hz));
       pressure_Pa[i] = voice.next();
     }
     return pressure_Pa;
@@ -129,7 +113,7 @@ struct BlowSounds::Impl {
   std::mutex mutex;
   std::condition_variable wake;
   std::deque<Blow> blows;
-  std::vector<std::string> ready;
+  std::vector<BlowSound> ready;
   bool is_over = false;
   std::thread thread;  // last, since it uses the others
 };
@@ -148,7 +132,7 @@ void BlowSounds::hear(const scenes::Snapshot& shot) {
   impl_->wake.notify_one();
 }
 
-std::vector<std::string> BlowSounds::take() {
+std::vector<BlowSound> BlowSounds::take() {
   const std::lock_guard lock(impl_->mutex);
   return std::exchange(impl_->ready, {});
 }

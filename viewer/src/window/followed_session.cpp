@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "window/followed_session.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "sound/live_sound.h"
+#include "vps/load_error.h"
+#include "vps_scenes/verdict.h"
+#include "window/blow_sounds.h"
+
+namespace vps::viewer::inline v0 {
+
+namespace {
+
+constexpr double kFullBlow_Pa = 0.2;  // as of a run's sound, live_sound.cpp
+constexpr std::chrono::milliseconds kSoundPeriod{10};
+
+}  // namespace
+
+/// Impacts through the loudspeakers. The card plays what it is given when it comes, so a thread writes at an
+/// even pace, also while the window draws a slow picture.
+struct FollowedSession::Sound {
+  Sound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> card)
+      : output(std::move(card)), blows(scene), thread([this] { run(); }) {}
+  ~Sound() {
+    is_over = true;
+    thread.join();
+  }
+
+  void hear(const scenes::Snapshot& shot) {
+    const std::lock_guard lock(mutex);
+    blows.hear(shot);
+  }
+  void listenAt(const Pose& pose) {
+    const std::lock_guard lock(mutex);
+    X_WL = pose;
+  }
+  void run() {
+    constexpr std::size_t kPeriod = BlowSound::kRate_hz / 100;  // samples of kSoundPeriod
+    std::vector<float> ahead, silence(kPeriod);
+    Vec3 to_L = -Vec3::UnitZ();
+    for (auto next = std::chrono::steady_clock::now(); !is_over; next += kSoundPeriod) {
+      {
+        const std::lock_guard lock(mutex);
+        for (const BlowSound& blow : blows.take()) {
+          ahead.resize(std::max(ahead.size(), blow.pressure_Pa.size()));
+          for (std::size_t i = 0; i < blow.pressure_Pa.size(); ++i)
+            ahead[i] += static_cast<float>(std::tanh(blow.pressure_Pa[i] / kFullBlow_Pa));
+          to_L = X_WL.inverse() * blow.p_W;
+        }
+      }
+      ahead.resize(std::max(ahead.size(), kPeriod));
+      for (float& x : ahead) x = std::clamp(x, -1.0f, 1.0f);
+      output->write(std::span(ahead).first(kPeriod), silence, to_L);
+      ahead.erase(ahead.begin(), ahead.begin() + kPeriod);
+      std::this_thread::sleep_until(next + kSoundPeriod);
+    }
+  }
+
+  std::unique_ptr<SoundOutput> output;
+  std::mutex mutex;
+  BlowSounds blows;
+  Pose X_WL;
+  std::atomic<bool> is_over{false};
+  std::thread thread;  // last, since it uses the others
+};
+
+FollowedSession::FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher, const std::string& session,
+                                 const scenes::SessionNetwork& network, bool has_sound)
+    : watcher_(std::move(watcher)) {
+  try {
+    pointing_.emplace(session, network);
+  } catch (const LoadError& refused) {  // certificates of before there were pointers
+    messages_.push_back(std::string("pointers are not passed on: ") + refused.what());
+  }
+  if (!has_sound) return;
+  std::string why;
+  if (std::unique_ptr<SoundOutput> card = openSoundOutput(BlowSound::kRate_hz, why))
+    sound_ = std::make_unique<Sound>(watcher_->scene(), std::move(card));
+  if (!why.empty()) messages_.push_back(why);
+}
+
+FollowedSession::~FollowedSession() = default;
+
+void FollowedSession::poll() {
+  if (is_over_) return;
+  const bool is_over = watcher_->isOver();  // first, so that the last news is read
+  while (const auto news = watcher_->takeNews()) tell(*news);
+  for (const std::string& doubt : watcher_->takeDoubts()) messages_.push_back(doubt);
+  if (pointing_)
+    for (const scenes::SessionPointer& pointer : pointing_->take()) {
+      if (pointer.p_W)
+        others_[pointer.who] = *pointer.p_W;
+      else
+        others_.erase(pointer.who);
+    }
+  if (std::optional<scenes::Snapshot> shot = watcher_->takeSnapshot()) {
+    if (sound_) sound_->hear(*shot);
+    newest_ = std::move(shot);
+  }
+  const bool has_device = watcher_->hasDevice();
+  if (had_device_ && !has_device && !is_over) messages_.emplace_back("no device is in the session");
+  had_device_ = has_device;
+  if (!is_over) return;
+  is_over_ = true;
+  others_.clear();
+  messages_.emplace_back(watcher_->hasEnded() ? "the session has ended" : "the render node is lost");
+}
+
+void FollowedSession::tell(const scenes::SessionNews& news) {
+  if (news.kind == scenes::SessionNews::Kind::StepDone) steps_[news.step] = news.verdict;
+  if (news.kind == scenes::SessionNews::Kind::Ended) verdict_ = news.verdict;
+  messages_.push_back(news.text);
+}
+
+void FollowedSession::point(const std::optional<Vec3>& p_W) {
+  if (!pointing_ || is_over_) return;
+  pointing_->point(1, p_W);
+  own_ = p_W;
+}
+
+void FollowedSession::listenAt(const Pose& X_WL) {
+  if (sound_) sound_->listenAt(X_WL);
+}
+
+}  // namespace vps::viewer::inline v0
