@@ -383,7 +383,8 @@ TEST_F(Window, ShowsTheModelsOfContactInPlaceOfTheParts) {
   viewer::Renderer renderer(drawn);
   const Image wanted = renderer.render(
       snapshot,
-      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture), options);
+      viewer::cameraFor(viewer::standardViews()[0], viewer::snapshotBounds(drawn, snapshot), kPicture),
+      options);
   EXPECT_TRUE(shows(wanted));
   EXPECT_GT(viewer::compare(wanted, expected(0), 20).share_beyond, 0.01) << "which differs from the parts";
   EXPECT_EQ(close(), 0);
