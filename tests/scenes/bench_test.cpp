@@ -46,9 +46,11 @@ void expectApart(const std::vector<DrawnPart>& parts, const Vec3& up_W) {
   }
   for (std::size_t i = homes; i < boxes.size(); ++i)
     for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(overlap(boxes[i], boxes[k])) << i << " " << k;
-  const Scene scene = plannedScenes(sceneOf(parts), plan).front();
+  Scene scene = plannedScenes(sceneOf(parts), plan).front();
+  scene.gravity_W = -9.81 * up_W;
   for (const WayFault& fault : checkWays(scene))
-    ADD_FAILURE() << fault.part << " through " << fault.against << " by " << fault.depth_m;
+    ADD_FAILURE() << toText(fault.kind) << " " << fault.part << " " << fault.against << " by "
+                  << fault.depth_m;
 }
 
 TEST(Bench, NoPartLiesOnAnotherOneOrOnTheAssembly) {

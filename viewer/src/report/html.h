@@ -27,8 +27,8 @@ std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 /// A picture, which links to `link` if there is one. Both are relative to the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
-/// The page around a body. Pictures (PNG) that it shows from `folder`, and tables and drawings (CSV, SVG) that
-/// it links to, are written into it, so that it can be sent on without the folder.
+/// The page around a body. Pictures (PNG) that it shows from `folder`, and tables and drawings (CSV, SVG)
+/// that it links to, are written into it, so that it can be sent on without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
 }  // namespace vps::viewer::inline v0::html
