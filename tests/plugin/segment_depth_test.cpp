@@ -78,6 +78,36 @@ TEST(SegmentDepth, NoPointOfASegmentIsDeeperThanFound) {
   EXPECT_GT(inside, 300);
 }
 
+// Through the seams of long, thin facets, where the rounding of a crossing is greatest: each enters and
+// leaves a needle of 128 sides through two of its side edges.
+TEST(SegmentDepth, ASegmentThroughTheSeamsOfThinFacetsIsNotLost) {
+  test::RandomPoints random(73);
+  constexpr int kSides = 128;
+  constexpr double kRadius_m = 0.2e-3, kHeight_m = 0.1;
+  const Pose X = random.pose(0.05);
+  const Solid needle(transformed(makeCylinder(kRadius_m, kHeight_m, kSides), X));
+  for (int i = 0; i < 3000; ++i) {
+    const auto onSeam = [&](int side) {
+      const double angle_rad = 2 * M_PI * side / kSides;
+      return Vec3(kRadius_m * std::cos(angle_rad), kRadius_m * std::sin(angle_rad),
+                  0.4 * kHeight_m * random.unit());
+    };
+    const int in = i % kSides, out = in + 3 + i % (kSides / 2);
+    const Vec3 p = onSeam(in), q = onSeam(out);
+    const Vec3 a = X * (p - 0.3 * (q - p)), b = X * (q + 0.3 * (q - p));
+    const double middle_m = -needle.signedDistance(X * (0.5 * (p + q)));
+    ASSERT_GT(middle_m, 0);
+    EXPECT_GE(deepestOnSegment(needle, a, b, 1e-8).depth_m, middle_m - 1e-8) << i;
+  }
+}
+
+TEST(SegmentDepth, ASheetHasNoDepthAndAPoseThatIsNoNumberEnds) {
+  const Mesh box = makeBox(Vec3(0.02, 0.02, 0.02));
+  EXPECT_EQ(deepestOnSegment(Solid::sheet(box), {0, 0, 0}, {0.001, 0, 0.03}, kCertain_m).depth_m, 0);
+  const double nan = std::nan("");
+  EXPECT_EQ(deepestOnSegment(Solid(box), {0, 0, 0}, {nan, 0, 0.03}, kCertain_m).depth_m, 0);
+}
+
 TEST(SegmentDepth, CrossingsAreThoseWithEachTriangle) {
   test::RandomPoints random(72);
   const MeshDistance ball(makeSphere(0.01, 4));

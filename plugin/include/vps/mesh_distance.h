@@ -59,8 +59,9 @@ class VPS_API MeshDistance {
   bool overlapping(const Box& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
 
   /// Appends where segment ab crosses the triangles, as fractions of the segment, not sorted. A crossing at
-  /// the border of two triangles may appear twice. A triangle in whose plane the segment lies is not crossed.
-  /// O(log n + triangles whose boxes the segment meets).
+  /// the border of two triangles may appear twice. A triangle in whose plane the segment lies is not crossed,
+  /// up to rounding; an end in the plane counts as below it. O(log n + triangles whose boxes the segment
+  /// meets).
   void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
 
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }

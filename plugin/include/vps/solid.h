@@ -49,6 +49,8 @@ class VPS_API Solid {
   /// Negative inside; +max_m if no surface is nearer than that, on either side.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
   [[nodiscard]] bool isInside(const Vec3& p) const noexcept;
+  /// True if it was made by sheet().
+  [[nodiscard]] bool isSheet() const noexcept { return is_sheet_; }
 
   /// Where segment ab crosses the surface; see MeshDistance.
   void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {

@@ -200,8 +200,9 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
 
 void MeshDistance::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
   if (nodes_.empty()) return;
-  // Barycentric coordinates round by about 1e-15; a crossing at a shared border must not fall between both.
-  constexpr double kBorder = -1e-12;
+  // Barycentric coordinates round by 1e-11 where a facet is long and thin and the segment grazes it. A
+  // crossing at a shared border must not fall between both; one too many only divides a segment once more.
+  constexpr double kBorder = -1e-9;
   const Eigen::Vector3f middle = (0.5 * (a + b) - center_).cast<float>(),
                         half = (0.5 * (b - a)).cast<float>();
   std::uint32_t stack[kStack];

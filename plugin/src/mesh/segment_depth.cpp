@@ -48,11 +48,11 @@ void searchAnywhere(const Solid& solid, const Probe& from, const Probe& to, doub
     const double length_m = (b - a).norm();
     // The signed distance f is 1-Lipschitz: on a segment it is at least (f(a) + f(b) - |ab|) / 2.
     const double by_slope_m = 0.5 * (length_m - piece.a.signed_m - piece.b.signed_m);
-    if (by_slope_m <= deepest.depth_m + certain_m) continue;
+    if (!(by_slope_m > deepest.depth_m + certain_m)) continue;
     const double by_triangle_m =
         std::min(std::max(std::abs(piece.a.signed_m), distanceToTriangle(solid, piece.a.triangle, b)),
                  std::max(std::abs(piece.b.signed_m), distanceToTriangle(solid, piece.b.triangle, a)));
-    if (by_triangle_m <= deepest.depth_m + certain_m) continue;
+    if (!(by_triangle_m > deepest.depth_m + certain_m)) continue;
     const double most_m = std::min(std::abs(piece.a.signed_m), std::abs(piece.b.signed_m)) + 0.5 * length_m;
     const Probe middle(solid, 0.5 * (a + b), reached(most_m));
     keep(deepest, -middle.signed_m, middle.p);
@@ -61,6 +61,30 @@ void searchAnywhere(const Solid& solid, const Probe& from, const Probe& to, doub
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }
+}
+
+/// True if the segment is inside and outside in turn between its crossings, as it is unless rounding has lost
+/// or added one.
+bool doAlternate(const Solid& solid, const Probe& from, const Probe& to, const std::vector<double>& ends,
+                 double certain_m) {
+  const double length_m = (to.p - from.p).norm();
+  // An end on the surface, and a stretch shorter than what is certain, may be either.
+  int before = std::abs(from.signed_m) <= certain_m ? 0 : from.signed_m > 0 ? 1 : -1;
+  bool is_same_stretch = true;  // as the end before it
+  double begin = 0;
+  for (const double end : ends) {
+    if ((end - begin) * length_m > certain_m && ends.size() > 1) {
+      const Probe middle(solid, from.p + 0.5 * (begin + end) * (to.p - from.p), 1e300);
+      const int side = std::abs(middle.signed_m) <= certain_m ? 0 : middle.signed_m > 0 ? 1 : -1;
+      if (side * before == (is_same_stretch ? -1 : 1)) return false;
+      before = side;
+      is_same_stretch = false;
+    }
+    begin = end;
+  }
+  const int last = std::abs(to.signed_m) <= certain_m ? 0 : to.signed_m > 0 ? 1 : -1;
+  // Without crossings both ends are on the same side; otherwise the last stretch ends with the segment.
+  return last * before != -1 || (ends.size() > 1 && (1 - ends[ends.size() - 2]) * length_m <= certain_m);
 }
 
 }  // namespace
@@ -85,18 +109,19 @@ bool searchUncrossed(const Solid& solid, const Vec3& a, const Vec3& b, double ce
     stack.pop_back();
     const Vec3 middle = 0.5 * (piece.a + piece.b);
     const Solid::Closest nearest = solid.closest(middle);
-    const bool is_outside = nearest.normal.dot(middle - nearest.q) > 0;
+    const bool is_outside = !(nearest.normal.dot(middle - nearest.q) < 0);
     if (is_first && is_outside) return nearest.distance_m <= certain_m;
     is_first = false;
     const double farther_end_m = std::max(distanceToTriangle(solid, nearest.triangle, piece.a),
                                           distanceToTriangle(solid, nearest.triangle, piece.b));
     const double half_m = 0.5 * (piece.b - piece.a).norm();
     const double signed_m = is_outside ? -nearest.distance_m : nearest.distance_m;
-    if (std::min(farther_end_m, signed_m + half_m) <= depth_m + certain_m) continue;
+    if (!(std::min(farther_end_m, signed_m + half_m) > depth_m + certain_m)) continue;
     if (signed_m > depth_m) {
       depth_m = signed_m;
       p_S = middle;
     }
+    if ((middle - piece.a).norm() == 0 || (middle - piece.b).norm() == 0) continue;  // rounding
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }
@@ -105,21 +130,22 @@ bool searchUncrossed(const Solid& solid, const Vec3& a, const Vec3& b, double ce
 
 PointDepth deepestOnSegment(const Solid& solid, const Vec3& a, const Vec3& b, double certain_m) {
   PointDepth deepest;
+  if (solid.isSheet() || !a.allFinite() || !b.allFinite()) return deepest;
   const Probe from(solid, a, 1e300), to(solid, b, reached(std::abs(from.signed_m) + (b - a).norm()));
   keep(deepest, -from.signed_m, a);
   keep(deepest, -to.signed_m, b);
-  if (solid.isByWinding()) {
+  thread_local std::vector<double> ends;
+  ends.clear();
+  if (!solid.isByWinding()) solid.appendCrossings(a, b, ends);
+  std::sort(ends.begin(), ends.end());
+  ends.push_back(1);
+  if (solid.isByWinding() || !doAlternate(solid, from, to, ends, certain_m)) {
     searchAnywhere(solid, from, to, certain_m, deepest);
     return deepest;
   }
-  thread_local std::vector<double> crossings;
-  crossings.clear();
-  solid.appendCrossings(a, b, crossings);
-  if (crossings.empty() && from.signed_m > 0) return deepest;
-  std::sort(crossings.begin(), crossings.end());
-  crossings.push_back(1);
+  if (ends.size() == 1 && from.signed_m > 0) return deepest;
   double begin = 0;
-  for (const double end : crossings) {
+  for (const double end : ends) {
     if (end > begin)
       searchUncrossed(solid, a + begin * (b - a), a + end * (b - a), certain_m, deepest.depth_m, deepest.p_S);
     begin = end;

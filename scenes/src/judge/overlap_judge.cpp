@@ -3,7 +3,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <cmath>
 
 #include "vps/query.h"
