@@ -43,7 +43,7 @@ std::uint32_t directionCell(const Vec3& n) {
   return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
 }
 
-/// What the reduction needs to know of a candidate, so that each pass reads a third of its size.
+/// What the reduction needs to know of a candidate, so that each pass reads half of its size.
 struct Brief {
   std::int32_t at[3];   // cell of the finest grid, which is fixed in the world
   std::uint32_t kind;   // direction, side, crossing or point
@@ -80,8 +80,8 @@ Brief briefOf(const Candidate& c, double cell_m, std::uint32_t index) {
 
 // Keeps the most urgent of each cell, by both measures, and last step's contacts. A small open-addressed
 // table from cell to its best candidate so far needs one pass; sorting 5000 candidates took five times as
-// long. The table is at most half full where there are fewer than 2048 candidates; if it is full, further
-// candidates are kept.
+// long. The table is at most half full where there are fewer than 2048 candidates; one that finds
+// no place in 16 probes is kept.
 void keepMostUrgent(std::vector<Brief>& briefs, int level) {
   constexpr std::size_t kFewestSlots = 64, kMostSlots = 4096, kProbes = 16;
   const std::size_t slot_count = std::clamp(std::bit_ceil(2 * briefs.size()), kFewestSlots, kMostSlots);
