@@ -120,6 +120,7 @@ class NodesOverUdp : public NodesProgram {
   test::ChildProcess start(const std::string& command, const std::string& security,
                            const std::string& output) {
     std::vector<std::string> words = {VPS_PROGRAM, command, "--session", session_, "--network", "lo"};
+    if (command == "watch") words.emplace_back("--terminal");
     if (!security.empty()) words.insert(words.end(), {"--security", (folder_ / security).string()});
     return {std::move(words), (folder_ / output).string()};
   }

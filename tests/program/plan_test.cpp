@@ -3,6 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -152,7 +155,8 @@ TEST_F(Plan, PartsFarFromTheirOriginKeepTheirGap) {
   EXPECT_TRUE(is_found) << found["pairs"].dump(1);
 }
 
-// Stopped later and later until it is in the middle of it.
+// Stopped at times all over a plan's duration (multiples of the golden ratio, which spread evenly) until one
+// is after the first part was taken off and before the end. On a loaded machine this takes more tries.
 TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
   std::vector<NamedBox> boxes = {kPlate};
   for (int i = 0; i < 120; ++i) {
@@ -160,21 +164,33 @@ TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
     boxes.push_back({"block " + std::to_string(i), {x, y, 10}, {x + 4.9, y + 4.9, 14.0 + i % 3}});
   }
   write("many.obj", objOf(boxes));
+  using Clock = std::chrono::steady_clock;
+  const auto secondsSince = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
+  const Clock::time_point begun = Clock::now();
   ASSERT_EQ(run("plan many.obj --units mm -o whole").status, 0);
+  double whole_s = secondsSince(begun);  // as long as it takes now
+  constexpr int kMostTries = 300;
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  const fs::path unfinished = folder_ / "planned/unfinished_plan.json";
   bool is_stopped = false;
-  for (double s = 0.05; !is_stopped && s < 60; s *= 1.15) {
-    std::filesystem::remove_all(folder_ / "planned");
-    const std::string seconds = std::to_string(s);
-    const std::string command = "cd '" + folder_.string() + "' && timeout -s INT " + seconds +
+  for (int k = 1; !is_stopped && k <= kMostTries; ++k) {
+    fs::remove_all(folder_ / "planned");
+    const double stop_s = 0.02 + 1.2 * whole_s * std::fmod(k * kGoldenRatio, 1.0);
+    const std::string command = "cd '" + folder_.string() + "' && timeout -s INT " + std::to_string(stop_s) +
                                 " '" VPS_PROGRAM
                                 "' plan many.obj --units mm -o planned >out.txt 2>&1 </dev/null";
-    is_stopped = std::system(command.c_str()) != 0 && fs::exists(folder_ / "planned/unfinished_plan.json");
-    ASSERT_FALSE(fs::exists(folder_ / "planned/scene.toml")) << "it was never stopped while it took apart";
+    const Clock::time_point from = Clock::now();
+    const bool is_finished = std::system(command.c_str()) == 0;
+    // Where no try is late any more, the machine has become slower.
+    whole_s = is_finished ? secondsSince(from) : 1.05 * whole_s;
+    is_stopped =
+        !is_finished && fs::exists(unfinished) && !json::parse(slurp(unfinished))["taken_off"].empty();
   }
-  ASSERT_TRUE(is_stopped);
+  ASSERT_TRUE(is_stopped) << "it was never stopped while it took apart; the last try:\n"
+                          << slurp(folder_ / "out.txt");
   EXPECT_NE(slurp(folder_ / "out.txt").find("go on with --resume"), std::string::npos);
-  const json found = json::parse(slurp(folder_ / "planned/unfinished_plan.json"));
-  EXPECT_FALSE(found["taken_off"].empty());
 
   expectRefused("plan many.obj --units mm -o planned --resume --base 'block 3'",
                 "is of other parts or another base");
@@ -185,6 +201,7 @@ TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
 }
 
 TEST_F(Plan, TheTableOfAFolderHasARowForEachAssembly) {
+  if (std::system("command -v python3 >/dev/null 2>&1") != 0) GTEST_SKIP() << "python3 is not installed";
   fs::create_directories(folder_ / "cad/two");
   write("cad/two/a.obj", objOf({kPlate}));
   write("cad/two/b.obj", objOf({{"block", {20, 20, 10}, {40, 40, 30}}}));

@@ -12,9 +12,9 @@ TEST_F(Program, WrongUseIsOneLineAndStatusTwo) {
   expectRefused("--fast", "unknown option '--fast'; see vps --help");
   expectRefused("assemble", "see vps assemble --help");
   expectRefused("assemble scene.toml --fast", "unknown option '--fast'; see vps assemble --help");
-  expectRefused("check a.step b.step c.step d.step",
-                "these arguments are too many: 'b.step' 'c.step' 'd.step'; see vps check --help");
-  expectRefused("check a.step b.step", "one argument is too many: 'b.step'; see vps check --help");
+  expectRefused("simulate a.toml b.toml c.toml d.toml",
+                "these arguments are too many: 'b.toml' 'c.toml' 'd.toml'; see vps simulate --help");
+  expectRefused("simulate a.toml b.toml", "one argument is too many: 'b.toml'; see vps simulate --help");
   expectRefused("simulate scene.toml --seconds soon", "--seconds");
   expectRefused("simulate scene.toml --seconds nan", "--seconds");
   expectRefused("simulate scene.toml --seconds -1", "--seconds");

@@ -6,6 +6,7 @@
 
 #include "judge/overlap_judge.h"
 #include "judge/surface_error.h"
+#include "procedure/drawn_targets.h"
 #include "procedure/way_check.h"
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
@@ -104,6 +105,23 @@ TEST(Verdict, AMeshThatIsFartherOffItsFacesThanTheClearanceShowsNothing) {
   scene.parts[0].deflection_m = 0;
   scene.parts[1].rounding_m = 51e-6;
   EXPECT_EQ(assemble(scene).verdict, Verdict::NotShown);
+}
+
+// 60 um between flat faces that no fit holds: meshes that are less off than that cannot touch, however small
+// the tolerance.
+TEST(Verdict, AMeshIsDoubtedWithoutAFitOnlyWhereItsErrorReachesTheOtherPart) {
+  constexpr double kGap_m = 60e-6;
+  Scene scene = sceneOf(
+      {scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+       scenePart("wall", makeBox({4 * kMm, 30 * kMm, 20 * kMm}), {5 * kMm + kGap_m, 0, 12 * kMm}, true),
+       scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm}, false)},
+      1 * kMm);
+  scene.steps[0].tolerance_m = 20e-6;
+  scene.parts[1].deflection_m = kGap_m - 1e-6;
+  EXPECT_EQ(checkDrawnTargets(scene, {}).front().mesh_doubt, "");
+  scene.parts[1].deflection_m = kGap_m + 1e-6;
+  const std::string doubt = checkDrawnTargets(scene, {}).front().mesh_doubt;
+  EXPECT_NE(doubt.find("the mesh of 'wall' is known to be up to"), std::string::npos) << doubt;
 }
 
 // Let go beside the cup it falls 20 m in two seconds, which is not how far the hand was from its target.

@@ -112,6 +112,21 @@ TEST(Report, HasTheSettingsOfTheRunAsASceneFile) {
     EXPECT_NE(settings.find(words), std::string::npos) << words;
 }
 
+TEST(Report, NamesTheFilesOfItsPartsWithoutTheirFolders) {
+  scenes::Scene scene = smallScene();
+  scene.parts[0].file = "/home/somebody/secret/hole.stl";
+  scene.parts[1].file = "../product/peg.stl";
+  scene.device.data = "/home/somebody/arm.toml";
+  const std::string page = textOf(writeReport(scene, smallResult(), freshFolder("folders"),
+                                              {.command = {}, .progress = {}, .has_pictures = false})
+                                      .file);
+  for (const char* line :
+       {"file = &quot;hole.stl&quot;", "file = &quot;peg.stl&quot;", "parameters = &quot;arm.toml&quot;"})
+    EXPECT_NE(page.find(line), std::string::npos) << line;
+  for (const char* folder : {"somebody", "../product"})
+    EXPECT_EQ(page.find(folder), std::string::npos) << folder;
+}
+
 TEST(Report, HasTheTableOfTheCheckThatTheRunBeganWith) {
   scenes::AssembleResult result = smallResult();
   auto checked = std::make_shared<scenes::CheckResult>();

@@ -112,8 +112,9 @@ TEST(RunView, ABrowserDrawsItAtTheWidthOfADeskAndOfAPhone) {
 }
 
 TEST(RunView, ARealRunIsReadAndPlayedAtBothWidths) {
-  if (!vps::test::Chromium::isThere()) GTEST_SKIP() << "needs Chromium (Debian: chromium)";
-  if (runView(smallScene(), smallResult()).html.empty()) GTEST_SKIP() << "needs libjs-three";
+  if (!vps::test::Chromium::isThere()) GTEST_SKIP() << "chromium is not installed";
+  const RunView small = runView(smallScene(), smallResult());
+  if (small.html.empty()) GTEST_SKIP() << small.missing;
   scenes::Scene scene = scenes::loadScene(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml");
   const scenes::AssembleResult result = scenes::assemble(scene);
   ASSERT_FALSE(result.trace.empty());

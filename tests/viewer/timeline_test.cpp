@@ -209,6 +209,20 @@ TEST(LiveCurves, HaveAValueForEachInstantAndNoneWhereNothingIsKnown) {
   EXPECT_FLOAT_EQ(valuesOf("energy injected")[1], 3e-3f);
 }
 
+TEST(LiveChapters, WhoJoinsAtTheThirdStepGetsAChapterForEachOnce) {
+  Timeline line;
+  line.chapters = {{"before the first step", 0, ""}};
+  const auto name = [](std::size_t step) { return std::to_string(step + 1); };
+  for (const double time_s : {7.0, 7.1, 7.2}) addChapters(line, 2, time_s, name);
+  addChapters(line, 3, 9, name);
+  ASSERT_EQ(line.chapters.size(), 5u);
+  for (std::size_t i = 1; i < 5; ++i) {
+    EXPECT_EQ(line.chapters[i].name, std::to_string(i));
+    EXPECT_EQ(line.chapters[i].start_s, i < 4 ? 7 : 9);
+  }
+  EXPECT_EQ(line.chapterAt(8), 3u) << "the step under way";
+}
+
 TEST(LiveCurves, RatesAreThoseSinceTheFiguresBefore) {
   const scenes::RunFigures before = {.ticks = 1000, .physics_steps = 500};
   const scenes::RunFigures now = {.ticks = 5000,

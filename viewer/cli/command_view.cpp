@@ -61,7 +61,9 @@ int runView(const ViewArguments& given) {
     if (!file.empty())
       throw LoadError(file, "", "is shown in place of a session; leave out the file, or --session");
     const std::optional<scenes::Verdict> verdict = viewSession(window);
-    return verdict ? statusOf(*verdict) : kGood;
+    if (verdict) return statusOf(*verdict);
+    throwIfStopped();
+    return kNotShown;
   }
   if (file.empty())
     throw LoadError("", "", "say what to show: a scene file, a recording, or --session NAME of vps render");

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -201,7 +202,21 @@ int showWindow(const WatchArguments& given) {
   window.stop = &stopRequested();
   window.say = [](const std::string& words) { say(words); };
   const std::optional<scenes::Verdict> verdict = viewSession(window);
-  return verdict ? statusOf(*verdict) : kGood;
+  if (verdict) return statusOf(*verdict);
+  throwIfStopped();
+  return kNotShown;
+}
+
+/// Its exit status; empty: no window can be opened, which is said, as with a DISPLAY that nobody serves.
+std::optional<int> tryWindow(const WatchArguments& given) {
+  try {
+    return showWindow(given);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::runtime_error& error) {  // see viewSession()
+    say(error.what());
+    return {};
+  }
 }
 
 int runWatch(const WatchArguments& given) {
@@ -209,7 +224,8 @@ int runWatch(const WatchArguments& given) {
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())
     throw LoadError(given.scene.scene, "", "vps watch follows a session; add --web PORT, or use vps view");
-  if (wantsWindow(given)) return showWindow(given);
+  if (wantsWindow(given))
+    if (const std::optional<int> status = tryWindow(given)) return *status;
   bool has_said = false;
   while (!stopRequested()) {
     const std::unique_ptr<scenes::SessionWatcher> watcher =

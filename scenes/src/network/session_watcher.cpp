@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
 #include <vector>
 
 #include "network/clock_doubts.h"
@@ -49,6 +50,8 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
   const std::string_view bytes = work_->link->receive(Channel::Snapshot, work_->buffer);
   if (bytes.empty() || work_->reader.read(bytes, message) != Reading::Good) return {};
   work_->shot_ns = work_->reader.envelope().time_ns;
+  const int step = message.snapshot.step;  // -1: outside of a step
+  if (step < -1 || std::cmp_greater_equal(step, work_->scene.steps.size())) return {};
   const std::size_t parts = work_->scene.parts.size();
   for (const BodySnapshot& body : message.snapshot.bodies)
     if (body.part >= parts) return {};

@@ -108,10 +108,16 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
   const ScenePart& own = scene.parts[planned.part];
   std::string doubt;
   double most_m = 0;
+  const auto partOf = [&](const std::string& mate) -> const ScenePart& {
+    return *std::ranges::find(in_place, mate, [](const InPlace& p) { return p.part->part.name; })->part;
+  };
+  const auto errorWith = [&](const std::string& mate) {
+    return knownError_m(own) + knownError_m(partOf(mate));
+  };
   const auto consider = [&](const std::string& mate, double clearance_m, const char* what) {
-    const auto other = std::ranges::find(in_place, mate, [](const InPlace& p) { return p.part->part.name; });
-    const ScenePart& worse = knownError_m(own) >= knownError_m(*other->part) ? own : *other->part;
-    const double error_m = knownError_m(own) + knownError_m(*other->part);
+    const ScenePart& other = partOf(mate);
+    const ScenePart& worse = knownError_m(own) >= knownError_m(other) ? own : other;
+    const double error_m = errorWith(mate);
     // On both sides: a clearance is that of the diameter.
     if (2 * error_m <= std::max(clearance_m, kContact_m) || error_m <= most_m) return;
     most_m = error_m;
@@ -129,9 +135,12 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
     consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : found_m, "clearance in");
   }
   if (has_fit) return doubt;
-  for (const CheckedPair& pair : checked.pairs)
-    if (const std::string* mate = otherOf(step.part, pair.a, pair.b, in_place))
-      consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : 2 * step.tolerance_m, "place at");
+  for (const CheckedPair& pair : checked.pairs) {
+    const std::string* mate = otherOf(step.part, pair.a, pair.b, in_place);
+    // Faces that are farther apart than both meshes are off cannot touch.
+    if (mate == nullptr || pair.clearance_m > errorWith(*mate)) continue;
+    consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : 2 * step.tolerance_m, "place at");
+  }
   return doubt;
 }
 

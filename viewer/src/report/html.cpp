@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report/html.h"
 
+#include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 #include "report/base64.h"
 #include "report/text_file.h"
@@ -98,7 +101,7 @@ std::string withPictures(const std::string& body, const std::string& folder) {
 /// large for mail, or missing, is named without a link. Links to pages and to places in this one stay.
 std::string withLinkedFiles(const std::string& body, const std::string& folder) {
   static const std::string kLink = "<a href=\"";
-  constexpr std::size_t kMost_bytes = 4'000'000;  // common mail servers take 10 MB, of which text is 3/4
+  constexpr std::uintmax_t kMost_bytes = 4'000'000;  // common mail servers take 10 MB, of which text is 3/4
   std::string out;
   std::size_t done = 0;
   for (std::size_t at = body.find(kLink); at != std::string::npos; at = body.find(kLink, done)) {
@@ -115,8 +118,12 @@ std::string withLinkedFiles(const std::string& body, const std::string& folder) 
     }
     out.append(body, done, at - done).append("<a");
     done = to + 1;
-    const std::string bytes = textOf(folder + "/" + file);
-    if (bytes.empty() || bytes.size() > kMost_bytes) continue;
+    const std::string path = folder + "/" + file;
+    std::error_code error;
+    const std::uintmax_t size_bytes = std::filesystem::file_size(path, error);
+    if (error || size_bytes > kMost_bytes) continue;
+    const std::string bytes = textOf(path);
+    if (bytes.empty()) continue;
     out.append(" download=\"")
         .append(file.substr(file.rfind('/') + 1))
         .append("\" href=\"data:")

@@ -298,12 +298,20 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
   return out + tryTable(result);
 }
 
-/// The settings as they were in force, whatever file or command line they came from.
+/// The settings as they were in force, whatever file or command line they came from. Reports are sent by
+/// mail, so files are named without the folders of whoever ran it.
 std::string exactSettings(const scenes::Scene& scene) {
+  namespace fs = std::filesystem;
   std::vector<std::string> files;
-  for (const scenes::ScenePart& part : scene.parts) files.push_back(part.file);
+  for (const scenes::ScenePart& part : scene.parts) files.push_back(fs::path(part.file).filename().string());
+  std::string text = scenes::sceneText(scene, files, "as it was run");
+  if (const fs::path data = scene.device.data; !data.empty()) {
+    const std::string in_full = scenes::tomlText(fs::absolute(data).string());
+    if (const std::size_t at = text.find(in_full); at != std::string::npos)
+      text.replace(at, in_full.size(), scenes::tomlText(data.filename().string()));
+  }
   return "<details><summary>Exact settings of this run, as a scene file</summary>\n<pre id=\"settings\">" +
-         escapeHtml(scenes::sceneText(scene, files, "as it was run")) + "</pre></details>\n";
+         escapeHtml(text) + "</pre></details>\n";
 }
 
 std::string howToRepeat(const scenes::Scene& scene, const std::string& command) {

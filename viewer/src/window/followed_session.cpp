@@ -11,6 +11,7 @@
 
 #include "sound/live_sound.h"
 #include "vps/load_error.h"
+#include "vps_device/metronome.h"
 #include "vps_scenes/verdict.h"
 #include "window/blow_sounds.h"
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr double kFullBlow_Pa = 0.2;  // as of a run's sound, live_sound.cpp
 constexpr std::chrono::milliseconds kSoundPeriod{10};
+constexpr double kReopen_s = 2;  // between attempts to open a card that is gone; as LiveSound
 
 }  // namespace
 
@@ -41,6 +43,11 @@ struct FollowedSession::Sound {
     const std::lock_guard lock(mutex);
     X_WL = pose;
   }
+  /// Once, if the sound card is gone, or is back: a line that says so.
+  std::string takeNews() {
+    const std::lock_guard lock(mutex);
+    return std::exchange(news, {});
+  }
   void run() {
     constexpr std::size_t kPeriod = BlowSound::kRate_hz / 100;  // samples of kSoundPeriod
     std::vector<float> ahead, silence(kPeriod);
@@ -57,14 +64,40 @@ struct FollowedSession::Sound {
       }
       ahead.resize(std::max(ahead.size(), kPeriod));
       for (float& x : ahead) x = std::clamp(x, -1.0f, 1.0f);
-      output->write(std::span(ahead).first(kPeriod), silence, to_L);
+      if (!output && reopen()) next = std::chrono::steady_clock::now();  // nothing to catch up with
+      play(std::span(ahead).first(kPeriod), silence, to_L);
       ahead.erase(ahead.begin(), ahead.begin() + kPeriod);
       std::this_thread::sleep_until(next + kSoundPeriod);
     }
   }
 
-  std::unique_ptr<SoundOutput> output;
+  void play(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) {
+    if (!output) return;
+    output->write(parts, beeps, to_L);
+    if (output->isThere()) return;
+    tell("the sound card is gone; the session goes on in silence");
+    output.reset();  // first, since a card is opened once
+    next_s = device::monotonicSeconds() + kReopen_s;
+  }
+  bool reopen() {
+    const double now_s = device::monotonicSeconds();
+    if (now_s < next_s) return false;
+    next_s = now_s + kReopen_s;
+    std::string still_silent;
+    output = openSoundOutput(BlowSound::kRate_hz, still_silent);
+    if (output) tell("the sound card is back");
+    return output != nullptr;
+  }
+  void tell(const std::string& words) {
+    const std::lock_guard lock(mutex);
+    if (words != told) news = told = words;
+  }
+
+  std::unique_ptr<SoundOutput> output;  ///< null: gone
+  double next_s = 0;                    ///< of the next attempt, by device::monotonicSeconds()
   std::mutex mutex;
+  std::string news;  ///< empty: none
+  std::string told;  ///< the last news
   BlowSounds blows;
   Pose X_WL;
   std::atomic<bool> is_over{false};
@@ -89,6 +122,8 @@ FollowedSession::FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher
 FollowedSession::~FollowedSession() = default;
 
 void FollowedSession::poll() {
+  if (sound_)
+    if (const std::string news = sound_->takeNews(); !news.empty()) messages_.push_back(news);
   if (is_over_) return;
   const bool is_over = watcher_->isOver();  // first, so that the last news is read
   while (const auto news = watcher_->takeNews()) tell(*news);

@@ -43,6 +43,12 @@ void addInstant(Timeline& line, const scenes::Snapshot& shot, std::optional<doub
     line.curves[i].values.push_back(static_cast<float>(values[i]));
 }
 
+void addChapters(Timeline& line, std::size_t step, double time_s,
+                 const std::function<std::string(std::size_t step)>& name) {
+  for (std::size_t i = line.chapters.size() - 1; i <= step; ++i)
+    line.chapters.push_back({name(i), time_s, ""});
+}
+
 std::vector<std::string> figureLines(const scenes::RunFigures& now, const scenes::RunFigures& before,
                                      double elapsed_s) {
   char energy[120];

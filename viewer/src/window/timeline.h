@@ -52,6 +52,12 @@ struct VPS_VIEWER_API Timeline {
 /// measured
 VPS_VIEWER_API void addInstant(Timeline& line, const scenes::Snapshot& shot,
                                std::optional<double> clearance_m);
+/// Adds the chapter of a step that is under way, unless it is there. Who joins a session late has not seen
+/// the steps before: their chapters begin with it.
+/// @param line  whose first chapter is what comes before the first step
+/// @param name  of a step's chapter
+VPS_VIEWER_API void addChapters(Timeline& line, std::size_t step, double time_s,
+                                const std::function<std::string(std::size_t step)>& name);
 /// In words: what a run has done so far, at which rate, what it missed, and its energy. One line each.
 /// @param elapsed_s  by the clock, in which `shot`'s figures came to be since `before`'s
 [[nodiscard]] VPS_VIEWER_API std::vector<std::string> figureLines(const scenes::RunFigures& now,

@@ -47,6 +47,13 @@ GlfwWindow& self(GLFWwindow* window) {
   return *static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window));
 }
 
+void openDisplay() {
+  if (glfwInit() != GLFW_TRUE)
+    throw std::runtime_error("no window can be opened: " + lastError() +
+                             "; is there a display (DISPLAY or WAYLAND_DISPLAY)? Without one, vps snapshot "
+                             "and vps assemble make pictures");
+}
+
 void loadFont(float scale) {
   static const std::array<const char*, 3> kFiles = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                                     "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
@@ -61,11 +68,13 @@ void loadFont(float scale) {
 
 }  // namespace
 
+void requireDisplay() {
+  openDisplay();
+  glfwTerminate();
+}
+
 GlfwWindow::GlfwWindow(const std::string& title, PictureSize size) {
-  if (glfwInit() != GLFW_TRUE)
-    throw std::runtime_error("no window can be opened: " + lastError() +
-                             "; is there a display (DISPLAY or WAYLAND_DISPLAY)? Without one, vps snapshot "
-                             "and vps assemble make pictures");
+  openDisplay();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -13,6 +13,9 @@ struct GLFWwindow;
 
 namespace vps::viewer::inline v0 {
 
+/// Throws as GlfwWindow does where there is no display. Not while there is a window.
+void requireDisplay();
+
 /// Used on the thread that made it, except wake(). One at a time.
 class GlfwWindow {
  public:

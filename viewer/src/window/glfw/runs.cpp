@@ -151,11 +151,11 @@ void addToCurves(Session& session, const scenes::Snapshot& shot) {
   Timeline& line = session.run_line;
   addInstant(line, shot, clearanceOf(session, shot));
   session.view.time_s = shot.time_s;
-  const bool is_new_step = shot.step >= 0 && static_cast<std::size_t>(shot.step) + 1 >= line.chapters.size();
-  if (!is_new_step) return;
-  const std::string name = session.work.isFree() ? session.scene.parts[shot.target_part].part.name
-                                                 : chapterName(session, static_cast<std::size_t>(shot.step));
-  line.chapters.push_back({name, shot.time_s, ""});
+  if (shot.step < 0) return;
+  addChapters(line, static_cast<std::size_t>(shot.step), shot.time_s, [&](std::size_t step) {
+    return session.work.isFree() ? session.scene.parts[shot.target_part].part.name
+                                 : chapterName(session, step);
+  });
 }
 
 /// Notes the steps that the run has done since the last time.
@@ -248,14 +248,15 @@ void followSession(Session& session) {
       session.run_line.chapters[chapter].verdict = words(verdict);
 }
 
+void carryOutPoint(Session& session) {
+  if (!std::exchange(session.view.wants_point, false)) return;
+  if (session.followed == nullptr)
+    return session.say("only a session has others who would see it; vps view --session NAME");
+  pointAtPicked(session);
+}
+
 void carryOutWork(Session& session, GlfwWindow& window) {
   ViewState& view = session.view;
-  if (std::exchange(view.wants_point, false)) {
-    if (session.followed == nullptr)
-      session.say("only a session has others who would see it; vps view --session NAME");
-    else
-      pointAtPicked(session);
-  }
   if (std::exchange(view.wants_mouse, false)) {
     session.hand = "mouse";
     view.wants_run = true;

@@ -95,6 +95,8 @@ struct Session {
 void watchGaps(Session& session);
 /// Carries out what the view wants of runs and of what has been put down: start, stop, undo, redo, take.
 void carryOutWork(Session& session, GlfwWindow& window);
+/// Marks the picked place for all who watch the session, or takes the mark away, where the view wants it.
+void carryOutPoint(Session& session);
 /// Takes over what is new from the run, or shows what has been put down.
 void followWork(Session& session);
 

@@ -107,6 +107,9 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
   drawPanels(session, window);
   session.view.size = session.area.size;
   useMouse(session);
+  // After the click that came before the key. Dear ImGui shows a press and its release one frame apart, so a
+  // place may still be picked while a button is down.
+  if (!ImGui::IsAnyMouseDown()) carryOutPoint(session);
   askForPicture(session, worker, window);
   if (window.hasPicture())
     ImGui::GetBackgroundDrawList()->AddImage(window.picture(), {session.area.x, session.area.y},
@@ -202,6 +205,7 @@ void viewRecording(const device::RecordedRun& run, const WindowOptions& options)
 }
 
 std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
+  requireDisplay();  // before the wait, which may be long
   const auto is_stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   std::unique_ptr<scenes::SessionWatcher> watcher;
   for (bool has_said = false; !is_stopped(); has_said = true) {
