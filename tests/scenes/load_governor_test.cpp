@@ -82,6 +82,19 @@ TEST(LoadGovernor, ALoadThatNoLevelCanCarryEndsAtTheLastLevelAsOverloaded) {
   EXPECT_TRUE(governor.isOverloaded());
 }
 
+// At half speed half of the time is lost. Where a fifth is lost that would be worse, where three fifths are
+// it is better. One step in four of two periods loses a fifth; each of two and a half periods takes three and
+// loses two thirds.
+TEST(LoadGovernor, TimeIsSlowedOnlyWhereMoreOfItIsLost) {
+  for (const bool is_heavy : {false, true}) {
+    LoadGovernor governor({2.0}, {}, {1, 0.5});
+    int step = 0;
+    (void)follow(governor, 3, [&](double) { return is_heavy ? 2.5 : ++step % 4 == 0 ? 1.5 : 0.1; });
+    EXPECT_EQ(governor.level(), is_heavy ? 1 : 0);
+    EXPECT_TRUE(is_heavy || governor.isOverloaded()) << "the load must be above the limit";
+  }
+}
+
 // The governor goes up after 8 windows of 0.25 s in which the level above would have been sufficient.
 TEST(LoadGovernor, AfterTheLoadEndsItGoesUpByOneLevelEveryTwoSeconds) {
   LoadGovernor governor = halving();

@@ -18,8 +18,14 @@ double periodsOf(double busy_s, double period_s) {
 
 }  // namespace
 
-LoadGovernor::LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings)
-    : cost_ratios_(std::move(cost_ratios)), settings_(settings), wait_(settings.calm_windows) {}
+LoadGovernor::LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings,
+                           std::vector<double> speeds)
+    : cost_ratios_(std::move(cost_ratios)),
+      speeds_(std::move(speeds)),
+      settings_(settings),
+      wait_(settings.calm_windows) {
+  speeds_.resize(cost_ratios_.size() + 1, speeds_.empty() ? 1 : speeds_.back());
+}
 
 int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   if (!(busy_s > 0)) busy_s = 0;
@@ -45,13 +51,19 @@ bool LoadGovernor::isOverloaded() const noexcept {
   return last_.late >= settings_.late_limit && last_.lostShare() > settings_.lost_limit;
 }
 
+/// True if simulated time would run faster one level down, did that level lose nothing.
+bool LoadGovernor::isFasterBelow() const noexcept {
+  const auto level = static_cast<std::size_t>(level_);
+  return (1 - last_.lostShare()) * speeds_[level] < speeds_[level + 1];
+}
+
 int LoadGovernor::decide(bool may_rise) noexcept {
   last_ = {now_.elapsed_s, now_.lost_s, now_.busy_s / now_.steps, now_.late};
   const bool is_calm = level_ > 0 && (now_.late_above < settings_.late_limit ||
                                       now_.lost_above_s <= 0.5 * settings_.lost_limit * now_.elapsed_above_s);
   now_ = {};
   calm_ = is_calm ? std::min(calm_ + 1, settings_.most_calm_windows) : 0;
-  if (isOverloaded() && level_ < lastLevel()) {
+  if (isOverloaded() && level_ < lastLevel() && isFasterBelow()) {
     if (has_risen_) waitLonger();
     moveTo(level_ + 1);
   } else if (calm_ >= wait_ && may_rise) {

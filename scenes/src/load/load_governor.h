@@ -20,6 +20,9 @@ struct GovernorSettings {
 ///
 /// A step that takes longer than its period loses the periods that begin meanwhile.
 /// - Down one level: after a window in which more than lost_limit was lost by at least late_limit late steps.
+/// A
+///   level that slows time down must lose less of it than is lost now: at half speed half of the time is
+///   lost.
 /// - Up one level: after the required number of calm windows in a row. A window is calm when no more than
 ///   half of lost_limit would have been lost, stalls not counted, had every step taken as much longer as it
 ///   may on the level above.
@@ -29,7 +32,9 @@ class LoadGovernor {
  public:
   /// @param cost_ratios  for each level but 0, >= 1: the greatest ratio of the share of its period that a
   ///                     step takes one level up to the share at this level
-  explicit LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings = {});
+  /// @param speeds  for each level, 0 included: simulated time by the clock's, at most 1; empty: 1
+  explicit LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings = {},
+                        std::vector<double> speeds = {});
 
   /// Adds one step.
   /// @param busy_s    its duration; a value that is not a number or below 0 counts as 0
@@ -61,10 +66,11 @@ class LoadGovernor {
     int steps = 0, late = 0, late_above = 0;
   };
   int decide(bool may_rise) noexcept;
+  [[nodiscard]] bool isFasterBelow() const noexcept;
   void moveTo(int level) noexcept;
   void waitLonger() noexcept;
 
-  std::vector<double> cost_ratios_;
+  std::vector<double> cost_ratios_, speeds_;
   GovernorSettings settings_;
   Counts now_;
   Window last_;

@@ -27,6 +27,13 @@ std::vector<double> costRatios(double physics_s, const LoadLimits& limits) {
   return ratios;
 }
 
+/// The speed of simulated time at each level.
+std::vector<double> speeds() {
+  std::vector<double> speeds;
+  for (const LoadLevel& level : kLoadLevels) speeds.push_back(1.0 / level.time_divisor);
+  return speeds;
+}
+
 const LoadLevel& loadLevelOf(int level) {
   return kLoadLevels[static_cast<std::size_t>(level)];
 }
@@ -86,7 +93,7 @@ LoadShedder::LoadShedder(const Scene& scene, const ModelPlan& plan, Simulation& 
       limits_(limits),
       gains_at_(std::move(gains_at)),
       set_field_(std::move(set_field)),
-      governor_(costRatios(1 / scene.fidelity.physics_rate_hz, limits)),
+      governor_(costRatios(1 / scene.fidelity.physics_rate_hz, limits), {}, speeds()),
       dt_s_(1 / scene.fidelity.physics_rate_hz),
       gains_(driver.settings().gains) {}
 
