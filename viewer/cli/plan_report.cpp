@@ -148,11 +148,6 @@ std::string inWords(const scenes::WayFault& fault) {
     return "the way of '" + fault.part + "' passes '" + fault.against + "' at " +
            fixed(1e3 * fault.clearance_m, 3) + " mm, where " + fixed(1e3 * fault.planned_m, 3) +
            " mm were planned; give other way_points";
-  if (fault.kind == scenes::WayFaultKind::Undecided)
-    return "whether the way of '" + fault.part +
-           "' is free is not decided: the search along it ended at its limit; give a greater --deflection, "
-           "or "
-           "other way_points";
   const std::string remedy = fault.kind == scenes::WayFaultKind::Order
                                  ? "; mount '" + fault.against + "' after it, or give other way_points"
                                  : "; give other way_points, or another order";

@@ -185,7 +185,6 @@ enum class WayFaultKind {
   Order,      ///< the same, and that part would pass if it were mounted later
   Support,    ///< nothing in place carries it when it is let go
   Clearance,  ///< it passes a part nearer than was planned
-  Undecided,  ///< no fault was found, but the search along its way ended at its limit
 };
 VPS_SCENES_API const char* toText(WayFaultKind kind);
 
@@ -200,10 +199,10 @@ struct WayFault {
 };
 
 /// Follows the ways of all steps: conservative advancement finds what is deeper than allowed however thin it
-/// is, along straight legs and threads, and along turning legs within 2 um, or the way is undecided; the
-/// depth is then measured at 24 poses of the leg, and where it was stopped. A screw is followed along its
-/// thread from its target on. A part that no step holds has to be carried by what is in place. The worst
-/// fault of each step, in order; empty: none.
+/// is, along straight legs and threads, and along turning legs within 2 um; the depth is then measured at 24
+/// poses of the leg, and where it was stopped. A screw is followed along its thread from its target on. A
+/// part that no step holds has to be carried by what is in place. The worst fault of each step, in order;
+/// empty: none.
 /// @param planned_clearance_m  of the ways, by part, where less is a fault (PlannedStep::clearance_m)
 VPS_SCENES_API std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress = {},
                                                const std::map<std::string, double>& planned_clearance_m = {});

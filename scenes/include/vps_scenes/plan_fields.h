@@ -114,8 +114,7 @@ inline constexpr auto kPlanWallFields =
 inline constexpr auto kWayFaultFields = std::make_tuple(
     field("kind", &WayFault::kind,
           "`through` a part in place, `order` (that part has to come later), `support` (nothing "
-          "carries it when it is let go), `clearance` (less than was planned), "
-          "`undecided` (the search along its way ended at its limit)"),
+          "carries it when it is let go), `clearance` (less than was planned)"),
     field("part", &WayFault::part, "the part that moves"),
     field("against", &WayFault::against, "the part in place that its way leads through"),
     field("depth_m", &WayFault::depth_m, "greatest depth on the way"),

@@ -26,8 +26,6 @@ const char* toText(WayFaultKind kind) {
       return "support";
     case WayFaultKind::Clearance:
       return "clearance";
-    case WayFaultKind::Undecided:
-      return "undecided";
   }
   return "";
 }
@@ -58,15 +56,11 @@ class WayCheck {
     }
   }
 
-  /// Where the way is deepest in a part, beyond what is drawn, or that this is undecided; no part if it is
-  /// free.
+  /// Where the way is deepest in a part, beyond what is drawn; no part if it is free.
   [[nodiscard]] WayFault deepest() const {
     WayFault worst;
-    bool is_decided = true;
     for (const Pose& X_WP : poses_W()) consider(X_WP, worst);
-    for (const WayPiece& piece : pieces_W()) is_decided = follow(piece, worst) && is_decided;
-    if (worst.part.empty() && !is_decided)
-      return {.kind = WayFaultKind::Undecided, .part = part_.name, .against = {}};
+    for (const WayPiece& piece : pieces_W()) follow(piece, worst);
     return worst;
   }
 
@@ -104,18 +98,16 @@ class WayCheck {
   /// Goes on until something stops the part, and measures there and at eight poses up to 1.3 mm beyond; the
   /// same again from there. It ends early once a fault is found, and unfinished at the limit of work or of
   /// stops: what follows is then known at the 24 poses of the leg alone.
-  /// @return whether it was followed to its end, or to a fault
-  [[nodiscard]] bool follow(WayPiece piece, WayFault& worst) const {
+  void follow(WayPiece piece, WayFault& worst) const {
     constexpr int kStopsWithFault = 16, kBeyond = 8;
     constexpr int kMostStops = 1024;  // 1.3 m of a way that is stopped all along
     SearchWork work{kMostWork};
     for (int stop = 0; piece.most > 0; ++stop) {
-      if (stop >= (worst.part.empty() ? kMostStops : kStopsWithFault) || work.isSpent())
-        return !worst.part.empty();
+      if (stop >= (worst.part.empty() ? kMostStops : kStopsWithFault) || work.isSpent()) return;
       const PlacedSurface placed = placedAt(piece.X_WP);
       const Reach reach = MotionSearch(placed, held_, allowed_m_, CrossingDepth::UpToMost)
                               .reach(piece.motion_W, piece.most, &work);
-      if (!reach.is_stopped) return true;
+      if (!reach.is_stopped) return;
       const double speed = piece.motion_W.is_turn ? speedOf(piece) : 1;
       double s = reach.s;
       for (int k = 0; k < kBeyond; ++k) {
@@ -128,7 +120,6 @@ class WayCheck {
         piece.motion_W.center += piece.motion_W.forward_m * s * piece.motion_W.direction;
       piece.most -= s;
     }
-    return true;
   }
 
   /// Of the fastest corner of the part's box.
@@ -245,14 +236,14 @@ bool wouldPassLater(const Scene& scene, const std::vector<PlacedSurface>& placed
                     const std::string& against) {
   for (std::size_t i = 0; i < step; ++i)
     if (placed[scene.steps[i].part].name == against)
-      return WayCheck(scene, placed, i, {scene.steps[step].part}).deepest().part.empty();
+      return WayCheck(scene, placed, i, {scene.steps[step].part}).deepest().against.empty();
   return false;
 }
 
 WayFault faultOf(const Scene& scene, const std::vector<PlacedSurface>& placed, std::size_t step) {
   const WayCheck check(scene, placed, step, inPlaceBefore(scene, step));
   WayFault fault = check.deepest();
-  if (!fault.part.empty()) {
+  if (!fault.against.empty()) {
     if (wouldPassLater(scene, placed, step, fault.against)) fault.kind = WayFaultKind::Order;
     return fault;
   }
