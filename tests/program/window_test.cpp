@@ -279,8 +279,10 @@ TEST_F(Window, AStepThatIsTakenBackAndDoneAgainGivesTheSameBits) {
     return soon([&] { return fs::exists(folder_ / name); });
   };
   ASSERT_TRUE(isRecorded("run.mcap")) << slurp(folder_ / "err.txt");
+  std::this_thread::sleep_for(2s);  // the window has taken the result as well
   xdotool("key z");
   ASSERT_TRUE(isRecorded("run_2.mcap")) << "only the second step";
+  std::this_thread::sleep_for(2s);
   xdotool("key z");
   ASSERT_TRUE(isRecorded("run_3.mcap"));
   EXPECT_EQ(slurp(folder_ / "run_2.mcap"), slurp(folder_ / "run_3.mcap"));
