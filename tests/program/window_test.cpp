@@ -54,11 +54,16 @@ class Window : public Program {
         outputOf("Xvfb -displayfd 3 -screen 0 1400x900x24 3>'" + number + "' >/dev/null 2>&1 & echo $!"));
     ASSERT_TRUE(soon([&] { return slurp(number).find('\n') != std::string::npos; }));
     const std::string text = slurp(number);
-    display_ = "DISPLAY=:" + text.substr(0, text.find('\n')) + " ";
+    display_number_ = text.substr(0, text.find('\n'));
+    display_ = "DISPLAY=:" + display_number_ + " ";
   }
   void TearDown() override {
     if (view_ > 0) kill(view_, SIGKILL);
     if (xvfb_ > 0) kill(xvfb_, SIGTERM);
+    // A server that ends later than the next one starts takes that one's socket away, if both have one
+    // number.
+    for (int i = 0; i < 50 && fs::exists("/tmp/.X" + display_number_ + "-lock"); ++i)
+      std::this_thread::sleep_for(100ms);
     Program::TearDown();
   }
 
@@ -166,7 +171,7 @@ class Window : public Program {
     return last;
   }
 
-  std::string display_, window_;
+  std::string display_, window_, display_number_;
   pid_t xvfb_ = 0, view_ = 0;
   int pictures_ = 0;
 };
