@@ -50,8 +50,11 @@ class Window : public Program {
     if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
     if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool (Debian: xvfb, xdotool)";
     const std::string number = (folder_ / "display.txt").string();
-    xvfb_ = std::stoi(
-        outputOf("Xvfb -displayfd 3 -screen 0 1400x900x24 3>'" + number + "' >/dev/null 2>&1 & echo $!"));
+    // A number of this process alone: of two servers that share one, the first to end takes the other's
+    // socket.
+    xvfb_ = std::stoi(outputOf("Xvfb :" + std::to_string(1000 + getpid() % 30000) +
+                               " -displayfd 3 -screen 0 1400x900x24 3>'" + number +
+                               "' >/dev/null 2>&1 & echo $!"));
     ASSERT_TRUE(soon([&] { return slurp(number).find('\n') != std::string::npos; }));
     const std::string text = slurp(number);
     display_number_ = text.substr(0, text.find('\n'));
@@ -60,9 +63,7 @@ class Window : public Program {
   void TearDown() override {
     if (view_ > 0) kill(view_, SIGKILL);
     if (xvfb_ > 0) kill(xvfb_, SIGTERM);
-    // A server that ends later than the next one starts takes that one's socket away, if both have one
-    // number.
-    for (int i = 0; i < 50 && fs::exists("/tmp/.X" + display_number_ + "-lock"); ++i)
+    for (int i = 0; i < 50 && fs::exists("/tmp/.X11-unix/X" + display_number_); ++i)
       std::this_thread::sleep_for(100ms);
     Program::TearDown();
   }
