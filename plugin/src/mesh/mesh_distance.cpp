@@ -198,60 +198,68 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
   return is_met;
 }
 
+namespace {
+
+/// Visits the triangles in those boxes of a tree that are near, in no particular order, until visit(triangle)
+/// returns false. Returns true if it never did.
+/// @param isNear  of the four boxes of a node
+template <typename Nodes, typename IsNear, typename Visit>
+bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visit visit) {
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  if (!nodes.empty()) stack[waiting++] = 0;
+  while (waiting > 0) {
+    const std::uint32_t next = stack[--waiting];
+    if ((next & triangle_bit) != 0) {
+      if (!visit(next & ~triangle_bit)) return false;
+      continue;
+    }
+    const auto& node = nodes[next];
+    const Eigen::Array<bool, 4, 1> is_near = isNear(node);
+    for (int lane = 0; lane < 4; ++lane)
+      if (is_near[lane]) stack[waiting++] = node.child[lane];
+  }
+  return true;
+}
+
+}  // namespace
+
 void MeshDistance::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
-  if (nodes_.empty()) return;
   // Barycentric coordinates round by 1e-11 where a facet is long and thin and the segment grazes it. A
   // crossing at a shared border must not fall between both; one too many only divides a segment once more.
   constexpr double kBorder = -1e-9;
   const Eigen::Vector3f middle = (0.5 * (a + b) - center_).cast<float>(),
                         half = (0.5 * (b - a)).cast<float>();
-  std::uint32_t stack[kStack];
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const std::uint32_t next = stack[--waiting];
-    if ((next & kTriangle) == 0) {
-      const Node& node = nodes_[next];
-      const Eigen::Array<bool, 4, 1> is_met = node.meets(middle, half);
-      for (int lane = 0; lane < 4; ++lane)
-        if (is_met[lane]) stack[waiting++] = node.child[lane];
-      continue;
-    }
-    const auto& t = mesh_.triangles[next & ~kTriangle];
-    const Vec3& corner = mesh_.vertices[t[0]];
-    const Vec3 u = mesh_.vertices[t[1]] - corner, v = mesh_.vertices[t[2]] - corner, n = u.cross(v);
-    const double above_a = n.dot(a - corner), above_b = n.dot(b - corner);
-    if ((above_a > 0) == (above_b > 0)) continue;
-    const double fraction = above_a / (above_a - above_b);
-    const Vec3 q = a + fraction * (b - a) - corner;
-    const double n2 = n.squaredNorm();
-    const double along_u = q.cross(v).dot(n) / n2, along_v = u.cross(q).dot(n) / n2;
-    if (along_u >= kBorder && along_v >= kBorder && along_u + along_v <= 1 - kBorder) out.push_back(fraction);
-  }
+  descend(
+      nodes_, kTriangle, [&](const Node& node) { return node.meets(middle, half); },
+      [&](std::uint32_t triangle) {
+        const auto& t = mesh_.triangles[triangle];
+        const Vec3& corner = mesh_.vertices[t[0]];
+        const Vec3 u = mesh_.vertices[t[1]] - corner, v = mesh_.vertices[t[2]] - corner, n = u.cross(v);
+        const double above_a = n.dot(a - corner), above_b = n.dot(b - corner);
+        if ((above_a > 0) == (above_b > 0)) return true;
+        const double fraction = above_a / (above_a - above_b);
+        const Vec3 q = a + fraction * (b - a) - corner;
+        const double n2 = n.squaredNorm();
+        const double along_u = q.cross(v).dot(n) / n2, along_v = u.cross(q).dot(n) / n2;
+        if (along_u >= kBorder && along_v >= kBorder && along_u + along_v <= 1 - kBorder)
+          out.push_back(fraction);
+        return true;
+      });
 }
 
 bool MeshDistance::overlapping(const Box& box, std::size_t most,
                                std::vector<std::uint32_t>& triangles) const {
   triangles.clear();
-  if (nodes_.empty()) return true;
   // The nodes' boxes have a margin for the rounding of points inside the mesh's box.
   const Eigen::Vector3f low = (box.min - center_).cast<float>(), high = (box.max - center_).cast<float>();
-  std::uint32_t stack[kStack];
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const std::uint32_t next = stack[--waiting];
-    if ((next & kTriangle) != 0) {
-      if (triangles.size() == most) return false;
-      triangles.push_back(next & ~kTriangle);
-      continue;
-    }
-    const Node& node = nodes_[next];
-    const Eigen::Array<bool, 4, 1> is_near = node.overlaps(low, high);
-    for (int lane = 0; lane < 4; ++lane)
-      if (is_near[lane]) stack[waiting++] = node.child[lane];
-  }
-  return true;
+  return descend(
+      nodes_, kTriangle, [&](const Node& node) { return node.overlaps(low, high); },
+      [&](std::uint32_t triangle) {
+        if (triangles.size() == most) return false;
+        triangles.push_back(triangle);
+        return true;
+      });
 }
 
 /// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
@@ -337,28 +345,23 @@ bool MeshDistance::isNextToThin(std::uint32_t triangle, int feature) const noexc
 Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
   Vec3 sum = Vec3::Zero();
   const Eigen::Vector3f from_center = (q - center_).cast<float>();
-  std::uint32_t stack[kStack];
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const std::uint32_t next = stack[--waiting];
-    if ((next & kTriangle) == 0) {
-      const Node& node = nodes_[next];
-      const Eigen::Array4f distance2 = node.distance2(from_center);
-      for (int lane = 0; lane < 4; ++lane)
-        if (static_cast<double>(distance2[lane]) <= touch_m_ * touch_m_) stack[waiting++] = node.child[lane];
-      continue;
-    }
-    const std::uint32_t triangle = next & ~kTriangle;
-    const auto& t = mesh_.triangles[triangle];
-    const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
-    if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_) continue;
-    double angle_rad = std::numbers::pi;
-    for (int k = 0; k < 3; ++k)
-      if ((corner[k] - q).norm() <= touch_m_)
-        angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
-    sum += angle_rad * face_normals_[triangle];
-  }
+  descend(
+      nodes_, kTriangle,
+      [&](const Node& node) {
+        return (node.distance2(from_center).cast<double>() <= touch_m_ * touch_m_).eval();
+      },
+      [&](std::uint32_t triangle) {
+        const auto& t = mesh_.triangles[triangle];
+        const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
+        if ((closestOnTriangleInline(q, corner[0], corner[1], corner[2]).q - q).norm() > touch_m_)
+          return true;
+        double angle_rad = std::numbers::pi;
+        for (int k = 0; k < 3; ++k)
+          if ((corner[k] - q).norm() <= touch_m_)
+            angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
+        sum += angle_rad * face_normals_[triangle];
+        return true;
+      });
   return unitOrZero(sum);
 }
 

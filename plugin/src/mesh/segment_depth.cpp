@@ -27,6 +27,10 @@ struct Probe {
     signed_m = is_inside ? -nearest.distance_m : nearest.distance_m;
     triangle = nearest.triangle;
   }
+  /// 1 outside, -1 inside; 0 nearer to the surface than certain_m, where it may be either.
+  [[nodiscard]] int side(double certain_m) const {
+    return std::abs(signed_m) <= certain_m ? 0 : signed_m > 0 ? 1 : -1;
+  }
 };
 
 /// Bounds a search at which the nearest triangle is found for certain.
@@ -69,20 +73,19 @@ bool doAlternate(const Solid& solid, const Probe& from, const Probe& to, const s
                  double certain_m) {
   const double length_m = (to.p - from.p).norm();
   // An end on the surface, and a stretch shorter than what is certain, may be either.
-  int before = std::abs(from.signed_m) <= certain_m ? 0 : from.signed_m > 0 ? 1 : -1;
+  int before = from.side(certain_m);
   bool is_same_stretch = true;  // as the end before it
   double begin = 0;
   for (const double end : ends) {
     if ((end - begin) * length_m > certain_m && ends.size() > 1) {
-      const Probe middle(solid, from.p + 0.5 * (begin + end) * (to.p - from.p), 1e300);
-      const int side = std::abs(middle.signed_m) <= certain_m ? 0 : middle.signed_m > 0 ? 1 : -1;
+      const int side = Probe(solid, from.p + 0.5 * (begin + end) * (to.p - from.p), 1e300).side(certain_m);
       if (side * before == (is_same_stretch ? -1 : 1)) return false;
       before = side;
       is_same_stretch = false;
     }
     begin = end;
   }
-  const int last = std::abs(to.signed_m) <= certain_m ? 0 : to.signed_m > 0 ? 1 : -1;
+  const int last = to.side(certain_m);
   // Without crossings both ends are on the same side; otherwise the last stretch ends with the segment.
   return last * before != -1 || (ends.size() > 1 && (1 - ends[ends.size() - 2]) * length_m <= certain_m);
 }
