@@ -63,6 +63,8 @@ class VPS_API EdgeSet {
   struct Node {
     Vec3 center = Vec3::Zero();
     double radius_m = 0;
+    Vec3 along = Vec3::Zero();  ///< unit, either way: each segment of the node is within spread_rad of it
+    double spread_rad = 0;
     std::uint32_t first = 0;    ///< left child, the right one after it; of a leaf its segment
     std::uint32_t is_leaf = 0;  ///< 1 or 0
   };

@@ -109,6 +109,17 @@ void EdgeSet::build() {
       box.add(segments_[i].to);
     }
     Node node;
+    const auto along = [&](std::uint32_t i) {
+      return Vec3((segments_[i].to - segments_[i].from).normalized());
+    };
+    for (const std::uint32_t i : own) {
+      const Vec3 d = along(i);
+      node.along += node.along.dot(d) < 0 ? Vec3(-d) : d;
+    }
+    node.along.normalize();
+    for (const std::uint32_t i : own)
+      node.spread_rad =
+          std::max(node.spread_rad, std::acos(std::min(1.0, std::abs(node.along.dot(along(i))))));
     node.center = box.center();
     for (const std::uint32_t i : own)
       node.radius_m = std::max(
@@ -155,34 +166,62 @@ class EdgePairSearch {
   template <typename Visit>
   void run(const Visit& found) const {
     if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty())
-      visit(edges0_.nodes_[0], edges1_.nodes_[0], found);
+      visit(edges0_.nodes_[0], place(edges1_.nodes_[0]), found);
   }
 
  private:
   using Node = EdgeSet::Node;
 
+  /// A node of set 1 and its centre's way in the frame of set 0.
+  struct Placed {
+    const Node& node;
+    Vec3 from, way;
+    double way2_m2;
+  };
+  [[nodiscard]] Placed place(const Node& b) const {
+    const Vec3 from = from_01_ * b.center, way = to_01_ * b.center - from;
+    return {b, from, way, way.squaredNorm()};
+  }
+
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   template <typename Visit>
-  void visit(const Node& a, const Node& b, const Visit& found) const {
-    const Vec3 from = from_01_ * b.center, to = to_01_ * b.center, way = to - from;
-    const double reach_m = a.radius_m + b.radius_m + reach_m_, square = way.squaredNorm();
-    const double share = square > 0 ? std::clamp((a.center - from).dot(way) / square, 0.0, 1.0) : 0;
-    if ((a.center - from - share * way).squaredNorm() > reach_m * reach_m) return;
+  void visit(const Node& a, const Placed& at, const Visit& found) const {
+    const Node& b = at.node;
+    const Vec3 off = a.center - at.from;
+    const double share = at.way2_m2 > 0 ? std::clamp(off.dot(at.way) / at.way2_m2, 0.0, 1.0) : 0;
+    const double near_m = a.radius_m + b.radius_m + reach_m_;
+    if ((off - share * at.way).squaredNorm() > near_m * near_m || areParallel(a, b)) return;
     // The sphere of a long segment contains much space that is far from the segment.
     if (a.is_leaf != 0) {
       const EdgeSegment& s = edges0_.segments_[a.first];
-      const Nearest nearest = nearestOfSegments(s.from, s.to, from, to);
+      const Nearest nearest = nearestOfSegments(s.from, s.to, at.from, at.from + at.way);
       const double own_m = b.radius_m + reach_m_;
       if ((nearest.p - nearest.q).squaredNorm() > own_m * own_m) return;
     }
     if (a.is_leaf != 0 && b.is_leaf != 0) {
       const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
-      if (mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
+      if (arePossiblyNear(s0, s1) && mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], b, found);
+      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], at, found);
     } else {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(a, edges1_.nodes_[b.first + i], found);
+      for (std::uint32_t i = 0; i < 2; ++i) visit(a, place(edges1_.nodes_[b.first + i]), found);
     }
+  }
+
+  // True if no two of the nodes' segments are far enough from parallel at any pose of the tube: as for two
+  // segments in mayCross(), since the sine of a sum is at most the sine of one angle plus the others.
+  [[nodiscard]] bool areParallel(const Node& a, const Node& b) const {
+    const double least = kMinSine - turn_rad_ - a.spread_rad - b.spread_rad;
+    return least > 0 && a.along.cross(from_01_.R * b.along).squaredNorm() <= least * least;
+  }
+
+  // Cheap: no place of a segment moves farther than its ends.
+  [[nodiscard]] bool arePossiblyNear(const EdgeSegment& s0, const EdgeSegment& s1) const {
+    const Vec3 from = from_01_ * s1.from, to = from_01_ * s1.to;
+    const double way_m =
+        std::sqrt(std::max((to_01_ * s1.from - from).squaredNorm(), (to_01_ * s1.to - to).squaredNorm()));
+    const Nearest nearest = nearestOfSegments(s0.from, s0.to, from, to);
+    return nearest.distance_m() <= reach_m_ + way_m;
   }
 
   // False if no pose of the tube turns the segments so that CrossingTest takes them for a crossing. A turn by
