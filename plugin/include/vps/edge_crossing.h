@@ -63,12 +63,15 @@ class VPS_API EdgeSet {
   struct Node {
     Vec3 center = Vec3::Zero();
     double radius_m = 0;
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< each place is within width_m of the line between these
+    double width_m = 0;
     Vec3 along = Vec3::Zero();  ///< unit, either way: each segment of the node is within spread_rad of it
     double spread_rad = 0;
     std::uint32_t first = 0;    ///< left child, the right one after it; of a leaf its segment
     std::uint32_t is_leaf = 0;  ///< 1 or 0
   };
   void build();
+  void bound(Node& node, std::span<const std::uint32_t> own) const;
   [[nodiscard]] bool isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept;
   template <typename Visit>
   void visitNear(std::uint32_t at, const Vec3& p, double radius_m, Visit& visit) const {

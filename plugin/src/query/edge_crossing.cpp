@@ -90,6 +90,32 @@ EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segmen
   if (!segments_.empty()) build();
 }
 
+// The direction of a node's segments, and the line along it that they are near to.
+void EdgeSet::bound(Node& node, std::span<const std::uint32_t> own) const {
+  const auto along = [&](std::uint32_t i) {
+    return Vec3((segments_[i].to - segments_[i].from).normalized());
+  };
+  Vec3 middle = Vec3::Zero();
+  for (const std::uint32_t i : own) {
+    const Vec3 d = along(i);
+    node.along += node.along.dot(d) < 0 ? Vec3(-d) : d;
+    middle += 0.5 / static_cast<double>(own.size()) * (segments_[i].from + segments_[i].to);
+  }
+  node.along.normalize();
+  double first_m = 0, last_m = 0;
+  for (const std::uint32_t i : own) {
+    node.spread_rad = std::max(node.spread_rad, std::acos(std::min(1.0, std::abs(node.along.dot(along(i))))));
+    for (const Vec3& end : {segments_[i].from, segments_[i].to}) {
+      const double at_m = node.along.dot(end - middle);
+      first_m = std::min(first_m, at_m);
+      last_m = std::max(last_m, at_m);
+      node.width_m = std::max(node.width_m, (end - middle - at_m * node.along).norm());
+    }
+  }
+  node.from = middle + first_m * node.along;
+  node.to = middle + last_m * node.along;
+}
+
 void EdgeSet::build() {
   struct Range {
     std::uint32_t node, first, count;
@@ -109,17 +135,7 @@ void EdgeSet::build() {
       box.add(segments_[i].to);
     }
     Node node;
-    const auto along = [&](std::uint32_t i) {
-      return Vec3((segments_[i].to - segments_[i].from).normalized());
-    };
-    for (const std::uint32_t i : own) {
-      const Vec3 d = along(i);
-      node.along += node.along.dot(d) < 0 ? Vec3(-d) : d;
-    }
-    node.along.normalize();
-    for (const std::uint32_t i : own)
-      node.spread_rad =
-          std::max(node.spread_rad, std::acos(std::min(1.0, std::abs(node.along.dot(along(i))))));
+    bound(node, own);
     node.center = box.center();
     for (const std::uint32_t i : own)
       node.radius_m = std::max(
@@ -172,35 +188,33 @@ class EdgePairSearch {
  private:
   using Node = EdgeSet::Node;
 
-  /// A node of set 1 and its centre's way in the frame of set 0.
+  /// A node of set 1 in the frame of set 0.
   struct Placed {
     const Node& node;
-    Vec3 from, way;
+    Vec3 center, way;  ///< of the sphere's centre
     double way2_m2;
+    Vec3 from, to;   ///< of the line, at the start
+    double reach_m;  ///< how far from it any place comes, and what counts as near
   };
   [[nodiscard]] Placed place(const Node& b) const {
-    const Vec3 from = from_01_ * b.center, way = to_01_ * b.center - from;
-    return {b, from, way, way.squaredNorm()};
+    Placed at{b, from_01_ * b.center, {}, 0, from_01_ * b.from, from_01_ * b.to, 0};
+    at.way = to_01_ * b.center - at.center;
+    at.way2_m2 = at.way.squaredNorm();
+    // No place on a line moves farther than its ends.
+    const double way2_m2 =
+        std::max((to_01_ * b.from - at.from).squaredNorm(), (to_01_ * b.to - at.to).squaredNorm());
+    at.reach_m = std::sqrt(way2_m2) + b.width_m * (1 + turn_rad_) + reach_m_;
+    return at;
   }
 
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   template <typename Visit>
   void visit(const Node& a, const Placed& at, const Visit& found) const {
     const Node& b = at.node;
-    const Vec3 off = a.center - at.from;
-    const double share = at.way2_m2 > 0 ? std::clamp(off.dot(at.way) / at.way2_m2, 0.0, 1.0) : 0;
-    const double near_m = a.radius_m + b.radius_m + reach_m_;
-    if ((off - share * at.way).squaredNorm() > near_m * near_m || areParallel(a, b)) return;
-    // The sphere of a long segment contains much space that is far from the segment.
-    if (a.is_leaf != 0) {
-      const EdgeSegment& s = edges0_.segments_[a.first];
-      const Nearest nearest = nearestOfSegments(s.from, s.to, at.from, at.from + at.way);
-      const double own_m = b.radius_m + reach_m_;
-      if ((nearest.p - nearest.q).squaredNorm() > own_m * own_m) return;
-    }
+    if (!spheresComeNear(a, at) || areParallel(a, b) || !linesComeNear(a, at)) return;
     if (a.is_leaf != 0 && b.is_leaf != 0) {
       const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
-      if (arePossiblyNear(s0, s1) && mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
+      if (mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
       for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], at, found);
     } else {
@@ -208,20 +222,24 @@ class EdgePairSearch {
     }
   }
 
+  [[nodiscard]] bool spheresComeNear(const Node& a, const Placed& at) const {
+    const Vec3 off = a.center - at.center;
+    const double share = at.way2_m2 > 0 ? std::clamp(off.dot(at.way) / at.way2_m2, 0.0, 1.0) : 0;
+    const double near_m = a.radius_m + at.node.radius_m + reach_m_;
+    return (off - share * at.way).squaredNorm() <= near_m * near_m;
+  }
+  // The sphere of a long segment, or of an arc, contains much space that is far from it.
+  [[nodiscard]] static bool linesComeNear(const Node& a, const Placed& at) {
+    const double near_m = a.width_m + at.reach_m;
+    const Nearest nearest = nearestOfSegments(a.from, a.to, at.from, at.to);
+    return (nearest.p - nearest.q).squaredNorm() <= near_m * near_m;
+  }
+
   // True if no two of the nodes' segments are far enough from parallel at any pose of the tube: as for two
   // segments in mayCross(), since the sine of a sum is at most the sine of one angle plus the others.
   [[nodiscard]] bool areParallel(const Node& a, const Node& b) const {
     const double least = kMinSine - turn_rad_ - a.spread_rad - b.spread_rad;
     return least > 0 && a.along.cross(from_01_.R * b.along).squaredNorm() <= least * least;
-  }
-
-  // Cheap: no place of a segment moves farther than its ends.
-  [[nodiscard]] bool arePossiblyNear(const EdgeSegment& s0, const EdgeSegment& s1) const {
-    const Vec3 from = from_01_ * s1.from, to = from_01_ * s1.to;
-    const double way_m =
-        std::sqrt(std::max((to_01_ * s1.from - from).squaredNorm(), (to_01_ * s1.to - to).squaredNorm()));
-    const Nearest nearest = nearestOfSegments(s0.from, s0.to, from, to);
-    return nearest.distance_m() <= reach_m_ + way_m;
   }
 
   // False if no pose of the tube turns the segments so that CrossingTest takes them for a crossing. A turn by
