@@ -181,8 +181,9 @@ class EdgePairSearch {
 
   template <typename Visit>
   void run(const Visit& found) const {
-    if (!edges0_.nodes_.empty() && !edges1_.nodes_.empty())
-      visit(edges0_.nodes_[0], place(edges1_.nodes_[0]), found);
+    if (edges0_.nodes_.empty() || edges1_.nodes_.empty()) return;
+    Placed root = place(edges1_.nodes_[0]);
+    visit(edges0_.nodes_[0], root, found);
   }
 
  private:
@@ -193,23 +194,21 @@ class EdgePairSearch {
     const Node& node;
     Vec3 center, way;  ///< of the sphere's centre
     double way2_m2;
-    Vec3 from, to;   ///< of the line, at the start
-    double reach_m;  ///< how far from it any place comes, and what counts as near
+    // Computed when first needed: most nodes are far away.
+    bool has_line = false;
+    Vec3 from, to;       ///< of the line, at the start
+    double reach_m = 0;  ///< how far from it any place comes, and what counts as near
   };
   [[nodiscard]] Placed place(const Node& b) const {
-    Placed at{b, from_01_ * b.center, {}, 0, from_01_ * b.from, from_01_ * b.to, 0};
+    Placed at{b, from_01_ * b.center, Vec3(), 0, false, Vec3(), Vec3(), 0};
     at.way = to_01_ * b.center - at.center;
     at.way2_m2 = at.way.squaredNorm();
-    // No place on a line moves farther than its ends.
-    const double way2_m2 =
-        std::max((to_01_ * b.from - at.from).squaredNorm(), (to_01_ * b.to - at.to).squaredNorm());
-    at.reach_m = std::sqrt(way2_m2) + b.width_m * (1 + turn_rad_) + reach_m_;
     return at;
   }
 
   // Depth: both trees halve by count, so at most some 2 x 32 deep.
   template <typename Visit>
-  void visit(const Node& a, const Placed& at, const Visit& found) const {
+  void visit(const Node& a, Placed& at, const Visit& found) const {
     const Node& b = at.node;
     if (!spheresComeNear(a, at) || areParallel(a, b) || !linesComeNear(a, at)) return;
     if (a.is_leaf != 0 && b.is_leaf != 0) {
@@ -218,7 +217,10 @@ class EdgePairSearch {
     } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
       for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], at, found);
     } else {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(a, place(edges1_.nodes_[b.first + i]), found);
+      for (std::uint32_t i = 0; i < 2; ++i) {
+        Placed child = place(edges1_.nodes_[b.first + i]);
+        visit(a, child, found);
+      }
     }
   }
 
@@ -229,7 +231,17 @@ class EdgePairSearch {
     return (off - share * at.way).squaredNorm() <= near_m * near_m;
   }
   // The sphere of a long segment, or of an arc, contains much space that is far from it.
-  [[nodiscard]] static bool linesComeNear(const Node& a, const Placed& at) {
+  [[nodiscard]] bool linesComeNear(const Node& a, Placed& at) const {
+    const Node& b = at.node;
+    constexpr double kThin = 0.5;  // assumed; wider nodes are hardly ever told apart so
+    if (a.width_m + b.width_m + reach_m_ > kThin * (a.radius_m + b.radius_m + reach_m_)) return true;
+    if (!at.has_line) {
+      at.has_line = true;
+      at.from = at.center + from_01_.R * (b.from - b.center);
+      at.to = at.center + from_01_.R * (b.to - b.center);
+      // No place moves farther than the centre, and by the turn around it.
+      at.reach_m = std::sqrt(at.way2_m2) + turn_rad_ * b.radius_m + b.width_m + reach_m_;
+    }
     const double near_m = a.width_m + at.reach_m;
     const Nearest nearest = nearestOfSegments(a.from, a.to, at.from, at.to);
     return (nearest.p - nearest.q).squaredNorm() <= near_m * near_m;
