@@ -482,6 +482,30 @@ TEST(CheckWays, AClearanceThatIsLessThanPlannedIsNamed) {
   EXPECT_EQ(faults.front().planned_m, 3e-3);
 }
 
+// On its way of 45 degrees to the upper left the block's upper right edge, x = 10 and z = 25 mm, passes the
+// post's lower left one, which is 3 mm beside the way of that edge and halfway along it.
+TEST(CheckWays, TheLeastClearanceOfAStraightWayIsFoundBetweenItsEnds) {
+  const double sum_m = 35e-3 + 3e-3 * std::sqrt(2.0), difference_m = 75e-3;  // z + x and z - x of the edge
+  const Vec3 edge(0.5 * (sum_m - difference_m), 0, 0.5 * (sum_m + difference_m));
+  const std::vector<DrawnPart> parts = {
+      at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
+      at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
+      at("post", makeBox(Vec3(0.02, 0.1, 0.02)), edge + Vec3(0.01, 0, 0.01))};
+  PlanSettings settings;
+  settings.fixed = {"plate", "post"};
+  Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts, settings)).front();
+  ASSERT_EQ(scene.steps.size(), 1U);
+  SceneStep& step = scene.steps.front();
+  step.way_points.clear();
+  step.X_WP_start = step.X_WP_target;
+  step.X_WP_start.p += Vec3(-0.06, 0, 0.06);
+  const std::vector<WayFault> faults = checkWays(scene, {}, {{"block", 4e-3}});
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults.front().kind, WayFaultKind::Clearance);
+  EXPECT_EQ(faults.front().against, "post");
+  EXPECT_NEAR(faults.front().clearance_m, 3e-3, 3e-6);  // measured within a thousandth
+}
+
 TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
   const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
                                         at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};

@@ -34,7 +34,7 @@ void addSupports(const PlacedSurface& of, const PlacedSurface& other, double wit
   const auto add = [&](const Vec3& p_W) {
     if (!isWithin(p_W, near_W)) return;
     const Vec3 p = X_OW * p_W;
-    if (std::abs(solid.signedDistance(p)) > within_m) return;
+    if (std::abs(solid.signedDistance(p, h_m)) > within_m) return;  // no sign is sought where it is farther
     Vec3 n;
     for (int k = 0; k < 3; ++k)
       n[k] = (solid.signedDistance(p + h_m * Vec3::Unit(k)) - solid.signedDistance(p - h_m * Vec3::Unit(k))) /
