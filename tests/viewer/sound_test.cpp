@@ -19,6 +19,7 @@
 #include "sound/live_sound.h"
 #include "sound/part_voice.h"
 #include "support/temporary_folder.h"
+#include "vps_device/metronome.h"
 
 namespace vps::viewer {
 namespace {
@@ -360,6 +361,32 @@ TEST(LiveSound, ASoundFromTheRightIsLouderAtTheRightEar) {
   EXPECT_GT(left[0], 2 * left[1]);
   EXPECT_GT(ahead[0], 0);
   EXPECT_LT(std::abs(std::log(ahead[0] / ahead[1])), std::log(1.5));
+}
+
+TEST(LiveSound, WhatALateThreadBringsAtOnceDoesNotDelayWhatFollows) {
+  std::atomic<double> clicked_s{0};
+  std::string why;
+  const std::unique_ptr<SoundOutput> output = openSoundLoopback(
+      kRate_hz,
+      [&](std::span<const float> samples, double time_s) {
+        for (std::size_t i = 0; i < samples.size() && clicked_s == 0; ++i)
+          if (std::abs(samples[i]) > 0.01f) clicked_s = time_s + static_cast<double>(i) / kRate_hz;
+      },
+      why);
+  if (!output) GTEST_SKIP() << why;
+  const std::vector<float> late(kRate_hz / 4), click(kRate_hz / 100, 0.5f), silence(kRate_hz / 4);
+  output->write(late, late, -Vec3::UnitZ());
+  const double written_s = device::monotonicSeconds();
+  output->write(click, std::span(silence).first(click.size()), -Vec3::UnitZ());
+  for (int i = 0; i < 200 && clicked_s == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const std::span<const float> pause = std::span(silence).first(kRate_hz / 500);
+    output->write(pause, pause, -Vec3::UnitZ());
+  }
+  ASSERT_GT(clicked_s, 0.0) << "the click is heard";
+  // Six buffers of 2.5 ms wait at most, then the card has two periods of 5.3 ms; the rest is for a late
+  // thread of the card. A queue of 40 ms makes it 50.
+  EXPECT_LT(clicked_s - written_s, 0.035);
 }
 
 TEST(Wav, HoldsTheSamplesScaledToThreeDecibelsBelowFull) {

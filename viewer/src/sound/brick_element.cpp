@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sound/brick_element.h"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <cmath>
 
 namespace vps::viewer::inline v0 {
@@ -42,28 +42,84 @@ Vec3 cornerGradient(int corner, const Vec3& xi, const Vec3& size_m) {
   return g;
 }
 
+/// A brick's stiffness as it is summed over points.
+class BrickIntegral {
+ public:
+  BrickIntegral(const Vec3& size_m, const Elasticity& material)
+      : size_m_(size_m), C_(elasticityMatrix(material)) {}
+
+  void add(const Vec3& xi, double weight_m3) {
+    Corners B;
+    for (int i = 0; i < 8; ++i) B.middleCols<3>(3 * i) = strainOf(cornerGradient(i, xi, size_m_));
+    Inner G;  // of 1 - xi_k^2
+    for (int k = 0; k < 3; ++k)
+      G.middleCols<3>(3 * k) = strainOf(Vec3(Vec3::Unit(k) * (-2 * xi[k] * 2 / size_m_[k])));
+    const Corners CB = weight_m3 * C_ * B;
+    const Inner CG = weight_m3 * C_ * G;
+    K_uu_ += B.transpose() * CB;
+    K_ua_ += B.transpose() * CG;
+    K_aa_ += G.transpose() * CG;
+    B_sum_ += weight_m3 * B;
+    G_sum_ += weight_m3 * G;
+    volume_m3_ += weight_m3;
+  }
+  /// The inner displacements take the values of least energy. Their mean strain is taken from them, so that
+  /// they do no work on a constant stress, which makes constant strain exact in every shape (the patch test):
+  /// Simo and Rifai, Int. J. Numer. Methods Eng. 29, 1990. In a whole brick it is 0.
+  [[nodiscard]] BrickMatrix result() const {
+    const Corners B_mean = B_sum_ / volume_m3_;
+    const Inner G_mean = G_sum_ / volume_m3_;
+    const Eigen::Matrix<double, 24, 9> K_ua = K_ua_ - volume_m3_ * B_mean.transpose() * C_ * G_mean;
+    Matrix9 K_aa = K_aa_ - volume_m3_ * G_mean.transpose() * C_ * G_mean;
+    K_aa.diagonal().array() +=
+        kLeastInner * K_aa_.trace();  // in a filling that is flat some are without energy
+    const BrickMatrix K = K_uu_ - K_ua * K_aa.ldlt().solve(K_ua.transpose());
+    return 0.5 * (K + K.transpose());
+  }
+
+ private:
+  using Corners = Eigen::Matrix<double, 6, 24>;
+  using Inner = Eigen::Matrix<double, 6, 9>;
+  using Matrix9 = Eigen::Matrix<double, 9, 9>;
+  static constexpr double kLeastInner = 1e-9;
+
+  Vec3 size_m_;
+  Matrix6 C_;
+  BrickMatrix K_uu_ = BrickMatrix::Zero();
+  Eigen::Matrix<double, 24, 9> K_ua_ = Eigen::Matrix<double, 24, 9>::Zero();
+  Matrix9 K_aa_ = Matrix9::Zero();
+  Corners B_sum_ = Corners::Zero();
+  Inner G_sum_ = Inner::Zero();
+  double volume_m3_ = 0;
+};
+
 }  // namespace
 
 BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material) {
-  const Matrix6 C = elasticityMatrix(material);
-  const double weight_m3 = size_m.prod() / 8;  // of each of 2 x 2 x 2 Gauss points
-  BrickMatrix K = BrickMatrix::Zero();
-  Eigen::Matrix<double, 24, 9> K_ua = Eigen::Matrix<double, 24, 9>::Zero();
-  Eigen::Matrix<double, 9, 9> K_aa = Eigen::Matrix<double, 9, 9>::Zero();
-  for (int point = 0; point < 8; ++point) {
+  BrickIntegral integral(size_m, material);
+  for (int point = 0; point < 8; ++point) {  // 2 x 2 x 2 Gauss points
     Vec3 xi;
     for (int k = 0; k < 3; ++k) xi[k] = ((point >> k & 1) != 0 ? 1 : -1) / std::sqrt(3.0);
-    Eigen::Matrix<double, 6, 24> B;
-    for (int i = 0; i < 8; ++i) B.middleCols<3>(3 * i) = strainOf(cornerGradient(i, xi, size_m));
-    Eigen::Matrix<double, 6, 9> G;  // of 1 - xi_k^2
-    for (int k = 0; k < 3; ++k)
-      G.middleCols<3>(3 * k) = strainOf(Vec3(Vec3::Unit(k) * (-2 * xi[k] * 2 / size_m[k])));
-    K += weight_m3 * B.transpose() * C * B;
-    K_ua += weight_m3 * B.transpose() * C * G;
-    K_aa += weight_m3 * G.transpose() * C * G;
+    integral.add(xi, size_m.prod() / 8);
   }
-  K -= K_ua * K_aa.inverse() * K_ua.transpose();
-  return 0.5 * (K + K.transpose());
+  return integral.result();
+}
+
+BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling) {
+  BrickIntegral integral(size_m, material);
+  for (const Vec3& xi : filling.at) integral.add(xi, filling.share_volume * size_m.prod());
+  return integral.result();
+}
+
+std::array<double, 8> cornerShares(const BrickFilling& filling) {
+  std::array<double, 8> shares{};
+  for (const Vec3& xi : filling.at)
+    for (int i = 0; i < 8; ++i) {
+      double shape = 0.125;
+      for (int k = 0; k < 3; ++k) shape *= 1 + ((i >> k & 1) != 0 ? xi[k] : -xi[k]);
+      shares[i] += shape * filling.share_volume;
+    }
+  return shares;
 }
 
 }  // namespace vps::viewer::inline v0

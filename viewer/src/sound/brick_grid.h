@@ -14,7 +14,13 @@ namespace vps::viewer::inline v0 {
 struct Brick {
   std::array<int, 3> at{};       ///< column, row, layer
   std::array<int, 8> corners{};  ///< as in brickStiffness()
-  double fill = 0;               ///< share inside, 0.1 to 1
+  BrickFilling filling;          ///< no points: the whole brick
+
+  [[nodiscard]] bool isWhole() const { return filling.at.empty(); }
+  /// Share of its volume that is inside.
+  [[nodiscard]] double fill() const {
+    return isWhole() ? 1 : static_cast<double>(filling.at.size()) * filling.share_volume;
+  }
 };
 
 struct BrickGrid {

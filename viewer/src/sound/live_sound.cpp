@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "vps_device/metronome.h"
+#include "sound/lasting_output.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -26,9 +26,7 @@ float loudness(float pressure_Pa) {
 
 struct LiveSound::Impl {
   const scenes::Scene& scene;
-  std::unique_ptr<SoundOutput> output;  ///< null: gone
-  std::function<std::unique_ptr<SoundOutput>()> open;
-  double wait_s, next_s = 0;  ///< to the next attempt; and when that is, by device::monotonicSeconds()
+  LastingOutput output;
   std::mutex mutex;
   std::condition_variable wake;
   std::vector<scenes::Snapshot> waiting;
@@ -41,9 +39,9 @@ struct LiveSound::Impl {
 
   Impl(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output,
        std::function<std::unique_ptr<SoundOutput>()> open, double wait_s)
-      : scene(scene), output(std::move(output)), open(std::move(open)), wait_s(wait_s), thread([this] {
-          work();
-        }) {}
+      : scene(scene),
+        output(std::move(output), std::move(open), wait_s, [this](const std::string& words) { tell(words); }),
+        thread([this] { work(); }) {}
 
   bool isEnding() {
     const std::lock_guard lock(mutex);
@@ -80,21 +78,7 @@ struct LiveSound::Impl {
   void play(RunSound::Samples heard, const Vec3& to_L) {
     for (float& x : heard.pressure_Pa) x = loudness(x);
     for (float& x : heard.beeps) x = std::clamp(kLiveBeepLevel * x, -1.0f, 1.0f);
-    if (!output && !reopen()) return;
-    output->write(heard.pressure_Pa, heard.beeps, to_L);
-    if (output->isThere()) return;
-    tell("the sound card is gone; the run goes on in silence");
-    if (!open) return;
-    output.reset();  // first, since a card is opened once
-    next_s = device::monotonicSeconds() + wait_s;
-  }
-  bool reopen() {
-    const double now_s = device::monotonicSeconds();
-    if (now_s < next_s) return false;
-    next_s = now_s + wait_s;
-    output = open();
-    if (output) tell("the sound card is back");
-    return output != nullptr;
+    output.write(heard.pressure_Pa, heard.beeps, to_L);
   }
   void tell(const std::string& words) {
     const std::lock_guard lock(mutex);

@@ -9,9 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "sound/live_sound.h"
+#include "sound/lasting_output.h"
 #include "vps/load_error.h"
-#include "vps_device/metronome.h"
 #include "vps_scenes/verdict.h"
 #include "window/blow_sounds.h"
 
@@ -29,7 +28,9 @@ constexpr double kReopen_s = 2;  // between attempts to open a card that is gone
 /// even pace, also while the window draws a slow picture.
 struct FollowedSession::Sound {
   Sound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> card)
-      : output(std::move(card)), blows(scene), thread([this] { run(); }) {}
+      : output(std::move(card), &Sound::open, kReopen_s, [this](const std::string& words) { tell(words); }),
+        blows(scene),
+        thread([this] { run(); }) {}
   ~Sound() {
     is_over = true;
     thread.join();
@@ -52,6 +53,7 @@ struct FollowedSession::Sound {
     constexpr std::size_t kPeriod = BlowSound::kRate_hz / 100;  // samples of kSoundPeriod
     std::vector<float> ahead, silence(kPeriod);
     Vec3 to_L = -Vec3::UnitZ();
+    bool was_open = true;
     for (auto next = std::chrono::steady_clock::now(); !is_over; next += kSoundPeriod) {
       {
         const std::lock_guard lock(mutex);
@@ -64,37 +66,24 @@ struct FollowedSession::Sound {
       }
       ahead.resize(std::max(ahead.size(), kPeriod));
       for (float& x : ahead) x = std::clamp(x, -1.0f, 1.0f);
-      if (!output && reopen()) next = std::chrono::steady_clock::now();  // nothing to catch up with
-      play(std::span(ahead).first(kPeriod), silence, to_L);
+      if (!std::exchange(was_open, output.isOpen()))
+        next = std::chrono::steady_clock::now();  // nothing to catch up with
+      output.write(std::span(ahead).first(kPeriod), silence, to_L);
       ahead.erase(ahead.begin(), ahead.begin() + kPeriod);
       std::this_thread::sleep_until(next + kSoundPeriod);
     }
   }
 
-  void play(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) {
-    if (!output) return;
-    output->write(parts, beeps, to_L);
-    if (output->isThere()) return;
-    tell("the sound card is gone; the session goes on in silence");
-    output.reset();  // first, since a card is opened once
-    next_s = device::monotonicSeconds() + kReopen_s;
-  }
-  bool reopen() {
-    const double now_s = device::monotonicSeconds();
-    if (now_s < next_s) return false;
-    next_s = now_s + kReopen_s;
+  static std::unique_ptr<SoundOutput> open() {
     std::string still_silent;
-    output = openSoundOutput(BlowSound::kRate_hz, still_silent);
-    if (output) tell("the sound card is back");
-    return output != nullptr;
+    return openSoundOutput(BlowSound::kRate_hz, still_silent);
   }
   void tell(const std::string& words) {
     const std::lock_guard lock(mutex);
     if (words != told) news = told = words;
   }
 
-  std::unique_ptr<SoundOutput> output;  ///< null: gone
-  double next_s = 0;                    ///< of the next attempt, by device::monotonicSeconds()
+  LastingOutput output;
   std::mutex mutex;
   std::string news;  ///< empty: none
   std::string told;  ///< the last news

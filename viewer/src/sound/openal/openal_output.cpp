@@ -5,7 +5,6 @@
 #include <AL/alext.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -22,17 +21,21 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr int kBuffers = 16;
-constexpr double kBuffer_s = 2.5e-3;  // so that at most 40 ms wait, and usually what was queued at the start
-constexpr std::size_t kAtStart =
-    4;  // buffers: a card's period of 5 ms, and as much for late threads. assumed
+constexpr double kBuffer_s = 2.5e-3;
+constexpr double kLate_s = 4e-3;     // by which a thread may be late. assumed
+constexpr int kCardPeriod = 256;     // samples, asked of a card. assumed: a desktop's is as short as that
+constexpr double kSlowCard_s = 0.1;  // no period is longer; what a driver says beyond is not believed
 
 /// A source that plays a queue of short buffers. The context is current in all its functions.
 class Queue {
  public:
-  explicit Queue(int rate_hz) : rate_hz_(rate_hz) {
+  /// @param period_s  of the card, which takes as much at once
+  Queue(int rate_hz, double period_s)
+      : rate_hz_(rate_hz),
+        at_start_(static_cast<std::size_t>(std::ceil((period_s + kLate_s) / kBuffer_s))),
+        buffers_(at_start_ + 1) {
     alGenSources(1, &source_);
-    alGenBuffers(kBuffers, buffers_.data());
+    alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
     free_.assign(buffers_.begin(), buffers_.end());
     // Directions from the listener; the loudness is in the samples.
     alSourcei(source_, AL_SOURCE_RELATIVE, AL_TRUE);
@@ -41,7 +44,7 @@ class Queue {
   ~Queue() {
     alSourceStop(source_);
     alDeleteSources(1, &source_);
-    alDeleteBuffers(kBuffers, buffers_.data());
+    alDeleteBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
   }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
@@ -58,7 +61,7 @@ class Queue {
     reclaim();
     // A source that stopped, since nothing came in time, begins again with a few buffers, or it would stop at
     // once; and what is queued on it before counts as played.
-    if (state != AL_PLAYING && pending_.size() < kAtStart * size) return;
+    if (state != AL_PLAYING && pending_.size() < at_start_ * size) return;
     std::size_t at = 0;
     for (; at + size <= pending_.size() && !free_.empty(); at += size) {
       const ALuint buffer = free_.back();
@@ -86,19 +89,22 @@ class Queue {
   }
 
   int rate_hz_;
+  std::size_t at_start_;  ///< buffers that are queued before it plays
   ALuint source_ = 0;
-  std::array<ALuint, kBuffers> buffers_{};
+  // One more than at the start: what waits is heard later by as long, and what a late thread brings at once
+  // would wait forever, since samples come as fast as they are played. What does not fit is dropped.
+  std::vector<ALuint> buffers_;
   std::vector<ALuint> free_;
   std::vector<std::int16_t> pending_;
 };
 
 class OpenAlOutput final : public SoundOutput {
  public:
-  OpenAlOutput(ALCdevice* device, ALCcontext* context, int rate_hz)
+  OpenAlOutput(ALCdevice* device, ALCcontext* context, int rate_hz, double period_s)
       : device_(device),
         context_(context),
-        parts_(std::make_unique<Queue>(rate_hz)),
-        beeps_(std::make_unique<Queue>(rate_hz)) {}
+        parts_(std::make_unique<Queue>(rate_hz, period_s)),
+        beeps_(std::make_unique<Queue>(rate_hz, period_s)) {}
   ~OpenAlOutput() override {
     alcMakeContextCurrent(context_);
     parts_.reset();
@@ -146,17 +152,15 @@ class LoopbackCard {
   LoopbackCard& operator=(const LoopbackCard&) = delete;
 
  private:
-  static constexpr int kPeriod = 256;  // samples. assumed: a desktop's card that is asked for little delay
-
   void play() {
-    const double period_s = static_cast<double>(kPeriod) / rate_hz_;
-    std::vector<float> stereo(std::size_t{2} * kPeriod), mono(kPeriod);
+    const double period_s = static_cast<double>(kCardPeriod) / rate_hz_;
+    std::vector<float> stereo(std::size_t{2} * kCardPeriod), mono(kCardPeriod);
     double due_s = device::monotonicSeconds();
     while (!is_ending_) {
       device::monotonicClock().sleepUntil(std::llround(1e9 * due_s));
       // A card whose period is not mixed in time stops and begins again.
       due_s = std::max(due_s, device::monotonicSeconds() - period_s);
-      render_(device_, stereo.data(), kPeriod);
+      render_(device_, stereo.data(), kCardPeriod);
       for (std::size_t i = 0; i < mono.size(); ++i) mono[i] = 0.5F * (stereo[2 * i] + stereo[2 * i + 1]);
       due_s += period_s;
       heard_(mono, due_s);  // while this period is mixed, the one before is played
@@ -175,7 +179,8 @@ class LoopbackCard {
 class LoopbackOutput final : public SoundOutput {
  public:
   LoopbackOutput(ALCdevice* device, ALCcontext* context, int rate_hz, HeardPeriod heard)
-      : output_(device, context, rate_hz), card_(device, rate_hz, std::move(heard)) {}
+      : output_(device, context, rate_hz, static_cast<double>(kCardPeriod) / rate_hz),
+        card_(device, rate_hz, std::move(heard)) {}
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
     output_.write(parts, beeps, to_L);
   }
@@ -224,12 +229,16 @@ std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why) {
     why = "no sound card answers, so the run is silent; vps assemble --sound writes a file";
     return nullptr;
   }
-  ALCcontext* context = contextOf(device, {});
+  // Without a wish a card is asked for periods of 20 ms.
+  ALCcontext* context = contextOf(device, {ALC_FREQUENCY, rate_hz, ALC_REFRESH, rate_hz / kCardPeriod});
   if (context == nullptr) {
     why = "the sound card refuses, so the run is silent; vps assemble --sound writes a file";
     return nullptr;
   }
-  return std::make_unique<OpenAlOutput>(device, context, rate_hz);
+  ALCint periods_per_s = 0;  // as the card has them, which need not be as asked
+  alcGetIntegerv(device, ALC_REFRESH, 1, &periods_per_s);
+  const double period_s = periods_per_s > 0 ? 1.0 / periods_per_s : kSlowCard_s;
+  return std::make_unique<OpenAlOutput>(device, context, rate_hz, std::min(period_s, kSlowCard_s));
 }
 
 std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard, std::string& why) {
