@@ -36,12 +36,13 @@ fs::path resolveLinks(fs::path path) {
   return path;
 }
 
-void writeDirectly(const std::string& file, std::string_view bytes) {
+/// @param named  the file for messages, where `file` is a temporary one
+void writeDirectly(const std::string& file, std::string_view bytes, const std::string& named) {
   errno = 0;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) failToWrite(file, std::strerror(errno));
+  if (!out) failToWrite(named, std::strerror(errno));
 }
 
 /// A link in a folder of results may lead to another file system, where a rename fails.
@@ -85,9 +86,12 @@ OutputFile::OutputFile(const std::string& file, const std::vector<std::string>& 
   if (!std::ofstream(partial_, std::ios::binary)) failToWrite(file, std::strerror(errno));
 }
 
+void OutputFile::stage(std::string_view bytes) {
+  if (!file_.empty()) writeDirectly(partial_, bytes, file_);
+}
+
 void OutputFile::write(std::string_view bytes) {
-  if (file_.empty()) return;
-  writeDirectly(partial_, bytes);
+  stage(bytes);
   commit();
 }
 
@@ -127,7 +131,7 @@ void OutputFolder::commit() {
     const fs::path to = fs::path(folder_) / file.lexically_relative(partial_);
     fs::create_directories(to.parent_path());
     if (isStream(to))
-      writeDirectly(to.string(), contentOf(file));
+      writeDirectly(to.string(), contentOf(file), to.string());
     else
       move(file, to);
   }

@@ -26,6 +26,8 @@ class OutputFile {
 
   /// The file to write before commit(): a temporary file in the same folder, or the device or pipe itself.
   [[nodiscard]] const std::string& partial() const { return partial_; }
+  /// Writes the whole content without committing it: a full disk is then found before any file is replaced.
+  void stage(std::string_view bytes);
   /// Writes the whole content and commits it.
   void write(std::string_view bytes);
   /// Moves the temporary file to its place. Throws LoadError.
