@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "check/iso_262.h"
+#include "plan/wire_like.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -54,7 +55,7 @@ bool isDrawnTwice(const PlacedSurface& a, const PlacedSurface& b) {
   return std::abs(of_a_m3 - of_b_m3) <= kSameVolume * std::abs(of_a_m3) && liesOn(a, b) && liesOn(b, a);
 }
 
-/// A spring, belt or seal: long beside its thickness, with much room within its box, and curved.
+/// A spring, belt or seal: a curved wire with much room within its box.
 bool isSlender(const PartSurface& part) {
   constexpr double kMostThick = 0.1, kMostFilled = 0.35, kMostFlat = 0.6;  // assumed
   if (!part.noInside().empty()) return false;
@@ -77,7 +78,7 @@ bool isSlender(const PartSurface& part) {
     });
     if (is_bent) curved_m2 += own_m2;
   }
-  return curved_m2 > (1 - kMostFlat) * all_m2;
+  return curved_m2 > (1 - kMostFlat) * all_m2 && isWireLike(part.mesh());
 }
 
 /// Two parts that overlap, with what can explain it.
