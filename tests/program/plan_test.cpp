@@ -270,6 +270,17 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
   EXPECT_NE(twice.find("is a part drawn twice?"), std::string::npos) << twice;
   EXPECT_NE(twice.find("'twin'"), std::string::npos) << twice;
 
+  const auto bar = [](const char* name, std::size_t axis) {
+    NamedBox box = {name, {25, 25, 25}, {35, 35, 35}};
+    box.min[axis] = 0;
+    box.max[axis] = 60;
+    return box;
+  };
+  const std::string frames =
+      wordsOf({{"plate", {0, 0, 20}, {60, 60, 30}}, bar("x", 0), bar("y", 1), bar("z", 2)}, 1);
+  EXPECT_NE(frames.find("each in a frame of its own"), std::string::npos) << frames;
+  EXPECT_EQ(large.find("each in a frame of its own"), std::string::npos) << large;
+
   const std::string floating = wordsOf({kPlate, {"block", {20, 20, 15}, {40, 40, 30}}}, 0);
   EXPECT_NE(floating.find("Nothing carries 'block'"), std::string::npos) << floating;
 }

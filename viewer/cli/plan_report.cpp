@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "table.h"
 
@@ -94,6 +95,31 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   return out;
 }
 
+std::size_t partCount(const scenes::PlannedAssembly& whole) {
+  std::size_t count = whole.fixed.size() + whole.blocked.size();
+  for (const scenes::PlannedStep& step : whole.steps) count += step.parts.size();
+  return count;
+}
+
+// Files of single parts are often drawn each in a frame of its own, so that all lie in one another.
+std::string framesText(const scenes::PlanResult& plan) {
+  constexpr std::size_t kFewest = 3;  // assumed: two that overlap are a drawn interference
+  std::set<std::string> clashing;
+  std::size_t clashes = 0;
+  for (const scenes::OverlapChoice& choice : plan.choices) {
+    if (choice.kind != scenes::OverlapKind::Clash) continue;
+    clashing.insert({choice.a, choice.b});
+    ++clashes;
+  }
+  const std::size_t count = clashing.size(), pairs = count * (count - 1) / 2;
+  if (count < kFewest || 2 * clashes < pairs || 2 * count < partCount(plan.assemblies.front())) return "";
+  return std::to_string(count) + " parts overlap one another, " + std::to_string(clashes) + " of " +
+         std::to_string(pairs) +
+         " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one file, "
+         "or "
+         "give each part its pose in a scene.\n";
+}
+
 }  // namespace
 
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners) {
@@ -117,6 +143,7 @@ std::string planTables(const scenes::PlanResult& plan) {
     out += (out.empty() ? "" : "\n") + assemblyTable(assembly);
   if (const std::string fasteners = fastenerText(plan.fasteners); !fasteners.empty()) out += "\n" + fasteners;
   if (!plan.choices.empty()) out += "\n";
+  out += framesText(plan);
   for (const scenes::OverlapChoice& choice : plan.choices) out += choice.words + ".\n";
   if (plan.cut_motions > 0)
     out +=
