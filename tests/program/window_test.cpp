@@ -50,10 +50,12 @@ class Window : public Program {
     if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
     if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool (Debian: xvfb, xdotool)";
     const std::string number = (folder_ / "display.txt").string();
+    // Without -noreset the server starts anew when its last client leaves, as xdotool does, and refuses a
+    // window that opens at that moment.
     // A number of this process alone: of two servers that share one, the first to end takes the other's
     // socket.
     xvfb_ = std::stoi(outputOf("Xvfb :" + std::to_string(1000 + getpid() % 30000) +
-                               " -displayfd 3 -screen 0 1400x900x24 3>'" + number +
+                               " -noreset -displayfd 3 -screen 0 1400x900x24 3>'" + number +
                                "' >/dev/null 2>&1 & echo $!"));
     ASSERT_TRUE(soon([&] { return slurp(number).find('\n') != std::string::npos; }));
     const std::string text = slurp(number);
