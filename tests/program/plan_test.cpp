@@ -115,6 +115,28 @@ TEST_F(Plan, ACadFileIsPlannedAndAssembledInOneGoAsItsSceneIs) {
   EXPECT_EQ(run("assemble once/plan/scene.toml --units mm --out other").status, 2);
 }
 
+TEST_F(Plan, NothingToAssembleIsSaid) {
+  write("plate.obj", objOf({kPlate}));
+  const Ran one = run("assemble plate.obj --units mm --out one");
+  EXPECT_EQ(one.status, 2);
+  EXPECT_NE(one.err.find("plate.obj: has one part, so there is nothing to assemble"), std::string::npos)
+      << one.err;
+  // A block in a closed box.
+  const auto wall = [](const char* name, std::array<double, 3> min, std::array<double, 3> max) {
+    return NamedBox{name, min, max};
+  };
+  write("closed.obj", objOf({wall("box", {0, 0, 0}, {30, 30, 5}),
+                             wall("box", {0, 0, 25}, {30, 30, 30}),
+                             wall("box", {0, 0, 5}, {5, 30, 25}),
+                             wall("box", {25, 0, 5}, {30, 30, 25}),
+                             wall("box", {5, 0, 5}, {25, 5, 25}),
+                             wall("box", {5, 25, 5}, {25, 30, 25}),
+                             {"block", {10, 10, 5}, {20, 20, 15}}}));
+  const Ran ran = run("assemble closed.obj --units mm --out none --no-pictures");
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("No part can be taken off"), std::string::npos) << ran.out << ran.err;
+}
+
 // As `vps import` takes them.
 TEST_F(Plan, SeveralCadFilesAreOneAssemblyForPlanAssembleAndCheck) {
   write("plate.obj", objOf({kPlate}));

@@ -171,6 +171,15 @@ int runCad(AssembleArguments given) {
   requireNotRead(given.json, plan.assembly);
   ProgressBar bar;
   const PlannedFolder planned = planInto(plan, bar);
+  if (planned.steps == 0 && planned.status == kGood)
+    throw LoadError(
+        given.scene.scene, "",
+        "has one part, so there is nothing to assemble; give the files of the other parts too, or "
+        "use `vps simulate`");
+  if (planned.steps == 0) {
+    std::printf("No part can be taken off, so nothing was run; the plan names what is in the way.\n");
+    return planned.status;
+  }
   given.plan = {};
   const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
   return statusOf(planned.status == kGood ? verdict : worseOf(verdict, scenes::Verdict::Blocked));

@@ -158,7 +158,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   // The planner has said already what nothing carries.
   const bool is_free = std::ranges::all_of(
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
-  PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, {}};
+  PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, plan.steps(), {}};
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
     folder.scene_files.push_back((std::filesystem::path(given.out) / sceneFileName(plan, i)).string());
   return folder;

@@ -26,7 +26,8 @@ void addPlanOptions(CLI::App& command, PlanArguments& given);
 
 /// What planInto() came to.
 struct PlannedFolder {
-  int status = 0;  ///< the program's exit status
+  int status = 0;         ///< the program's exit status
+  std::size_t steps = 0;  ///< of all assemblies
   /// Of the product, then of its subassemblies; each comes after the one that mounts it.
   std::vector<std::string> scene_files;
 };
