@@ -115,9 +115,8 @@ std::string framesText(const scenes::PlanResult& plan) {
   if (count < kFewest || 2 * clashes < pairs || 2 * count < partCount(plan.assemblies.front())) return "";
   return std::to_string(count) + " parts overlap one another, " + std::to_string(clashes) + " of " +
          std::to_string(pairs) +
-         " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one file, "
-         "or "
-         "give each part its pose in a scene.\n";
+         " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one "
+         "file, or give each part its pose in a scene.\n";
 }
 
 }  // namespace
