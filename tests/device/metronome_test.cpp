@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/fake_clock.h"
 
 namespace vps::device {
@@ -42,6 +44,39 @@ TEST(Metronome, AfterAMissedPeriodContinuesAtTheNextBoundaryWithoutBursts) {
   EXPECT_EQ(beat.periods, 1);
   clock.now += 1000;  // exactly up to the boundary is in time
   EXPECT_EQ(metronome.wait().due_ns, 7000);
+}
+
+// Late by up to 3500, of which each further beat of 200 makes up for 800.
+TEST(Metronome, LateBeatsFollowAtOnceUntilTheClockIsReached) {
+  FakeClock clock;
+  Metronome metronome(kPeriod_ns, clock, 20 * kPeriod_ns);
+  metronome.start();
+  metronome.wait();  // 1000
+  clock.now += 4500;
+  for (int i = 0; i < 5; ++i) {
+    const Beat beat = metronome.wait();
+    EXPECT_EQ(beat.due_ns, 2000 + i * kPeriod_ns);
+    EXPECT_EQ(beat.woke_ns, std::max(beat.due_ns, std::int64_t{5500} + i * 200)) << "not before it is due";
+    EXPECT_EQ(beat.periods, 1);
+    clock.now += 200;
+  }
+}
+
+TEST(Metronome, BeatsBeyondTheLimitAreMissedAndTheRestIsMadeUpFor) {
+  FakeClock clock;
+  Metronome metronome(kPeriod_ns, clock, 2 * kPeriod_ns);
+  metronome.start();
+  metronome.wait();  // 1000
+  clock.now += 7500;
+  Beat beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 7000) << "1500 late; the one before would be 2500 late";
+  EXPECT_EQ(beat.missed_before, 5);
+  EXPECT_EQ(beat.periods, 6);
+  beat = metronome.wait();
+  EXPECT_EQ(beat.due_ns, 8000);
+  EXPECT_EQ(beat.woke_ns, 8500);
+  EXPECT_EQ(beat.periods, 1);
+  EXPECT_EQ(metronome.wait().woke_ns, 9000) << "the clock is reached";
 }
 
 TEST(Metronome, ALateWakeUpIsReportedAndBoundariesAreKept) {

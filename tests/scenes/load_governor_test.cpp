@@ -12,7 +12,7 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kPeriod_s = 1e-3;
+constexpr double kPeriod_s = 1e-3, kMostLate_s = 0.02;
 
 /// Six levels below the scene's own, each at half the cost of the one above.
 LoadGovernor halving() {
@@ -24,13 +24,18 @@ struct Course {
   std::vector<int> levels;  ///< after each change
   std::vector<double> times_s;
 };
+/// Steps that are late follow at once, as those of PhysicsClock; up to 20 ms late.
 Course follow(LoadGovernor& governor, double seconds, const std::function<double(double)>& load,
               bool may_rise = true) {
   Course course;
+  double due_s = 0;
   for (double time_s = 0; time_s < seconds;) {
     const int before = governor.level();
     const double busy_s = load(time_s) * kPeriod_s * std::pow(0.5, before);
-    time_s += kPeriod_s * std::max(1.0, std::ceil(busy_s / kPeriod_s));
+    due_s += kPeriod_s;
+    time_s = std::max(time_s + busy_s, due_s);
+    if (time_s - due_s > kMostLate_s)
+      due_s += kPeriod_s * std::ceil((time_s - due_s - kMostLate_s) / kPeriod_s);
     if (governor.add(busy_s, kPeriod_s, may_rise) == before) continue;
     course.levels.push_back(governor.level());
     course.times_s.push_back(time_s);
@@ -53,24 +58,34 @@ TEST(LoadGovernor, OneLateStepInAWindowChangesNothingHoweverLate) {
   EXPECT_FALSE(governor.isOverloaded());
 }
 
-// One step of two periods in 100 loses 1 %; one in 10 loses 9 %.
-TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
-  for (const int every : {100, 10}) {
+// One step in ten takes nine periods, the others a twentieth: 0.945 on average. Or a fifth: 1.08.
+TEST(LoadGovernor, LateStepsThatAreMadeUpForChangeNothing) {
+  for (const double others : {0.05, 0.2}) {
     LoadGovernor governor = halving();
     int step = 0;
-    (void)follow(governor, 0.6, [&](double) { return ++step % every == 0 ? 1.5 : 0.1; });
-    EXPECT_EQ(governor.level(), every == 10 ? 1 : 0) << every;
+    (void)follow(governor, 2, [&](double) { return ++step % 10 == 0 ? 9.0 : others; });
+    EXPECT_EQ(governor.level(), others < 0.1 ? 0 : 1) << others;
+  }
+}
+
+// Steps of 1.04 periods lose 4 % of the time, of 1.1 periods 9 %.
+TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
+  for (const double load : {1.04, 1.1}) {
+    LoadGovernor governor = halving();
+    (void)follow(governor, 2, [&](double) { return load; });
+    EXPECT_EQ(governor.level(), load > 1.05 ? 1 : 0) << load;
   }
 }
 
 // 5 periods are 2.5, 1.25, 0.625 at levels 1, 2, 3. A window is 0.25 s, and its last step may end up to 5 ms
-// later.
+// later, besides the 20 ms that are made up for.
 TEST(LoadGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
   LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double) { return 5.0; });
   EXPECT_EQ(course.levels, (std::vector<int>{1, 2, 3}));
   for (std::size_t i = 0; i < course.times_s.size(); ++i)
-    EXPECT_NEAR(course.times_s[i], 0.25 * static_cast<double>(i + 1), 5e-3 * static_cast<double>(i + 1));
+    EXPECT_NEAR(course.times_s[i], 0.25 * static_cast<double>(i + 1),
+                kMostLate_s + 5e-3 * static_cast<double>(i + 1));
   EXPECT_EQ(governor.last().lost_s, 0);
   EXPECT_NEAR(governor.last().busy_s, 5e-3 / 8, 1e-12);
 }
@@ -83,13 +98,11 @@ TEST(LoadGovernor, ALoadThatNoLevelCanCarryEndsAtTheLastLevelAsOverloaded) {
 }
 
 // At half speed half of the time is lost. Where a fifth is lost that would be worse, where three fifths are
-// it is better. One step in four of two periods loses a fifth; each of two and a half periods takes three and
-// loses two thirds.
+// it is better. Steps of 1.25 periods lose a fifth, of 2.5 periods three fifths.
 TEST(LoadGovernor, TimeIsSlowedOnlyWhereMoreOfItIsLost) {
   for (const bool is_heavy : {false, true}) {
     LoadGovernor governor({2.0}, {}, {1, 0.5});
-    int step = 0;
-    (void)follow(governor, 3, [&](double) { return is_heavy ? 2.5 : ++step % 4 == 0 ? 1.5 : 0.1; });
+    (void)follow(governor, 3, [&](double) { return is_heavy ? 2.5 : 1.25; });
     EXPECT_EQ(governor.level(), is_heavy ? 1 : 0);
     EXPECT_TRUE(is_heavy || governor.isOverloaded()) << "the load must be above the limit";
   }

@@ -49,9 +49,9 @@ std::string describe(const scenes::AssembleResult& result) {
          std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
          us(timing.worst_us) + ", because of " + timing.worst_cause +
          "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
-         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; " +
-         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
-         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
+         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; begun late by p99 " +
+         us(timing.physics_late.p99_us) + "; " + std::to_string(timing.physics_missed) + " periods missed, " +
+         fixed(timing.behind_s, 2) + " s behind the clock\n" + describeLoadChanges(timing.load_changes);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Waits for periods of a fixed rate by an absolute clock, without drift or bursts, and counts missed periods.
+// Waits for periods of a fixed rate by an absolute clock, without drift, and counts missed periods.
 #pragma once
 
 #include <cstdint>
@@ -27,19 +27,22 @@ VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
 /// One period that was waited for.
 struct Beat {
   std::int64_t due_ns = 0;
-  std::int64_t woke_ns = 0;
+  std::int64_t woke_ns = 0;          ///< by how much it is late: woke_ns - due_ns
   std::int64_t periods = 1;          ///< since the last beat: 1 when none was missed
   std::int64_t missed_before = 0;    ///< of these, missed because the work of the last beat took too long
   std::int64_t missed_asleep = 0;    ///< and because the system woke the thread late
   bool has_clock_gone_back = false;  ///< the beats restart from now
 };
 
-/// Waits for one beat after the other. A beat that passes while work is still running is missed: the next is
-/// the first in the future, never several at once. Never throws, allocates or locks.
+/// Waits for one beat after the other. A beat that passes while work is still running is missed, and the next
+/// is the first in the future; or, with a limit above 0, it is late: it follows at once, so that work which
+/// is late now and then catches up. Never throws, allocates or locks.
 class VPS_DEVICE_API Metronome {
  public:
   /// @param period_ns  > 0
-  Metronome(std::int64_t period_ns, RealTimeClock& clock) noexcept : period_ns_(period_ns), clock_(&clock) {}
+  /// @param most_late_ns  beats that are later than this are missed; >= 0
+  Metronome(std::int64_t period_ns, RealTimeClock& clock, std::int64_t most_late_ns = 0) noexcept
+      : period_ns_(period_ns), most_late_ns_(most_late_ns), clock_(&clock) {}
 
   /// The next wait() returns a period from now.
   void start() noexcept;
@@ -48,7 +51,7 @@ class VPS_DEVICE_API Metronome {
   [[nodiscard]] std::int64_t period_ns() const noexcept { return period_ns_; }
 
  private:
-  std::int64_t period_ns_;
+  std::int64_t period_ns_, most_late_ns_;
   RealTimeClock* clock_;
   std::int64_t due_ns_ = 0, seen_ns_ = 0;
 };

@@ -161,6 +161,7 @@ struct RealTimeResult {
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;
+  TickTimes physics_late;            ///< from a physics step's due time to its begin
   std::uint64_t physics_missed = 0;  ///< periods of the scene's physics rate without a step of their own
   double behind_s = 0;               ///< by how much simulated time fell behind the clock while physics ran
   std::vector<LoadLevelChange> load_changes;  ///< in order of time

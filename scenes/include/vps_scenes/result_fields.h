@@ -170,6 +170,7 @@ inline constexpr auto kRealTimeHapticFields = std::make_tuple(
     field("warnings", &RealTimeResult::warnings, "what the system refused, with the remedy"));
 
 inline constexpr auto kRealTimePhysicsFields = std::make_tuple(
+    group("late_us", &RealTimeResult::physics_late, kPercentiles, "from a step's due time to its begin"),
     field("missed_periods", &RealTimeResult::physics_missed, "physics periods without a step of their own"),
     field("behind_s", &RealTimeResult::behind_s, "how far simulated time fell behind the clock"),
     list("load_changes", &RealTimeResult::load_changes, kLoadChangeFields));

@@ -11,6 +11,9 @@
 
 namespace vps::scenes::inline v0 {
 
+/// The percentiles of a histogram; neither mean nor processor time.
+TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t missed);
+
 /// Collects durations in histograms, which do not grow, however long a run takes. Not part of any result that
 /// must repeat.
 class TickClock {

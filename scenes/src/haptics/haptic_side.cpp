@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include "core/tick_times.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -17,16 +19,6 @@ constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a
 
 double microseconds(std::int64_t ns) {
   return 1e-3 * static_cast<double>(ns);
-}
-
-TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t missed) {
-  return {all.count,
-          missed,
-          microseconds(all.p50_ns),
-          microseconds(all.p99_ns),
-          microseconds(all.p999_ns),
-          microseconds(all.max_ns),
-          0};
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ class RealTimeDriver final : public ClockedDriver {
     result.has_priority = result.has_priority && has_priority_;
     result.physics_missed = clock_.missed();
     result.behind_s = clock_.behind_s();
+    result.physics_late = clock_.late();
     return result;
   }
   void passEvents(const std::function<void(const device::DeviceEvent&)>& to) override {

@@ -5,18 +5,26 @@
 #include <cmath>
 #include <utility>
 
+#include "simulation/physics_clock.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kMaxPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
-
-/// Periods from the beginning of a step to that of the next.
-double periodsOf(double busy_s, double period_s) {
-  return std::clamp(std::ceil(busy_s / period_s), 1.0, kMaxPeriods);
-}
+constexpr double kMostPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
 
 }  // namespace
+
+void LoadGovernor::Course::add(double busy_s, double period_s) noexcept {
+  behind_s = std::max(0.0, behind_s + std::min(busy_s, kMostPeriods * period_s) - period_s);
+  const double lost_periods = std::ceil((behind_s - mostLate_s(period_s)) / period_s);
+  elapsed_s += period_s;
+  if (!(lost_periods > 0)) return;
+  behind_s -= lost_periods * period_s;
+  elapsed_s += lost_periods * period_s;
+  lost_s += lost_periods * period_s;
+  ++late;
+}
 
 LoadGovernor::LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings,
                            std::vector<double> speeds)
@@ -29,21 +37,13 @@ LoadGovernor::LoadGovernor(std::vector<double> cost_ratios, const GovernorSettin
 
 int LoadGovernor::add(double busy_s, double period_s, bool may_rise) noexcept {
   if (!(busy_s > 0)) busy_s = 0;
-  const double periods = periodsOf(busy_s, period_s);
-  now_.elapsed_s += periods * period_s;
-  now_.lost_s += (periods - 1) * period_s;
-  now_.busy_s += busy_s;
-  now_.late += periods > 1;
-  ++now_.steps;
-  if (level_ > 0) {
-    const double above = periodsOf(cost_ratios_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
-    now_.elapsed_above_s += above * period_s;
-    now_.lost_above_s += (above - 1) * period_s;
-    now_.late_above += above > 1;
-  }
+  now_.add(busy_s, period_s);
+  if (level_ > 0) above_.add(cost_ratios_[static_cast<std::size_t>(level_ - 1)] * busy_s, period_s);
+  busy_s_ += busy_s;
+  ++steps_;
   // With steps of seconds, a window of window_s would hold too few to reach late_limit, and each would count
   // as a stall.
-  const bool is_whole = now_.elapsed_s >= settings_.window_s && now_.steps >= settings_.late_limit;
+  const bool is_whole = now_.elapsed_s >= settings_.window_s && steps_ >= settings_.late_limit;
   return is_whole ? decide(may_rise) : level_;
 }
 
@@ -58,10 +58,13 @@ bool LoadGovernor::isFasterBelow() const noexcept {
 }
 
 int LoadGovernor::decide(bool may_rise) noexcept {
-  last_ = {now_.elapsed_s, now_.lost_s, now_.busy_s / now_.steps, now_.late};
-  const bool is_calm = level_ > 0 && (now_.late_above < settings_.late_limit ||
-                                      now_.lost_above_s <= 0.5 * settings_.lost_limit * now_.elapsed_above_s);
-  now_ = {};
+  last_ = {now_.elapsed_s, now_.lost_s, busy_s_ / steps_, now_.late};
+  const bool is_calm = level_ > 0 && (above_.late < settings_.late_limit ||
+                                      above_.lost_s <= 0.5 * settings_.lost_limit * above_.elapsed_s);
+  now_.beginWindow();
+  above_.beginWindow();
+  busy_s_ = 0;
+  steps_ = 0;
   calm_ = is_calm ? std::min(calm_ + 1, settings_.most_calm_windows) : 0;
   if (isOverloaded() && level_ < lastLevel() && isFasterBelow()) {
     if (has_risen_) waitLonger();
@@ -85,6 +88,7 @@ void LoadGovernor::waitLonger() noexcept {
 
 void LoadGovernor::moveTo(int level) noexcept {
   level_ = level;
+  above_ = {};
   calm_ = 0;
 }
 

@@ -10,17 +10,17 @@ namespace vps::scenes::inline v0 {
 struct GovernorSettings {
   double window_s = 0.25;    ///< time that one decision is based on. assumed: the delay a person accepts
   double lost_limit = 0.05;  ///< share of a window's time that may be lost. assumed: the part is 5 % too slow
-  int late_limit = 5;        ///< fewer late steps in a window are a stall, which no level cures. assumed
-  int calm_windows = 8;      ///< calm windows before it goes up. assumed: 2 s, longer than a brief contact
+  int late_limit = 5;  ///< fewer steps that lose time in a window are a stall, which no level cures. assumed
+  int calm_windows = 8;         ///< calm windows before it goes up. assumed: 2 s, longer than a brief contact
   int most_calm_windows = 256;  ///< limit of that number, which doubles after each relapse. assumed: 64 s
 };
 
 /// Level 0 is the scene's own; each further level is cheaper. Not thread-safe. Allocates only in its
 /// constructor.
 ///
-/// A step that takes longer than its period loses the periods that begin meanwhile.
-/// - Down one level: after a window in which more than lost_limit was lost by at least late_limit late steps.
-/// A
+/// Steps that take longer than their period make those after them late, which then follow at once. Periods
+/// are lost where a step would begin later than mostLate_s() of physics_clock.h.
+/// - Down one level: after a window in which more than lost_limit was lost by at least late_limit steps. A
 ///   level that slows time down must lose less of it than is lost now: at half speed half of the time is
 ///   lost.
 /// - Up one level: after the required number of calm windows in a row. A window is calm when no more than
@@ -51,7 +51,7 @@ class LoadGovernor {
     double elapsed_s = 0;  ///< all periods that began in it
     double lost_s = 0;     ///< those of them without a step of their own
     double busy_s = 0;     ///< mean duration of a step
-    int late = 0;          ///< steps that took longer than their period
+    int late = 0;          ///< steps after which periods were lost
     [[nodiscard]] double lostShare() const noexcept { return elapsed_s > 0 ? lost_s / elapsed_s : 0; }
   };
   /// The last whole window.
@@ -60,10 +60,13 @@ class LoadGovernor {
   [[nodiscard]] bool isOverloaded() const noexcept;
 
  private:
-  struct Counts {
-    double elapsed_s = 0, lost_s = 0, busy_s = 0;
-    double elapsed_above_s = 0, lost_above_s = 0;  ///< as if each step had the cost of one level up
-    int steps = 0, late = 0, late_above = 0;
+  /// What a window would be at one cost of the steps.
+  struct Course {
+    double elapsed_s = 0, lost_s = 0;
+    int late = 0;
+    double behind_s = 0;  ///< by how much the next step is late; goes on from window to window
+    void add(double busy_s, double period_s) noexcept;
+    void beginWindow() noexcept { *this = {0, 0, 0, behind_s}; }
   };
   int decide(bool may_rise) noexcept;
   [[nodiscard]] bool isFasterBelow() const noexcept;
@@ -72,7 +75,9 @@ class LoadGovernor {
 
   std::vector<double> cost_ratios_, speeds_;
   GovernorSettings settings_;
-  Counts now_;
+  Course now_, above_;  ///< above_: as if each step had the cost of one level up
+  double busy_s_ = 0;
+  int steps_ = 0;
   Window last_;
   int level_ = 0;
   int calm_ = 0;            ///< calm windows in a row

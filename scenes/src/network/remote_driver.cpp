@@ -334,6 +334,7 @@ std::optional<RealTimeResult> RemoteDriver::realTime() {
   result.faults = times.faults;
   result.physics_missed = clock_.missed();
   result.behind_s = clock_.behind_s();
+  result.physics_late = clock_.late();
   if (interruptions_ > 0)
     result.warnings.push_back("the device was lost " + std::to_string(interruptions_) + " times");
   if (const std::string refused = end_.refusals(); !refused.empty())

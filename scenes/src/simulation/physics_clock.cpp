@@ -3,18 +3,22 @@
 
 #include <cmath>
 
+#include "core/tick_times.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
 
 constexpr int kPriority = 70;  // assumed: below the haptic loop's 80
 
+device::Metronome metronomeOf(double period_s) {
+  return {std::llround(1e9 * period_s), device::monotonicClock(), std::llround(1e9 * mostLate_s(period_s))};
+}
+
 }  // namespace
 
 PhysicsClock::PhysicsClock(double period_s)
-    : metronome_(std::llround(1e9 * period_s), device::monotonicClock()),
-      period_s_(period_s),
-      step_s_(period_s) {}
+    : metronome_(metronomeOf(period_s)), period_s_(period_s), step_s_(period_s) {}
 
 device::RealTimeReport PhysicsClock::start(bool locks_memory) {
   device::RealTimeReport report = device::requestRealTime(kPriority, locks_memory);
@@ -31,13 +35,18 @@ device::Beat PhysicsClock::wait() noexcept {
   const double passed_s = 1e-9 * static_cast<double>(beat.periods * metronome_.period_ns());
   missed_ += static_cast<std::uint64_t>(std::llround(passed_s / period_s_)) - 1;
   behind_s_ += passed_s - step_s_;
+  late_.add(beat.woke_ns - beat.due_ns);
   return beat;
 }
 
 void PhysicsClock::setLoadLevel(double step_s, double period_s) {
   step_s_ = step_s;
-  metronome_ = device::Metronome(std::llround(1e9 * period_s), device::monotonicClock());
+  metronome_ = metronomeOf(period_s);
   metronome_.start();
+}
+
+TickTimes PhysicsClock::late() const {
+  return timesOf(late_.summary(), missed_);
 }
 
 void PhysicsClock::stop() noexcept {
