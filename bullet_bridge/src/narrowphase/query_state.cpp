@@ -9,10 +9,10 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Points of a surface tile, eight by eight: where more points are near than smallQueryLimit(), there are more
+// Points of a surface tile, four by four: where more points are near than smallQueryLimit(), there are more
 // tiles than contacts. Tiles are larger where a shell would have more than sixteen of them for each contact.
-constexpr std::size_t kTilePoints = 64;
-constexpr double kTileSpacings = 12;  // the diagonal and a margin
+constexpr std::size_t kTilePoints = 16;
+constexpr double kTileSpacings = 6;  // the diagonal and a margin
 constexpr double kMaxTiles = 16;
 
 double tileSize_m(const PointShell& shell, const Settings& settings) {

@@ -18,12 +18,6 @@ constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::e
 constexpr std::size_t kMostGroups = 254;  // of a tile
 constexpr double kEdgeShare = 0.25;       // of a tile's size. assumed
 
-Box grownBy(const Box& box, const PointShell& shell, const ShellBlock& leaf) {
-  Box grown = box;
-  for (std::uint32_t id = leaf.first; id < leaf.first + leaf.count; ++id) grown.add(shell.points[id]);
-  return grown;
-}
-
 }  // namespace
 
 /// Sorts the points of a tile into groups: each joins the first that takes it.
@@ -78,18 +72,20 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
       group_of_leaf_(shell.leaf_blocks, kMixed) {
   if (!(tile_size_m > 0)) throw std::invalid_argument("RepresentativePoints: a tile's size must be positive");
   chosen_.reserve(2 * shell.size() + 2 * kMostGroups);  // a tile's may be there twice until sorted
-  for (std::size_t leaf = 0; leaf < shell.leaf_blocks;) {
+  // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of what is left are the
+  // same.
+  std::size_t leaf = 0;
+  for (std::size_t i = 0; i < shell.nodes.size();) {
+    const ShellNode& node = shell.nodes[i];
     const std::size_t first = leaf;
-    Box box = grownBy({}, shell, shell.blocks[leaf++]);
-    for (; leaf < shell.leaf_blocks; ++leaf) {
-      const Box grown = grownBy(box, shell, shell.blocks[leaf]);
-      if (grown.size().norm() > tile_size_m) break;
-      box = grown;
-    }
-    if (box.size().norm() <= tile_size_m)
+    if (2 * node.radius_m <= tile_size_m) {
+      while (leaf < shell.leaf_blocks && shell.blocks[leaf].first < node.first + node.count) ++leaf;
       addTile(first, leaf, tile_size_m, on_edge);
-    else
-      addLoose(first);
+      i = node.skip;
+    } else {
+      if (node.is_leaf) addLoose(leaf++);
+      ++i;
+    }
   }
 }
 
