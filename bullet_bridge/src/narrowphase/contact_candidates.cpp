@@ -124,9 +124,7 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   near.contacts.reserve(shell.size());
   QueryOptions options;
   options.cutoff_m = cutoff_m;
-  // Exact surfaces replace the normals of rigid contacts; until then a slope that the read has at hand will do.
-  const bool is_refined = refinesOnRounds(settings) && !theirs.surfaces.empty();
-  options.gradient = is_refined ? Gradient::Trilinear : settings.gradient;
+  options.gradient = settings.gradient;
   const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
   QueryMemory* memory = query.state ? &query.state->query : nullptr;
   const RepresentativePoints::Request leaders{options, aboutMap(query.step_W, X_MW), query.always,
