@@ -81,6 +81,7 @@ struct SideQuery {
   QueryState* state = nullptr;  ///< null: all near points, and nothing is stored
   Twist step_W;  ///< motion of the side's body relative to the other, about W's origin [rad, m]
   std::span<const std::uint32_t> always;  ///< ids, ascending: last step's contacts
+  double radius_m = 0;                    ///< of the smaller body
 };
 
 // Finding: each function appends to `out`.

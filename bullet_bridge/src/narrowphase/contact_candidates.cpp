@@ -132,7 +132,7 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   if (!query.state || !query.state->leading) {
     points_tested += queryContacts(*theirs.map, shell, X_MP, options, near, memory).points_tested;
     if (query.state && needsLeading(near.contacts.size(), shell, settings))
-      query.state->lead(shell, side.shape->edgePoints(), settings);
+      query.state->lead(shell, side.shape->edgePoints(), query.radius_m);
   }
   if (query.state && query.state->leading)
     points_tested += query.state->leading->find(*theirs.map, X_MP, leaders, near, memory).points_tested;

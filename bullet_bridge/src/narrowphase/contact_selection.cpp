@@ -67,7 +67,10 @@ SideQuery sideQueryOf(const PairView& pair, int i, PairState& state) {
   for (const Candidate& c : state.selection.contacts)  // ascending
     if (c.side == i && !c.isCrossing()) always.push_back(c.id);
   const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
-  return {&queryStateOf(pair, i, state), {way_s * state.motion.V.w, way_s * state.motion.V.v}, always};
+  return {&queryStateOf(pair, i, state),
+          {way_s * state.motion.V.w, way_s * state.motion.V.v},
+          always,
+          pair.radius_m()};
 }
 
 // In penalty contact the points of faces press along their own normals.

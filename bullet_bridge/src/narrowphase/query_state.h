@@ -19,7 +19,8 @@ struct QueryState {
   /// Two representative points of each group of neighbours with similar normals; for constraint contact, as
   /// soon as more points than smallQueryLimit() have been near. O(points) to make: most pairs never need it.
   std::optional<RepresentativePoints> leading;
-  void lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, const Settings& settings);
+  /// @param radius_m  of the pair's smaller body
+  void lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, double radius_m);
 };
 
 /// Up to this number of near points of one side, all of them are examined.
