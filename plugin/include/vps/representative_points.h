@@ -11,10 +11,10 @@
 
 namespace vps::inline v0 {
 
-/// Divides a shell into tiles: nodes of its hierarchy up to a given size, and in each tile the points into groups
-/// whose normals agree within 20 degrees. find() reports for each group the point that is nearest to the map
-/// now and the point that will be nearest after a given step. The change of the gap within a group is taken
-/// to first order: its inward normals are a linear function of position, fitted once.
+/// Divides a shell into tiles: nodes of its hierarchy up to a given size, and in each tile the points into
+/// groups whose normals agree within 20 degrees. find() reports for each group the point that is nearest to
+/// the map now and the point that will be nearest after a given step. The change of the gap within a group is
+/// taken to first order: its inward normals are a linear function of position, fitted once.
 ///
 /// find() reads the same points as queryContacts(), but computes normals for and reports only a few of each
 /// thousand: with 153,000 near points it takes a fifth of the time (plugin/README.md).
