@@ -44,7 +44,7 @@ class DeskClerkTest : public testing::Test {
   }
   void joinDevice(bool may_rearm = true) {
     run_.setDevice("arm", may_rearm, gains(800, 8), gains(1000, 10));
-    device_ = joinSession(session_, NodeRole::Device);
+    if (device_ == nullptr) device_ = joinSession(session_, NodeRole::Device);
   }
   static CouplingGains gains(double k_N_per_m, double k_Nm_per_rad) {
     CouplingGains gains;

@@ -180,7 +180,7 @@ DeskClerk::Answer DeskClerk::who() const {
   const int step = requests_.step();
   const std::size_t count = facts.parts.size();
   std::string words = "render: ";
-  if (facts.name.empty() || !facts.is_running) {
+  if (!facts.is_running) {
     words += "no run";
   } else {
     words += quoted(facts.name) + " (scene " + facts.hash + ")";
@@ -322,7 +322,7 @@ DeskClerk::Answer DeskClerk::begin(const std::string& bytes) {
     const std::string name = scene.name;
     gains_.reset();
     next_ = std::move(scene);
-    return {true, "this run ends, and " + quoted(name) + " begins", false};
+    return {true, (run_.facts().is_running ? "this run ends, and " : "") + quoted(name) + " begins", false};
   } catch (const std::exception& bad) {
     return {false, std::string("refused: ") + bad.what(), false};
   }
