@@ -11,9 +11,10 @@ namespace {
 // tiles than contacts.
 constexpr std::size_t kTilePoints = 16;
 constexpr double kTileSpacings = 6;  // the diagonal and a margin
-// Tiles of a dense shell are larger: twice the cells in which the most urgent candidate is kept afterwards.
-// Neither depends on how many points of the shell are left: contact must not change when it is cropped.
-constexpr double kTileShare = 1.0 / 8;  // of the smaller body's radius
+// Tiles of a dense shell are larger: three of the cells in which the most urgent candidate is kept
+// afterwards. Neither depends on how many points of the shell are left: contact must not change when it is
+// cropped.
+constexpr double kTileShare = 0.18;  // of the smaller body's radius
 
 }  // namespace
 
