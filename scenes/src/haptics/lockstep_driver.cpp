@@ -18,7 +18,9 @@ class LockstepDriver final : public HapticDriver {
         clock_(settings.period_s) {}
 
   void pause() override {}
-  void resume() override {}
+  void resume() override {
+    if (loop_.safety().fault != device::SafetyFault::None) loop_.rearm();
+  }
   [[nodiscard]] const device::LoopSettings& settings() const override { return loop_.settings(); }
   [[nodiscard]] bool isByClock() const override { return false; }
   std::uint64_t missed() override { return 0; }

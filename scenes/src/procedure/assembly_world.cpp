@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <utility>
+
+#include <Eigen/Eigenvalues>
 
 #include "core/parts_in_place.h"
 #include "procedure/loop_settings.h"
@@ -15,7 +19,11 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr double kSnapFade_s = 0.2;        ///< assumed: a force that comes, not a blow
+constexpr double kSnapFade_s = 0.2;  ///< assumed: a force that comes, not a blow
+/// Share of the coupling's greatest force that may be weight. A heavier part hangs on a hoist, which carries
+/// the rest: it is simulated with as little mass. Where a part goes, and whether it rests, depends on
+/// neither, as contact and friction are in proportion; a heavy one would swing on the coupling's spring.
+constexpr double kMostCarried = 0.5;
 constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper than this is refused
 
 /// A grip of this share, with the same limits.
@@ -29,6 +37,12 @@ CouplingGains scaled(CouplingGains gains, double share) {
 
 Twist scaled(const Twist& V, double factor) {
   return {factor * V.w, factor * V.v};
+}
+
+std::string newtons(double force_N) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f N", force_N);
+  return text;
 }
 
 LoadLimits loadLimits(const AssembleOptions& options) {
@@ -99,7 +113,14 @@ void AssemblyWorld::take(std::size_t index) {
   const Pose X_WP_start = startOf(step);
   state_.X_WP[step.part] = X_WP_start;
   requireFreeStart(step);
-  simulation_.addBody(step.part, X_WP_start);
+  const double g_m_s2 = scene_.gravity_W.norm();
+  const double most_kg = g_m_s2 > 0 ? kMostCarried * shedder_->gains().max_force_N / g_m_s2
+                                    : std::numeric_limits<double>::infinity();
+  const double own_kg = simulation_.addBody(step.part, X_WP_start, most_kg);
+  if (own_kg > most_kg && options_.warn)
+    options_.warn("'" + scene_.parts[step.part].part.name + "' weighs " + newtons(own_kg * g_m_s2) +
+                  ", and the hand carries " + newtons(most_kg * g_m_s2) +
+                  " of it; a hoist carries the rest, so that forces on the hand are those of a lighter part");
   state_.roles[step.part] = BodyRole::InHand;
   state_.moving = {step.part,
                    Pose::translation(simulation_.centreOfMass(step.part)),

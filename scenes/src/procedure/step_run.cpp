@@ -141,6 +141,7 @@ bool isHeldAfter(const SceneStep& step, const StepResult& result) {
 struct Brought {
   Pose X_WP;
   bool is_given_up = false;
+  bool is_faulted = false;  ///< the device had failed, so that no hand held it
 };
 
 /// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
@@ -174,7 +175,8 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
     if (!clutch.index(regrasp)) return std::nullopt;
     trace.logPhase(world);
   }
-  const Brought brought{world.movingPose(), driver.phase() == device::OperatorPhase::Failed};
+  const Brought brought{world.movingPose(), driver.phase() == device::OperatorPhase::Failed,
+                        driver.last().status == Status::Fault};
   if (brought.is_given_up) noteContact(world, step, result);
   if (!clutch.comeFree(press)) return brought;
   if (isHeldAfter(step, result)) return brought;  // what holds it has it before the hand lets go
@@ -204,6 +206,13 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
     if (left > steps / 2) X_WP_middle = X_WP;
     result.late_drift_m = std::max(result.late_drift_m, greatestDisplacement(box_P, X_WP_middle, X_WP));
   }
+}
+
+/// A part that falls into its place while the device exerts no force was not brought there.
+void refuseFaulted(StepResult& result) {
+  result.completed = result.by_contact = false;
+  result.failure_reason = "the device failed on the way, so that no hand held the part" +
+                          (result.failure_reason.empty() ? std::string() : ": " + result.failure_reason);
 }
 
 std::vector<StrategyUse> strategiesOf(std::span<const TraceRow> rows) {
@@ -250,6 +259,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
   const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();
   judgeCompletion(world, step, X_WP_end, brought ? brought->X_WP : X_WP_end, result);
+  if (brought && brought->is_faulted) refuseFaulted(result);
   if (!result.completed || !isFreeToTarget(world, step, X_WP_end, result.penetration_limit_m))
     result.aligned_by.clear();
   settleStep(world, trace.takeSamples(), result);

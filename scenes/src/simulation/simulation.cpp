@@ -197,7 +197,7 @@ bool Simulation::hasFixed() const {
   return world_->field.shape != nullptr;
 }
 
-void Simulation::addBody(std::size_t part, const Pose& X_WP) {
+double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   World& w = *world_;
   w.remove(part);
   const ScenePart& scene_part = w.scene.parts[part];
@@ -210,7 +210,10 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
         scene_part.file, scene_part.part.name,
         "its volume is not positive, so it has no mass: the mesh is open or inside out; repair it, or mark "
         "the part as fixed");
-  added.frame = bullet::makeBodyFrame(mass, scene_part.part.material.density_kg_m3);
+  const double density_kg_m3 = scene_part.part.material.density_kg_m3;
+  const double own_kg = density_kg_m3 * mass.volume_m3;
+  added.frame =
+      bullet::makeBodyFrame(mass, own_kg > most_kg ? density_kg_m3 * (most_kg / own_kg) : density_kg_m3);
   added.shape =
       std::make_unique<bullet::Shape>(bullet::makeModels(*w.modelOf(part)), added.frame.X_PB.inverse());
   added.body = std::make_unique<btRigidBody>(
@@ -222,6 +225,7 @@ void Simulation::addBody(std::size_t part, const Pose& X_WP) {
   w.setMaterial(*added.body, part);
   w.world.addRigidBody(added.body.get());
   w.bodies.emplace(part, std::move(added));
+  return own_kg;
 }
 
 void Simulation::removeBody(std::size_t part) {

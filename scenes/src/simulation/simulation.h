@@ -2,6 +2,7 @@
 // The Bullet world of a scene: one cooked fixed body, dynamic parts, and the coupling to the device's proxy.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -56,7 +57,12 @@ class Simulation {
 
   /// Adds a part as a dynamic body at rest, without sleeping and damping. Throws LoadError for a mass that is
   /// not positive.
-  void addBody(std::size_t part, const Pose& X_WP);
+  /// @param most_kg  a heavier part becomes a body of this mass, with its inertia in proportion, as if it
+  /// were
+  ///                 less dense
+  /// @return the part's own mass [kg]
+  double addBody(std::size_t part, const Pose& X_WP,
+                 double most_kg = std::numeric_limits<double>::infinity());
   void removeBody(std::size_t part);
   /// From now on the body stays where it is, whatever touches it.
   void hold(std::size_t part);
