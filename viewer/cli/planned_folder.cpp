@@ -142,7 +142,15 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   const scenes::PlanResult plan = planned(given, scene, settings, bar);
   std::vector<std::string> read = given.assembly;
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);
-  writeScenes(given, plannedScenes(scene, plan), plan, read, out);
+  std::vector<scenes::Scene> planned_scenes = plannedScenes(scene, plan);
+  for (scenes::Scene& one : planned_scenes) {
+    bar.progress()("choosing voxels", 1);
+    const std::string words = fitFidelity(one);
+    if (words.empty()) continue;
+    bar.clear();
+    say(one.name + ": " + words);
+  }
+  writeScenes(given, planned_scenes, plan, read, out);
   const std::vector<scenes::WayFault> faults = faultsOf(plan, out, bar.progress());
   throwIfStopped();
   out.write("plan.dot", planDot(plan));

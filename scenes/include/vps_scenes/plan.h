@@ -180,6 +180,14 @@ VPS_SCENES_API Scene sceneOf(const ImportedCad& cad);
 /// parts of a subassembly are one part of the scene that mounts it.
 VPS_SCENES_API std::vector<Scene> plannedScenes(const Scene& scene, const PlanResult& plan);
 
+/// Models of a planned scene take no more than this, where larger voxels can help [bytes].
+inline constexpr double kMostModels_bytes = 1e9;
+/// Sets voxel and spacing of a planned scene that has those of the preset `normal`: smaller ones where a part
+/// that is moved is less than eight voxels across, larger ones where the models would take too much memory
+/// (estimated from areas and edges). Depends on the scene alone.
+/// @return what was chosen and why, in words; empty: the preset serves
+VPS_SCENES_API std::string fitFidelity(Scene& scene, double most_bytes = kMostModels_bytes);
+
 enum class WayFaultKind {
   Through,    ///< its way leads through a part in place
   Order,      ///< the same, and that part would pass if it were mounted later

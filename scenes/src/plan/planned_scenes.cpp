@@ -40,7 +40,9 @@ class SceneMaker {
     for (const OverlapChoice& choice : plan.choices) {
       if (!choice.changed.empty()) changes_[choice.changed].push_back(&choice);
       if (!choice.left_out.empty()) left_out_.insert(choice.left_out);
+      if (choice.kind == OverlapKind::Clash) clashes_.insert(std::minmax(choice.a, choice.b));
     }
+    std::erase_if(clashes_, [&](const auto& pair) { return depthOf(pair) < kDrawnThrough_m; });
   }
 
   Scene make(const PlannedAssembly& assembly) const {
@@ -52,10 +54,16 @@ class SceneMaker {
       out.parts.push_back(partNamed(name));
       out.parts.back().is_fixed = true;
     }
+    std::set<std::string> in_place(assembly.fixed.begin(), assembly.fixed.end());
     for (const PlannedStep& step : assembly.steps) {
       out.parts.push_back(step.parts.size() == 1 ? partNamed(step.name) : united(step));
       out.parts.back().is_fixed = false;
       out.steps.push_back(stepOf(step, out.parts.size() - 1, out.parts.back().X_WP));
+      if (isDrawnThrough(step, in_place)) {
+        out.steps.back().timeout_s = kProven_s;
+        out.steps.back().is_held = true;  // nor need it fall for long
+      }
+      in_place.insert(step.parts.begin(), step.parts.end());
     }
     if (&assembly == &plan_.assemblies.front())
       for (const ScenePart& part : scene_.parts) {
@@ -68,6 +76,29 @@ class SceneMaker {
   }
 
  private:
+  using Pair = std::pair<std::string, std::string>;
+  /// assumed: parts that are drawn this deep in each other are blocked whatever the hand does, and a person
+  /// looks at the drawing, not at where the hand got stuck
+  static constexpr double kDrawnThrough_m = 1e-3;
+  static constexpr double kProven_s = 0.5;  ///< the hand's time for a step that is proven to be blocked
+
+  [[nodiscard]] double depthOf(const Pair& pair) const {
+    double depth_m = 0;
+    for (const CheckedPair& drawn : plan_.overlaps)
+      if (Pair(std::minmax(drawn.a, drawn.b)) == pair)
+        depth_m = std::max(depth_m, drawn.interference_depth_m);
+    return depth_m;
+  }
+  [[nodiscard]] bool isDrawnThrough(const PlannedStep& step, const std::set<std::string>& in_place) const {
+    return std::ranges::any_of(clashes_, [&](const Pair& pair) {
+      const auto moves = [&](const std::string& name) {
+        return std::ranges::find(step.parts, name) != step.parts.end();
+      };
+      return (moves(pair.first) && in_place.contains(pair.second)) ||
+             (moves(pair.second) && in_place.contains(pair.first));
+    });
+  }
+
   /// Where it belongs.
   [[nodiscard]] ScenePart partNamed(const std::string& name) const {
     const std::size_t i = index_.at(name);
@@ -134,6 +165,7 @@ class SceneMaker {
   std::map<std::string, std::string> fasteners_;
   std::map<std::string, std::vector<const OverlapChoice*>> changes_;  ///< by part
   std::set<std::string> left_out_;
+  std::set<Pair> clashes_;  ///< drawn through each other
 };
 
 }  // namespace
