@@ -303,6 +303,21 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
   EXPECT_NE(frames.find("each in a frame of its own"), std::string::npos) << frames;
   EXPECT_EQ(large.find("each in a frame of its own"), std::string::npos) << large;
 
+  // Boxes in a row, each a little way into the next one.
+  const auto row = [](double into_mm) {
+    std::vector<NamedBox> boxes = {{"plate", {0, 0, -30}, {60, 60, -20}}};
+    for (int i = 0; i < 6; ++i)
+      boxes.push_back({"box" + std::to_string(i), {10.0 * i, 0, 0}, {10.0 * i + 10 + into_mm, 10, 10}});
+    return boxes;
+  };
+  const std::string through = wordsOf(row(2), 0);
+  EXPECT_NE(through.find("6 parts hang together by overlaps of up to 2.000 mm"), std::string::npos)
+      << through;
+  // As panels of a box are that are to be glued.
+  const std::string glued = wordsOf(row(0.19), 0);
+  EXPECT_EQ(glued.find("hang together"), std::string::npos) << glued;
+  EXPECT_EQ(glued.find("each in a frame of its own"), std::string::npos) << glued;
+
   const std::string floating = wordsOf({kPlate, {"block", {20, 20, 15}, {40, 40, 30}}}, 0);
   EXPECT_NE(floating.find("Nothing carries 'block'"), std::string::npos) << floating;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "table.h"
@@ -101,22 +102,66 @@ std::size_t partCount(const scenes::PlannedAssembly& whole) {
   return count;
 }
 
-// Files of single parts are often drawn each in a frame of its own, so that all lie in one another.
+double depthOf(const scenes::PlanResult& plan, const scenes::OverlapChoice& choice) {
+  const auto pair = std::ranges::find_if(
+      plan.overlaps, [&](const scenes::CheckedPair& one) { return one.a == choice.a && one.b == choice.b; });
+  return pair == plan.overlaps.end() ? 0 : pair->interference_depth_m;
+}
+
+/// Parts that are drawn so deep in each other that no fit can be meant.
+class DrawnThrough {
+ public:
+  explicit DrawnThrough(const scenes::PlanResult& plan) {
+    constexpr double kLeast_m = 0.5e-3;  // assumed: what is to be pressed or glued overlaps by less
+    for (const scenes::OverlapChoice& choice : plan.choices) {
+      const double depth_m = depthOf(plan, choice);
+      if (choice.kind != scenes::OverlapKind::Clash || depth_m < kLeast_m) continue;
+      ++clashes_;
+      most_m_ = std::max(most_m_, depth_m);
+      join(choice.a, choice.b);
+    }
+  }
+  [[nodiscard]] std::size_t parts() const { return set_of_.size(); }
+  [[nodiscard]] std::size_t clashes() const { return clashes_; }
+  [[nodiscard]] double most_m() const { return most_m_; }
+  /// Parts of the largest set that hangs together by such overlaps.
+  [[nodiscard]] std::size_t largest() const {
+    std::map<std::size_t, std::size_t> sizes;
+    std::size_t most = 0;
+    for (const auto& [name, set] : set_of_) most = std::max(most, ++sizes[set]);
+    return most;
+  }
+
+ private:
+  void join(const std::string& a, const std::string& b) {
+    const std::size_t to = set_of_.try_emplace(a, set_of_.size()).first->second;
+    const std::size_t from = set_of_.try_emplace(b, set_of_.size()).first->second;
+    for (auto& [name, set] : set_of_)
+      if (set == from) set = to;
+  }
+
+  std::map<std::string, std::size_t> set_of_;
+  std::size_t clashes_ = 0;
+  double most_m_ = 0;
+};
+
+// Files of single parts are often drawn each in a frame of its own, so that all lie in one another. Models
+// that are made for pictures have bodies of several shapes that run into one another.
 std::string framesText(const scenes::PlanResult& plan) {
   constexpr std::size_t kFewest = 3;  // assumed: two that overlap are a drawn interference
-  std::set<std::string> clashing;
-  std::size_t clashes = 0;
-  for (const scenes::OverlapChoice& choice : plan.choices) {
-    if (choice.kind != scenes::OverlapKind::Clash) continue;
-    clashing.insert({choice.a, choice.b});
-    ++clashes;
-  }
-  const std::size_t count = clashing.size(), pairs = count * (count - 1) / 2;
-  if (count < kFewest || 2 * clashes < pairs || 2 * count < partCount(plan.assemblies.front())) return "";
-  return std::to_string(count) + " parts overlap one another, " + std::to_string(clashes) + " of " +
-         std::to_string(pairs) +
-         " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one "
-         "file, or give each part its pose in a scene.\n";
+  const DrawnThrough drawn(plan);
+  const std::size_t count = drawn.parts(), pairs = count * (count - 1) / 2;
+  if (count < kFewest || 2 * count < partCount(plan.assemblies.front())) return "";
+  if (2 * drawn.clashes() >= pairs)
+    return std::to_string(count) + " parts overlap one another, " + std::to_string(drawn.clashes()) + " of " +
+           std::to_string(pairs) +
+           " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one "
+           "file, or give each part its pose in a scene.\n";
+  if (drawn.largest() < kFewest) return "";
+  return std::to_string(drawn.largest()) + " parts hang together by overlaps of up to " +
+         fixed(1e3 * drawn.most_m(), 3) +
+         " mm: it seems that bodies are drawn as several shapes that run into one another, as for pictures. "
+         "Make one body of those that belong together, by --group 'NAME*' or [[group]] in a scene.\n";
 }
 
 }  // namespace
