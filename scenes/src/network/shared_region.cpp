@@ -25,6 +25,7 @@ constexpr mode_t kMode = 0600;
 constexpr const char* kFolder = "/dev/shm";  // where Linux shows the names; elsewhere nothing is swept
 constexpr int kTries = 20;                   // another process may be sweeping: its lock is held for moments
 constexpr std::chrono::milliseconds kPause{10};
+constexpr off_t kWatchers = 1000;  // bytes from here on are watchers' marks
 
 std::string prefix() {
   return "/bullet-vps." + std::to_string(getuid()) + ".";
@@ -165,6 +166,24 @@ SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
 
 bool SharedRegion::take(NodeRole role) const {
   return lockByte(file_, role);
+}
+
+// A lock for reading on a byte that has the process's number: such locks exclude nobody.
+void SharedRegion::markWatcher() const {
+  struct flock lock = byteOf(NodeRole::Watch, F_RDLCK);
+  lock.l_start = kWatchers + getpid();
+  fcntl(file_, F_OFD_SETLK, &lock);
+}
+
+std::size_t SharedRegion::watchers() const {
+  std::size_t count = 0;
+  for (off_t from = kWatchers;; ++count) {
+    struct flock lock = byteOf(NodeRole::Watch, F_WRLCK);
+    lock.l_start = from;
+    lock.l_len = 0;  // to the end
+    if (fcntl(file_, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return count;
+    from = std::max(from, lock.l_start) + 1;
+  }
 }
 
 bool SharedRegion::isTaken(NodeRole role) const {

@@ -110,6 +110,8 @@ void AssemblyWorld::mountFixed() {
 void AssemblyWorld::take(std::size_t index) {
   const SceneStep& step = scene_.steps[index];
   state_.step = static_cast<int>(index);
+  state_.gives_up = false;
+  changeGains();
   const Pose X_WP_start = startOf(step);
   state_.X_WP[step.part] = X_WP_start;
   requireFreeStart(step);
@@ -137,6 +139,14 @@ void AssemblyWorld::take(std::size_t index) {
   driver_->handOver(X_WP_start * state_.moving.X_PG);
   state_.is_holding = true;
   if (options_.has_local_contact) startLocalContact();
+}
+
+void AssemblyWorld::changeGains() {
+  if (options_.requests == nullptr || log_ != nullptr) return;
+  const std::optional<CouplingGains> gains = options_.requests->takeGains();
+  if (!gains) return;
+  driver_->setGains(*gains);
+  shedder_->setOwnGains(*gains);
 }
 
 Penetration AssemblyWorld::overlapAt(const SceneStep& step, const Pose& X_WP) {

@@ -15,6 +15,8 @@ bool latencyRows(double seconds);
 bool runRows(const std::string& scene);
 /// The same with device and render in two network namespaces, joined by a wire without and with faults.
 bool wireRows(const std::string& scene);
+/// What the link carries, against wave variables and passivity controllers, in simulated time.
+bool linkRows();
 /// kill -9 of each node in turn.
 /// @param network  interface; empty: shared memory
 bool killRows(int kills, const std::string& network);

@@ -24,10 +24,14 @@ namespace vps::scenes::inline v0 {
 /// Words for the user. May be called by any thread of a node, one at a time.
 using Say = std::function<void(const std::string&)>;
 
+class SessionDesk;
+
+/// `requests` is the desk's, where there is one.
 struct RenderOptions : AssembleOptions {
   std::string session = "default";
   SessionNetwork network;
   Say say;                      ///< may be empty
+  SessionDesk* desk = nullptr;  ///< where others ask for something; null: they cannot
   double picture_rate_hz = 60;  ///< snapshots for the watchers, in simulated time
 };
 

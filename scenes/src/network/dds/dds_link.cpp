@@ -143,6 +143,13 @@ class DdsLink final : public Link {
              since_s(peer.heard_ns) < kAlive_s;
     });
   }
+  [[nodiscard]] std::size_t watchers() const override {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
+      const Peer& peer = entry.second;
+      return peer.role == NodeRole::Watch && peer.session == session_ && since_s(peer.heard_ns) < kAlive_s;
+    }));
+  }
   [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
   [[nodiscard]] bool hasEnded() const override {
     const std::lock_guard lock(mutex_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // In place of dds_link.cpp where Cyclone DDS is missing.
+#include "network/desk_channel.h"
 #include "network/link.h"
 #include "network/pointer_topic.h"
 #include "vps/load_error.h"
@@ -26,6 +27,13 @@ std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const Ses
 }
 
 std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+std::unique_ptr<DeskChannel> makeNetworkDesk(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+std::unique_ptr<AskChannel> findNetworkDesk(const std::string&, const SessionNetwork&) {
   refuseNetwork();
 }
 
