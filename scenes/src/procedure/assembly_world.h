@@ -25,6 +25,7 @@ struct StepPart {
   Pose X_WP_target;
   Box box_P;
   Vec3 weight_W = Vec3::Zero();
+  double hoist_N = 0;            ///< of its whole weight, what is not in weight_W
   double energy_at_grasp_J = 0;  ///< mechanical energy when it was taken
 };
 

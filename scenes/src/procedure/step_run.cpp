@@ -241,6 +241,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   RunRequests* requests = world.options().requests;
   if (requests != nullptr) requests->beginStep(static_cast<int>(index));
   world.take(index);
+  result.hoist_N = world.state().moving.hoist_N;
   trace.beginStep(world);
   trace.logEvent(world, device::RunEventKind::Take,
                  (step.takes_off ? "takes off '" : "takes '") + result.part + "'");
