@@ -43,8 +43,7 @@ double energy(const std::vector<float>& samples) {
 }
 
 BodyModes barModes() {
-  const Vec3 half_m(0.15, 6e-3, 4e-3);
-  return findModes({-half_m, half_m}, [](const Vec3&) { return true; }, 7850, {});
+  return findModes(makeBox({0.3, 12e-3, 8e-3}), [](const Vec3&) { return true; }, 7850, {});
 }
 
 TEST(PartVoice, AStruckBarSoundsAtTheFrequenciesOfItsModes) {

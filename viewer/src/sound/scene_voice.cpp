@@ -43,7 +43,7 @@ PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings
     const bool has_map = part.model && part.model->map && !part.is_cropped;
     std::optional<Solid> solid;
     if (!has_map) solid.emplace(part.part.mesh, part.part.name);
-    modes = findModes(bounds(part.part.mesh),
+    modes = findModes(part.part.mesh,
                       [&](const Vec3& p_P) {
                         return has_map ? part.model->map->isInsideCoarse(p_P) : solid->isInside(p_P);
                       },
