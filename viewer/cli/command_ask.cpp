@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps ask: asks the render node of a session for something.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
 #include "scene_arguments.h"
@@ -29,17 +32,37 @@ struct AskArguments {
   std::function<scenes::SessionAnswer(const scenes::SessionRequest&, const AskArguments&)> ask;
 };
 
+/// The answer's lines. Names in it are another program's, and control no terminal.
+std::string printable(std::string words) {
+  std::replace_if(
+      words.begin(), words.end(), [](unsigned char c) { return c != '\n' && (c < 0x20 || c == 0x7f); }, ' ');
+  return words;
+}
+
+/// Empty: none.
+std::string stiffnessFault(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const bool is_good = !text.empty() && *end == '\0' && std::isfinite(value) && value > 0;
+  return is_good ? std::string() : "'" + text + "' is no stiffness; give a number above 0";
+}
+
 int runAsk(const AskArguments& given) {
   OutputFile json(given.json, {given.scene});
   const scenes::SessionAnswer answer = given.ask(scenes::SessionRequest(given.session, given.network), given);
-  json.write(nlohmann::ordered_json({{"done", answer.is_done}, {"answer", answer.words}}).dump(2) + "\n");
+  json.write(toJson(answer));
   if (!answer.is_done) throw LoadError("", "", answer.words);
-  std::printf("%s\n", answer.words.c_str());
+  std::printf("%s\n", printable(answer.words).c_str());
   return kGood;
 }
 
+bool isHash(const std::string& text) {
+  constexpr std::size_t kDigits = 32;
+  return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 scenes::SessionAnswer load(const scenes::SessionRequest& request, const std::string& scene) {
-  if (scene.find_first_not_of("0123456789abcdef") == std::string::npos) return request.load(scene);
+  if (isHash(scene)) return request.load(scene);
   ProgressBar bar;
   const Progress show = bar.progress();
   return request.load(sceneFrom(scene, {}, {}), [&](double share) { show("sending the scene", share); });
@@ -80,7 +103,7 @@ void addAsk(CommandLine& line) {
       ->add_option("gains", given->gains, "N/m, and N m/rad")
       ->required()
       ->expected(1, 2)
-      ->check(CLI::PositiveNumber)
+      ->check(stiffnessFault)
       ->type_name("K");
   add("load", "another scene in place of this one; it is sent where vps render does not know it",
       [](const auto& request, const AskArguments& chosen) { return load(request, chosen.scene); })

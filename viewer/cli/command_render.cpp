@@ -14,7 +14,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/nodes.h"
-#include "vps_scenes/network/session_desk.h"
+#include "vps_scenes/network/request_server.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -38,38 +38,40 @@ struct RenderArguments {
 constexpr const char* kNoRequests = "none";
 
 /// Where others ask for something; null: nobody may.
-std::unique_ptr<scenes::SessionDesk> deskFrom(const RenderArguments& given, const scenes::Say& say) {
+std::unique_ptr<scenes::RequestServer> requestServerFrom(const RenderArguments& given) {
   if (given.requests == kNoRequests) {
     if (given.waits || given.stays)
       throw LoadError("--requests none", "", "leaves nobody to ask, for which --on-request and --stay wait");
     return nullptr;
   }
-  scenes::DeskOptions options;
+  scenes::RequestServerOptions options;
   options.session = given.session;
   options.network = given.network;
-  options.rights = given.requests == "who" ? scenes::DeskRights::Look : scenes::DeskRights::All;
+  options.rights = given.requests == "who" ? scenes::RequestRights::Look : scenes::RequestRights::All;
   options.waits = given.waits;
   const CacheArguments& cache = given.scene.cache;
   const std::string folder = cache.folder.empty() ? defaultCacheFolder() : cache.folder;
   if (!cache.is_off && !folder.empty()) options.scenes = folder + "/scenes";
   options.stop = &stopRequested();
-  options.say = say;
-  return std::make_unique<scenes::SessionDesk>(options);
+  options.say = [](const std::string& words) {  // of another thread than the progress bar's
+    if (isTerminal()) std::fputs("\r\033[K", stderr);
+    say(words);
+  };
+  return std::make_unique<scenes::RequestServer>(options);
 }
 
 /// One run, and its results.
+/// @param command  that began it, for the report
 scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOptions& options,
-                        scenes::Scene& scene, const std::string& folder, const std::string& record,
-                        ProgressBar& bar) {
+                        scenes::Scene& scene, const std::string& command, const std::string& folder,
+                        const std::string& record, ProgressBar& bar) {
   OutputFolder out(folder);
   OutputFile json(given.json, {given.scene.scene});
   const scenes::AssembleResult result = scenes::renderNode(scene, options, record);
   throwIfStopped();
   if (options.stop->load()) return scenes::Verdict::NotShown;  // another run was asked for
   const std::vector<std::string> notes =
-      fillFolder(out, scene, result,
-                 {"vps render " + given.scene.scene + " --session " + given.session + " --out " + folder,
-                  given.has_pictures});
+      fillFolder(out, scene, result, {command + " --session " + given.session, given.has_pictures});
   out.commit();
   json.write(toJson(result));
   bar.clear();
@@ -95,16 +97,23 @@ int runRender(const RenderArguments& given) {
     bar.clear();
     say(words);
   };
-  const std::unique_ptr<scenes::SessionDesk> desk = deskFrom(given, options.say);
-  options.desk = desk.get();
-  if (desk) options.stop = desk->endsRun();
-  scenes::Verdict verdict = runOnce(given, options, scene, given.out, given.record, bar);
-  for (int run = 2; desk; ++run) {
-    std::optional<scenes::Scene> next = desk->takeNext();
-    if (!next && given.stays) next = desk->waitForNext();
+  const std::unique_ptr<scenes::RequestServer> server = requestServerFrom(given);
+  options.server = server.get();
+  if (server) options.stop = server->endsRun();
+  scenes::Verdict verdict = runOnce(given, options, scene, "vps render " + file + " --out " + given.out,
+                                    given.out, given.record, bar);
+  for (int run = 2; server; ++run) {
+    std::optional<scenes::Scene> next = server->takeNext();
+    if (!next && given.stays) next = server->waitForNext();
     if (!next) break;
     const std::string folder = given.out + "-" + std::to_string(run);
-    verdict = runOnce(given, options, *next, folder, desk->recording(), bar);
+    try {
+      verdict = runOnce(given, options, *next, "vps ask load", folder, server->recording(), bar);
+    } catch (const LoadError& failed) {  // of a scene that others chose
+      if (!given.stays) throw;
+      verdict = scenes::Verdict::NotShown;
+      options.say(std::string(failed.what()) + "; waits for the next scene");
+    }
   }
   throwIfStopped();
   return statusOf(verdict);
@@ -139,7 +148,8 @@ void addRender(CommandLine& line) {
   command.add_flag("--on-request", given->waits, "each part is taken when vps ask take asks for it");
   command.add_flag(
       "--stay", given->stays,
-      "after a run waits for vps ask load or vps ask again; results of the n-th run go to DIR-n");
+      "after a run waits for vps ask load or vps ask again; results of the n-th run go to DIR-n, and "
+      "--json is of the last one");
   addJsonOption(command, given->json);
 }
 

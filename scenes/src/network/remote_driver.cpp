@@ -319,7 +319,7 @@ bool RemoteDriver::restoreHold(device::OperatorPhase phase) {
 // As a person does; the force then returns gradually, from a new grasp of the part where it is.
 void RemoteDriver::rearmWhenGood() {
   end_.setFaulted(newest_.safety.fault != device::SafetyFault::None);
-  if (is_running_ && end_.takeRearm()) return rearmIfFaulted();
+  if (is_running_ && end_.takeRearm() && end_.hello().may_rearm) return rearmIfFaulted();
   const bool waits =
       is_running_ && end_.hello().may_rearm && newest_.safety.fault == device::SafetyFault::PhysicsStalled;
   good_steps_ = waits ? good_steps_ + 1 : 0;

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <thread>
 
-#include "network/desk_work.h"
 #include "network/device_end.h"
+#include "network/request_server_work.h"
 #include "procedure/assembly_run.h"
 #include "record/run_record.h"
 #include "record/scene_archive.h"
@@ -81,21 +81,21 @@ double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
   throw LoadError("", "", "the device's answers do not come; check --network on both machines");
 }
 
-/// What the desk knows of a run, for as long as it goes on.
-class AtDesk {
+/// A run is known to those who ask, for as long as it goes on.
+class Served {
  public:
-  AtDesk(SessionDesk* desk, const Scene& scene, std::string scene_bytes, const Link& link,
+  Served(RequestServer* server, const Scene& scene, std::string scene_bytes, const Link& link,
          const std::string& file)
-      : work_(desk != nullptr ? &desk->work() : nullptr) {
+      : work_(server != nullptr ? &server->work() : nullptr) {
     if (work_ == nullptr) return;
     work_->requests.beginRun();
     work_->run.begin(scene, std::move(scene_bytes), link, file);
   }
-  ~AtDesk() {
+  ~Served() {
     if (work_ != nullptr) work_->run.end();
   }
-  AtDesk(const AtDesk&) = delete;
-  AtDesk& operator=(const AtDesk&) = delete;
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
 
   [[nodiscard]] RunRequests* requests() const { return work_ != nullptr ? &work_->requests : nullptr; }
   void setDevice(const HelloMessage& hello, const CouplingGains& gains, const CouplingGains& most) {
@@ -114,7 +114,7 @@ class AtDesk {
   }
 
  private:
-  SessionDesk::Work* work_;  ///< null: nobody can ask
+  RequestServer::Work* work_;  ///< null: nobody can ask
 };
 
 }  // namespace
@@ -123,19 +123,19 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   requirePossible(scene, given, file);
   std::string scene_bytes = sceneToBytes(scene);
   const std::unique_ptr<Link> link = makeSession(given.session, scene_bytes, given.network);
-  AtDesk desk(given.desk, scene, std::move(scene_bytes), *link, file);
+  Served served(given.server, scene, std::move(scene_bytes), *link, file);
   Broadcast* broadcast = nullptr;
   const auto say = [&](const std::string& words) {
     if (given.say) given.say(words);
     if (broadcast != nullptr) broadcast->tell(NewsKind::Note, -1, Verdict::NotShown, words);
   };
-  DeviceEnd end(*link, given.stop, say, desk.requests());
+  DeviceEnd end(*link, given.stop, say, served.requests());
   Broadcast all(end, given);
   broadcast = &all;
 
   AssembleOptions options = given;
   options.is_real_time = true;
-  options.requests = desk.requests();
+  options.requests = served.requests();
   options.tap = all.tap();
   options.after_step = [&](double time_s) {
     all.afterStep(time_s);
@@ -166,9 +166,9 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
                   settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
     end.say(words);
   }
-  desk.setDevice(end.hello(), settings.gains,
-                 passiveGains(scene, hand->device().limits(), scene.fidelity.physics_rate_hz, delay_s));
-  if (!desk.waitForTake(end)) return result;
+  served.setDevice(end.hello(), settings.gains,
+                   passiveGains(scene, hand->device().limits(), scene.fidelity.physics_rate_hz, delay_s));
+  if (!served.waitForTake(end)) return result;
   settings.physics_limit_s = peerPhysicsLimit_s(1 / scene.fidelity.physics_rate_hz);
   if (file.empty()) {
     result = runProcedure(scene, *hand, nullptr, settings, options);

@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "network/desk_channel.h"
 #include "network/messages.h"
+#include "network/request_channel.h"
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
@@ -26,7 +26,7 @@ class Asking {
  public:
   Asking(const std::string& session, const SessionNetwork& network)
       : session_(session),
-        channel_(network.empty() ? findLocalDesk(session) : findNetworkDesk(session, network)),
+        channel_(network.empty() ? findLocalServer(session) : findNetworkServer(session, network)),
         writer_(newSender()) {
     if (channel_ == nullptr)
       throw LoadError("", "", sessionWords(session) + ": no vps render runs it that takes requests");
@@ -66,7 +66,7 @@ class Asking {
   }
 
   std::string session_;
-  std::unique_ptr<AskChannel> channel_;
+  std::unique_ptr<ClientChannel> channel_;
   MessageWriter writer_;
 };
 

@@ -250,13 +250,13 @@ void DdsLink::pump() {
       next_beat_ns = now_ns() + kBeat_ns;
     }
     timespec until{};
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);  // setting the clock holds up no beat
     until.tv_nsec += kBeat_ns;
     if (until.tv_nsec >= 1'000'000'000) {
       until.tv_nsec -= 1'000'000'000;
       ++until.tv_sec;
     }
-    sem_timedwait(&wake_, &until);
+    sem_clockwait(&wake_, CLOCK_MONOTONIC, &until);
     while (sem_trywait(&wake_) == 0) {
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // In place of dds_link.cpp where Cyclone DDS is missing.
-#include "network/desk_channel.h"
 #include "network/link.h"
 #include "network/pointer_topic.h"
+#include "network/request_channel.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
@@ -30,10 +30,10 @@ std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const Session
   refuseNetwork();
 }
 
-std::unique_ptr<DeskChannel> makeNetworkDesk(const std::string&, const SessionNetwork&) {
+std::unique_ptr<ServerChannel> makeNetworkServer(const std::string&, const SessionNetwork&) {
   refuseNetwork();
 }
-std::unique_ptr<AskChannel> findNetworkDesk(const std::string&, const SessionNetwork&) {
+std::unique_ptr<ClientChannel> findNetworkServer(const std::string&, const SessionNetwork&) {
   refuseNetwork();
 }
 

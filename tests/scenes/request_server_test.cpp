@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is asked of a render node while it runs. tests/program/ask_test.cpp does the same by the program.
-#include "vps_scenes/network/session_desk.h"
+#include "vps_scenes/network/request_server.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
+#include <fstream>
 #include <functional>
 #include <thread>
 
-#include "network/desk_work.h"
+#include "network/request_server_work.h"
 #include "record/scene_archive.h"
 #include "scenes/two_pins.h"
 #include "support/temporary_folder.h"
@@ -26,14 +28,14 @@ namespace {
 
 std::string sessionName() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  return std::string("desk-")
+  return std::string("requests-")
       .append(std::to_string(getpid()))
       .append("-")
       .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
 }
 
-/// A clerk of a run of two pins, without sockets and without a run.
-class DeskClerkTest : public testing::Test {
+/// A handler of a run of two pins, without sockets and without a run.
+class RequestHandlerTest : public testing::Test {
  protected:
   void SetUp() override { begin(); }
   void begin(const std::string& recording = "") {
@@ -63,7 +65,7 @@ class DeskClerkTest : public testing::Test {
   AnswerMessage answerTo(const std::string& bytes, bool is_stranger = false) {
     AnswerMessage answer;
     MessageReader reader;
-    answered_ = clerk_.answer({1, bytes, is_stranger});
+    answered_ = handler_.answer({1, bytes, is_stranger});
     EXPECT_EQ(reader.read(answered_, answer), Reading::Good);
     return answer;
   }
@@ -82,14 +84,14 @@ class DeskClerkTest : public testing::Test {
   std::string session_ = sessionName(), bytes_, answered_;
   std::unique_ptr<Link> link_ = makeSession(session_, "a scene"), device_;
   Scene scene_;
-  DeskOptions options_;
+  RequestServerOptions options_;
   RunRequests requests_;
-  DeskRun run_;
-  DeskClerk clerk_{options_, requests_, run_};
+  ServedRun run_;
+  RequestHandler handler_{options_, requests_, run_};
   MessageWriter asker_{newSender()};
 };
 
-TEST_F(DeskClerkTest, WhoTellsSceneStepDeviceAndWatchers) {
+TEST_F(RequestHandlerTest, WhoTellsSceneStepDeviceAndWatchers) {
   EXPECT_TRUE(says(ask(AskKind::Who), "'two pins' (scene " + contentHash(bytes_) + "), before its first"));
   EXPECT_TRUE(says(ask(AskKind::Who), "device: none, it is waited for"));
   joinDevice();
@@ -102,7 +104,7 @@ TEST_F(DeskClerkTest, WhoTellsSceneStepDeviceAndWatchers) {
   EXPECT_TRUE(says(answer, "watchers: 1")) << answer.text.data();
 }
 
-TEST_F(DeskClerkTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCarriedOutOnce) {
+TEST_F(RequestHandlerTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCarriedOutOnce) {
   requests_.beginStep(0);
   const std::string bytes(asker_.write(message(AskKind::Release)));
   const AnswerMessage answer = answerTo(bytes);
@@ -114,7 +116,7 @@ TEST_F(DeskClerkTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCarried
   EXPECT_FALSE(requests_.isReleaseWanted());
 }
 
-TEST_F(DeskClerkTest, PartsAreTakenInTheirOrderOnly) {
+TEST_F(RequestHandlerTest, PartsAreTakenInTheirOrderOnly) {
   EXPECT_TRUE(says(ask(AskKind::Take), "takes its parts by itself"));
   requests_.setWaiting(true);
   EXPECT_FALSE(requests_.mayTake());
@@ -132,15 +134,41 @@ TEST_F(DeskClerkTest, PartsAreTakenInTheirOrderOnly) {
   EXPECT_TRUE(says(ask(AskKind::Take), "no further part"));
 }
 
-TEST_F(DeskClerkTest, NothingIsReleasedThatIsNotInHand) {
+TEST_F(RequestHandlerTest, NothingIsReleasedThatIsNotInHand) {
   EXPECT_TRUE(says(ask(AskKind::Release), "nothing is in hand"));
   requests_.beginStep(0);
   requests_.endWork();
   EXPECT_FALSE(ask(AskKind::Release).is_done);
   EXPECT_FALSE(requests_.isReleaseWanted());
+  requests_.beginStep(1);
+  run_.end();  // stopped while a part was in hand
+  EXPECT_TRUE(says(ask(AskKind::Release), "nothing is in hand"));
+  EXPECT_TRUE(says(askGains(500), "no device has joined"));
 }
 
-TEST_F(DeskClerkTest, OnlyADeviceThatAllowsItIsRearmedFromElsewhere) {
+// The system lists their marks in the order in which they joined, not by the number of their process.
+TEST_F(RequestHandlerTest, WatchersAreCountedWhateverTheirOrder) {
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t child = fork();  // has a higher number than this process, and joins before it
+  if (child == 0) {
+    const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
+    (void)!write(pipe_ends[1], "w", 1);
+    pause();
+    _exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);
+  const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
+  EXPECT_TRUE(says(ask(AskKind::Who), "watchers: 2")) << answered_;
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(says(ask(AskKind::Who), "watchers: 1"));
+  close(pipe_ends[0]);
+  close(pipe_ends[1]);
+}
+
+TEST_F(RequestHandlerTest, OnlyADeviceThatAllowsItIsRearmedFromElsewhere) {
   EXPECT_TRUE(says(ask(AskKind::Rearm), "no device has joined"));
   joinDevice(false);
   requests_.setFaulted(true);
@@ -153,7 +181,7 @@ TEST_F(DeskClerkTest, OnlyADeviceThatAllowsItIsRearmedFromElsewhere) {
   EXPECT_TRUE(says(ask(AskKind::Rearm), "has no fault"));
 }
 
-TEST_F(DeskClerkTest, GainsAreBoundedByWhatIsPassive) {
+TEST_F(RequestHandlerTest, GainsAreBoundedByWhatIsPassive) {
   EXPECT_TRUE(says(askGains(500), "no device has joined"));
   joinDevice();
   EXPECT_TRUE(askGains(500).is_done);
@@ -166,34 +194,37 @@ TEST_F(DeskClerkTest, GainsAreBoundedByWhatIsPassive) {
   EXPECT_FALSE(requests_.takeGains());
 }
 
-TEST_F(DeskClerkTest, RightsAreHeld) {
-  options_.rights = DeskRights::Look;
+TEST_F(RequestHandlerTest, RightsAreHeld) {
+  options_.rights = RequestRights::Look;
   requests_.beginStep(0);
   EXPECT_TRUE(ask(AskKind::Who).is_done);
   for (const AskKind kind : {AskKind::Take, AskKind::Release, AskKind::Rearm, AskKind::Load, AskKind::Again})
     EXPECT_TRUE(says(ask(kind), "may only be asked who is there"));
   PieceMessage piece;
   EXPECT_TRUE(says(answerTo(std::string(asker_.write(piece))), "no scene may be sent"));
-  options_.rights = DeskRights::All;
+  options_.rights = RequestRights::All;
   EXPECT_TRUE(says(answerTo(std::string(asker_.write(message(AskKind::Release))), true), "of another user"));
   EXPECT_FALSE(requests_.isReleaseWanted());
-  EXPECT_FALSE(clerk_.takeNext());
+  EXPECT_FALSE(handler_.takeNext());
 }
 
-TEST_F(DeskClerkTest, RecordingsGoToTheFolderOfTheRenderNodeOnly) {
+TEST_F(RequestHandlerTest, RecordingsGoToTheFolderOfTheRenderNodeOnly) {
   const test::TemporaryFolder folder;
   options_.recordings = folder.path();
   for (const char* name : {"../run.mcap", "/tmp/run.mcap", "run", ".mcap", ".a.mcap", "a b.mcap"})
     EXPECT_FALSE(ask(AskKind::Record, name).is_done) << name;
   EXPECT_TRUE(ask(AskKind::Record, "run_1.mcap").is_done);
-  EXPECT_EQ(clerk_.recording(), (folder.path() / "run_1.mcap").string());
+  EXPECT_EQ(handler_.recording(), (folder.path() / "run_1.mcap").string());
+  EXPECT_EQ(unusedFile(handler_.recording()), handler_.recording());
+  std::ofstream(handler_.recording()) << "an earlier run";
+  EXPECT_EQ(unusedFile(handler_.recording()), (folder.path() / "run_1-2.mcap").string());
   EXPECT_TRUE(ask(AskKind::Record).is_done);
-  EXPECT_EQ(clerk_.recording(), "");
+  EXPECT_EQ(handler_.recording(), "");
   options_.network = "lo";
   EXPECT_TRUE(says(ask(AskKind::Record, "run_1.mcap"), "over a network cannot be replayed"));
 }
 
-TEST_F(DeskClerkTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
+TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   const test::TemporaryFolder folder;
   options_.scenes = folder.path() / "scenes";
   Scene other = twoPins();
@@ -218,51 +249,64 @@ TEST_F(DeskClerkTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   AnswerMessage last;
   for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, damaged);
   EXPECT_TRUE(says(last, "came damaged"));
-  EXPECT_FALSE(clerk_.takeNext());
+  EXPECT_FALSE(handler_.takeNext());
   for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, bytes);
   EXPECT_TRUE(last.is_done) << last.text.data();
-  ASSERT_TRUE(clerk_.takeNext());
+  ASSERT_TRUE(handler_.takeNext());
   EXPECT_TRUE(ask(AskKind::Load, hash).is_done);
-  EXPECT_EQ(clerk_.takeNext()->name, "other pins");
+  EXPECT_EQ(handler_.takeNext()->name, "other pins");
 }
 
-TEST_F(DeskClerkTest, ASceneThatCannotRunEndsNoRun) {
+TEST_F(RequestHandlerTest, ASceneThatCannotRunEndsNoRun) {
   Scene empty = twoPins();
   empty.steps.clear();
   const std::string bytes = sceneToBytes(empty);
   run_.begin(empty, bytes, *link_, "");
   EXPECT_TRUE(says(ask(AskKind::Again), "has no [[step]]"));
-  EXPECT_FALSE(clerk_.takeNext());
+  EXPECT_FALSE(handler_.takeNext());
 }
 
-TEST_F(DeskClerkTest, WhatCannotBeReadIsRefusedAndSaidOnce) {
+TEST_F(RequestHandlerTest, ALongAnswerEndsBetweenTwoCharacters) {
+  for (const char* shift : {"", "x", "xx"}) {
+    scene_.name = shift;
+    for (int i = 0; i < 500; ++i) scene_.name += "\u20ac";  // three bytes each
+    run_.begin(scene_, bytes_, *link_, "");
+    const AnswerMessage answer = ask(AskKind::Who);
+    const std::string words = answer.text.data();
+    EXPECT_GT(words.size(), answer.text.size() - 5);
+    EXPECT_EQ(words.substr(words.size() - 3), "\u20ac");
+  }
+}
+
+TEST_F(RequestHandlerTest, WhatCannotBeReadIsRefusedAndSaidOnce) {
   std::vector<std::string> said;
   options_.say = [&said](const std::string& words) { said.push_back(words); };
   std::string bytes(asker_.write(message(AskKind::Release)));
-  for (std::size_t i = 0; i < bytes.size(); ++i) EXPECT_EQ(clerk_.answer({1, bytes.substr(0, i), false}), "");
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    EXPECT_EQ(handler_.answer({1, bytes.substr(0, i), false}), "");
   EXPECT_EQ(said.size(), 1u);
   bytes[2] ^= 1;  // another version
   AnswerMessage answer;
   MessageReader reader;
-  EXPECT_EQ(reader.read(std::string(clerk_.answer({1, bytes, false})), answer), Reading::Good);
+  EXPECT_EQ(reader.read(std::string(handler_.answer({1, bytes, false})), answer), Reading::Good);
   EXPECT_TRUE(says(answer, "another version"));
 }
 
-/// A render node with its desk, and a device, each on a thread.
-class SessionDeskTest : public testing::Test {
+/// A render node with its server, and a device, each on a thread.
+class RequestServerTest : public testing::Test {
  protected:
   void start(const std::string& file = "", bool waits = false) {
-    DeskOptions options;
+    RequestServerOptions options;
     options.session = session_;
     options.waits = waits;
     options.stop = &stop_;
-    desk_.emplace(options);
+    server_.emplace(options);
     render_ = std::thread([this, file] {
       Scene scene = twoPins();
       RenderOptions render;
       render.session = session_;
-      render.desk = &*desk_;
-      render.stop = desk_->endsRun();
+      render.server = &*server_;
+      render.stop = server_->endsRun();
       result_ = renderNode(scene, render, file);
       is_over_ = true;
     });
@@ -280,17 +324,17 @@ class SessionDeskTest : public testing::Test {
     for (int i = 0; i < 3000 && !isSo(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return isSo();
   }
-  [[nodiscard]] RunRequests& requests() { return desk_->work().requests; }
+  [[nodiscard]] RunRequests& requests() { return server_->work().requests; }
 
   std::string session_ = sessionName();
   std::atomic<bool> stop_{false}, is_over_{false};
-  std::optional<SessionDesk> desk_;
+  std::optional<RequestServer> server_;
   AssembleResult result_;
   std::thread render_, device_;
   SessionRequest request_{session_};
 };
 
-TEST_F(SessionDeskTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBit) {
+TEST_F(RequestServerTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBit) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap";
   start(file);
@@ -309,7 +353,7 @@ TEST_F(SessionDeskTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBit)
   EXPECT_EQ(replayed.equal, run.entries.size());
 }
 
-TEST_F(SessionDeskTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
+TEST_F(RequestServerTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
   const test::TemporaryFolder folder;
   start("", true);
   ASSERT_TRUE(waitFor([&] {
@@ -331,39 +375,75 @@ TEST_F(SessionDeskTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
   EXPECT_FALSE(requests().takeGains());  // they were taken
 }
 
-TEST_F(SessionDeskTest, AnotherSceneEndsTheRunAndIsNext) {
+TEST_F(RequestServerTest, AnotherSceneEndsTheRunAndIsNext) {
   start();
   ASSERT_TRUE(waitFor([&] { return requests().phase() == RunPhase::InHand; }));
   Scene other = twoPins();
   other.name = "other pins";
   EXPECT_TRUE(request_.load(other).is_done);
   render_.join();
-  const std::optional<Scene> next = desk_->takeNext();
+  const std::optional<Scene> next = server_->takeNext();
   ASSERT_TRUE(next);
   EXPECT_EQ(next->name, "other pins");
-  EXPECT_FALSE(desk_->endsRun()->load());
+  EXPECT_FALSE(server_->endsRun()->load());
 }
 
 TEST(SessionRequest, WhereNobodyAnswersThatIsSaid) {
   EXPECT_THROW((void)SessionRequest(sessionName()).who(), LoadError);
   EXPECT_THROW(SessionRequest("a/b"), LoadError);
-  DeskOptions options;
+  RequestServerOptions options;
   options.session = sessionName();
-  const SessionDesk desk(options);
-  EXPECT_THROW(SessionDesk second(options), LoadError);
+  const RequestServer server(options);
+  EXPECT_THROW(RequestServer second(options), LoadError);
   EXPECT_NE(SessionRequest(options.session).who().words.find("no run"), std::string::npos);
+}
+
+/// Two ends of a socket of a session.
+class LocalRequestsTest : public testing::Test {
+ protected:
+  std::string session_ = sessionName();
+  std::unique_ptr<ServerChannel> server_ = makeLocalServer(session_);
+};
+
+TEST_F(LocalRequestsTest, WhoSendsWithoutEndKeepsNobodyOut) {
+  const std::unique_ptr<ClientChannel> flood = findLocalServer(session_), other = findLocalServer(session_);
+  const auto floods = [&] {
+    for (int i = 0; i < 20; ++i) flood->send("flood");
+  };
+  floods();
+  bool is_heard = false;
+  for (int i = 0; i < 20 && !is_heard; ++i) {
+    if (i == 5) other->send("other");
+    const std::optional<IncomingRequest> ask = server_->receive(std::chrono::milliseconds(100));
+    is_heard = ask && ask->bytes == "other";
+    floods();
+  }
+  EXPECT_TRUE(is_heard);
+}
+
+TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {
+  const std::unique_ptr<ClientChannel> channel = findLocalServer(session_);
+  const std::string bytes(kLongestAsk, 'x');
+  for (int i = 0; i < 100; ++i) channel->send(bytes);  // more than the system keeps
+  EXPECT_FALSE(channel->isOver());
+  std::vector<std::unique_ptr<ClientChannel>> waiting;
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 100; ++i) waiting.push_back(findLocalServer(session_));
+      },
+      LoadError);
 }
 
 // Needs the right to become another user.
 TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
   if (getuid() != 0) GTEST_SKIP() << "only root can become another user";
-  DeskOptions options;
+  RequestServerOptions options;
   options.session = sessionName();
-  const SessionDesk desk(options);
+  const RequestServer server(options);
   const pid_t child = fork();
-  if (child == 0) {  // another user, without the desk's thread
+  if (child == 0) {  // another user, without the server's thread
     if (setuid(65534) != 0) _exit(10);
-    const std::unique_ptr<AskChannel> channel = findLocalDesk(options.session, 0);
+    const std::unique_ptr<ClientChannel> channel = findLocalServer(options.session, 0);
     if (channel == nullptr) _exit(11);
     MessageWriter writer(newSender());
     channel->send(writer.write(AskMessage{}));
@@ -381,11 +461,11 @@ TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
 }
 
 TEST(SessionRequest, OverANetworkTheSameIsAnswered) {
-  DeskOptions options;
+  RequestServerOptions options;
   options.session = sessionName();
   options.network = "lo";
   try {
-    const SessionDesk desk(options);
+    const RequestServer server(options);
     EXPECT_NE(SessionRequest(options.session, "lo").who().words.find("no run"), std::string::npos);
     EXPECT_FALSE(SessionRequest(options.session, "lo").again().is_done);
   } catch (const LoadError& error) {

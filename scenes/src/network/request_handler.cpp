@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "network/desk.h"
+#include "network/request_handler.h"
 
 #include <unistd.h>
 
@@ -18,13 +18,15 @@
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 #include "vps_device/gains.h"
+#include "vps_device/metronome.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr std::size_t kMostAskers = 64;          // a flood of senders takes no more memory than this
+constexpr std::size_t kMostSenders = 64;         // a flood of senders takes no more memory than this
 constexpr std::uint64_t kMostScene = 1U << 30U;  // [bytes]
+constexpr double kTransferLimit_s = 10;          // who sends asks again every 0.3 s, and gives up after 5
 constexpr std::size_t kHashDigits = 32;
 constexpr const char* kSceneEnding = ".scene";
 constexpr std::size_t kMostKept = 16;  // assumed: what a person works on; the newest stay
@@ -58,6 +60,14 @@ bool isFileName(const std::string& name) {
          std::all_of(name.begin(), name.end(), is_good);
 }
 
+/// Bytes of the text up to a limit, without half a character of UTF-8 at its end.
+std::size_t fittingSize(const std::string& text, std::size_t most) {
+  std::size_t size = std::min(text.size(), most);
+  if (size == text.size()) return size;
+  while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+  return size;
+}
+
 std::string readAll(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -65,8 +75,20 @@ std::string readAll(const std::string& file) {
 
 }  // namespace
 
-void DeskRun::begin(const Scene& scene, std::string scene_bytes, const Link& link,
-                    const std::string& recording) {
+std::string unusedFile(const std::string& wanted) {
+  namespace fs = std::filesystem;
+  const fs::path path(wanted);
+  std::error_code error;
+  std::string file = wanted;
+  for (int number = 2; fs::exists(file, error); ++number)
+    file = (path.parent_path() /
+            (path.stem().string() + "-" + std::to_string(number) + path.extension().string()))
+               .string();
+  return file;
+}
+
+void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& link,
+                      const std::string& recording) {
   const std::lock_guard lock(mutex_);
   facts_ = {};
   facts_.name = scene.name;
@@ -78,14 +100,14 @@ void DeskRun::begin(const Scene& scene, std::string scene_bytes, const Link& lin
   link_ = &link;
 }
 
-void DeskRun::end() {
+void ServedRun::end() {
   const std::lock_guard lock(mutex_);
   link_ = nullptr;
   facts_.is_running = false;
 }
 
-void DeskRun::setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
-                        const CouplingGains& most) {
+void ServedRun::setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
+                          const CouplingGains& most) {
   const std::lock_guard lock(mutex_);
   facts_.device = name;
   facts_.may_rearm = may_rearm;
@@ -93,7 +115,7 @@ void DeskRun::setDevice(const std::string& name, bool may_rearm, const CouplingG
   facts_.most = most;
 }
 
-DeskRun::Facts DeskRun::facts(bool with_bytes) const {
+ServedRun::Facts ServedRun::facts(bool with_bytes) const {
   const std::lock_guard lock(mutex_);
   Facts facts = facts_;
   if (!with_bytes) facts.bytes.clear();
@@ -102,32 +124,31 @@ DeskRun::Facts DeskRun::facts(bool with_bytes) const {
   return facts;
 }
 
-DeskClerk::Asker& DeskClerk::askerOf(std::uint64_t sender) {
-  if (!askers_.contains(sender) && askers_.size() >= kMostAskers)
-    askers_.erase(std::min_element(askers_.begin(), askers_.end(), [](const auto& a, const auto& b) {
+RequestHandler::Client& RequestHandler::clientOf(std::uint64_t sender) {
+  if (!clients_.contains(sender) && clients_.size() >= kMostSenders)
+    clients_.erase(std::min_element(clients_.begin(), clients_.end(), [](const auto& a, const auto& b) {
       return a.second.heard < b.second.heard;
     }));
-  const auto [found, is_new] = askers_.try_emplace(sender);
+  const auto [found, is_new] = clients_.try_emplace(sender);
   if (is_new) found->second.reader.bindTo(sender);
   found->second.heard = ++heard_;
   return found->second;
 }
 
-std::string_view DeskClerk::write(std::uint64_t sender, std::uint64_t number, const Answer& answer) {
+std::string_view RequestHandler::write(std::uint64_t sender, std::uint64_t number, const Answer& answer) {
   AnswerMessage message{sender, number, answer.is_done, answer.wants_scene, {}};
-  std::memcpy(message.text.data(), answer.words.data(),
-              std::min(answer.words.size(), message.text.size() - 1));
+  std::memcpy(message.text.data(), answer.words.data(), fittingSize(answer.words, message.text.size() - 1));
   return writer_.write(message);
 }
 
 /// Who is of another version learns that from the answer's own version.
-std::string_view DeskClerk::refuseUnread(Reading reading) {
+std::string_view RequestHandler::refuseUnread(Reading reading) {
   if (refused_++ == 0 && options_.say)
     options_.say(std::string("a request that cannot be read was refused: ") + toText(reading));
   return reading == Reading::BadVersion ? write(0, 0, {false, "another version", false}) : std::string_view();
 }
 
-std::string_view DeskClerk::answer(const IncomingAsk& ask) {
+std::string_view RequestHandler::answer(const IncomingRequest& ask) {
   const bool is_piece = kindOf(ask.bytes) == MessageKind::Piece;
   AskMessage message;
   PieceMessage piece;
@@ -140,18 +161,18 @@ std::string_view DeskClerk::answer(const IncomingAsk& ask) {
   if (ask.is_stranger)
     return write(envelope.sender, envelope.number,
                  {false, "refused: the session is of another user of this machine", false});
-  Asker& asker = askerOf(envelope.sender);
-  const Reading reading = read(asker.reader);
-  if (reading == Reading::Replayed && !asker.last_answer.empty()) return asker.last_answer;  // it was lost
+  Client& client = clientOf(envelope.sender);
+  const Reading reading = read(client.reader);
+  if (reading == Reading::Replayed && !client.last_answer.empty()) return client.last_answer;  // it was lost
   if (reading != Reading::Good) return refuseUnread(reading);
   const Answer answer = is_piece ? addPiece(envelope.sender, piece) : obey(message);
-  asker.last_answer = write(envelope.sender, envelope.number, answer);
-  return asker.last_answer;
+  client.last_answer = write(envelope.sender, envelope.number, answer);
+  return client.last_answer;
 }
 
-DeskClerk::Answer DeskClerk::obey(const AskMessage& ask) {
+RequestHandler::Answer RequestHandler::obey(const AskMessage& ask) {
   if (ask.kind == AskKind::Who) return who();
-  if (options_.rights != DeskRights::All)
+  if (options_.rights != RequestRights::All)
     return {false, "refused: this session may only be asked who is there (vps render --requests all)", false};
   const std::string text = textOf(ask.text);
   switch (ask.kind) {
@@ -175,8 +196,8 @@ DeskClerk::Answer DeskClerk::obey(const AskMessage& ask) {
   return {};
 }
 
-DeskClerk::Answer DeskClerk::who() const {
-  const DeskRun::Facts facts = run_.facts();
+RequestHandler::Answer RequestHandler::who() const {
+  const ServedRun::Facts facts = run_.facts();
   const int step = requests_.step();
   const std::size_t count = facts.parts.size();
   std::string words = "render: ";
@@ -204,14 +225,14 @@ DeskClerk::Answer DeskClerk::who() const {
 }
 
 /// Those that were set last count from the step after that.
-CouplingGains DeskClerk::gainsOf(const DeskRun::Facts& facts) const {
+CouplingGains RequestHandler::gainsOf(const ServedRun::Facts& facts) const {
   return gains_ && requests_.step() > gains_step_ ? *gains_ : facts.gains;
 }
 
-DeskClerk::Answer DeskClerk::take(const std::string& part) {
+RequestHandler::Answer RequestHandler::take(const std::string& part) {
   if (!requests_.isWaiting())
     return {false, "refused: this run takes its parts by itself; start vps render with --on-request", false};
-  const DeskRun::Facts facts = run_.facts();
+  const ServedRun::Facts facts = run_.facts();
   const bool has_begun = requests_.phase() != RunPhase::Preparing;
   const auto next = static_cast<std::size_t>(has_begun ? requests_.step() + 1 : 0);
   if (!facts.is_running || next >= facts.parts.size())
@@ -224,16 +245,17 @@ DeskClerk::Answer DeskClerk::take(const std::string& part) {
   return {true, quoted(facts.parts[next]) + " is taken next", false};
 }
 
-DeskClerk::Answer DeskClerk::release() {
-  if (requests_.phase() != RunPhase::InHand) return {false, "refused: nothing is in hand", false};
-  const DeskRun::Facts facts = run_.facts();
+RequestHandler::Answer RequestHandler::release() {
+  const ServedRun::Facts facts = run_.facts();
+  const auto step = static_cast<std::size_t>(requests_.step());  // -1: none, beyond all parts
+  if (!facts.is_running || requests_.phase() != RunPhase::InHand || step >= facts.parts.size())
+    return {false, "refused: nothing is in hand", false};
   requests_.release();
-  return {true, "the hand lets go of " + quoted(facts.parts.at(static_cast<std::size_t>(requests_.step()))),
-          false};
+  return {true, "the hand lets go of " + quoted(facts.parts[step]), false};
 }
 
-DeskClerk::Answer DeskClerk::rearm() {
-  const DeskRun::Facts facts = run_.facts();
+RequestHandler::Answer RequestHandler::rearm() {
+  const ServedRun::Facts facts = run_.facts();
   if (!facts.has_device || facts.device.empty()) return {false, "refused: no device has joined", false};
   if (!facts.may_rearm)
     return {false, "refused: a person holds the device and has not allowed that (vps device --auto-rearm)",
@@ -243,9 +265,9 @@ DeskClerk::Answer DeskClerk::rearm() {
   return {true, "the device is re-armed", false};
 }
 
-DeskClerk::Answer DeskClerk::setGains(double k_N_per_m, double k_Nm_per_rad) {
-  const DeskRun::Facts facts = run_.facts();
-  if (facts.device.empty())
+RequestHandler::Answer RequestHandler::setGains(double k_N_per_m, double k_Nm_per_rad) {
+  const ServedRun::Facts facts = run_.facts();
+  if (!facts.is_running || facts.device.empty())
     return {false, "refused: no device has joined, from whose limits the gains follow", false};
   if (!facts.recording.empty()) return {false, "refused: a run that is recorded keeps its gains", false};
   CouplingGains wish = facts.most;
@@ -264,31 +286,32 @@ DeskClerk::Answer DeskClerk::setGains(double k_N_per_m, double k_Nm_per_rad) {
           false};
 }
 
-std::string DeskClerk::fileOf(const std::string& hash) const {
+std::string RequestHandler::fileOf(const std::string& hash) const {
   return options_.scenes.empty() ? "" : options_.scenes + "/" + hash + kSceneEnding;
 }
 
-DeskClerk::Answer DeskClerk::load(const std::string& hash) {
+RequestHandler::Answer RequestHandler::load(const std::string& hash) {
   if (!isHash(hash)) return {false, "refused: a scene is named by the 32 digits of its hash", false};
-  const DeskRun::Facts facts = run_.facts(true);
+  const ServedRun::Facts facts = run_.facts(true);
   if (facts.hash == hash) return begin(facts.bytes);
   if (const std::string file = fileOf(hash); !file.empty())
     if (const std::string bytes = readAll(file); contentHash(bytes) == hash) return begin(bytes);
   return {false, "the scene " + hash + " is not known here; name its file, so that it is sent", true};
 }
 
-DeskClerk::Answer DeskClerk::addPiece(std::uint64_t sender, const PieceMessage& piece) {
-  if (options_.rights != DeskRights::All)
+RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const PieceMessage& piece) {
+  if (options_.rights != RequestRights::All)
     return {false, "refused: no scene may be sent to this session", false};
   const std::string hash = textOf(piece.hash);
   if (!isHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
     return {false, "refused: this is no piece of a scene", false};
-  if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total};
+  if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total, 0};
   Transfer& now = transfer_;
   if (now.sender != sender || now.hash != hash || now.total != piece.total ||
       now.bytes.size() != piece.offset || piece.size > now.total - piece.offset)
     return {false, "refused: another scene was sent meanwhile; ask again", false};
   now.bytes.append(piece.bytes.data(), piece.size);
+  now.heard_s = device::monotonicSeconds();
   if (now.bytes.size() < now.total) return {true, "more", true};
   const std::string bytes = std::exchange(transfer_, {}).bytes;
   if (contentHash(bytes) != hash) return {false, "refused: the scene came damaged; ask again", false};
@@ -297,7 +320,12 @@ DeskClerk::Answer DeskClerk::addPiece(std::uint64_t sender, const PieceMessage& 
   return answer;
 }
 
-void DeskClerk::keep(const std::string& hash, const std::string& bytes) const {
+void RequestHandler::dropLostTransfer() {
+  if (!transfer_.bytes.empty() && device::monotonicSeconds() - transfer_.heard_s > kTransferLimit_s)
+    transfer_ = {};
+}
+
+void RequestHandler::keep(const std::string& hash, const std::string& bytes) const {
   namespace fs = std::filesystem;
   if (options_.scenes.empty()) return;
   try {
@@ -315,7 +343,7 @@ void DeskClerk::keep(const std::string& hash, const std::string& bytes) const {
   }
 }
 
-DeskClerk::Answer DeskClerk::begin(const std::string& bytes) {
+RequestHandler::Answer RequestHandler::begin(const std::string& bytes) {
   try {
     Scene scene = sceneFromBytes(bytes, "the scene that was asked for");
     requireSteps(scene);
@@ -328,13 +356,13 @@ DeskClerk::Answer DeskClerk::begin(const std::string& bytes) {
   }
 }
 
-DeskClerk::Answer DeskClerk::again() {
-  const DeskRun::Facts facts = run_.facts(true);
+RequestHandler::Answer RequestHandler::again() {
+  const ServedRun::Facts facts = run_.facts(true);
   if (facts.bytes.empty()) return {false, "refused: there was no run yet", false};
   return begin(facts.bytes);
 }
 
-DeskClerk::Answer DeskClerk::record(const std::string& name) {
+RequestHandler::Answer RequestHandler::record(const std::string& name) {
   if (name.empty()) {
     const bool is_recorded = !run_.facts().recording.empty();
     recording_.clear();
@@ -352,7 +380,7 @@ DeskClerk::Answer DeskClerk::record(const std::string& name) {
   if (access(folder.c_str(), W_OK) != 0)
     return {false, "refused: vps render cannot write into its folder for recordings", false};
   recording_ = (std::filesystem::path(folder) / name).string();
-  return {true, "the next run is recorded in " + recording_ + "; again begins one", false};
+  return {true, "the next run is recorded in " + unusedFile(recording_) + "; again begins one", false};
 }
 
 }  // namespace vps::scenes::inline v0

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "network/desk_channel.h"
+#include "network/request_channel.h"
 #include "network/shared_region.h"
 #include "vps/load_error.h"
 
@@ -20,7 +20,8 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr std::size_t kMostConnected = 16;
+constexpr std::size_t kMostConnected = 16;  // of this user
+constexpr std::size_t kMostStrangers = 4;   // of others, who are told only that they are refused
 
 class Socket {
  public:
@@ -50,7 +51,7 @@ Name socketName(const std::string& session, uid_t user) {
   requireSessionName(session);
   Name name;
   name.address.sun_family = AF_UNIX;
-  const std::string text = "bullet-vps." + std::to_string(user) + "." + session + ".desk";
+  const std::string text = "bullet-vps." + std::to_string(user) + "." + session + ".requests";
   std::memcpy(name.address.sun_path + 1, text.data(), text.size());  // the first byte is 0
   name.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   return name;
@@ -89,9 +90,9 @@ bool waitFor(std::vector<pollfd>& files, std::chrono::milliseconds limit) {
   return poll(files.data(), files.size(), static_cast<int>(limit.count())) > 0;
 }
 
-class LocalDesk final : public DeskChannel {
+class LocalServer final : public ServerChannel {
  public:
-  explicit LocalDesk(const std::string& session) : listener_(newSocket(SOCK_NONBLOCK)) {
+  explicit LocalServer(const std::string& session) : listener_(newSocket(SOCK_NONBLOCK)) {
     const Name name = socketName(session, getuid());
     if (bind(listener_.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0)
       throw LoadError("", "",
@@ -103,30 +104,41 @@ class LocalDesk final : public DeskChannel {
       throw LoadError("", "", sessionWords(session) + ": cannot be asked: " + std::strerror(errno));
   }
 
-  std::optional<IncomingAsk> receive(std::chrono::milliseconds limit) override {
+  std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
     std::vector<pollfd> files = {{listener_.file(), POLLIN, 0}};
-    for (const Asker& asker : askers_) files.push_back({asker.socket.file(), POLLIN, 0});
+    for (const Client& client : clients_) files.push_back({client.socket.file(), POLLIN, 0});
     if (!waitFor(files, limit)) return {};
-    for (std::size_t i = 1; i < files.size(); ++i) {
-      if (files[i].revents == 0) continue;
-      const Asker& asker = askers_[i - 1];
-      std::optional<std::string> bytes = receiveFrom(files[i].fd);
-      if (bytes && !bytes->empty()) return IncomingAsk{asker.number, std::move(*bytes), asker.is_stranger};
-      if (bytes) continue;
-      askers_.erase(askers_.begin() + static_cast<std::ptrdiff_t>(i) - 1);
-      return {};
+    const std::size_t known = clients_.size();
+    for (std::size_t i = 0; i < known; ++i) {
+      if (files[i + 1].revents == 0) continue;
+      std::optional<std::string> bytes = receiveFrom(files[i + 1].fd);
+      if (bytes && bytes->empty()) continue;
+      const Client& client = clients_[i];
+      const std::uint64_t number = client.number;
+      const bool is_stranger = client.is_stranger;
+      if (!bytes) {
+        clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
+        return {};
+      }
+      // Who was just heard comes last the next time, so that nobody who sends without end keeps others out.
+      std::rotate(clients_.begin() + static_cast<std::ptrdiff_t>(i),
+                  clients_.begin() + static_cast<std::ptrdiff_t>(i) + 1, clients_.end());
+      if (files[0].revents != 0) accept();
+      return IncomingRequest{number, std::move(*bytes), is_stranger};
     }
     if (files[0].revents != 0) accept();
     return {};
   }
   void answer(std::uint64_t to, std::string_view bytes) override {
-    for (const Asker& asker : askers_)
-      if (asker.number == to)
-        send(asker.socket.file(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    const auto client =
+        std::find_if(clients_.begin(), clients_.end(), [to](const Client& one) { return one.number == to; });
+    if (client == clients_.end()) return;
+    send(client->socket.file(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (client->is_stranger) clients_.erase(client);
   }
 
  private:
-  struct Asker {
+  struct Client {
     Socket socket;
     std::uint64_t number;
     bool is_stranger;
@@ -137,21 +149,27 @@ class LocalDesk final : public DeskChannel {
     if (socket.file() < 0) return;
     const std::optional<uid_t> user = userOf(socket.file());
     if (!user) return;
-    if (askers_.size() >= kMostConnected)
-      askers_.erase(askers_.begin());  // the one that has been there longest
-    askers_.push_back({std::move(socket), ++count_, !isTrusted(*user)});
+    const bool is_stranger = !isTrusted(*user);
+    const auto is_alike = [is_stranger](const Client& one) { return one.is_stranger == is_stranger; };
+    const auto alike = static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), is_alike));
+    if (alike >= (is_stranger ? kMostStrangers : kMostConnected))
+      clients_.erase(
+          std::find_if(clients_.begin(), clients_.end(), is_alike));  // the one not heard for longest
+    clients_.push_back({std::move(socket), ++count_, is_stranger});
   }
 
   Socket listener_;
-  std::vector<Asker> askers_;
+  std::vector<Client> clients_;
   std::uint64_t count_ = 0;
 };
 
-class LocalAsk final : public AskChannel {
+class LocalClient final : public ClientChannel {
  public:
-  explicit LocalAsk(Socket socket) : socket_(std::move(socket)) {}
+  explicit LocalClient(Socket socket) : socket_(std::move(socket)) {}
+  /// Where the other end does not read, what does not fit is lost: it is sent again later.
   void send(std::string_view bytes) override {
-    if (::send(socket_.file(), bytes.data(), bytes.size(), MSG_NOSIGNAL) < 0) is_over_ = true;
+    if (::send(socket_.file(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
+      is_over_ = errno != EAGAIN && errno != ENOBUFS && errno != EINTR;
   }
   std::string receive(std::chrono::milliseconds limit) override {
     std::vector<pollfd> files = {{socket_.file(), POLLIN, 0}};
@@ -169,19 +187,21 @@ class LocalAsk final : public AskChannel {
 
 }  // namespace
 
-std::unique_ptr<DeskChannel> makeLocalDesk(const std::string& session) {
-  return std::make_unique<LocalDesk>(session);
+std::unique_ptr<ServerChannel> makeLocalServer(const std::string& session) {
+  return std::make_unique<LocalServer>(session);
 }
 
-std::unique_ptr<AskChannel> findLocalDesk(const std::string& session, uid_t user) {
+std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t user) {
   const Name name = socketName(session, user);
-  Socket socket = newSocket(0);
-  if (connect(socket.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0)
+  Socket socket = newSocket(SOCK_NONBLOCK);
+  if (connect(socket.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0) {
+    if (errno == EAGAIN) throw LoadError("", "", sessionWords(session) + ": its vps render does not react");
     return nullptr;
+  }
   // Anybody may take a name that is free.
   if (const std::optional<uid_t> owner = userOf(socket.file()); !owner || (*owner != user && *owner != 0))
     throw LoadError("", "", sessionWords(session) + ": its name is used by a program of another user");
-  return std::make_unique<LocalAsk>(std::move(socket));
+  return std::make_unique<LocalClient>(std::move(socket));
 }
 
 }  // namespace vps::scenes::inline v0

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the render node tells its desk, and what the desk answers to a request. Nothing here knows sockets.
+// What the render node tells of its run, and what is answered to a request. Nothing here knows sockets.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,19 @@
 #include <utility>
 #include <vector>
 
-#include "network/desk_channel.h"
 #include "network/link.h"
 #include "network/messages.h"
-#include "vps_scenes/network/session_desk.h"
+#include "network/request_channel.h"
+#include "vps_scenes/network/request_server.h"
 #include "vps_scenes/run_requests.h"
 
 namespace vps::scenes::inline v0 {
 
+/// The first of run.mcap, run-2.mcap, ... that does not exist, so that no earlier run is lost.
+std::string unusedFile(const std::string& wanted);
+
 /// The run of now. All functions may be called by any thread.
-class DeskRun {
+class ServedRun {
  public:
   /// @param link  stays until end()
   void begin(const Scene& scene, std::string scene_bytes, const Link& link, const std::string& recording);
@@ -48,21 +51,23 @@ class DeskRun {
 };
 
 /// Reads requests and answers them. Used by one thread.
-class DeskClerk {
+class RequestHandler {
  public:
   /// All outlive it.
-  DeskClerk(const DeskOptions& options, RunRequests& requests, const DeskRun& run)
+  RequestHandler(const RequestServerOptions& options, RunRequests& requests, const ServedRun& run)
       : options_(options), requests_(requests), run_(run), writer_(newSender()) {}
 
   /// The bytes of the answer; empty: none. They stay until the next call.
-  std::string_view answer(const IncomingAsk& ask);
+  std::string_view answer(const IncomingRequest& ask);
   /// A scene that is to run next, once.
   std::optional<Scene> takeNext() { return std::exchange(next_, std::nullopt); }
-  /// The file for the runs that begin from now on; empty: none.
+  /// The file that was asked for, for the runs that begin from now on; empty: none.
   [[nodiscard]] const std::string& recording() const { return recording_; }
+  /// Frees the memory of a scene that its sender has ceased to send.
+  void dropLostTransfer();
 
  private:
-  struct Asker {
+  struct Client {
     MessageReader reader;
     std::string last_answer;
     std::uint64_t heard = 0;  ///< count of requests then
@@ -76,15 +81,16 @@ class DeskClerk {
     std::uint64_t sender = 0;
     std::string hash, bytes;
     std::uint64_t total = 0;
+    double heard_s = 0;  ///< when its last piece came, by device::monotonicSeconds()
   };
 
-  Asker& askerOf(std::uint64_t sender);
+  Client& clientOf(std::uint64_t sender);
   std::string_view write(std::uint64_t sender, std::uint64_t number, const Answer& answer);
   std::string_view refuseUnread(Reading reading);
   Answer obey(const AskMessage& ask);
   Answer who() const;
   /// That the coupling has now.
-  [[nodiscard]] CouplingGains gainsOf(const DeskRun::Facts& facts) const;
+  [[nodiscard]] CouplingGains gainsOf(const ServedRun::Facts& facts) const;
   Answer take(const std::string& part);
   Answer release();
   Answer rearm();
@@ -99,11 +105,11 @@ class DeskClerk {
   void keep(const std::string& hash, const std::string& bytes) const;
   [[nodiscard]] std::string fileOf(const std::string& hash) const;
 
-  const DeskOptions& options_;
+  const RequestServerOptions& options_;
   RunRequests& requests_;
-  const DeskRun& run_;
+  const ServedRun& run_;
   MessageWriter writer_;
-  std::map<std::uint64_t, Asker> askers_;
+  std::map<std::uint64_t, Client> clients_;
   std::uint64_t heard_ = 0, refused_ = 0;
   Transfer transfer_;
   std::optional<Scene> next_;

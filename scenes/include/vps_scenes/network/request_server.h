@@ -16,16 +16,15 @@
 
 namespace vps::scenes::inline v0 {
 
-enum class DeskRights {
-  None,  ///< nothing is answered
+enum class RequestRights {
   Look,  ///< who is there
   All,
 };
 
-struct DeskOptions {
+struct RequestServerOptions {
   std::string session = "default";
   SessionNetwork network;
-  DeskRights rights = DeskRights::All;
+  RequestRights rights = RequestRights::All;
   /// Each part is taken when somebody asks for it. Otherwise the procedure goes on by itself.
   bool waits = false;
   std::string scenes;      ///< folder of scenes that were sent, by their hash; empty: they are not kept
@@ -37,13 +36,13 @@ struct DeskOptions {
 /// One for a process, over all its runs. Within a machine, processes of the same user ask through a socket
 /// without a name in the file system, and others are refused; over a network, whoever may write its topic.
 /// Answers from a thread of its own.
-class VPS_SCENES_API SessionDesk {
+class VPS_SCENES_API RequestServer {
  public:
-  /// Throws LoadError where the session has a desk, or its name or network cannot be used.
-  explicit SessionDesk(const DeskOptions& options);
-  ~SessionDesk();
-  SessionDesk(const SessionDesk&) = delete;
-  SessionDesk& operator=(const SessionDesk&) = delete;
+  /// Throws LoadError where the session has a server, or its name or network cannot be used.
+  explicit RequestServer(const RequestServerOptions& options);
+  ~RequestServer();
+  RequestServer(const RequestServer&) = delete;
+  RequestServer& operator=(const RequestServer&) = delete;
 
   /// The run has to end, since another is asked for or the user stops. For AssembleOptions::stop.
   [[nodiscard]] const std::atomic<bool>* endsRun() const;
@@ -51,7 +50,7 @@ class VPS_SCENES_API SessionDesk {
   std::optional<Scene> takeNext();
   /// Waits for it. Empty: the user stops.
   std::optional<Scene> waitForNext();
-  /// The file of the next run's recording; empty: none is asked for.
+  /// The file of the next run's recording, which does not exist yet; empty: none is asked for.
   [[nodiscard]] std::string recording() const;
 
   struct Work;

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "network/dds/topics.h"
-#include "network/desk_channel.h"
+#include "network/request_channel.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -40,18 +40,18 @@ class Inbox {
   std::deque<std::string> waiting_;
 };
 
-class NetworkDesk final : public DeskChannel {
+class NetworkServer final : public ServerChannel {
  public:
-  NetworkDesk(const std::string& session, const SessionNetwork& network)
+  NetworkServer(const std::string& session, const SessionNetwork& network)
       : participant_(network),
         out_(participant_, topicName(session, "answer"), Delivery::Reliable, nullptr),
         in_(participant_, topicName(session, "ask"), Delivery::Reliable,
             [this](std::string_view bytes) { inbox_.put(bytes); }) {}
 
-  std::optional<IncomingAsk> receive(std::chrono::milliseconds limit) override {
+  std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
     std::string bytes = inbox_.take(limit);
     if (bytes.empty()) return {};
-    return IncomingAsk{0, std::move(bytes), false};
+    return IncomingRequest{0, std::move(bytes), false};
   }
   void answer(std::uint64_t, std::string_view bytes) override { out_.write(bytes); }
 
@@ -61,9 +61,9 @@ class NetworkDesk final : public DeskChannel {
   DdsTopic out_, in_;  // after all that threads of DDS use
 };
 
-class NetworkAsk final : public AskChannel {
+class NetworkClient final : public ClientChannel {
  public:
-  NetworkAsk(const std::string& session, const SessionNetwork& network)
+  NetworkClient(const std::string& session, const SessionNetwork& network)
       : participant_(network),
         out_(participant_, topicName(session, "ask"), Delivery::Reliable, nullptr),
         in_(participant_, topicName(session, "answer"), Delivery::Reliable,
@@ -80,12 +80,12 @@ class NetworkAsk final : public AskChannel {
 
 }  // namespace
 
-std::unique_ptr<DeskChannel> makeNetworkDesk(const std::string& session, const SessionNetwork& network) {
-  return std::make_unique<NetworkDesk>(session, network);
+std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network) {
+  return std::make_unique<NetworkServer>(session, network);
 }
 
-std::unique_ptr<AskChannel> findNetworkDesk(const std::string& session, const SessionNetwork& network) {
-  return std::make_unique<NetworkAsk>(session, network);
+std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network) {
+  return std::make_unique<NetworkClient>(session, network);
 }
 
 }  // namespace vps::scenes::inline v0

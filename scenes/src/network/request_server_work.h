@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The desk of a process, with its thread.
+// The server of requests of a process, with its thread.
 #pragma once
 
 #include <atomic>
@@ -9,25 +9,27 @@
 #include <string>
 #include <thread>
 
-#include "network/desk.h"
-#include "network/desk_channel.h"
-#include "vps_scenes/network/session_desk.h"
+#include "network/request_channel.h"
+#include "network/request_handler.h"
+#include "vps_scenes/network/request_server.h"
 
 namespace vps::scenes::inline v0 {
 
-struct SessionDesk::Work {
-  explicit Work(const DeskOptions& given);
+struct RequestServer::Work {
+  explicit Work(const RequestServerOptions& given);
   ~Work();
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
 
   void serve();
+  /// Waits for a request for some milliseconds.
+  void serveOne();
 
-  DeskOptions options;
+  RequestServerOptions options;
   RunRequests requests;
-  DeskRun run;
-  std::unique_ptr<DeskChannel> channel;  ///< of the thread, as is the clerk
-  DeskClerk clerk;
+  ServedRun run;
+  std::unique_ptr<ServerChannel> channel;  ///< of the thread, as is the handler
+  RequestHandler handler;
   std::mutex mutex;  ///< of the next two
   std::optional<Scene> next;
   std::string recording;
