@@ -39,11 +39,12 @@ int main(int argc, char** argv) {
              "endurance",
              "3600"};
   std::printf("| case | bar | measured | |\n|---|---|---|---|\n");
+  std::fflush(stdout);  // before rows of other processes
   bool is_good = true;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool has_more = i + 1 < words.size();
     if (words[i] == "latency")
-      is_good = latencyRows(10) && is_good;
+      is_good = iceoryxRow(10) && latencyRows(10) && is_good;
     else if (words[i] == "run" && has_more)
       is_good = runRows(words[++i]) && is_good;
     else if (words[i] == "wire" && has_more)
