@@ -27,7 +27,10 @@ class Asking {
   Asking(const std::string& session, const SessionNetwork& network)
       : session_(session),
         channel_(network.empty() ? findLocalServer(session) : findNetworkServer(session, network)),
-        writer_(newSender()) {
+        writer_(newSender()),
+        remedy_(network.empty() ? "its vps render is stopped, or too busy"
+                                : "check that vps render runs it at this --network, and that the "
+                                  "certificates are of its authority and allow requests") {
     if (channel_ == nullptr)
       throw LoadError("", "", sessionWords(session) + ": no vps render runs it that takes requests");
   }
@@ -54,10 +57,7 @@ class Asking {
       again_s = device::monotonicSeconds() + seconds(kAgain);
       channel_->send(bytes);
     }
-    throw LoadError("", "",
-                    sessionWords(session_) +
-                        ": nothing answers; check that vps render runs it at this --network, and that the "
-                        "certificates are of its authority and allow requests");
+    throw LoadError("", "", sessionWords(session_) + ": nothing answers; " + remedy_);
   }
 
  private:
@@ -68,6 +68,7 @@ class Asking {
   std::string session_;
   std::unique_ptr<ClientChannel> channel_;
   MessageWriter writer_;
+  const char* remedy_;  ///< where nothing answers
 };
 
 AskMessage messageOf(AskKind kind, const std::string& text = "") {
