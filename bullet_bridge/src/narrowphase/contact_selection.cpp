@@ -61,12 +61,12 @@ QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   return own ? *own : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell);
 }
 
-SideQuery sideQueryOf(const PairView& pair, int i, PairState& state, double duration_s) {
+SideQuery sideQueryOf(const PairView& pair, int i, PairState& state) {
   std::vector<std::uint32_t>& always = state.always[i];
   always.clear();
   for (const Candidate& c : state.selection.contacts)  // ascending
     if (c.side == i && !c.isCrossing()) always.push_back(c.id);
-  const double way_s = (i == 0 ? 1 : -1) * duration_s;
+  const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
   return {&queryStateOf(pair, i, state),
           {way_s * state.motion.V.w, way_s * state.motion.V.v},
           always,
@@ -88,7 +88,7 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
 }
 
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-                    PairState* state, int strides) {
+                    PairState* state) {
   std::size_t tested = 0, left_out = 0;
   for (int i = 0; i < 2; ++i) {
     if (!queriesPoints(pair, i, context.settings.sides)) continue;
@@ -98,15 +98,12 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                                           cutoff_m, context.settings, out, tested);
     else if (pair.hasMap(j)) {
       const double wide_m = state ? roundedUp(cutoff_m, queryRange_m(pair)) : cutoff_m;
-      const SideQuery query =
-          state ? sideQueryOf(pair, i, *state, state->motion.dt_s / strides) : SideQuery{};
+      const SideQuery query = state ? sideQueryOf(pair, i, *state) : SideQuery{};
       left_out += findMapCandidates(pair.side(i), pair.side(j), wide_m, context.settings, query, out, tested);
     } else {
       left_out += findSurfaceCandidates(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }
   }
-  // Edges are looked for along the whole step, or around one place on it.
-  if (strides > 1) state = nullptr;
   // Penalty points represent areas, and a crossing has none.
   if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
       pair.shape[0] && pair.shape[1])
@@ -137,8 +134,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
     const double t_s = motion.dt_s * k / strides;
     if (k > 0) advance(later, pair, motion.dt_s, t_s);
     met.clear();
-    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met,
-                   &state, strides);
+    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
     useOwnNormalsForPenalty(later, context.settings, met);
     // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
     // plane when the stride begins has met another before.

@@ -14,9 +14,8 @@ namespace vps::bullet::inline v0 {
 
 /// Adds the points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
 /// state, which makes repeated queries cheaper, possibly more points than that.
-/// @param strides  how many queries the step is divided into
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-                    PairState* state = nullptr, int strides = 1);
+                    PairState* state = nullptr);
 
 /// Adds the candidates of the step. A body that moves less than the query range is queried once, where it is.
 /// A faster one is queried at several places along its path, so that it cannot tunnel; the plane that it
